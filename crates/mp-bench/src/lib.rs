@@ -74,13 +74,13 @@ enum Suite {
     Assets,
 }
 
-/// Runs a suite. True when it was measured completely.
+/// Runs a suite. True when it was measured completely, and all of what it printed was read.
 ///
 /// # Errors
 /// When a scene or a file is not valid, cannot be read or cannot be written.
 pub fn run(options: &Options) -> Result<bool, Error> {
     let common = &options.common;
-    match options.suite {
+    let complete = match options.suite {
         Suite::Collide => collide::run(common, &options.collide),
         Suite::Planners => planners::run(common),
         Suite::Rigid => rigid::run(common, &options.rigid),
@@ -89,7 +89,8 @@ pub fn run(options: &Options) -> Result<bool, Error> {
         Suite::Roadmaps => roadmaps::run(common, &options.roadmaps),
         Suite::Scaling => scaling::run(common),
         Suite::Assets => assets::run(&options.assets),
-    }
+    };
+    Ok(complete? && !output::is_closed())
 }
 
 #[cfg(test)]

@@ -2,14 +2,25 @@
 
 use crate::error::{IntoError, Result};
 use std::io::{ErrorKind, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Prints a line on standard output. A closed pipe is not an error.
+/// Whether the reader of standard output has gone.
+static CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// Whether something could not be printed, because the reader of standard output has gone.
+pub(crate) fn is_closed() -> bool {
+    CLOSED.load(Ordering::Relaxed)
+}
+
+/// Prints a line on standard output. A reader that has gone is no error here, so that all files are written.
 pub(crate) fn print(line: &str) -> Result<()> {
     match writeln!(std::io::stdout().lock(), "{line}") {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(e).doing(|| "cannot write to standard output".into())
+        Err(e) if e.kind() == ErrorKind::BrokenPipe => {
+            CLOSED.store(true, Ordering::Relaxed);
+            Ok(())
         }
-        _ => Ok(()),
+        Err(e) => Err(e).doing(|| "cannot write to standard output".into()),
+        Ok(()) => Ok(()),
     }
 }
 

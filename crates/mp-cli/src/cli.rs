@@ -9,7 +9,8 @@ use std::str::FromStr;
 
 /// Motion planning on the command line.
 ///
-/// Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.
+/// Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input, 141 when the reader of standard output has
+/// gone.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "mp", bin_name = "mp", version, max_term_width = 110)]
 pub(crate) struct Cli {

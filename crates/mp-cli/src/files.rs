@@ -2,9 +2,9 @@
 
 use crate::cli::Drawing;
 use crate::input::is_standard;
-use crate::output;
+use crate::output::Claims;
 use crate::picture::Picture;
-use mp_plan::{Error, PathFileKind, Scene, is_same_file};
+use mp_plan::{Error, PathFileKind, Scene};
 use std::path::{Path, PathBuf};
 
 /// The files for the path and the picture of each run.
@@ -68,24 +68,22 @@ impl Files {
         (self.out.as_ref().map(fill), self.picture.as_ref().map(fill))
     }
 
-    /// Refuses files that cannot be written, have no known format, or are an input of the run, before any work
-    /// is done.
-    pub(crate) fn check(&self, scene: &Scene, seed: u64) -> Result<(), Error> {
+    /// Refuses files that cannot be written, have no known format, or are claimed already, before any work is done. With
+    /// `routes`, each of so many routes has files of its own.
+    pub(crate) fn claim(
+        &self,
+        claims: &mut Claims,
+        scene: &Scene,
+        seed: u64,
+        routes: Option<u16>,
+    ) -> Result<(), Error> {
         let (out, picture) = self.of(scene.name(), seed);
-        let named = [("--out", &out), ("--picture", &picture), ("--roadmap", &self.roadmap)];
-        for (i, (option, path)) in named.iter().enumerate() {
-            let Some(path) = path.as_ref().filter(|path| !is_standard(path)) else { continue };
-            output::writable(path)?;
-            if let Some(input) = scene.input_at(path) {
-                let message =
-                    format!("{option} {} would overwrite the input {}", path.display(), input.display());
-                return Err(Error::new(message).help("name another file"));
-            }
-            for (other, place) in &named[..i] {
-                if place.as_ref().is_some_and(|place| is_same_file(place, path)) {
-                    let message = format!("{option} and {other} name the same file, {}", path.display());
-                    return Err(Error::new(message).help("give each a file of its own"));
-                }
+        for (option, file) in [("--out", &out), ("--picture", &picture)] {
+            match (file, routes) {
+                (None, _) => {}
+                (Some(file), None) => claims.output(option, file)?,
+                (Some(file), Some(count)) => (1..=usize::from(count))
+                    .try_for_each(|number| claims.output(option, &numbered(file, number)))?,
             }
         }
         if let Some(out) = out.as_ref().filter(|out| !is_standard(out)) {
@@ -94,6 +92,19 @@ impl Files {
         let drawing = Drawing::default();
         picture.map_or(Ok(()), |picture| Picture::of(scene, &picture, &drawing, true).map(|_| ()))
     }
+
+    /// Refuses a file for the roadmap that cannot be written or is claimed already.
+    pub(crate) fn claim_roadmap(&self, claims: &mut Claims) -> Result<(), Error> {
+        self.roadmap.as_ref().map_or(Ok(()), |file| claims.output("--roadmap", file))
+    }
+}
+
+/// The name of a file with a number before its ending.
+pub(crate) fn numbered(file: &Path, number: usize) -> PathBuf {
+    let [stem, ending] = [file.file_stem(), file.extension()]
+        .map(|part| part.unwrap_or_default().to_string_lossy().into_owned());
+    let dot = if ending.is_empty() { "" } else { "." };
+    file.with_file_name(format!("{stem}-{number}{dot}{ending}"))
 }
 
 #[cfg(test)]
@@ -138,12 +149,16 @@ mod tests {
             (Some("p.txt"), Some("./p.txt")),
         ] {
             assert!(
-                files(out, picture, true, 1, 1).unwrap().check(&scene, 1).is_err(),
+                files(out, picture, true, 1, 1)
+                    .unwrap()
+                    .claim(&mut Claims::default(), &scene, 1, None)
+                    .is_err(),
                 "{out:?} {picture:?}"
             );
         }
         for out in ["p.txt", "p.json", "p.csv", "-"] {
-            assert!(files(Some(out), Some("p.png"), false, 1, 1).unwrap().check(&scene, 1).is_ok(), "{out}");
+            let files = files(Some(out), Some("p.png"), false, 1, 1).unwrap();
+            assert!(files.claim(&mut Claims::default(), &scene, 1, None).is_ok(), "{out}");
         }
     }
 }

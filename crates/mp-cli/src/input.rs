@@ -2,7 +2,6 @@
 
 use crate::output::note;
 use mp_plan::{Error, PathFileKind, PathRows, Scene};
-use std::io::Read;
 use std::path::Path;
 
 /// Whether a name stands for standard input or output.
@@ -12,14 +11,10 @@ pub(crate) fn is_standard(path: &Path) -> bool {
 
 /// The whole standard input, which must be text of at most 64 MiB.
 pub(crate) fn standard_input() -> Result<String, Error> {
-    const LIMIT: u64 = mp_io::MAX_TEXT_BYTES;
-    let mut text = String::new();
-    let read = std::io::stdin().lock().take(LIMIT + 1).read_to_string(&mut text);
-    read.map_err(|e| Error::new(format!("cannot read standard input: {e}")))?;
-    match text.len() as u64 > LIMIT {
-        true => Err(Error::new(format!("standard input has more than {LIMIT} bytes"))),
-        false => Ok(text),
-    }
+    let name = Path::new("standard input");
+    let bytes = mp_store::read_stream(name, std::io::stdin().lock(), mp_io::MAX_TEXT_BYTES)?;
+    String::from_utf8(bytes)
+        .map_err(|_| Error::new("standard input is not UTF-8 text").help("give a text file in UTF-8"))
 }
 
 /// Refuses a scene and a path that both come from standard input.
@@ -55,12 +50,12 @@ pub(crate) fn path(scene: &Scene, given: &Path) -> Result<PathRows, Error> {
     PathRows::parse("standard input", text.as_bytes(), kind, scene.path_format())
 }
 
-/// The path that an argument names, and whether it is free. If it is not, this is said to the person watching.
-pub(crate) fn judged_path(scene: &Scene, given: &Path) -> Result<(PathRows, bool), Error> {
+/// The path that an argument names, and what is wrong with it. If anything is, this is said to the person watching.
+pub(crate) fn judged_path(scene: &Scene, given: &Path) -> Result<(PathRows, Vec<String>), Error> {
     let path = path(scene, given)?;
     let verdict = scene.check(&path)?;
     if !verdict.free {
         note(&format!("warning: this path would not pass `mp check`: {}", verdict.faults.join("; ")));
     }
-    Ok((path, verdict.free))
+    Ok((path, verdict.faults))
 }

@@ -1,6 +1,7 @@
 //! The program `mp`: plan, check, info, render, view on the command line.
 //!
-//! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.
+//! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input, 141 when the reader of standard output has
+//! gone.
 
 mod bench;
 mod browser;
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         Command::Man => man(),
     };
     match outcome {
+        Ok(_) if output::is_closed() => ExitCode::from(output::CLOSED_CODE),
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(error) => {

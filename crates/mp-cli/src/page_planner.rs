@@ -6,6 +6,9 @@ use std::path::PathBuf;
 /// The environment variable with the folder of the modules. `cargo xtask` sets it.
 const VARIABLE: &str = "MP_PLANNERS";
 
+/// The largest module that is read, bytes (64 MiB).
+const MAX_MODULE_BYTES: u64 = 64 << 20;
+
 /// A planner for a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PagePlanner {
@@ -37,8 +40,7 @@ impl PagePlanner {
                  or set {VARIABLE} to the folder that holds {name}"
             )));
         };
-        let module =
-            std::fs::read(place).map_err(|e| Error::new(format!("cannot read {}: {e}", place.display())))?;
+        let module = mp_store::read(place, MAX_MODULE_BYTES)?;
         if !module.starts_with(b"\0asm") {
             return Err(Error::new(format!("{} is no WebAssembly module", place.display()))
                 .help("build it again: `cargo xtask wasm`"));

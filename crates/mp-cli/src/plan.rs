@@ -1,10 +1,10 @@
 //! `plan`: plans on scenes with seeds, and writes reports and files.
 
 use crate::cli::{Drawing, Plan};
-use crate::files::Files;
+use crate::files::{Files, numbered};
 use crate::input::{is_standard, scene};
 use crate::interrupt;
-use crate::output::{note, print, print_json, write};
+use crate::output::{Claims, note, print, print_json, write};
 use crate::picture::{Picture, Shown, Watched};
 use crate::progress::Line;
 use crate::request::{request, request_for};
@@ -14,7 +14,6 @@ use mp_plan::{
     in_parallel, make_folder,
 };
 use mp_view::GrownTrees;
-use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// The default scene.
@@ -54,7 +53,7 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
         scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
     let jobs: Vec<(usize, u64)> =
         (0..scenes.len()).flat_map(|i| (request.seed..=last).map(move |seed| (i, seed))).collect();
-    check_files(&files, &scenes, &jobs)?;
+    check_files(args, &files, &scenes, &jobs)?;
     for scene in &scenes {
         for odd in scene.check_ends()? {
             note(&format!("warning: {}: {odd}", scene.name()));
@@ -148,24 +147,20 @@ fn routes(
     Ok(solved >= usize::from(count))
 }
 
-/// The name of a file with a number before its ending.
-fn numbered(file: &Path, number: usize) -> PathBuf {
-    let [stem, ending] = [file.file_stem(), file.extension()]
-        .map(|part| part.unwrap_or_default().to_string_lossy().into_owned());
-    let dot = if ending.is_empty() { "" } else { "." };
-    file.with_file_name(format!("{stem}-{number}{dot}{ending}"))
-}
-
-/// Refuses bad output files, and two runs with the same file.
-fn check_files(files: &Files, scenes: &[Scene], jobs: &[(usize, u64)]) -> Result<(), Error> {
-    let mut taken = HashSet::new();
+/// Refuses outputs that cannot be written, that are inputs, and two outputs in the same file.
+fn check_files(args: &Plan, files: &Files, scenes: &[Scene], jobs: &[(usize, u64)]) -> Result<(), Error> {
+    let mut claims = Claims::default();
+    scenes.iter().flat_map(Scene::inputs_on_disk).for_each(|file| claims.input(file));
+    if let Some(file) = &args.request {
+        claims.input(file);
+    }
+    files.claim_roadmap(&mut claims)?;
     for &(i, seed) in jobs {
-        files.check(&scenes[i], seed)?;
-        let (out, picture) = files.of(scenes[i].name(), seed);
-        for path in out.into_iter().chain(picture) {
-            if !taken.insert(path.clone()) {
-                return Err(Error::new(format!("{} would be written twice", path.display())));
-            }
+        files.claim(&mut claims, &scenes[i], seed, args.routes)?;
+    }
+    if let Some(folder) = &args.export {
+        for file in scenes.iter().flat_map(|scene| mp_io::exported_files(scene.name())) {
+            claims.output("--export", &folder.join(file))?;
         }
     }
     Ok(())

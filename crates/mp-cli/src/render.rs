@@ -3,7 +3,7 @@
 use crate::cli::Render;
 use crate::input::{judged_path, refuse_two_standard_inputs, scene};
 use crate::interrupt;
-use crate::output::{note, writable, write};
+use crate::output::{Claims, note, write};
 use crate::picture::{Picture, Shown};
 use crate::progress::Line;
 use mp_plan::{Cancel, Error};
@@ -14,17 +14,17 @@ pub(crate) fn run(args: &Render) -> Result<bool, Error> {
     refuse_two_standard_inputs(&args.scene, args.path.as_deref())?;
     let scene = scene(&args.scene)?;
     let picture = Picture::of(&scene, &args.picture, &args.drawing, args.path.is_some())?;
-    writable(&args.picture)?;
-    if let Some(input) = scene.input_at(&args.picture) {
-        let message = format!("{} would overwrite the input {}", args.picture.display(), input.display());
-        return Err(Error::new(message).help("name another file"));
-    }
+    let mut claims = Claims::default();
+    scene.inputs_on_disk().iter().chain(&args.path).for_each(|file| claims.input(file));
+    claims.output("--picture", &args.picture)?;
     let judged = args.path.as_ref().map(|file| judged_path(&scene, file)).transpose()?;
     let mut caption = String::new();
-    if let Some((path, free)) = &judged {
+    if let Some((path, faults)) = &judged {
         caption = mp_plan::count(path.rows.len(), "configuration");
-        if !free {
-            caption += ", not verified";
+        if let Some(fault) = faults.first() {
+            // The place is in the warning.
+            let what = fault.split(" between ").next().unwrap_or(fault);
+            caption += &format!("; NOT A VALID PATH: {}", mp_io::shortened(what, 80));
         }
     }
     let path = judged.as_ref().map(|(path, _)| path);

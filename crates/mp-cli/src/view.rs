@@ -6,8 +6,9 @@ use crate::input::{is_standard, judged_path, refuse_two_standard_inputs, scene};
 use crate::interrupt;
 use crate::output::{note, print};
 use mp_io::Files as _;
-use mp_plan::{Error, folder_of};
+use mp_plan::Error;
 use mp_serve::{Limits, Server, Wake};
+use mp_store::folder_of;
 use mp_view::{Opening, Planner, SceneFile, Session};
 use std::path::{Path, PathBuf};
 

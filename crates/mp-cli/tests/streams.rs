@@ -93,6 +93,17 @@ fn a_path_that_is_not_free_is_drawn_and_said_to_be() {
     dir.write("through.txt", "2\n-2 1.4 0.2 0 0 0\n2 1.3 1.8 0.7 0 0\n");
     let run = mp(&dir, &["render", "window.env", "through.txt", "--picture", "p.png", "--size", "320x240"]);
     assert!(run.code == 0 && run.stderr.contains("would not pass") && dir.exists("p.png"), "{run:?}");
+    // The picture says it too.
+    assert_eq!(mp(&dir, &["plan", "rrs-low", "--json", "--out", "q.txt"]).code, 0);
+    let path = dir.read("q.txt");
+    let rows: Vec<&str> = path.lines().skip(1).collect();
+    dir.write("straight.txt", format!("2 2\n{}\n{}\n", rows[0], rows[rows.len() - 1]));
+    for (path, marked) in [("q.txt", false), ("straight.txt", true)] {
+        let run = mp(&dir, &["render", "rrs-low", path, "--picture", "q.svg"]);
+        let told =
+            [run.stderr.contains("would not pass"), dir.read("q.svg").contains("NOT A VALID PATH: hits")];
+        assert!(run.code == 0 && told == [marked; 2], "{path}: {told:?} {run:?}");
+    }
 }
 
 #[test]

@@ -1,7 +1,13 @@
 //! The error of this crate: what is wrong, where, what was expected and what to do about it.
 
 use std::fmt::{self, Display};
-use std::path::Path;
+
+/// A report has at most so many characters, and its parts so many: errors cite files, which may hold anything.
+const MAX_REPORT: usize = 499;
+const MAX_FILE: usize = 120;
+const MAX_MESSAGE: usize = 300;
+const MAX_EXPECTED: usize = 140;
+const MAX_HELP: usize = 240;
 
 /// What kind of thing went wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -22,7 +28,7 @@ pub enum ErrorKind {
 /// A bad file: what is wrong, in which file, line and column, what was expected, and a remedy.
 ///
 /// [`Display`] gives one line, `file:line:column: what is wrong`; [`report`](Self::report) shows the line of the file and
-/// the remedy as well.
+/// the remedy as well. Both have less than 500 characters, whatever is in the file.
 #[derive(Clone, Debug)]
 pub struct Error(Box<Inner>);
 
@@ -51,7 +57,7 @@ struct Excerpt {
 impl Error {
     /// An error of this kind about a file: for [`Files`](crate::Files) of your own.
     pub fn new(kind: ErrorKind, file: impl Display, message: impl Into<String>) -> Self {
-        let mut message = message.into();
+        let mut message = shortened(&message.into(), MAX_MESSAGE);
         if message.contains(char::is_control) {
             message = message.replace(char::is_control, "\u{fffd}");
         }
@@ -67,14 +73,19 @@ impl Error {
         }))
     }
 
-    /// An error of the operating system about `path`; `doing` completes "cannot …".
-    pub(crate) fn io(path: &Path, doing: &str, error: &std::io::Error) -> Self {
-        let why = match error.kind() {
-            std::io::ErrorKind::NotFound => "no such file".to_owned(),
-            std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-            _ => error.to_string(),
-        };
-        Self::new(ErrorKind::Io, path.display(), format!("cannot {doing}: {why}"))
+    /// An error in a line, counted from 1, of `text`, the content of `file`: for texts that other crates read.
+    #[must_use]
+    pub fn in_line(
+        kind: ErrorKind,
+        file: impl Display,
+        text: &str,
+        line: usize,
+        message: impl Into<String>,
+    ) -> Self {
+        let before = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+        let words = text[before..].lines().next().unwrap_or_default();
+        let blanks = words.len() - words.trim_start().len();
+        Self::at(kind, &file.to_string(), text, before + blanks, words.trim().len(), message.into())
     }
 
     /// An error at bytes `start..start + len` of `text`, the content of `file`.
@@ -97,14 +108,14 @@ impl Error {
     }
 
     pub(crate) fn expected(mut self, what: impl Into<String>) -> Self {
-        self.0.expected = Some(what.into());
+        self.0.expected = Some(shortened(&what.into(), MAX_EXPECTED));
         self
     }
 
     /// Adds what to do about it.
     #[must_use]
     pub fn help(mut self, what: impl Into<String>) -> Self {
-        self.0.help = Some(what.into());
+        self.0.help = Some(shortened(&what.into(), MAX_HELP));
         self
     }
 
@@ -115,7 +126,7 @@ impl Error {
 
     /// Adds the place at which another file names the file in error.
     pub(crate) fn cited_at(mut self, place: String) -> Self {
-        self.0.cited_at = Some(place);
+        self.0.cited_at = Some(shortened(&place, MAX_FILE));
         self
     }
 
@@ -172,7 +183,7 @@ impl Error {
     }
 
     /// A few lines for a person: what is wrong and where, the line of the file with the wrong part underlined,
-    /// and what to do. They end without a line break.
+    /// and what to do. They end without a line break. The line of the file is left out where it would make them too long.
     ///
     /// ```text
     /// a.off:2:5: `bad` is not a number; expected x y z
@@ -182,43 +193,71 @@ impl Error {
     /// ```
     #[must_use]
     pub fn report(&self) -> String {
-        let mut text = self.to_string();
+        let help = self.0.help.as_ref().map_or_else(String::new, |help| format!("\n  help: {help}"));
+        let mut text = self.line_of(MAX_REPORT - help.chars().count());
         if let Some(excerpt) = &self.0.excerpt {
             let (line, mark) = (excerpt.line.to_string(), excerpt.mark());
             let label =
                 self.0.expected.as_ref().map_or_else(|| "here".to_owned(), |x| format!("expected {x}"));
-            text += &format!(
+            let shown = format!(
                 "\n  {line} | {}\n  {:width$} | {mark} {label}",
                 excerpt.text,
                 "",
                 width = line.len()
             );
+            if [&text, &shown, &help].map(|part| part.chars().count()).iter().sum::<usize>() <= MAX_REPORT {
+                text += &shown;
+            }
         }
-        if let Some(help) = &self.0.help {
-            text += &format!("\n  help: {help}");
-        }
-        text
+        text + &help
     }
+
+    /// The error in one line of at most so many characters.
+    fn line_of(&self, most: usize) -> String {
+        let mut text = format!("{}:", shortened(&self.0.file, MAX_FILE));
+        if let Some((line, column)) = self.0.position {
+            text += &format!("{line}:{column}:");
+        }
+        text += &format!(" {}", self.0.message);
+        if let Some(expected) = &self.0.expected {
+            text += &format!("; expected {expected}");
+        }
+        if let Some(place) = &self.0.cited_at {
+            text += &format!(" (named at {place})");
+        }
+        shortened(&text, most)
+    }
+}
+
+/// At most so many characters of `text`: of a longer one its beginning and its end.
+#[must_use]
+pub fn shortened(text: &str, most: usize) -> String {
+    let count = text.chars().count();
+    if count <= most {
+        return text.to_owned();
+    }
+    let end = most / 3;
+    let beginning = text.chars().take(most.saturating_sub(end + 1));
+    beginning.chain(['…']).chain(text.chars().skip(count - end)).collect()
 }
 
 impl Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:", self.0.file)?;
-        if let Some((line, column)) = self.0.position {
-            write!(f, "{line}:{column}:")?;
-        }
-        write!(f, " {}", self.0.message)?;
-        if let Some(expected) = &self.0.expected {
-            write!(f, "; expected {expected}")?;
-        }
-        match &self.0.cited_at {
-            Some(place) => write!(f, " (named at {place})"),
-            None => Ok(()),
-        }
+        f.write_str(&self.line_of(MAX_REPORT))
     }
 }
 
 impl std::error::Error for Error {}
+
+impl From<mp_store::Error> for Error {
+    fn from(e: mp_store::Error) -> Self {
+        let kind = match e.kind() {
+            mp_store::ErrorKind::TooLarge => ErrorKind::TooLarge,
+            _ => ErrorKind::Io,
+        };
+        Self::new(kind, e.path().display(), e.message()).help(e.remedy())
+    }
+}
 
 impl Excerpt {
     fn cut(text: &str, line_start: usize, wrong: std::ops::Range<usize>, line: usize) -> Self {
@@ -308,6 +347,32 @@ mod tests {
         assert_eq!((e.line(), e.column()), (Some(1), Some(1_000_001)));
         assert!(e.0.excerpt.as_ref().unwrap().text.len() < 200);
         assert!(e.report().starts_with("a.off:1:1000001: no\n  1 | "));
+    }
+
+    #[test]
+    fn reports_are_short_whatever_is_cited() {
+        let long = "é\t".repeat(20_000);
+        for help in ["", "do this", &long] {
+            for expected in ["", "x y z", &long] {
+                let e =
+                    Error::at(ErrorKind::Format, "a.off", &long, 200, 30_000, format!("`{long}` is wrong"));
+                let e = e.expected(expected).help(help).cited_at(long.clone());
+                assert!(e.to_string().chars().count() < 500 && e.report().chars().count() < 500, "{e}");
+                assert!(e.to_string().starts_with("a.off:1:"), "{e}");
+            }
+        }
+        let far = Error::new(ErrorKind::Io, "folder/".repeat(600) + "scene.env", "no such file");
+        assert!(far.to_string().ends_with("scene.env: no such file"), "{far}");
+        assert_eq!(shortened("abcdefghij", 10), "abcdefghij");
+        assert_eq!(shortened("abcdefghijk", 10), "abcdef…ijk");
+    }
+
+    #[test]
+    fn a_line_is_shown_without_its_indentation() {
+        let e = Error::in_line(ErrorKind::Format, "a.urdf", "<robot>\n  <joint/>\n", 2, "no");
+        assert_eq!((e.line(), e.column()), (Some(2), Some(3)));
+        assert!(e.report().contains("^^^^^^^^"), "{}", e.report());
+        assert!(Error::in_line(ErrorKind::Format, "a", "", 9, "no").report().starts_with("a:1:1: no"));
     }
 
     #[test]

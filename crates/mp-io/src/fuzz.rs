@@ -155,10 +155,11 @@ fn valid<T>(read: Result<T, Error>) -> Option<T> {
         Err(error) => error,
     };
     let line = error.to_string();
-    assert!(!line.contains('\n') && line.len() < 2000, "{line}");
+    assert!(!line.contains('\n') && line.chars().count() < 500, "{line}");
     assert!(error.line().is_none_or(|l| l > 0) && error.column().is_none_or(|c| c > 0));
     assert!(error.remedy().is_some(), "{line}");
-    assert!(error.report().lines().count() <= 4, "{}", error.report());
+    let report = error.report();
+    assert!(report.lines().count() <= 4 && report.chars().count() < 500, "{report}");
     None
 }
 

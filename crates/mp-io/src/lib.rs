@@ -10,7 +10,7 @@
 //!
 //! Every reader takes a path, or bytes and the name that errors call them. Errors ([`Error`]) say file, line,
 //! column, what was expected and what to do; no input makes a reader panic, hang or use memory out of
-//! proportion to its size. Every writer writes to a temporary file and renames it. Lengths are metres and
+//! proportion to its size. Files are written whole or not at all. Lengths are metres and
 //! angles radians. The formats are documented in `docs/formats/`.
 
 mod collada;
@@ -40,13 +40,13 @@ pub use collada::parse_collada;
 pub use csv::{csv_text, parse_csv};
 pub use document::{DocumentBody, DocumentShape, SceneDocument};
 pub use drive::{Drive, Driven};
-pub use error::{Error, ErrorKind};
-pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
+pub use error::{Error, ErrorKind, shortened};
+pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text};
 pub use gempa::{Environment, Obstacle, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
 pub use mesh::{MAX_CORNERS, MeshFormat, read_mesh, read_mesh_of};
 pub use obj::parse_obj;
 pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
-pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};
+pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl, exported_files};
 pub use path::{JointPath, PathFile};
 pub use planar::{
     GridMap, PlanarFile, PlanarMap, PlanarMoving, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape,

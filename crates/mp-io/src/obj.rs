@@ -43,7 +43,7 @@ const CURVED: [&str; 13] =
 pub fn parse_obj(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
     let text = Text::new(file, bytes, "meshes.md")?;
     // Faces may name vertices of later lines.
-    let total = text.lines().filter(|l| l.words().next().is_some_and(|w| w.text == "v")).count();
+    let total = vertices_of(&text);
     let mut vertices = Vec::with_capacity(total);
     let mut corners: Vec<u32> = Vec::new();
     let mut ends = Vec::new();
@@ -80,6 +80,16 @@ pub fn parse_obj(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
     }
     let faces = ends.iter().enumerate().map(|(i, &end)| &corners[if i == 0 { 0 } else { ends[i - 1] }..end]);
     build(file, vertices, faces)
+}
+
+/// How many vertices the file has.
+fn vertices_of(text: &Text<'_>) -> usize {
+    let (mut lines, mut words, mut count) = (text.lines(), Vec::new(), 0);
+    while let Some(line) = lines.next() {
+        statement(line, &mut lines, &mut words);
+        count += usize::from(words.first().is_some_and(|word| word.text == "v"));
+    }
+    count
 }
 
 /// The words of a statement: of this line, and of the next ones while a line ends with `\`.
@@ -162,6 +172,17 @@ mod tests {
             })
             .sum();
         assert!((area - 10.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_statement_may_go_on_in_the_next_line() {
+        let mesh = parse(
+            "g a \\\nb\nv \\\n0 0 0\nv\\\n1 0 0\n\\\nv 0 1 \\\r\n0\nf \\\n\\\n1 2\\\n 3\n# end \\\nf 1 3 2",
+        );
+        assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (3, 2));
+        // The group takes the next line: what is missing then is said with its line.
+        let e = parse_obj("t.obj", b"v 0 0 0\ng a\\\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap_err();
+        assert_eq!((e.line(), e.column()), (Some(5), Some(7)), "{e}");
     }
 
     #[test]

@@ -7,7 +7,7 @@ mod load;
 mod tests;
 
 pub use config::{OmplProblem, OmplState};
-pub use export::{OmplExport, export_ompl};
+pub use export::{OmplExport, export_ompl, exported_files};
 pub(crate) use load::load;
 
 /// The page that describes the format.

@@ -1,7 +1,7 @@
 //! Paths as text and JSON: poses of a rigid body as in GEMPA configuration files, and joint values of an arm.
 
 use crate::error::{Error, ErrorKind};
-use crate::files::{decode, read_text, write_atomic};
+use crate::files::{decode, read_text};
 use crate::gempa::environment::six;
 use crate::json::{parse_rows, rows_text};
 use crate::number::Row;
@@ -248,7 +248,7 @@ fn write<C: AsRef<[f64]> + Serialize>(
         return Err(Error::new(ErrorKind::Content, path.display(), message));
     }
     let content = if is_json(path) { rows_text(configurations) } else { text() };
-    write_atomic(path, content.as_bytes())
+    Ok(mp_store::write(path, content.as_bytes())?)
 }
 
 fn is_json(path: &Path) -> bool {

@@ -1,7 +1,6 @@
 //! STL, text and binary: a triangle soup. See `docs/formats/meshes.md`.
 
 use crate::error::{Error, ErrorKind};
-use crate::files::write_atomic;
 use crate::mesh::mesh_error;
 use crate::number::Row;
 use crate::text::{Lexer, Text, Token, clipped};
@@ -143,7 +142,7 @@ fn unexpected(text: &Text<'_>, word: Option<Token<'_>>, expected: &str) -> Error
 /// # Errors
 /// [`Error`] when the file cannot be written; then nothing is left of it.
 pub fn write_stl(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), Error> {
-    write_atomic(path.as_ref(), stl_text(mesh).as_bytes())
+    Ok(mp_store::write(path.as_ref(), stl_text(mesh).as_bytes())?)
 }
 
 /// The text of `mesh` as text STL. Coordinates have the fewest digits that read back to the same bits.

@@ -6,36 +6,57 @@ use mp_cspace::{
     obstacles::{BodyFeatures, ClearanceGradient, ObstacleGeometry, ObstacleHints, PointOf},
 };
 use nalgebra::Vector3;
+use std::cell::Cell;
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A checker adds its queries to the common count once there are this many, because each addition takes time.
 const MAX_UNREPORTED: u64 = 64;
 
+thread_local! {
+    /// How many queries this thread has reported. Only differences are used.
+    static OF_THREAD: Cell<u64> = const { Cell::new(0) };
+}
+
+/// How many queries this thread has reported so far.
+#[cfg(feature = "roadmaps")]
+pub(crate) fn queries_of_thread() -> u64 {
+    OF_THREAD.get()
+}
+
 /// A checker whose queries are added to a common count: now and then, and when it is dropped.
 pub struct Counted<'a, R: Queries> {
     checker: R,
     /// How many of the checker's queries are in the common count.
     reported: u64,
+    most_unreported: u64,
     queries: &'a AtomicU64,
 }
 
 impl<'a, R: Queries> Counted<'a, R> {
     /// Adds the queries that `checker` answers from now on to `queries`.
     pub fn new(checker: R, queries: &'a AtomicU64) -> Self {
-        Self { reported: checker.queries(), checker, queries }
+        Self { reported: checker.queries(), most_unreported: MAX_UNREPORTED, checker, queries }
+    }
+
+    /// Adds each query at once, so that the common count is always exact.
+    pub(crate) fn exactly(mut self) -> Self {
+        self.most_unreported = 1;
+        self
     }
 
     fn report(&mut self) {
         let now = self.checker.queries();
-        self.queries.fetch_add(now - self.reported, Ordering::Relaxed);
+        let new = now - self.reported;
+        self.queries.fetch_add(new, Ordering::Relaxed);
+        OF_THREAD.set(OF_THREAD.get() + new);
         self.reported = now;
     }
 
     /// The answer of the checker to a query.
     fn query<T>(&mut self, query: impl FnOnce(&mut R) -> T) -> T {
         let answer = query(&mut self.checker);
-        if self.checker.queries() - self.reported >= MAX_UNREPORTED {
+        if self.checker.queries() - self.reported >= self.most_unreported {
             self.report();
         }
         answer
@@ -57,7 +78,9 @@ impl Stop for QueryBudget<'_> {
 
 impl<R: Queries + Clone> Clone for Counted<'_, R> {
     fn clone(&self) -> Self {
-        Self::new(self.checker.clone(), self.queries)
+        let mut clone = Self::new(self.checker.clone(), self.queries);
+        clone.most_unreported = self.most_unreported;
+        clone
     }
 }
 

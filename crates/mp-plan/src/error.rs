@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// A message has at most so many characters: it may cite what somebody gave.
+const MAX_MESSAGE: usize = 400;
+
 /// An error about bad input: what is wrong, in which scene or file, and what to do.
 ///
 /// [`Display`](fmt::Display) gives one line. [`report`](Self::report) gives a few lines for a person, with the line of the
@@ -20,7 +23,8 @@ struct Inner {
 impl Error {
     /// An error with this message: lower case, no full stop.
     pub fn new(message: impl Into<String>) -> Self {
-        Self(Box::new(Inner { context: Vec::new(), message: message.into(), help: None, file: None }))
+        let message = mp_io::shortened(&message.into(), MAX_MESSAGE);
+        Self(Box::new(Inner { context: Vec::new(), message, help: None, file: None }))
     }
 
     /// Adds what to do about it.
@@ -90,6 +94,12 @@ impl From<mp_io::Error> for Error {
     fn from(file: mp_io::Error) -> Self {
         let message = file.message().to_owned();
         Self(Box::new(Inner { context: Vec::new(), message, help: None, file: Some(file) }))
+    }
+}
+
+impl From<mp_store::Error> for Error {
+    fn from(file: mp_store::Error) -> Self {
+        mp_io::Error::from(file).into()
     }
 }
 

@@ -60,23 +60,11 @@ impl Scene {
         self.inputs.iter().map(file).collect()
     }
 
-    /// The input file that writing `output` would overwrite, if any.
+    /// The input files that are on the disk: an output must be none of them. Empty for a shipped scene, which is in memory.
     #[must_use]
-    pub fn input_at(&self, output: &Path) -> Option<&Path> {
-        let same = |input: &&PathBuf| is_same_file(input, output);
-        self.inputs.iter().find(same).map(PathBuf::as_path)
+    pub fn inputs_on_disk(&self) -> &[PathBuf] {
+        if self.shipped { &[] } else { &self.inputs }
     }
-}
-
-/// Whether two paths name the same file, which need not exist.
-#[must_use]
-pub fn is_same_file(a: &Path, b: &Path) -> bool {
-    let place = |path: &Path| {
-        let name = path.file_name()?.to_owned();
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        std::fs::canonicalize(path).ok().or_else(|| Some(std::fs::canonicalize(folder).ok()?.join(name)))
-    };
-    a == b || place(a).zip(place(b)).is_some_and(|(a, b)| a == b)
 }
 
 /// The innermost folder that holds all files.

@@ -101,9 +101,8 @@ pub use film::{Film, FilmKind};
 pub use find::find_problem;
 pub use finish::shorten;
 pub use goals::GoalPart;
-pub use inputs::is_same_file;
 pub use numbers::{brief, count, positive_number};
-pub use output::{folder_of, make_folder, write_file};
+pub use output::{make_folder, write_file};
 pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]

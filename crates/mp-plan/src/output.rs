@@ -3,19 +3,12 @@
 use crate::Error;
 use std::path::Path;
 
-/// The folder of a file; the current one for a bare name.
-#[must_use]
-pub fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
 /// Makes a folder, and those above it, when it is missing.
 ///
 /// # Errors
 /// When it cannot be made.
 pub fn make_folder(folder: &Path) -> Result<(), Error> {
-    std::fs::create_dir_all(folder)
-        .map_err(|e| Error::new(format!("cannot make the folder {}: {e}", folder.display())))
+    Ok(mp_store::make_folder(folder)?)
 }
 
 /// Writes `bytes` to `path`, whole or not at all. Makes the folder when it is missing.
@@ -23,8 +16,8 @@ pub fn make_folder(folder: &Path) -> Result<(), Error> {
 /// # Errors
 /// When the folder or the file cannot be written.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    make_folder(folder_of(path))?;
-    Ok(mp_io::write_atomic(path, bytes)?)
+    mp_store::make_folder(mp_store::folder_of(path))?;
+    Ok(mp_store::write(path, bytes)?)
 }
 
 #[cfg(test)]
@@ -32,7 +25,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_are_replaced_whole_and_leave_nothing_behind() {
+    fn the_folder_is_made() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("a/b.txt");
         write_file(&path, b"one").unwrap();

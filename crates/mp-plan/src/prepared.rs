@@ -3,7 +3,7 @@
 use crate::counted::{Counted, QueryBudget};
 use crate::goals;
 use crate::planners::PlannerKind;
-use crate::roadmaps::{PlannerParts, RoadmapFile, RoadmapPlanner};
+use crate::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
 use crate::watch::{Events, WatchAdapter};
 use crate::{Control, Error, Length, Measured, MotionValidator, Request, RobotKind};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
@@ -28,21 +28,28 @@ pub(crate) struct Prepared<'k, K: RobotKind> {
     verifier: K::Verifier<'k>,
     /// The common count of the queries of all checkers.
     pub(crate) queries: AtomicU64,
+    /// Planners of roadmaps tell on several threads which queries are not to be counted: see `QueryMeter` of mp-roadmap.
+    counts_exactly: bool,
 }
 
 impl<'k, K: RobotKind> Prepared<'k, K> {
     pub(crate) fn new(kind: &'k K, request: &'k Request) -> Result<Self, Error> {
-        PlannerKind::new(&request.planner)?.meets(kind)?;
+        let planner = PlannerKind::new(&request.planner)?;
+        planner.meets(kind)?;
         crate::relax::check(kind, request)?;
         let Measured { space, index } = kind.measured(request.metric)?;
         let (verifier, queries) = (kind.verifier()?, AtomicU64::new(0));
-        Ok(Self { kind, request, space, index, verifier, queries })
+        let counts_exactly = matches!(planner, PlannerKind::Roadmap(_));
+        Ok(Self { kind, request, space, index, verifier, queries, counts_exactly })
     }
 
     /// The problem of the scene. Each thread makes its own.
     pub(crate) fn problem(&self) -> Result<AnyProblem<'_, K::State>, BuildError> {
         let kind = self.kind;
-        let counted = || Counted::new(kind.checker().clone(), &self.queries);
+        let counted = || {
+            let counted = Counted::new(kind.checker().clone(), &self.queries);
+            if self.counts_exactly { counted.exactly() } else { counted }
+        };
         let check: AnyCheck<'_, K::State> = match self.request.motion {
             MotionValidator::Certified => {
                 Box::new(build_error(Certified::new(kind.space(), counted(), kind.tolerance()))?)
@@ -77,7 +84,7 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         &self,
         info: &PlannerInfo,
         workers: Workers,
-        file: Option<&RoadmapFile<'_>>,
+        file: Option<&GrowingFile<'_>>,
     ) -> Result<RoadmapPlanner<'_, K::State>, Error> {
         let parts = PlannerParts {
             problem: &|| self.problem(),
@@ -85,6 +92,7 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
             settings: self.request.settings(),
             workers,
             threads: self.request.threads,
+            queries: &self.queries,
         };
         RoadmapPlanner::new(info, parts, file)
     }

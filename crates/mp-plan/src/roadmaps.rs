@@ -6,13 +6,19 @@ use mp_cspace::{
     AnyProblem, BuildError, Planner, Workers,
     registry::{PlannerInfo, Settings},
 };
+use mp_cspace::{Clock, Progress, SparseClock, Stop, StopReason};
 #[cfg(feature = "roadmaps")]
-use mp_cspace::{NodeId, Observer, Rng, Stop, StopReason};
+use mp_cspace::{NodeId, Observer, Rng};
 #[cfg(feature = "roadmaps")]
-use mp_roadmap::LinkState;
+use mp_roadmap::{LinkState, ParallelProblem, QueryMeter, RoadmapError};
+use mp_store::Lock;
 #[cfg(feature = "roadmaps")]
 use std::collections::HashMap;
 use std::path::Path;
+use std::sync::atomic::AtomicU64;
+use std::time::Duration;
+#[cfg(feature = "roadmaps")]
+use std::{cell::Cell, sync::atomic::Ordering};
 
 /// A planner that builds a roadmap.
 pub(crate) struct RoadmapPlanner<'p, S> {
@@ -30,30 +36,32 @@ pub(crate) use mp_roadmap::planners;
 #[cfg(feature = "roadmaps")]
 pub use mp_roadmap::{Roadmap, RoadmapState};
 
-/// The file in which a roadmap is kept.
+/// The least time between two checkpoints of a roadmap that grows.
+const CHECKPOINTS: Duration = Duration::from_secs(3);
+/// At most this part of the time goes into checkpoints: one in so many seconds.
+const CHECKPOINT_PART: u32 = 20;
+
+/// The file in which a roadmap is kept, locked for this process: other processes that would write to it are refused.
 #[cfg_attr(not(feature = "roadmaps"), expect(dead_code, reason = "no roadmap is read or written"))]
 pub(crate) struct RoadmapFile<'r> {
     path: &'r Path,
     /// A hash of scene, robot and metric, which the roadmap in the file must have.
     fingerprint: u64,
+    _lock: Lock,
 }
 
 impl<'r> RoadmapFile<'r> {
-    /// The file at `path` for roadmaps of this robot under this metric.
+    /// The file at `path` for roadmaps of this robot under this metric. Its folder is made when it is missing.
     ///
     /// # Errors
-    /// When roadmaps of such robots cannot be kept.
+    /// When roadmaps of such robots cannot be kept, or another process grows the roadmap in this file.
     pub(crate) fn new<K: RobotKind>(kind: &K, path: &'r Path, metric: MetricName) -> Result<Self, Error> {
         let Some(fingerprint) = kind.fingerprint(metric) else {
             let help = "leave the file of the roadmap out";
             return Err(Error::new("roadmaps are kept of rigid bodies only").help(help));
         };
-        Ok(Self { path, fingerprint })
-    }
-
-    /// The file that the request names, if it names one.
-    pub(crate) fn of_request<K: RobotKind>(kind: &K, request: &'r Request) -> Result<Option<Self>, Error> {
-        request.roadmap.as_ref().map(|path| Self::new(kind, path, request.metric)).transpose()
+        mp_store::make_folder(mp_store::folder_of(path))?;
+        Ok(Self { path, fingerprint, _lock: Lock::of_file(path)? })
     }
 }
 
@@ -64,8 +72,10 @@ impl RoadmapFile<'_> {
         if !self.path.exists() {
             return Ok(None);
         }
-        let help = "name another file, or delete it to begin anew";
-        Roadmap::load(self.path, self.fingerprint).map(Some).map_err(|e| Error::new(e.to_string()).help(help))
+        Roadmap::load(self.path, self.fingerprint).map(Some).map_err(|e| match e.error {
+            RoadmapError::File(file) => file.into(),
+            _ => Error::new(e.to_string()).help("name another file, or delete it to begin anew"),
+        })
     }
 
     /// Writes the roadmap to the file.
@@ -73,7 +83,82 @@ impl RoadmapFile<'_> {
         &self,
         map: &Roadmap<S>,
     ) -> Result<(), Error> {
-        Ok(mp_io::write_atomic(self.path, &map.to_bytes(self.fingerprint))?)
+        Ok(mp_store::write(self.path, &map.to_bytes(self.fingerprint))?)
+    }
+}
+
+/// The file of a roadmap that grows. It is written at checkpoints, so that a process that is killed loses only some seconds of
+/// growth. Checkpoints change no result: the run is paused between two steps, and the time of writing does not count.
+pub(crate) struct GrowingFile<'r> {
+    pub(crate) file: RoadmapFile<'r>,
+    clock: Clock,
+    next: Duration,
+}
+
+impl<'r> GrowingFile<'r> {
+    /// The file that the request names, if it names one.
+    ///
+    /// # Errors
+    /// As [`RoadmapFile::new`].
+    pub(crate) fn of_request<K: RobotKind>(
+        kind: &K,
+        request: &'r Request,
+        clock: Clock,
+    ) -> Result<Option<Self>, Error> {
+        let Some(path) = &request.roadmap else { return Ok(None) };
+        let file = RoadmapFile::new(kind, path, request.metric)?;
+        Ok(Some(Self { file, clock, next: clock.now() + CHECKPOINTS }))
+    }
+
+    /// Stops the run when it is time for a checkpoint.
+    pub(crate) fn due(&self) -> Due {
+        Due { clock: SparseClock::new(self.clock), at: self.next, reached: false }
+    }
+
+    /// Writes the roadmap. A failure is only told in the log: the run goes on, and it is an error if writing fails at its end too.
+    pub(crate) fn checkpoint<S: RoadmapState + mp_cspace::StateVector + 'static>(
+        &mut self,
+        planner: &RoadmapPlanner<'_, S>,
+    ) {
+        let began = self.clock.now();
+        if let Err(e) = planner.save(&self.file) {
+            tracing::warn!("the roadmap was not saved: {e}");
+        }
+        let now = self.clock.now();
+        self.next = now + CHECKPOINTS.max(CHECKPOINT_PART * now.saturating_sub(began));
+    }
+}
+
+/// Lets `build` work until it stops by itself; when a checkpoint is due, it is stopped, the roadmap is written, and `build`
+/// is called again.
+#[cfg(feature = "roadmaps")]
+pub(crate) fn with_checkpoints<'p, S: RoadmapState + mp_cspace::StateVector + 'static, T>(
+    planner: &mut RoadmapPlanner<'p, S>,
+    file: &mut Option<GrowingFile<'_>>,
+    mut build: impl FnMut(&mut RoadmapPlanner<'p, S>, &mut Option<Due>) -> T,
+) -> T {
+    loop {
+        let mut due = file.as_ref().map(GrowingFile::due);
+        let built = build(planner, &mut due);
+        match file {
+            Some(file) if due.is_some_and(|due| due.reached) => file.checkpoint(planner),
+            _ => return built,
+        }
+    }
+}
+
+/// Stops when a checkpoint is due.
+pub(crate) struct Due {
+    clock: SparseClock,
+    at: Duration,
+    /// Whether it has stopped the run.
+    pub(crate) reached: bool,
+}
+
+impl Stop for Due {
+    fn check(&mut self, _: &Progress) -> Option<StopReason> {
+        self.reached = self.clock.read().is_some_and(|now| now >= self.at);
+        self.reached.then_some(StopReason::Deadline)
     }
 }
 
@@ -87,6 +172,8 @@ pub(crate) struct PlannerParts<'m, 'p, S: RoadmapState> {
     pub(crate) settings: Settings,
     pub(crate) workers: Workers,
     pub(crate) threads: usize,
+    /// The common count of the queries of all checkers.
+    pub(crate) queries: &'p AtomicU64,
 }
 
 /// The planner called `name`, if there is one.
@@ -101,12 +188,23 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
     pub(crate) fn new(
         info: &PlannerInfo,
         parts: PlannerParts<'_, 'p, S>,
-        file: Option<&RoadmapFile<'_>>,
+        file: Option<&GrowingFile<'_>>,
     ) -> Result<Self, Error> {
-        let PlannerParts { problem, index, settings, workers, threads } = parts;
-        let problem = mp_roadmap::ParallelProblem::new(workers, threads, problem)?;
+        let PlannerParts { problem, index, settings, workers, threads, queries } = parts;
+        let meter = QueryMeter { of_thread: crate::counted::queries_of_thread, common: queries };
+        // Each problem checks its start and goals. That counts once, however many threads there are.
+        let first = Cell::new(true);
+        let problem = || {
+            let before = queries.load(Ordering::Relaxed);
+            let made = problem();
+            if !first.replace(false) {
+                queries.store(before, Ordering::Relaxed);
+            }
+            made
+        };
+        let problem = ParallelProblem::new(workers, threads, problem)?.metered(meter);
         let mut planner = S::roadmap_planner(info.name, problem, index, &settings)?;
-        if let Some(map) = file.map(RoadmapFile::read).transpose()?.flatten() {
+        if let Some(map) = file.map(|file| file.file.read()).transpose()?.flatten() {
             planner.resume(map)?;
         }
         Ok(Self { planner })
@@ -136,16 +234,19 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
         Ok(self.planner.resume(map)?)
     }
 
+    /// Writes the roadmap to `file`.
+    pub(crate) fn save(&self, file: &RoadmapFile<'_>) -> Result<(), Error> {
+        file.write(self.planner.map())
+    }
+
     /// Writes the roadmap to `file`, if one is given. Returns the numbers of edges and of components, and the roadmap itself
     /// if it is `wanted`.
     pub(crate) fn keep(
         &mut self,
-        file: Option<&RoadmapFile<'_>>,
+        file: Option<&GrowingFile<'_>>,
         wanted: bool,
     ) -> Result<([usize; 2], Option<Roadmap<S>>), Error> {
-        if let Some(file) = file {
-            file.write(self.planner.map())?;
-        }
+        file.map_or(Ok(()), |file| self.save(&file.file))?;
         let map = [self.planner.map().edges(), self.planner.map_mut().components()];
         Ok((map, wanted.then(|| self.planner.map().clone())))
     }
@@ -195,7 +296,7 @@ impl<'p, S: RoadmapState> RoadmapPlanner<'p, S> {
     pub(crate) fn new(
         info: &PlannerInfo,
         _: PlannerParts<'_, 'p, S>,
-        _: Option<&RoadmapFile<'_>>,
+        _: Option<&GrowingFile<'_>>,
     ) -> Result<Self, Error> {
         Err(Error::new(format!("{} is not in this program", info.name)))
     }
@@ -205,9 +306,12 @@ impl<'p, S: RoadmapState> RoadmapPlanner<'p, S> {
     pub(crate) fn grown(&mut self, _: &dyn Fn(&S) -> Vec<f64>) -> GrownRoadmap {
         match self.none.0 {}
     }
+    pub(crate) fn save(&self, _: &RoadmapFile<'_>) -> Result<(), Error> {
+        match self.none.0 {}
+    }
     pub(crate) fn keep(
         &mut self,
-        _: Option<&RoadmapFile<'_>>,
+        _: Option<&GrowingFile<'_>>,
         _: bool,
     ) -> Result<([usize; 2], Option<Roadmap<S>>), Error> {
         match self.none.0 {}

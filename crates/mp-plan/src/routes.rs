@@ -7,7 +7,7 @@ use crate::prepared::Prepared;
 use crate::run::Pausing;
 use crate::search::Search;
 use crate::{Control, Error, Finish, Length, PathRows, Report, Request, RobotKind, Stage, planners};
-use mp_cspace::{Iterations, Outcome, Path, Planner, Progress, Rng, Space, StopReason, Workers};
+use mp_cspace::{Iterations, Outcome, Path, Planner, Progress, Rng, Space, Stop, StopReason, Workers};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -154,7 +154,7 @@ fn of_roadmap<K: RobotKind>(
     apart: f64,
     control: &mut Control<'_>,
 ) -> Result<Listed<K::State>, Error> {
-    use crate::roadmaps::{RoadmapFile, RoadmapState};
+    use crate::roadmaps::{GrowingFile, RoadmapState, with_checkpoints};
     use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, PATIENCE};
     /// How many of the nearest nodes an end is connected to.
     const NEIGHBOURS: usize = 20;
@@ -170,17 +170,19 @@ fn of_roadmap<K: RobotKind>(
             Error::new(format!("{} lists routes to a goal that leaves nothing free", info.name)).help(help)
         );
     }
-    let file = RoadmapFile::of_request(kind, request)?;
+    let mut file = GrowingFile::of_request(kind, request, control.clock)?;
     let (clock, began) = (control.clock, control.clock.now());
     let workers = Workers::new(request.threads)?;
     let mut made = prepared.roadmap_planner(info, workers, file.as_ref())?;
     let (mut rng, mut target) = (Rng::seed(request.seed), FIRST);
     loop {
-        let spent = clock.now().saturating_sub(began);
-        let (ended, paused) = prepared.watched(control, spent, |stop, events| {
-            let mut pausing = Pausing { stop, pause: &mut Iterations(target), paused: false };
-            let reason = made.build(&mut rng, &mut pausing, events);
-            (reason, pausing.paused)
+        let (ended, paused) = with_checkpoints(&mut made, &mut file, |made, due| {
+            let spent = clock.now().saturating_sub(began);
+            prepared.watched(control, spent, |stop, events| {
+                let mut pausing = Pausing { stop, pause: &mut Iterations(target), paused: false };
+                let reason = made.build(&mut rng, &mut (&mut pausing).or(due), events);
+                (reason, pausing.paused)
+            })
         });
         let (map, roadmap) = made.keep(file.as_ref(), true)?;
         let roadmap = roadmap.unwrap_or_default();

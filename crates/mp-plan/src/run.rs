@@ -4,7 +4,7 @@ use crate::plan::reported;
 use crate::planners::PlannerKind;
 use crate::prepared::Prepared;
 use crate::relax::relax_if_requested;
-use crate::roadmaps::{RoadmapFile, RoadmapPlanner, RoadmapState};
+use crate::roadmaps::{Due, GrowingFile, RoadmapPlanner, RoadmapState};
 use crate::search::Search;
 use crate::watch::Events;
 use crate::{Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
@@ -141,7 +141,7 @@ pub(crate) struct RobotRun<'p, 'k, K: RobotKind> {
     prepared: &'p Prepared<'k, K>,
     made: NamedPlanner<'p, K::State>,
     rng: Rng,
-    file: Option<RoadmapFile<'k>>,
+    file: Option<GrowingFile<'k>>,
     /// The time taken so far.
     time: Duration,
     found: Found<K::State>,
@@ -163,7 +163,7 @@ impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
         let (kind, request) = (prepared.kind, prepared.request);
         let planner = PlannerKind::new(&request.planner)?;
         let workers = Workers::new(request.threads)?;
-        let file = RoadmapFile::of_request(kind, request)?;
+        let file = GrowingFile::of_request(kind, request, control.clock)?;
         let began = control.clock.now();
         control.stage(Stage::Planning);
         let made = match &planner {
@@ -179,8 +179,22 @@ impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
         Ok(Self { prepared, made, rng: Rng::seed(request.seed), file, time, found })
     }
 
-    /// Plans on until `pause` stops it or the run is over. Returns whether it is over.
+    /// Plans on until `pause` stops it or the run is over. Returns whether it is over. On the way it writes checkpoints of the
+    /// roadmap.
     pub(crate) fn advance(&mut self, pause: &mut dyn Stop, control: &mut Control<'_>) -> bool {
+        loop {
+            let mut due = self.file.as_ref().map(GrowingFile::due);
+            let over = self.advance_without_checkpoint(&mut pause.or(&mut due), control);
+            if over || !due.is_some_and(|due: Due| due.reached) {
+                return over;
+            }
+            if let (NamedPlanner::Roadmap(made), Some(file)) = (&self.made, &mut self.file) {
+                file.checkpoint(made);
+            }
+        }
+    }
+
+    fn advance_without_checkpoint(&mut self, pause: &mut dyn Stop, control: &mut Control<'_>) -> bool {
         if self.found.over.is_none() {
             let (clock, spent) = (control.clock, self.time);
             let began = clock.now();

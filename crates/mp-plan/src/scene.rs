@@ -48,7 +48,6 @@ pub struct Scene {
     file: Option<PathBuf>,
     pub(crate) inputs: Arc<[PathBuf]>,
     /// Whether its files are those that come with the program.
-    #[cfg_attr(not(feature = "scenes"), expect(dead_code, reason = "there are none"))]
     pub(crate) shipped: bool,
     /// What it was made from, if that is a document of an editor.
     document: Option<Arc<EditedScene>>,

@@ -6,10 +6,10 @@ use crate::plan::reported;
 use crate::planners::PlannerKind;
 use crate::prepared::Prepared;
 use crate::relax::relax_if_requested;
-use crate::roadmaps::{Roadmap, RoadmapFile};
+use crate::roadmaps::{GrowingFile, Roadmap, RoadmapFile, with_checkpoints};
 use crate::search::Search;
 use crate::{Budget, Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
-use mp_cspace::{Outcome, Rng, StopReason, Workers, registry::PlannerInfo};
+use mp_cspace::{Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
 use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, PATIENCE, RoadmapState};
 use std::fmt;
 use std::path::Path;
@@ -157,7 +157,7 @@ fn grown<K: RobotKind>(
     let _span = tracing::info_span!("roadmap", scene = kind.name(), planner = info.name, seed = request.seed)
         .entered();
     let workers = Workers::new(request.threads)?;
-    let file = RoadmapFile::of_request(kind, request)?;
+    let mut file = GrowingFile::of_request(kind, request, control.clock)?;
     let prepared = Prepared::new(kind, request)?;
     control.stage(Stage::Planning);
     let mut made = prepared.roadmap_planner(info, workers, file.as_ref())?;
@@ -169,7 +169,14 @@ fn grown<K: RobotKind>(
         0 => Rng::seed(request.seed),
         nodes => Rng::stream(request.seed, nodes as u64),
     };
-    let reason = prepared.watched(control, Duration::ZERO, |stop, events| made.build(&mut rng, stop, events));
+    let (clock, mut spent) = (control.clock, Duration::ZERO);
+    let reason = with_checkpoints(&mut made, &mut file, |made, due| {
+        let began = clock.now();
+        let reason =
+            prepared.watched(control, spent, |stop, events| made.build(&mut rng, &mut stop.or(due), events));
+        spent += clock.now().saturating_sub(began);
+        reason
+    });
     let ([edges, components], map) = made.keep(file.as_ref(), true)?;
     drop(made);
     let map = map.unwrap_or_default();

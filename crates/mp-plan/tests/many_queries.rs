@@ -1,6 +1,10 @@
 //! One roadmap of a scene, asked many times.
 
-use mp_plan::{Budget, Control, PathRows, Report, Request, Scene, SceneRoadmap, StoppedBy};
+use mp_cspace::{Clock, Progress};
+use mp_plan::{Budget, Control, PathRows, Report, Request, Scene, SceneRoadmap, StoppedBy, Watch};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 /// Free configurations of a scene, by a walk over its limits that is the same every time.
 fn free(scene: &Scene, count: usize) -> Vec<Vec<f64>> {
@@ -98,6 +102,109 @@ fn a_roadmap_grows_and_is_kept() {
     request.budget = Budget { iterations: Some(20_000), ..Budget::default() };
     let report = scene.plan(&request).unwrap();
     assert!(report.solved && report.nodes >= 122, "{}", report.nodes);
+}
+
+/// Sizes of the file of a roadmap while it grows.
+struct Sizes(PathBuf, Vec<u64>);
+
+impl Watch for Sizes {
+    fn progress(&mut self, _: &Progress) {
+        if let Ok(meta) = std::fs::metadata(&self.0)
+            && self.1.last() != Some(&meta.len())
+        {
+            self.1.push(meta.len());
+        }
+    }
+}
+
+/// The file is written again and again while the roadmap grows, and nothing else depends on it.
+#[test]
+fn checkpoints_change_nothing_but_the_file() {
+    /// Every reading is 50 ms after the one before.
+    fn now() -> Duration {
+        static READINGS: AtomicU64 = AtomicU64::new(0);
+        Duration::from_millis(50 * READINGS.fetch_add(1, Ordering::Relaxed))
+    }
+    let scene = Scene::find("easy").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for planner in ["prm", "lazy-prm", "visibility-prm"] {
+        for threads in [1, 3] {
+            let budget = Budget { time_s: None, iterations: Some(4_000), ..Budget::default() };
+            let request = Request { budget, ..Request::new(planner).seed(5).threads(threads) };
+            let file = folder.path().join(format!("new/{planner}-{threads}"));
+            let kept = Request { roadmap: Some(file.clone()), ..request.clone() };
+            let mut sizes = Sizes(file.clone(), Vec::new());
+            let mut control =
+                Control { clock: Clock::new(now), ..Control::new(Default::default(), &mut sizes) };
+            let built = scene.roadmap_with(&kept, &mut control).unwrap();
+            assert!(sizes.1.len() > 3 && sizes.1.is_sorted(), "{planner}: {:?}", sizes.1);
+            let plain = scene.roadmap(&request).unwrap();
+            plain.save(folder.path().join("plain")).unwrap();
+            let plain_bytes = std::fs::read(folder.path().join("plain")).unwrap();
+            assert!(std::fs::read(&file).unwrap() == plain_bytes, "{planner}: {built:?} {plain:?}");
+            // The same while a path is planned.
+            std::fs::remove_file(&file).unwrap();
+            let mut sizes = Sizes(file, Vec::new());
+            let mut control =
+                Control { clock: Clock::new(now), ..Control::new(Default::default(), &mut sizes) };
+            let report = scene.plan_with(&kept, &mut control).unwrap();
+            let plain = scene.plan(&request).unwrap();
+            let counts = |r: &Report| {
+                (r.iterations, r.nodes, r.motion_checks, r.collision_checks, r.fingerprint.clone())
+            };
+            assert_eq!(counts(&report), counts(&plain), "{planner}");
+        }
+    }
+    let left: Vec<_> = std::fs::read_dir(folder.path().join("new")).unwrap().collect();
+    assert!(left.len() <= 6 || cfg!(not(unix)), "{left:?}");
+}
+
+#[test]
+fn a_roadmap_in_use_is_refused() {
+    let scene = Scene::find("easy").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("map");
+    let mut request = Request::new("prm").nodes(50);
+    let roadmap = scene.roadmap(&request).unwrap();
+    let lock = mp_store::Lock::of_file(&file).unwrap();
+    request.roadmap = Some(file.clone());
+    for refused in
+        [scene.roadmap(&request).map(|_| ()), roadmap.save(&file), scene.plan(&request).map(|_| ())]
+    {
+        let e = refused.unwrap_err();
+        assert!(e.message().contains("in use") && e.remedy().unwrap().contains("wait"), "{e}");
+    }
+    drop(lock);
+    roadmap.save(&file).unwrap();
+    assert_eq!(scene.roadmap(&request).unwrap().nodes(), 50);
+}
+
+/// What threads prefetch in vain is not counted, so budgets of queries end runs at the same place too.
+#[test]
+fn counts_do_not_depend_on_threads() {
+    for name in ["easy", "cubicles"] {
+        let scene = Scene::find(name).unwrap();
+        for info in mp_plan::roadmap_planners() {
+            let counts = |threads, queries| {
+                let budget = Budget { iterations: Some(700), queries, ..Budget::default() };
+                let request = Request { budget, ..Request::new(info.name).seed(7).threads(threads) };
+                let r = scene.plan(&request).unwrap();
+                (r.iterations, r.nodes, r.motion_checks, r.collision_checks, r.stopped_by)
+            };
+            for queries in [None, Some(5_000)] {
+                let one = counts(1, queries);
+                assert!(one.3 > 0);
+                for threads in [2, 5] {
+                    assert_eq!(
+                        counts(threads, queries),
+                        one,
+                        "{name}, {}, {threads} threads, {queries:?}",
+                        info.name
+                    );
+                }
+            }
+        }
+    }
 }
 
 #[test]

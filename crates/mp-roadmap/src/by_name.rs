@@ -1,8 +1,8 @@
 //! What planners made by name are made from.
 
 use crate::{
-    Connector, EdgeChecker, EndGrowth, HasRoadmap, NodeGenerator, PATIENCE, Query, RoadmapPlanner,
-    RoadmapPlannerParts,
+    Connector, EdgeChecker, EndGrowth, HasRoadmap, NodeGenerator, PATIENCE, Query, QueryMeter,
+    RoadmapPlanner, RoadmapPlannerParts,
 };
 use mp_cspace::erased::{AnyGeometry, AnySpace, AnyStraight};
 use mp_cspace::{
@@ -18,6 +18,7 @@ pub struct ParallelProblem<'c, C: Space, L: LocalPlanner<C::State>> {
     problem: Problem<'c, C, L>,
     workers: Workers,
     checkers: Vec<EdgeChecker<'c, C, L>>,
+    meter: Option<QueryMeter<'c>>,
 }
 
 /// The edge checker of an erased problem.
@@ -46,7 +47,13 @@ where
         let checkers = (0..more)
             .map(|_| Ok(EdgeChecker::of(problem()?, PATIENCE).0))
             .collect::<Result<_, BuildError>>()?;
-        Ok(Self { problem: problem()?, workers, checkers })
+        Ok(Self { problem: problem()?, workers, checkers, meter: None })
+    }
+
+    /// Counts queries by `meter`, so that the count is the same on any number of threads.
+    #[must_use]
+    pub fn metered(self, meter: QueryMeter<'c>) -> Self {
+        Self { meter: Some(meter), ..self }
     }
 
     /// The planner with these parts.
@@ -63,7 +70,10 @@ where
         Q: Query<C, L> + Send + 'c,
         N: NearestNeighbors<C> + Send + Sync + 'c,
     {
-        let planner = RoadmapPlanner::assemble(self.problem, index, parts);
+        let mut planner = RoadmapPlanner::assemble(self.problem, index, parts);
+        if let Some(meter) = self.meter {
+            planner = planner.metered(meter);
+        }
         match self.checkers.is_empty() {
             true => Box::new(planner),
             false => Box::new(planner.on(self.workers, self.checkers)),
@@ -74,7 +84,7 @@ where
 /// The problem for the thread of the caller alone.
 impl<'c, C: Space, L: LocalPlanner<C::State>> From<Problem<'c, C, L>> for ParallelProblem<'c, C, L> {
     fn from(problem: Problem<'c, C, L>) -> Self {
-        Self { problem, workers: Workers::single(), checkers: Vec::new() }
+        Self { problem, workers: Workers::single(), checkers: Vec::new(), meter: None }
     }
 }
 

@@ -56,10 +56,10 @@ pub use by_name::{AnyEdgeChecker, AnyParallelProblem, AnyPlanner, ParallelProble
 pub use engine::{
     AStar, Builder, CYCLES, Candidate, ConnectionStages, Connector, ENDS, ENDS_STEP, EdgeChecker, EdgeId,
     EndGrowth, Entry, Free, GraphPath, Growing, HasRoadmap, IndexedRoadmap, Link, LinkState, Listed,
-    MilestoneKind, Mixing, NEIGHBOURS, NearestConnector, NeighborSet, NodeGenerator, PATIENCE, Pace,
-    PairRule, Pairs, PairsPlanner, ParentMotion, Prefetching, Query, RADIUS, Reachable, Roadmap,
-    RoadmapError, RoadmapFileError, RoadmapPlanner, RoadmapPlannerParts, RoadmapQueries, StagedConnector,
-    Tag, Turns, UNDIRECTED, Unanswered, fingerprint, length, reachable, yes,
+    MAX_ROADMAP_BYTES, MilestoneKind, Mixing, NEIGHBOURS, NearestConnector, NeighborSet, NodeGenerator,
+    PATIENCE, Pace, PairRule, Pairs, PairsPlanner, ParentMotion, Prefetching, Query, QueryMeter, RADIUS,
+    Reachable, Roadmap, RoadmapError, RoadmapFileError, RoadmapPlanner, RoadmapPlannerParts, RoadmapQueries,
+    StagedConnector, Tag, Turns, UNDIRECTED, Unanswered, fingerprint, length, reachable, yes,
 };
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{BuildError, Path, registry::Settings};

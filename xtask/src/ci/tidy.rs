@@ -12,6 +12,21 @@ type Result<T> = std::result::Result<T, String>;
 /// Names that say nothing about what a file or folder holds.
 const VAGUE_NAMES: [&str; 8] = ["common", "helper", "helpers", "misc", "shared", "stuff", "util", "utils"];
 
+/// Calls that only `mp-store` makes: what it reads has a limit, and what it writes is whole.
+const FILE_CALLS: [&str; 7] = [
+    "fs::read(",
+    "fs::read_to_string(",
+    "fs::write(",
+    "fs::rename(",
+    "File::open(",
+    "File::create(",
+    "OpenOptions::new(",
+];
+
+/// Sources with such calls: a temporary folder of its own, the shipped scenes, and the scheduler's count of processor time.
+const OWN_FILES: [&str; 3] =
+    ["mp-plan/src/mp4.rs", "mp-scenes/src/source.rs", "mp-bench/src/scaling/growth.rs"];
+
 /// All errors found in the workspace at `root`, a line each.
 pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     let architecture = read(&root.join("ARCHITECTURE.md"))?;
@@ -29,8 +44,9 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
             findings.push(format!("{shown} has a circle of imports between folders: {circle}"));
         }
     }
-    for (path, _) in &sources {
+    for (path, text) in &sources {
         let path = path.strip_prefix(root).unwrap_or(path);
+        findings.extend(file_calls(path, text));
         let shown = path.display();
         if has_vague_name(path) {
             findings.push(format!("{shown} has a name that does not say what it holds"));
@@ -149,6 +165,28 @@ fn has_vague_name(path: &Path) -> bool {
         .any(|stem| VAGUE_NAMES.iter().any(|name| stem == *name))
 }
 
+/// The [`FILE_CALLS`] in the code of a library or program, but not in its tests.
+fn file_calls(path: &Path, text: &str) -> Vec<String> {
+    let is_test = path.iter().any(|part| part == "tests" || part == "tests.rs" || part == "examples");
+    let is_own = OWN_FILES.iter().any(|own| path.ends_with(own));
+    if is_test || is_own || !path.starts_with("crates") || path.starts_with("crates/mp-store") {
+        return Vec::new();
+    }
+    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let lines = code.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//"));
+    let found =
+        lines.filter_map(|(i, line)| Some((i, FILE_CALLS.iter().find(|call| line.contains(**call))?)));
+    found
+        .map(|(i, call)| {
+            format!(
+                "{}, line {}: files are read and written by mp-store, not by {call}…)",
+                path.display(),
+                i + 1
+            )
+        })
+        .collect()
+}
+
 /// What an algorithm's file (`…/algo/NAME.rs`) lacks: an example called so, or a test (in the file, in one called
 /// so, in one that names it or its type, or, when it can be made by name, in one that runs all that can).
 fn algorithm(sources: &[(PathBuf, String)], path: &Path) -> Option<&'static str> {
@@ -185,6 +223,22 @@ mod tests {
     fn the_workspace_is_tidy() {
         let findings = check(&crate::root()).unwrap();
         assert!(findings.is_empty(), "{findings:#?}");
+    }
+
+    #[test]
+    fn calls_that_read_and_write_files_are_found() {
+        let text = "fn f() {\n    // std::fs::write(a, b)\n    std::fs::write(a, b);\n}\n#[cfg(test)]\nmod tests { File::open(x) }\n";
+        let found = |path: &str| file_calls(Path::new(path), text);
+        assert_eq!(found("crates/mp-x/src/a.rs").len(), 1);
+        assert!(found("crates/mp-x/src/a.rs")[0].contains("a.rs, line 3: "));
+        for path in [
+            "crates/mp-store/src/a.rs",
+            "crates/mp-x/tests/a.rs",
+            "crates/mp-x/src/b/tests.rs",
+            "xtask/src/a.rs",
+        ] {
+            assert!(found(path).is_empty(), "{path}");
+        }
     }
 
     #[test]

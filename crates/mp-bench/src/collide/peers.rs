@@ -111,9 +111,12 @@ pub(crate) fn ask(
     Ok((builds, records))
 }
 
+/// The largest file of answers that is read, bytes (1 GiB).
+const MAX_ANSWER_BYTES: u64 = 1 << 30;
+
 /// The answers in `file`. For `motion` there are fewer than `count`, which counts poses.
 fn answers(file: &Path, count: usize) -> Result<Vec<f64>> {
-    let bytes = std::fs::read(file).doing(|| format!("cannot read the answers {}", file.display()))?;
+    let bytes = mp_store::read(file, MAX_ANSWER_BYTES)?;
     let answers = bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).take(count);
     Ok(answers.collect())
 }

@@ -8,8 +8,9 @@ use crate::output::{note, print};
 use indicatif::{ProgressBar, ProgressStyle};
 use mp_cspace::Cancel;
 use mp_plan::write_file;
+use mp_store::Lock;
 use rayon::prelude::*;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::sync::atomic::Ordering;
 
@@ -20,6 +21,8 @@ pub(crate) struct Lab {
     quick: bool,
     fresh: bool,
     pool: rayon::ThreadPool,
+    /// Two processes that measure into one folder would overwrite each other's results.
+    _lock: Lock,
     /// Cancels all runs; finished ones are kept.
     pub(crate) cancel: Cancel,
 }
@@ -37,14 +40,26 @@ impl Lab {
 
     fn with(options: &Common, threads: usize, cancel: Cancel) -> Result<Self> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().into_error()?;
-        Ok(Self { out: options.out.clone(), quick: options.quick, fresh: options.fresh, pool, cancel })
+        Self::in_folder(&options.out, options.quick, options.fresh, pool, cancel)
+    }
+
+    fn in_folder(
+        out: &Path,
+        quick: bool,
+        fresh: bool,
+        pool: rayon::ThreadPool,
+        cancel: Cancel,
+    ) -> Result<Self> {
+        mp_store::make_folder(out)?;
+        let lock = Lock::of_folder(out)?;
+        Ok(Self { out: out.to_owned(), quick, fresh, pool, _lock: lock, cancel })
     }
 
     /// A lab for tests, without Ctrl-C.
     #[cfg(test)]
-    pub(crate) fn test(out: &std::path::Path, threads: usize) -> Self {
+    pub(crate) fn test(out: &Path, threads: usize) -> Self {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        Self { out: out.to_owned(), quick: true, fresh: false, pool, cancel: Cancel::new() }
+        Self::in_folder(out, true, false, pool, Cancel::new()).unwrap()
     }
 
     /// The name of an experiment in files; a short run has its own.

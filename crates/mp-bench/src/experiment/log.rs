@@ -2,16 +2,17 @@
 
 use super::table::{Table, bit};
 use crate::error::{IntoError, Result};
-use mp_plan::{Error, write_file};
+use mp_plan::Error;
+use mp_store::Journal;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::HashMap;
-use std::fs::File;
 use std::hash::Hash;
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::path::Path;
+
+/// The largest log that is read, bytes (1 GiB).
+const MAX_LOG_BYTES: u64 = 1 << 30;
 
 #[derive(Serialize, Deserialize)]
 struct Line<K, R> {
@@ -24,10 +25,9 @@ struct Line<K, R> {
 /// All finished runs, and the file to which new ones are appended.
 #[derive(Debug)]
 pub(crate) struct Log<K, R> {
-    path: PathBuf,
     cap: f64,
     runs: HashMap<K, R>,
-    file: Mutex<File>,
+    journal: Journal,
 }
 
 /// Runs whose cases have a key in common.
@@ -64,12 +64,9 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
     /// Opens the log at `path`, or creates it; `fresh` empties it. Only runs of the same cap are used.
     /// An incomplete last line is dropped.
     pub(crate) fn open(path: &Path, cap: f64, fresh: bool) -> Result<Self> {
-        let failed = || format!("cannot use {}", path.display());
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).doing(failed)?;
-        }
+        mp_store::make_folder(mp_store::folder_of(path))?;
         let text = match path.exists() && !fresh {
-            true => std::fs::read_to_string(path).doing(failed)?,
+            true => String::from_utf8_lossy(&mp_store::read(path, MAX_LOG_BYTES)?).into_owned(),
             false => String::new(),
         };
         let (mut runs, mut kept) = (HashMap::new(), String::new());
@@ -90,9 +87,7 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
                 }
             }
         }
-        write_file(path, kept.as_bytes())?;
-        let file = File::options().append(true).open(path).doing(failed)?;
-        Ok(Self { path: path.to_owned(), cap, runs, file: Mutex::new(file) })
+        Ok(Self { cap, runs, journal: Journal::create(path, &kept)? })
     }
 
     /// The result of `case`, if it was run.
@@ -103,9 +98,7 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
     /// Appends a finished run to the file; [`learn`](Self::learn) adds it to the runs in memory.
     pub(crate) fn write(&self, case: &K, run: &R) -> Result<()> {
         let line = Line { cap: self.cap, case: case.clone(), run: run.clone() };
-        let text = serde_json::to_string(&line).into_error()? + "\n";
-        let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        file.write_all(text.as_bytes()).doing(|| format!("cannot write to {}", self.path.display()))
+        Ok(self.journal.append(&serde_json::to_string(&line).into_error()?)?)
     }
 
     /// Adds finished runs to those in memory.

@@ -51,6 +51,13 @@ pub(crate) fn start_with(dir: &Dir, args: &[&str], variables: &[(&str, &str)]) -
     command(dir, args).envs(variables.iter().copied()).spawn().unwrap()
 }
 
+/// The same with a standard output that nobody reads.
+pub(crate) fn start_unread(dir: &Dir, args: &[&str]) -> Child {
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    command(dir, args).stdout(writer).spawn().unwrap()
+}
+
 fn command(dir: &Dir, args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_mp"));
     command.args(args).current_dir(dir.0.path()).env_remove("RUST_LOG");

@@ -1,7 +1,7 @@
 //! GEMPA environment files: the robot, its initial and goal configuration, and the obstacles.
 
 use crate::error::Error;
-use crate::files::{MAX_TEXT_BYTES, read_file, write_atomic};
+use crate::files::{MAX_TEXT_BYTES, read_file};
 use crate::number::Row;
 use crate::problem::SpaceKind;
 use crate::text::{Text, Token, clipped};
@@ -93,7 +93,7 @@ impl Environment {
     /// # Errors
     /// [`Error`] when the file cannot be written; then nothing is left of it.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        write_atomic(path.as_ref(), self.to_text().as_bytes())
+        Ok(mp_store::write(path.as_ref(), self.to_text().as_bytes())?)
     }
 }
 

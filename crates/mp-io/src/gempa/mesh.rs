@@ -4,7 +4,6 @@
 //! number of triangles, then nine numbers for each, the corners x y z one after the other.
 
 use crate::error::Error;
-use crate::files::write_atomic;
 use crate::mesh::mesh_error;
 use crate::number::Row;
 use crate::text::{Lexer, Text, clipped};
@@ -68,5 +67,5 @@ pub fn gempa_mesh_text(mesh: &TriMesh) -> String {
 /// # Errors
 /// [`Error`] when the file cannot be written; then nothing is left of it.
 pub fn write_gempa_mesh(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), Error> {
-    write_atomic(path.as_ref(), gempa_mesh_text(mesh).as_bytes())
+    Ok(mp_store::write(path.as_ref(), gempa_mesh_text(mesh).as_bytes())?)
 }

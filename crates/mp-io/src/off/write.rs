@@ -2,7 +2,6 @@
 
 use super::{OffColor, OffDocument};
 use crate::error::Error;
-use crate::files::write_atomic;
 use crate::number::Row;
 use mp_geom::TriMesh;
 use std::fmt::Write as _;
@@ -81,7 +80,7 @@ pub fn off_text(mesh: &TriMesh) -> String {
 /// # Errors
 /// [`Error`] when the file cannot be written; then nothing is left of it.
 pub fn write_off(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), Error> {
-    write_atomic(path.as_ref(), off_text(mesh).as_bytes())
+    Ok(mp_store::write(path.as_ref(), off_text(mesh).as_bytes())?)
 }
 
 #[cfg(test)]

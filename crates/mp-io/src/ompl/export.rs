@@ -1,7 +1,6 @@
 //! A problem as one JSON and two OFF files, for running other planners on the same problem.
 
 use crate::error::{Error, ErrorKind};
-use crate::files::write_atomic;
 use crate::off::off_text;
 use crate::problem::{RigidProblem, SpaceKind};
 use mp_geom::TriMesh;
@@ -66,6 +65,12 @@ struct JsonMesh {
     mesh: String,
 }
 
+/// The names of the files that [`export_ompl`] writes: the problem, the mesh of the robot and that of the obstacles.
+#[must_use]
+pub fn exported_files(name: &str) -> [String; 3] {
+    [format!("{name}.json"), format!("{name}_robot.off"), format!("{name}_env.off")]
+}
+
 /// Writes `problem` into `folder`: `NAME.json`, `NAME_robot.off` and `NAME_env.off` (all obstacles, placed in
 /// the world), where NAME is `name`. Returns the path of the JSON file.
 ///
@@ -78,7 +83,8 @@ pub fn export_ompl(
     options: &OmplExport,
 ) -> Result<PathBuf, Error> {
     let folder = folder.as_ref();
-    let json = folder.join(format!("{name}.json"));
+    let [json, meshes @ ..] = exported_files(name);
+    let json = folder.join(json);
     if ![options.goal_threshold, options.resolution_fraction].iter().all(|v| v.is_finite()) {
         return Err(Error::new(
             ErrorKind::Content,
@@ -107,7 +113,6 @@ pub fn export_ompl(
         }
     };
     let bounds = problem.position_bounds();
-    let meshes = ["robot", "env"].map(|part| format!("{name}_{part}.off"));
     let exported = JsonProblem {
         name: &problem.name,
         space: problem.space.to_string(),
@@ -125,8 +130,8 @@ pub fn export_ompl(
     let text = serde_json::to_string_pretty(&exported).map_err(|e| {
         Error::new(ErrorKind::Content, json.display(), format!("cannot write the problem: {e}"))
     })?;
-    write_atomic(&folder.join(&meshes[0]), off_text(&problem.robot.mesh).as_bytes())?;
-    write_atomic(&folder.join(&meshes[1]), off_text(&env).as_bytes())?;
-    write_atomic(&json, (text + "\n").as_bytes())?;
+    mp_store::write(&folder.join(&meshes[0]), off_text(&problem.robot.mesh).as_bytes())?;
+    mp_store::write(&folder.join(&meshes[1]), off_text(&env).as_bytes())?;
+    mp_store::write(&json, (text + "\n").as_bytes())?;
     Ok(json)
 }

@@ -3,6 +3,7 @@
 use crate::{Error, brief, count};
 use mp_geom::TriMesh;
 use serde::Serialize;
+use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
 
@@ -51,6 +52,8 @@ pub struct Surface {
     pub degenerate_triangles: usize,
     /// The number of triangles that occur twice.
     pub duplicate_triangles: usize,
+    /// Whether each triangle is there once for each side, as SketchUp writes surfaces. The warnings are then those of one side.
+    pub two_sided: bool,
     /// What is wrong with it, in words.
     pub warnings: Vec<String>,
 }
@@ -94,9 +97,16 @@ impl Surface {
             pinched_vertices: t.pinched_vertices.len(),
             degenerate_triangles: t.degenerate.len(),
             duplicate_triangles: t.duplicates.len(),
+            two_sided: false,
             warnings: Vec::new(),
         };
-        shape.warnings = shape.defects();
+        shape.warnings = match one_side(mesh) {
+            Some(side) => {
+                shape.two_sided = true;
+                Self::of(&side).warnings
+            }
+            None => shape.defects(),
+        };
         shape
     }
 
@@ -134,6 +144,31 @@ impl Surface {
     }
 }
 
+/// One triangle of each two that are the same but for their sides; `None` unless all triangles come in such pairs.
+fn one_side(mesh: &TriMesh) -> Option<TriMesh> {
+    /// The corners from the least on, which keeps the side.
+    fn turned(corners: [[u64; 3]; 3]) -> [[u64; 3]; 3] {
+        let [a, b, c] = corners;
+        [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or(corners)
+    }
+    let bits = |i: u32| -> [u64; 3] {
+        let v = mesh.vertices()[i as usize];
+        // Zeros of both signs are the same place.
+        [v.x, v.y, v.z].map(|x| (x + 0.0).to_bits())
+    };
+    let mut unpaired: HashMap<_, Vec<u32>> = HashMap::new();
+    let mut side = Vec::new();
+    for (i, triangle) in (0..).zip(mesh.triangles()) {
+        let [a, b, c] = triangle.map(bits);
+        match unpaired.get_mut(&turned([a, c, b])).and_then(Vec::pop) {
+            Some(first) => side.push(mesh.triangles()[first as usize]),
+            None => unpaired.entry(turned([a, b, c])).or_default().push(i),
+        }
+    }
+    let paired = !side.is_empty() && unpaired.values().all(Vec::is_empty);
+    if paired { TriMesh::new(mesh.vertices().to_vec(), side).ok() } else { None }
+}
+
 impl fmt::Display for MeshInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let s = &self.surface;
@@ -157,6 +192,12 @@ impl fmt::Display for MeshInfo {
             yes(s.manifold),
             yes(s.oriented)
         )?;
+        if s.two_sided {
+            writeln!(
+                f,
+                "  sides     each triangle is there once for each side; warnings are those of one side"
+            )?;
+        }
         match s.warnings.is_empty() {
             true => Ok(()),
             false => writeln!(f, "  warning   {}", s.warnings.join("; ")),
@@ -177,7 +218,29 @@ mod tests {
         assert!((shape.area - 22.0).abs() < 1e-12);
         let open = TriMesh::new(whole.vertices().to_vec(), whole.triangles()[2..].to_vec()).unwrap();
         let shape = Surface::of(&open);
-        assert!(!shape.watertight);
+        assert!(!shape.watertight && !shape.two_sided);
+        assert_eq!(shape.warnings, ["4 boundary edges: the surface has holes, or is a sheet"]);
+    }
+
+    /// As SketchUp writes surfaces: with vertices of their own for each side.
+    #[test]
+    fn the_other_sides_of_triangles_are_no_defects() {
+        let whole = cuboid(1.0, 2.0, 3.0).unwrap();
+        let doubled = |mesh: &TriMesh, turn: bool| {
+            let n = mesh.vertices().len() as u32;
+            let other = mesh
+                .triangles()
+                .iter()
+                .map(|&[a, b, c]| if turn { [c, b, a] } else { [a, b, c] }.map(|i| i + n));
+            let triangles = mesh.triangles().iter().copied().chain(other).collect();
+            TriMesh::new([mesh.vertices(), mesh.vertices()].concat(), triangles).unwrap()
+        };
+        let shape = Surface::of(&doubled(&whole, true));
+        assert!(shape.two_sided && shape.warnings.is_empty(), "{:?}", shape.warnings);
+        let twice = Surface::of(&doubled(&whole, false));
+        assert!(!twice.two_sided && !twice.warnings.is_empty());
+        let open = TriMesh::new(whole.vertices().to_vec(), whole.triangles()[2..].to_vec()).unwrap();
+        let shape = Surface::of(&doubled(&open, true));
         assert_eq!(shape.warnings, ["4 boundary edges: the surface has holes, or is a sheet"]);
     }
 }

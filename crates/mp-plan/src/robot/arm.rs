@@ -244,9 +244,8 @@ impl<C: LinkedSpace> LinkedScene<C> {
 
     /// The arm of a problem among its obstacles.
     fn arm_of(files: &dyn Files, problem: &RobotProblem) -> Result<Arm, Error> {
-        let of = &|e: Error| e.context(what(problem));
         let mut mesh = |name: &str| problem.mesh_from(files, name);
-        let mut model = from_urdf(&problem.urdf, &mut mesh).map_err(of)?;
+        let mut model = from_urdf(problem, &mut mesh)?;
         for note in &model.notes {
             tracing::info!("{}: {note}", problem.urdf_file.display());
         }
@@ -262,7 +261,11 @@ impl<C: LinkedSpace> LinkedScene<C> {
                 problem.file.fault(RobotPart::Limits(i), &e.to_string(), "name joints as the URDF does")
             })?;
         }
-        Self::among(&model, &problem.obstacles).map_err(of)
+        let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
+        Arm::new(&model, bodies).map_err(|e| {
+            let line = e.element().and_then(|(element, name)| line_of(&problem.urdf, element, name));
+            in_urdf(problem, line, e.to_string(), "correct the links and joints of the URDF")
+        })
     }
 
     /// The arm among its obstacles.
@@ -395,12 +398,38 @@ fn free_near(arm: &Arm, space: &Joints<Configuration>, q: &Configuration) -> Opt
 
 /// The model of a URDF. `mesh` finds its meshes.
 #[cfg(feature = "urdf")]
-fn from_urdf(urdf: &str, mesh: impl FnMut(&str) -> Result<TriMesh, String>) -> Result<ArmModel, Error> {
-    ArmModel::from_urdf(urdf, mesh).map_err(|e| Error::new(e.to_string()))
+fn from_urdf(
+    problem: &RobotProblem,
+    mesh: impl FnMut(&str) -> Result<TriMesh, String>,
+) -> Result<ArmModel, Error> {
+    ArmModel::from_urdf(&problem.urdf, mesh)
+        .map_err(|e| in_urdf(problem, e.line().map(|line| line as usize), e.message(), e.remedy()))
+}
+
+/// An error in the URDF of a problem, in a line if that is known.
+fn in_urdf(problem: &RobotProblem, line: Option<usize>, message: String, remedy: &str) -> Error {
+    let (kind, file) = (mp_io::ErrorKind::Content, problem.urdf_file.display());
+    let error = match line {
+        Some(line) => mp_io::Error::in_line(kind, file, &problem.urdf, line, message),
+        None => mp_io::Error::new(kind, file, message),
+    };
+    error.help(remedy).into()
+}
+
+/// The line, counted from 1, in which the URDF begins the last element of this kind and name: the later one of two that have
+/// the same name.
+fn line_of(urdf: &str, element: &str, name: &str) -> Option<usize> {
+    let (start, names) = (format!("<{element}"), [format!("name=\"{name}\""), format!("name='{name}'")]);
+    let is_it = |at: &usize| {
+        let tag = urdf[*at..].split('>').next().unwrap_or_default();
+        names.iter().any(|name| tag.contains(name.as_str()))
+    };
+    let at = urdf.match_indices(&start).map(|(at, _)| at).filter(is_it).last()?;
+    Some(urdf[..at].matches('\n').count() + 1)
 }
 
 #[cfg(not(feature = "urdf"))]
-fn from_urdf(_: &str, _: impl FnMut(&str) -> Result<TriMesh, String>) -> Result<ArmModel, Error> {
+fn from_urdf(_: &RobotProblem, _: impl FnMut(&str) -> Result<TriMesh, String>) -> Result<ArmModel, Error> {
     Err(Error::new("this program was built without the feature `urdf`, which reads arms")
         .help("build it with the feature, which is on by default"))
 }

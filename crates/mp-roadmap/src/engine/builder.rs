@@ -1,6 +1,6 @@
 //! The one loop that builds roadmaps.
 
-use super::prefetch::{PrefetchJob, Prefetched, Prefetcher};
+use super::prefetch::{PrefetchJob, Prefetched, Prefetcher, QueryMeter};
 use super::{Candidate, Connector, EdgeChecker, Growing, NodeGenerator, Roadmap};
 use mp_cspace::{
     BuildError, Event, LocalPlanner, NearestNeighbors, NodeId, Observer, Progress, Reversible, Rng, Space,
@@ -103,6 +103,13 @@ where
         Ok(())
     }
 
+    /// Counts queries by `meter`, so that the count is the same on any number of threads.
+    #[must_use]
+    pub fn metered(mut self, meter: QueryMeter<'c>) -> Self {
+        self.prefetcher.meter = Some(meter);
+        self
+    }
+
     /// The roadmap.
     #[must_use]
     pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
@@ -133,8 +140,11 @@ where
         self.prefetch(seed);
         if let Some(prefetched) = self.prefetcher.ready.pop_front() {
             self.attempts += 1;
+            if let Some(meter) = self.prefetcher.meter {
+                meter.used(prefetched.queries);
+            }
             let mut last = None;
-            for (candidate, answers) in prefetched {
+            for (candidate, answers) in prefetched.candidates {
                 observer.on(Event::Sampled(&candidate.state));
                 last = self.take(candidate, answers, last, observer);
             }
@@ -170,6 +180,7 @@ where
             connector: &self.connector,
             seed,
             attempts,
+            meter: self.prefetcher.meter,
         };
         self.prefetcher.ready = work(job).into();
     }
@@ -195,8 +206,9 @@ where
         answers: Prefetched<C::State, L::Edge>,
         observer: &'a mut dyn Observer<C::State>,
     ) -> (&'a mut K, Growing<'a, 'c, C, L, N>) {
-        let Self { checker, map, index, connector, .. } = self;
-        (connector, Growing { map, index, checker, observer, answers })
+        let Self { checker, map, index, connector, prefetcher, .. } = self;
+        let meter = prefetcher.meter;
+        (connector, Growing { map, index, checker, observer, answers, meter })
     }
 
     /// Adds a configuration that the connector may not refuse: an end of a path.

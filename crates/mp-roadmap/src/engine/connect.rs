@@ -1,6 +1,6 @@
 //! How candidates become nodes, and which edges they get.
 
-use super::prefetch::{Prefetched, Prefetching};
+use super::prefetch::{Prefetched, Prefetching, QueryMeter};
 use super::{Candidate, EdgeChecker, ParentMotion, Roadmap, Tag};
 use mp_cspace::{
     BuildError, Direction, Event, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer, Reversible,
@@ -16,6 +16,7 @@ pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     pub(crate) observer: &'a mut dyn Observer<C::State>,
     /// Motions to the candidate that were prefetched.
     pub(crate) answers: Prefetched<C::State, L::Edge>,
+    pub(crate) meter: Option<QueryMeter<'c>>,
 }
 
 impl<'c, C, L, N> Growing<'_, 'c, C, L, N>
@@ -59,9 +60,12 @@ where
 
     /// The motion from a node to the candidate, prefetched or made now.
     fn ask(&mut self, from: NodeId, q: &C::State) -> Option<Motion<C::State, L::Edge>> {
-        match self.answers.iter_mut().find(|(node, _)| *node == from) {
-            Some((_, answer)) => {
-                let motion = answer.take();
+        match self.answers.iter_mut().find(|answer| answer.from == from) {
+            Some(answer) => {
+                let motion = answer.motion.take();
+                if let Some(meter) = self.meter {
+                    meter.used(std::mem::take(&mut answer.queries));
+                }
                 self.checker.replay(self.map.state(from), motion, q)
             }
             None => self.checker.reach(self.map.state(from), q, Direction::Forward),

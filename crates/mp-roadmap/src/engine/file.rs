@@ -2,7 +2,7 @@
 
 use super::{Link, LinkState, MilestoneKind, Roadmap, Tag};
 use mp_cspace::{NodeId, StateVector};
-use std::io::Write;
+use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
@@ -11,6 +11,14 @@ const VERSION: u32 = 1;
 /// Stands for no obstacle or no motion.
 const NONE: u32 = u32::MAX;
 const CHECKSUM: usize = 8;
+/// So many bytes of a file are read at a time while its checksum is computed.
+const PIECE: u64 = 1 << 20;
+
+/// The largest number of a state or motion, in magnitude. Collision queries accept no larger coordinates.
+const MAX_NUMBER: f64 = 1e75;
+
+/// The largest file of a roadmap that is read, bytes (16 GiB).
+pub const MAX_ROADMAP_BYTES: u64 = 16 << 30;
 
 /// A hash of all numbers of a scene and a robot, the same on any machine: XXH3-64 of them as little-endian doubles. It
 /// detects changes, but does not resist forgery.
@@ -25,8 +33,8 @@ pub fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
 #[non_exhaustive]
 pub enum RoadmapError {
     /// The file could not be read or written.
-    #[error("{0}")]
-    Io(#[from] std::io::Error),
+    #[error("{}", .0.message())]
+    File(#[from] mp_store::Error),
     /// The first eight bytes are not those of the format.
     #[error("not a roadmap: it does not begin with the bytes 89 4d 50 52 0d 0a 1a 0a")]
     NotARoadmap,
@@ -129,14 +137,8 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
     /// # Errors
     /// When it was made for another fingerprint, or the bytes are cut off, damaged or not a roadmap of such states.
     pub fn from_bytes(bytes: &[u8], fingerprint: u64) -> Result<Self, RoadmapError> {
-        if !bytes.starts_with(&MAGIC) {
-            return Err(RoadmapError::NotARoadmap);
-        }
-        let mut reader = Reader { bytes, at: MAGIC.len() };
-        let version = reader.u32()?;
-        if version != VERSION {
-            return Err(RoadmapError::Version { found: version });
-        }
+        check_beginning(bytes)?;
+        let mut reader = Reader { bytes, at: MAGIC.len() + size_of::<u32>() };
         let body = bytes.len().saturating_sub(CHECKSUM).max(reader.at);
         let found = Reader { bytes, at: body }.u64()?;
         let expected = xxh3_64(&bytes[..body]);
@@ -169,36 +171,61 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
         }
     }
 
-    /// Writes [`Roadmap::to_bytes`] to a file atomically: to a temporary file in the same folder, which is then renamed.
+    /// Writes [`Roadmap::to_bytes`] to a file, whole or not at all.
     ///
     /// # Errors
     /// When the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>, fingerprint: u64) -> Result<(), RoadmapFileError> {
         let path = path.as_ref();
-        write(path, &self.to_bytes(fingerprint))
-            .map_err(|error| RoadmapFileError { path: path.to_owned(), error: error.into() })
+        let written = mp_store::write(path, &self.to_bytes(fingerprint));
+        written.map_err(|error| RoadmapFileError { path: path.to_owned(), error: error.into() })
     }
 
-    /// Reads a file that [`Roadmap::save`] wrote for the same fingerprint.
+    /// Reads a file that [`Roadmap::save`] wrote for the same fingerprint. Memory is taken only for a file with the right
+    /// beginning and checksum.
     ///
     /// # Errors
-    /// As [`Roadmap::from_bytes`]; [`RoadmapError::Io`] when the file cannot be read.
+    /// As [`Roadmap::from_bytes`]; [`RoadmapError::File`] when it is not a regular file of at most [`MAX_ROADMAP_BYTES`], or
+    /// cannot be read.
     pub fn load(path: impl AsRef<Path>, fingerprint: u64) -> Result<Self, RoadmapFileError> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(RoadmapError::from);
-        bytes
-            .and_then(|bytes| Self::from_bytes(&bytes, fingerprint))
-            .map_err(|error| RoadmapFileError { path: path.to_owned(), error })
+        let loaded = checked_bytes(path).and_then(|bytes| Self::from_bytes(&bytes, fingerprint));
+        loaded.map_err(|error| RoadmapFileError { path: path.to_owned(), error })
     }
 }
 
-fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = tempfile::Builder::new().prefix(".mp-").suffix(".tmp").tempfile_in(folder)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(path)?;
-    Ok(())
+/// Refuses bytes that do not begin as a roadmap of this version does.
+fn check_beginning(bytes: &[u8]) -> Result<(), RoadmapError> {
+    if !bytes.starts_with(&MAGIC) {
+        return Err(RoadmapError::NotARoadmap);
+    }
+    match (Reader { bytes, at: MAGIC.len() }).u32()? {
+        VERSION => Ok(()),
+        found => Err(RoadmapError::Version { found }),
+    }
+}
+
+/// The bytes of a file whose beginning and checksum are those of a roadmap.
+fn checked_bytes(path: &Path) -> Result<Vec<u8>, RoadmapError> {
+    let failed = |e| RoadmapError::from(mp_store::Error::reading(path, &e));
+    let mut file = mp_store::open(path, MAX_ROADMAP_BYTES)?;
+    let (mut hash, mut unhashed) = (Xxh3::new(), Vec::new());
+    // The last bytes of a piece may be the checksum: they are hashed with the next piece.
+    let mut first = true;
+    while (&file).take(PIECE).read_to_end(&mut unhashed).map_err(failed)? > 0 || first {
+        if std::mem::take(&mut first) {
+            check_beginning(&unhashed)?;
+        }
+        let count = unhashed.len().saturating_sub(CHECKSUM);
+        hash.update(&unhashed[..count]);
+        unhashed.drain(..count);
+    }
+    let (expected, found) = (hash.digest(), Reader { bytes: &unhashed, at: 0 }.u64()?);
+    if expected != found {
+        return Err(RoadmapError::Damaged { expected, found });
+    }
+    file.rewind().map_err(failed)?;
+    Ok(mp_store::read_stream(path, file, MAX_ROADMAP_BYTES)?)
 }
 
 /// Reads little-endian numbers one after another.
@@ -234,7 +261,11 @@ impl Reader<'_> {
         let left = (self.bytes.len() - self.at) / 8;
         let mut numbers = Vec::with_capacity((count as usize).min(left));
         for _ in 0..count {
-            numbers.push(f64::from_le_bytes(self.take()?));
+            let (at, number) = (self.at, f64::from_le_bytes(self.take()?));
+            if number.is_nan() || number.abs() > MAX_NUMBER {
+                return Err(RoadmapError::Invalid { at, expected: "a finite number of at most 1e75" });
+            }
+            numbers.push(number);
         }
         Ok(numbers)
     }

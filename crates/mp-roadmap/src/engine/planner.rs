@@ -3,7 +3,7 @@
 use super::end_trees::EndTrees;
 use super::{
     Builder, Candidate, Connector, EdgeChecker, EndGrowth, GraphPath, MilestoneKind, NodeGenerator, Pace,
-    Query, Roadmap, RoadmapPlannerParts,
+    Query, QueryMeter, Roadmap, RoadmapPlannerParts,
 };
 use mp_cspace::{
     BuildError, Direction, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
@@ -82,6 +82,12 @@ where
     #[must_use]
     pub fn growing_ends(self, growth: EndGrowth) -> Self {
         Self { trees: EndTrees::new(growth), ..self }
+    }
+
+    /// Counts queries by `meter`: see [`Builder::metered`].
+    #[must_use]
+    pub fn metered(self, meter: QueryMeter<'c>) -> Self {
+        Self { builder: self.builder.metered(meter), ..self }
     }
 
     /// The roadmap; without start and goal before the first step.

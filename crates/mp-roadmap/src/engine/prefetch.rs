@@ -11,12 +11,59 @@ use mp_cspace::{
 use std::collections::VecDeque;
 use std::fmt;
 use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The answers of the local planner, with the node where each motion begins.
-pub(crate) type Prefetched<S, E> = Vec<(NodeId, Option<Motion<S, E>>)>;
+/// Counts queries so that the count does not depend on the number of threads: a prefetched answer counts when it is used, and
+/// not at all if it never is.
+#[derive(Clone, Copy, Debug)]
+pub struct QueryMeter<'c> {
+    /// How many queries the present thread has made so far, counted from any beginning.
+    pub of_thread: fn() -> u64,
+    /// The count of all queries. Checkers add each query to it at once.
+    pub common: &'c AtomicU64,
+}
 
-/// The candidates of an attempt, with the motions prefetched for each.
-pub(crate) type PrefetchedAttempt<S, E> = Vec<(Candidate<S, E>, Prefetched<S, E>)>;
+/// An answer of the local planner.
+pub(crate) struct PrefetchedMotion<S, E> {
+    /// The node where the motion begins.
+    pub(crate) from: NodeId,
+    pub(crate) motion: Option<Motion<S, E>>,
+    /// How many queries it took.
+    pub(crate) queries: u64,
+}
+
+pub(crate) type Prefetched<S, E> = Vec<PrefetchedMotion<S, E>>;
+
+/// The candidates of an attempt.
+pub(crate) struct PrefetchedAttempt<S, E> {
+    /// The candidates, with the motions prefetched for each.
+    pub(crate) candidates: Vec<(Candidate<S, E>, Prefetched<S, E>)>,
+    /// How many queries it took to generate them.
+    pub(crate) queries: u64,
+}
+
+impl<S, E> PrefetchedAttempt<S, E> {
+    /// How many queries all of it took.
+    fn all_queries(&self) -> u64 {
+        let motions = self.candidates.iter().flat_map(|(_, motions)| motions);
+        self.queries + motions.map(|motion| motion.queries).sum::<u64>()
+    }
+}
+
+impl QueryMeter<'_> {
+    /// Does `work`; returns how many queries it took.
+    fn during<T>(meter: Option<QueryMeter<'_>>, work: impl FnOnce() -> T) -> (T, u64) {
+        let now = || meter.map_or(0, |meter| (meter.of_thread)());
+        let before = now();
+        let done = work();
+        (done, now() - before)
+    }
+
+    /// Counts the queries of what was prefetched and is used.
+    pub(crate) fn used(&self, queries: u64) {
+        self.common.fetch_add(queries, Ordering::Relaxed);
+    }
+}
 
 /// What a connector prefetches with: the roadmap as it is, to which candidates are not added.
 #[allow(missing_debug_implementations)] // verifiers need not have any
@@ -25,6 +72,7 @@ pub struct Prefetching<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     index: &'a N,
     checker: &'a mut EdgeChecker<'c, C, L>,
     q: &'a C::State,
+    meter: Option<QueryMeter<'c>>,
     answers: Prefetched<C::State, L::Edge>,
 }
 
@@ -68,28 +116,31 @@ where
 
     /// Prefetches the motion from a node to the candidate. Returns whether there is one.
     pub fn reach(&mut self, from: NodeId) -> bool {
-        let motion = self.checker.reach(self.map.state(from), self.q, Direction::Forward);
+        let reach = || self.checker.reach(self.map.state(from), self.q, Direction::Forward);
+        let (motion, queries) = QueryMeter::during(self.meter, reach);
         let found = motion.is_some();
-        self.answers.push((from, motion));
+        self.answers.push(PrefetchedMotion { from, motion, queries });
         found
     }
 }
 
 /// What the threads prefetch from: the roadmap and its index, the policies, the seed, and the range of attempts.
-pub(crate) struct PrefetchJob<'a, C: Space, L: LocalPlanner<C::State>, G, K, N> {
+pub(crate) struct PrefetchJob<'a, 'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
     pub(crate) map: &'a Roadmap<C::State, L::Edge>,
     pub(crate) index: &'a N,
     pub(crate) generator: &'a G,
     pub(crate) connector: &'a K,
     pub(crate) seed: u64,
     pub(crate) attempts: Range<u64>,
+    pub(crate) meter: Option<QueryMeter<'c>>,
 }
 
 /// The prefetched attempts, in order.
 type Prefetches<C, L> =
     Vec<PrefetchedAttempt<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>>;
 
-type Work<'c, C, L, G, K, N> = Box<dyn FnMut(PrefetchJob<'_, C, L, G, K, N>) -> Prefetches<C, L> + Send + 'c>;
+type Work<'c, C, L, G, K, N> =
+    Box<dyn FnMut(PrefetchJob<'_, 'c, C, L, G, K, N>) -> Prefetches<C, L> + Send + 'c>;
 
 /// Prefetches attempts on several threads, and keeps them.
 pub(crate) struct Prefetcher<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
@@ -97,11 +148,12 @@ pub(crate) struct Prefetcher<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
     pub(crate) work: Option<Work<'c, C, L, G, K, N>>,
     /// Most attempts prefetched at a time.
     pub(crate) most: u64,
+    pub(crate) meter: Option<QueryMeter<'c>>,
 }
 
 impl<C: Space, L: LocalPlanner<C::State>, G, K, N> Default for Prefetcher<'_, C, L, G, K, N> {
     fn default() -> Self {
-        Self { ready: VecDeque::new(), work: None, most: 0 }
+        Self { ready: VecDeque::new(), work: None, most: 0, meter: None }
     }
 }
 
@@ -149,7 +201,7 @@ where
         });
         let mut tasks: Vec<_> = tasks.collect();
         self.prefetcher.most = SHARE * tasks.len() as u64;
-        self.prefetcher.work = Some(Box::new(move |job: PrefetchJob<'_, C, L, G, K, N>| {
+        self.prefetcher.work = Some(Box::new(move |job: PrefetchJob<'_, 'c, C, L, G, K, N>| {
             let mut next = job.attempts.start;
             for task in &mut tasks {
                 let end = (next + SHARE).min(job.attempts.end);
@@ -158,34 +210,43 @@ where
                 next = end;
             }
             workers.each(&mut tasks, |task| task.work(&job));
-            tasks.iter_mut().flat_map(|task| task.prefetched.drain(..)).collect()
+            let prefetched: Prefetches<C, L> =
+                tasks.iter_mut().flat_map(|task| task.prefetched.drain(..)).collect();
+            if let Some(meter) = job.meter {
+                let queries = prefetched.iter().map(PrefetchedAttempt::all_queries).sum();
+                meter.common.fetch_sub(queries, Ordering::Relaxed);
+            }
+            prefetched
         }));
         self
     }
 }
 
-impl<C, L, G> PrefetchTask<'_, C, L, G>
+impl<'c, C, L, G> PrefetchTask<'c, C, L, G>
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
     G: NodeGenerator<C, L>,
 {
-    fn work<K: Connector<C, L>, N: NearestNeighbors<C>>(&mut self, job: &PrefetchJob<'_, C, L, G, K, N>) {
+    fn work<K: Connector<C, L>, N: NearestNeighbors<C>>(&mut self, job: &PrefetchJob<'_, 'c, C, L, G, K, N>) {
         let Some(generator) = &mut self.generator else { return };
         for attempt in self.attempts.clone() {
             let mut rng = Rng::stream(job.seed, attempt);
             let mut candidates = Vec::new();
-            generator.generate(attempt, job.map, &mut self.checker, &mut rng, &mut candidates);
+            let (checker, meter) = (&mut self.checker, job.meter);
+            let generate = || generator.generate(attempt, job.map, checker, &mut rng, &mut candidates);
+            let ((), queries) = QueryMeter::during(meter, generate);
             let prefetched = candidates.into_iter().map(|candidate| {
                 let (map, index) = (job.map, job.index);
                 let q = &candidate.state;
                 let mut prefetching =
-                    Prefetching { map, index, checker: &mut self.checker, q, answers: Vec::new() };
+                    Prefetching { map, index, checker: &mut self.checker, q, meter, answers: Vec::new() };
                 job.connector.prefetch(&mut prefetching);
                 let answers = prefetching.answers;
                 (candidate, answers)
             });
-            self.prefetched.push(prefetched.collect());
+            let candidates = prefetched.collect();
+            self.prefetched.push(PrefetchedAttempt { candidates, queries });
         }
     }
 }

@@ -179,6 +179,61 @@ fn files_of_other_scenes_or_damaged_are_refused() {
     assert!(missing.starts_with("no/such/file: "), "{missing}");
 }
 
+/// A file is refused by its beginning and its checksum before memory is taken for it, however large it is.
+#[test]
+fn loading_takes_no_memory_for_what_is_no_roadmap() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.roadmap");
+    let load = || Map::load(&path, PRINT).map(|map| map.len()).map_err(|e| e.error);
+    let file = std::fs::File::create(&path).unwrap();
+    assert!(matches!(load(), Err(RoadmapError::NotARoadmap)), "an empty file");
+    // Sparse: it takes no room on the disk.
+    file.set_len(6 << 30).unwrap();
+    assert!(matches!(load(), Err(RoadmapError::NotARoadmap)));
+    file.set_len(mp_roadmap::MAX_ROADMAP_BYTES + 1).unwrap();
+    assert!(matches!(load(), Err(RoadmapError::File(_))));
+    // Sizes around the pieces in which the checksum is computed.
+    let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
+    let bytes = map(&space, &boxes, 30, 1).to_bytes(PRINT);
+    std::fs::write(&path, &bytes).unwrap();
+    assert_eq!(load().unwrap(), 30);
+    for extra in [1, 7, 8, 9, (1 << 20) - bytes.len(), (1 << 20) + 3 - bytes.len(), 1 << 20, (2 << 20) + 5] {
+        std::fs::write(&path, [bytes.as_slice(), &vec![0; extra]].concat()).unwrap();
+        assert!(matches!(load(), Err(RoadmapError::Damaged { .. })), "{extra}");
+    }
+    #[cfg(unix)]
+    if std::process::Command::new("mkfifo")
+        .arg(folder.path().join("pipe"))
+        .status()
+        .is_ok_and(|s| s.success())
+    {
+        let e = Map::load(folder.path().join("pipe"), PRINT).unwrap_err().to_string();
+        assert!(e.contains("not a regular file"), "{e}");
+    }
+}
+
+#[test]
+fn roadmaps_of_several_megabytes_are_read_back() {
+    let mut large = Map::new();
+    for i in 0..60_000 {
+        large.add([0.1, f64::from(i)].into(), Default::default());
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("large.roadmap");
+    large.save(&path, PRINT).unwrap();
+    assert_eq!(Map::load(&path, PRINT).unwrap().to_bytes(PRINT), large.to_bytes(PRINT));
+}
+
+#[test]
+fn states_that_no_planner_makes_are_refused() {
+    for bad in [f64::NAN, f64::INFINITY, -1.1e75] {
+        let mut map = Map::new();
+        map.add([0.5, bad].into(), Default::default());
+        let e = Map::from_bytes(&map.to_bytes(PRINT), PRINT).unwrap_err();
+        assert!(matches!(e, RoadmapError::Invalid { .. }), "{bad}: {e}");
+    }
+}
+
 #[test]
 fn two_roadmaps_become_one() {
     let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));

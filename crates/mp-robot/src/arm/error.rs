@@ -191,11 +191,13 @@ pub enum ArmError {
 #[non_exhaustive]
 pub enum UrdfError {
     /// The text is not XML, or not a URDF or SRDF.
-    #[error("this is not {what}: {message}")]
+    #[error("this is not {what}: {}{message}", .line.map_or_else(String::new, |line| format!("line {line}: ")))]
     Syntax {
         /// "a URDF" or "an SRDF".
         what: &'static str,
-        /// What is wrong, and in which line.
+        /// Where it is in the text, if it is at one place.
+        line: Option<u32>,
+        /// What is wrong.
         message: String,
     },
     /// A joint has a kind that is not handled.
@@ -226,4 +228,60 @@ pub enum UrdfError {
     /// The text was read, but does not describe a valid arm.
     #[error(transparent)]
     Arm(#[from] ArmError),
+}
+
+impl ArmError {
+    /// The element of a URDF that is wrong, "joint" or "link", and its name, if the error is about one.
+    #[must_use]
+    pub fn element(&self) -> Option<(&'static str, &str)> {
+        match self {
+            Self::Duplicate { what, name } | Self::Origin { what, name, .. } => Some((what, name)),
+            Self::UnknownLink { joint, .. }
+            | Self::BaseName { joint }
+            | Self::Loop { joint, .. }
+            | Self::Axis { joint, .. }
+            | Self::Limits { joint, .. }
+            | Self::NoSuchCoordinate { joint, .. }
+            | Self::Mimic { joint, .. } => Some(("joint", joint)),
+            Self::TwoParents { second, .. } => Some(("joint", second)),
+            Self::TwoRoots { second, .. } => Some(("link", second)),
+            Self::TooLarge { link, .. } => Some(("link", link)),
+            _ => None,
+        }
+    }
+}
+
+impl UrdfError {
+    /// The line of the text, counted from 1, if the error is at one place.
+    #[must_use]
+    pub fn line(&self) -> Option<u32> {
+        match self {
+            Self::Syntax { line, .. } => *line,
+            Self::Kind { line, .. } | Self::Shape { line, .. } => Some(*line),
+            Self::Arm(_) => None,
+        }
+    }
+
+    /// What is wrong, without the line.
+    #[must_use]
+    pub fn message(&self) -> String {
+        let text = self.to_string();
+        match self.line() {
+            Some(line) => text.replacen(&format!("line {line}: "), "", 1),
+            None => text,
+        }
+    }
+
+    /// What to do about it.
+    #[must_use]
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Syntax { .. } => {
+                "correct this place, or export the robot again; xacro files must be expanded by xacro first"
+            }
+            Self::Kind { .. } => "change the type of the joint",
+            Self::Shape { .. } => "correct the shape, or remove this <collision> if nothing can touch it",
+            Self::Arm(_) => "correct the links and joints of the URDF",
+        }
+    }
 }

@@ -37,8 +37,11 @@ impl ArmModel {
         mut mesh: impl FnMut(&str) -> Result<TriMesh, String>,
     ) -> Result<Self, UrdfError> {
         let Extract { urdf, links, joints, notes } = extract(text)?;
-        let robot = urdf_rs::read_from_string(&urdf)
-            .map_err(|error| UrdfError::Syntax { what: "a URDF", message: error.to_string() })?;
+        let robot = urdf_rs::read_from_string(&urdf).map_err(|error| UrdfError::Syntax {
+            what: "a URDF",
+            line: None,
+            message: error.to_string(),
+        })?;
         let mut model = Self { notes, ..Self::default() };
         for (link, lines) in robot.links.iter().zip(&links) {
             let mut made = Link::new(&link.name);

@@ -29,7 +29,7 @@ impl<'a> Text<'a> {
             let Some(at) = end_of_root_name(&text.text) else { return Ok(text) };
             text.text.to_mut().insert_str(at, &format!(" xmlns:{prefix}=\"{prefix}\""));
         }
-        Err(text.wrong(format!("more than {MAX_PREFIXES} prefixes of names are not declared")))
+        Err(text.wrong(None, format!("more than {MAX_PREFIXES} prefixes of names are not declared")))
     }
 
     /// The document, if it is XML with the root `<robot>` and not nested too deep for recursive parsers.
@@ -38,7 +38,7 @@ impl<'a> Text<'a> {
             let shown = error.to_string();
             // The parser puts row and column at the end of its message.
             let message = shown.rsplit_once(" at ").map_or(shown.as_str(), |(message, _)| message);
-            self.wrong(format!("line {}: {message}", error.pos().row))
+            self.wrong(Some(error.pos().row), message.to_owned())
         })?;
         let root = document.root_element();
         let found = root.tag_name().name();
@@ -59,12 +59,11 @@ impl<'a> Text<'a> {
 
     /// An error in the line of `node`.
     pub(super) fn error(&self, node: &Node<'_, '_>, message: impl std::fmt::Display) -> UrdfError {
-        self.wrong(format!("line {}: {message}", line(node)))
+        self.wrong(Some(line(node)), message.to_string())
     }
 
-    /// An error of the whole text.
-    pub(super) fn wrong(&self, message: String) -> UrdfError {
-        UrdfError::Syntax { what: self.what, message }
+    fn wrong(&self, line: Option<u32>, message: String) -> UrdfError {
+        UrdfError::Syntax { what: self.what, line, message }
     }
 }
 

@@ -134,7 +134,7 @@ pub(crate) fn written(folder: &Path, files: &[(String, Vec<u8>)], overwrite: boo
         }
     }
     for (name, bytes) in files {
-        mp_io::write_atomic(&folder.join(name), bytes)?;
+        mp_plan::write_file(&folder.join(name), bytes)?;
     }
     Ok(Written(files.iter().map(|file| file.0.clone()).collect()))
 }

@@ -1,0 +1,77 @@
+//! Measurements that are killed: what was measured is kept, and goes on from there.
+
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+const LOG: &str = "planners-runs.jsonl";
+
+/// A small measurement into `out`.
+fn start(out: &Path) -> Child {
+    let args = ["planners", "--scene", "easy", "--runs", "1", "--time", "0.2", "--out"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_mp-bench"));
+    command.args(args).arg(out).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// How many complete lines the log has.
+fn lines(out: &Path) -> usize {
+    let text = std::fs::read_to_string(out.join(LOG)).unwrap_or_default();
+    let complete: Vec<_> = text.split_inclusive('\n').filter(|line| line.ends_with('\n')).collect();
+    for line in &complete {
+        assert!(serde_json::from_str::<serde_json::Value>(line).is_ok(), "{line}");
+    }
+    complete.len()
+}
+
+/// Kills measurements at times spread over a second; what is in the log stays there.
+fn kill_measurements(times: usize) {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("bench");
+    let mut known = 0;
+    for i in 0..times {
+        let mut child = start(&out);
+        std::thread::sleep(Duration::from_secs_f64((i as f64 * 0.618_033_988_75).fract()));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let now = lines(&out);
+        assert!(now >= known, "{now} runs after {known}");
+        known = now;
+    }
+    let run = start(&out).wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert_eq!(run.status.code(), Some(0), "{said}");
+    assert!(known == 0 || said.contains(&format!("{known} of ")), "{known} are known: {said}");
+    assert!(lines(&out) >= known.max(10));
+    let left = std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name());
+    let left: Vec<_> = left.filter(|name| name.to_string_lossy().starts_with('.')).collect();
+    assert!(left.is_empty() || cfg!(not(unix)), "{left:?}");
+}
+
+#[test]
+fn measurements_that_are_killed_lose_nothing() {
+    kill_measurements(5);
+}
+
+/// As many as a release is tested with: `cargo test -p mp-bench --test killed -- --ignored`.
+#[test]
+#[ignore = "takes minutes"]
+fn hundreds_of_measurements_that_are_killed_lose_nothing() {
+    kill_measurements(300);
+}
+
+#[test]
+fn two_measurements_into_one_folder_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut first = start(dir.path());
+    let began = Instant::now();
+    while !dir.path().join(".mp.lock").exists() {
+        assert!(began.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let second = start(dir.path()).wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&second.stderr).into_owned();
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert_eq!(second.status.code(), Some(2), "{said}");
+    assert!(said.contains("in use") && said.contains("another folder"), "{said}");
+}

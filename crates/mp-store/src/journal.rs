@@ -1,0 +1,112 @@
+//! Files that grow by whole lines.
+
+use crate::error::Error;
+use crate::write::write;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Lines are on the disk at the latest after this time, if the machine loses its power.
+const SYNC: Duration = Duration::from_secs(1);
+
+/// A file that grows by whole lines, from several threads. A process that is killed loses no line that was appended; at most
+/// the last line of the file is incomplete, and whoever opens the file again drops it.
+///
+/// Hold a [`Lock`](crate::Lock) on the file or its folder: two processes must not append to one file.
+#[derive(Debug)]
+pub struct Journal {
+    path: PathBuf,
+    open: Mutex<Open>,
+}
+
+#[derive(Debug)]
+struct Open {
+    file: File,
+    synced: Instant,
+}
+
+impl Journal {
+    /// The journal at `path`, which begins with `lines`, whole lines, in place of what the file held.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn create(path: &Path, lines: &str) -> Result<Self, Error> {
+        write(path, lines.as_bytes())?;
+        let file = File::options().append(true).open(path).map_err(|e| failed(path, &e))?;
+        Ok(Self { path: path.to_owned(), open: Mutex::new(Open { file, synced: Instant::now() }) })
+    }
+
+    /// Appends `line`, which has no line break.
+    ///
+    /// # Errors
+    /// When it cannot be written, for example because the disk is full. The file is then as before.
+    pub fn append(&self, line: &str) -> Result<(), Error> {
+        let open = &mut *self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        let appended = open.append(line);
+        appended.map_err(|e| failed(&self.path, &e))
+    }
+}
+
+impl Open {
+    fn append(&mut self, line: &str) -> io::Result<()> {
+        let length = self.file.metadata()?.len();
+        if let Err(e) = self.file.write_all(format!("{line}\n").as_bytes()) {
+            // A line that is cut off must not become the beginning of the next one.
+            let _ = self.file.set_len(length);
+            return Err(e);
+        }
+        if self.synced.elapsed() > SYNC {
+            self.file.sync_data()?;
+            self.synced = Instant::now();
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Journal {
+    fn drop(&mut self) {
+        let _ = self.open.get_mut().unwrap_or_else(PoisonError::into_inner).file.sync_data();
+    }
+}
+
+fn failed(path: &Path, error: &io::Error) -> Error {
+    Error::io(path, "append to the file", error, "make room, and start again: the lines before are kept")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_many_threads_stay_whole() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("runs");
+        let journal = Journal::create(&path, "first\n").unwrap();
+        std::thread::scope(|scope| {
+            for k in 0..4 {
+                let journal = &journal;
+                scope.spawn(move || (0..100).for_each(|i| journal.append(&format!("{k} {i}")).unwrap()));
+            }
+        });
+        let text = std::fs::read_to_string(&path).unwrap();
+        let mut lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.remove(0), "first");
+        lines.sort_unstable();
+        lines.dedup();
+        assert_eq!(lines.len(), 400);
+        assert!(lines.iter().all(|line| line.split(' ').count() == 2));
+    }
+
+    /// A disk that is always full.
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_full_disk_is_an_error_with_a_remedy() {
+        let file = File::options().append(true).open("/dev/full").unwrap();
+        let open = Mutex::new(Open { file, synced: Instant::now() });
+        let journal = Journal { path: "x".into(), open };
+        let e = journal.append("line").unwrap_err();
+        assert!(e.message().contains("disk is full") && e.remedy().contains("make room"), "{e}");
+    }
+}
