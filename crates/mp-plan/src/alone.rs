@@ -3,10 +3,10 @@
 //! A problem that names the file is made as text and read by the ordinary reader, so that a robot or a map means the same
 //! with and without a problem around it. Then its ends are chosen, and what was chosen is said in the notes of the scene.
 
+#[cfg(feature = "urdf")]
+use crate::kinds::of_kind;
 #[cfg(any(feature = "planar", feature = "urdf"))]
 use crate::load::OneText;
-#[cfg(feature = "urdf")]
-use crate::scene::of_kind;
 use crate::{Error, Scene};
 use mp_io::Files;
 use std::path::{Path, PathBuf};
@@ -69,12 +69,12 @@ fn robot(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     files.read(file, mp_io::MAX_TEXT_BYTES)?;
     let problem = mp_io::RobotProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?;
     let (scene, notes) = crate::ArmScene::from_robot_alone(files, problem)?;
-    Ok(of_kind!("arms", "arms", scene).with_notes(notes))
+    Ok(of_kind!("arms", scene).with_notes(notes))
 }
 
 #[cfg(not(feature = "urdf"))]
 fn robot(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
-    Err(crate::load::left_out("arms", "urdf"))
+    Err(crate::kinds::left_out("urdf"))
 }
 
 /// The radius (m) of the disc that moves on a map alone: that of common mobile robots.
@@ -120,7 +120,7 @@ fn map(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
 
 #[cfg(not(feature = "planar"))]
 fn map(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
-    Err(crate::load::left_out("worlds of the plane", "planar"))
+    Err(crate::kinds::left_out("planar"))
 }
 
 /// How many points the longer side of a grid over a map has.

@@ -109,7 +109,7 @@ fn image<K: RobotKind>(
 ) -> Result<Option<Grid>, Error> {
     match name {
         RelaxField::Clearance => Ok(None),
-        _ => Err(crate::load::left_out("fields of the plane", "planar")),
+        _ => Err(crate::kinds::left_out("planar")),
     }
 }
 

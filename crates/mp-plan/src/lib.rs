@@ -65,6 +65,7 @@ mod finish;
 mod goals;
 pub mod info;
 mod inputs;
+mod kinds;
 mod load;
 #[cfg(feature = "pictures")]
 mod mp4;

@@ -2,7 +2,7 @@
 
 use crate::inputs::Recording;
 #[cfg(feature = "urdf")]
-use crate::scene::of_kind;
+use crate::kinds::of_kind;
 use crate::{Error, Scene, alone};
 use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RigidTask, RobotProblem, SceneDocument};
 use std::path::Path;
@@ -89,29 +89,23 @@ fn arm(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     let problem = mp_io::RobotProblem::load_from(files, file)?;
     if problem.file.floating.is_some() {
         let scene = crate::FloatingScene::from_problem_in(files, problem)?;
-        return Ok(of_kind!("floating", "bodies with joints that fly freely", scene));
+        return Ok(of_kind!("floating", scene));
     }
     let scene = crate::ArmScene::from_problem_in(files, problem)?;
     Ok(match scene.driven()? {
-        Some(driven) => of_kind!("driven", "robots moved by inputs", driven),
-        None => of_kind!("arms", "arms", scene),
+        Some(driven) => of_kind!("driven", driven),
+        None => of_kind!("arms", scene),
     })
 }
 
 #[cfg(not(feature = "planar"))]
 fn planar(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
-    Err(left_out("worlds of the plane", "planar"))
+    Err(crate::kinds::left_out("planar"))
 }
 
 #[cfg(not(feature = "urdf"))]
 fn arm(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
-    Err(left_out("arms", "urdf"))
-}
-
-/// An error for scenes that are left out of this program.
-pub(crate) fn left_out(what: &str, feature: &str) -> Error {
-    Error::new(format!("this program is made without {what}"))
-        .help(format!("take a program made with the feature `{feature}` of mp-plan"))
+    Err(crate::kinds::left_out("urdf"))
 }
 
 /// A text in place of one file, among other files.

@@ -7,7 +7,9 @@ use crate::prepared::Prepared;
 use crate::run::Pausing;
 use crate::search::Search;
 use crate::{Control, Error, Finish, Length, PathRows, Report, Request, RobotKind, Stage, planners};
-use mp_cspace::{Iterations, Outcome, Path, Planner, Progress, Rng, Space, Stop, StopReason, Workers};
+#[cfg(feature = "roadmaps")]
+use mp_cspace::Stop;
+use mp_cspace::{Iterations, Outcome, Path, Planner, Progress, Rng, Space, StopReason, Workers};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 

@@ -1,7 +1,6 @@
 //! A scene of any kind, and what can be done with it.
 
 use crate::any_robot::AnyRobot;
-use crate::robot::{DrivenScene, PlanarScene, RigidScene, greatest_speed};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
@@ -10,26 +9,11 @@ use crate::{
 };
 use mp_cspace::registry::PlannerInfo;
 use mp_geom::{Aabb, TriMesh, six_from_pose};
-use mp_io::{DocumentShape, PlanarProblem, PlanarShape, RigidProblem, RigidTask, SceneDocument, SpaceKind};
-use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
+use mp_io::{DocumentShape, SceneDocument};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// A scene of a robot of the kind that a feature of this crate names; an error in a program made without that feature. Planners
-/// are compiled for each kind, and only for those that the program can make scenes of.
-macro_rules! of_kind {
-    ($feature:literal, $what:literal, $robot:expr) => {
-        if cfg!(feature = $feature) {
-            $crate::Scene::new($robot).of_feature($feature)
-        } else {
-            return Err($crate::load::left_out($what, $feature));
-        }
-    };
-}
-#[cfg(feature = "urdf")]
-pub(crate) use of_kind;
 
 /// A scene to plan in: a robot of any kind among its obstacles, with a start and goals. Clones share the data.
 ///
@@ -82,99 +66,6 @@ impl Scene {
             notes: Arc::default(),
             feature: None,
         }
-    }
-
-    /// A scene of a rigid body among meshes.
-    ///
-    /// # Errors
-    /// When the bounds of the position are empty, or a mesh or pose is not valid.
-    pub fn from_problem(problem: RigidProblem) -> Result<Self, Error> {
-        Self::of_problem(None, problem)
-    }
-
-    fn of_problem(before: Option<&Self>, problem: RigidProblem) -> Result<Self, Error> {
-        let _span = tracing::info_span!("build", scene = %problem.name).entered();
-        let before = before.map(|before| before.robot.as_any());
-        Ok(match problem.space {
-            SpaceKind::Se3 => {
-                let before = before.and_then(|before| before.downcast_ref());
-                of_kind!("space", "rigid bodies in space", RigidScene::<Spatial>::after(before, problem)?)
-            }
-            SpaceKind::Se2 => {
-                let before = before.and_then(|before| before.downcast_ref());
-                of_kind!(
-                    "plane",
-                    "bodies that turn in the plane",
-                    RigidScene::<Planar>::after(before, problem)?
-                )
-            }
-        })
-    }
-
-    /// A scene of a rigid body among meshes of which some move, or with goals that leave something free.
-    ///
-    /// # Errors
-    /// When the bounds of the position are empty, or a mesh, a pose or a time is not valid.
-    pub fn from_task(task: RigidTask) -> Result<Self, Error> {
-        let _span = tracing::info_span!("build", scene = %task.problem.name).entered();
-        Ok(match (task.problem.space, &task.driven) {
-            (SpaceKind::Se3, Some(_)) => driven_body(task)?,
-            (SpaceKind::Se3, None) => {
-                let scene = RigidScene::<Spatial>::new(task.problem)?.with_goals(task.goals);
-                match &task.timing {
-                    Some(timing) => {
-                        of_kind!("moving", "obstacles that move", scene.among_moving(&task.moving, timing)?)
-                    }
-                    None => of_kind!("space", "rigid bodies in space", scene),
-                }
-            }
-            (SpaceKind::Se2, _) => {
-                let scene = RigidScene::<Planar>::new(task.problem)?.with_goals(task.goals);
-                match &task.timing {
-                    Some(timing) => {
-                        of_kind!("moving", "obstacles that move", scene.among_moving(&task.moving, timing)?)
-                    }
-                    None => of_kind!("plane", "bodies that turn in the plane", scene),
-                }
-            }
-        })
-    }
-
-    /// A scene of a robot in the plane among polygons.
-    ///
-    /// # Errors
-    /// When world, robot or bounds are not valid.
-    pub fn from_world(problem: PlanarProblem) -> Result<Self, Error> {
-        let _span = tracing::info_span!("build", scene = %problem.name).entered();
-        let (moves, driven) = (!problem.file.moving.is_empty(), problem.file.driven.clone());
-        Ok(match problem.file.robot {
-            PlanarShape::Disc(_) => {
-                let scene = PlanarScene::<DiscRobot>::new(problem)?;
-                match driven {
-                    Some(driven) if moves => of_kind!(
-                        "driven-moving",
-                        "robots moved by inputs among obstacles that move",
-                        scene.driven_among_moving(&driven)?
-                    ),
-                    Some(driven) => of_kind!("driven", "robots moved by inputs", scene.driven(&driven)?),
-                    None if moves => of_kind!("moving", "obstacles that move", scene.among_moving()?),
-                    None => of_kind!("discs", "discs", scene),
-                }
-            }
-            PlanarShape::Polygon(_) => {
-                let scene = PlanarScene::<PolygonRobot>::new(problem)?;
-                match driven {
-                    Some(driven) if moves => of_kind!(
-                        "driven-moving",
-                        "robots moved by inputs among obstacles that move",
-                        scene.driven_among_moving(&driven)?
-                    ),
-                    Some(driven) => of_kind!("driven", "robots moved by inputs", scene.driven(&driven)?),
-                    None if moves => of_kind!("moving", "obstacles that move", scene.among_moving()?),
-                    None => of_kind!("plane", "bodies that turn in the plane", scene),
-                }
-            }
-        })
     }
 
     /// A scene of the document of an editor. `mesh` gives the meshes that are not written into it, by the names of their
@@ -232,6 +123,11 @@ impl Scene {
         let document = &mut edited.document;
         (document.start, document.goal) = (six_from_pose(&problem.start), six_from_pose(&problem.goal));
         Some(edited)
+    }
+
+    /// The robot, if it is of this kind.
+    pub(crate) fn robot<K: 'static>(&self) -> Option<&K> {
+        self.robot.as_any().downcast_ref()
     }
 
     pub(crate) fn of_feature(self, feature: &'static str) -> Self {
@@ -562,24 +458,4 @@ impl Scene {
     pub fn picture_bounds(&self) -> Option<Aabb> {
         self.robot.picture_bounds()
     }
-}
-
-/// The scene of a rigid body in space that moves by inputs.
-fn driven_body(mut task: RigidTask) -> Result<Scene, Error> {
-    let Some(driven) = task.driven.take() else {
-        return Err(Error::new("the robot does not move by inputs"));
-    };
-    let places = task.goals.iter().map(|goal| goal[..6].to_vec()).collect();
-    let scene = RigidScene::<Spatial>::new(task.problem)?.with_goals(places);
-    let Some(timing) = &mut task.timing else {
-        let scene = DrivenScene::new(scene, &driven, &task.velocity, task.goals)?;
-        return Ok(of_kind!("driven", "robots moved by inputs", scene));
-    };
-    timing.speed = Some(greatest_speed(RobotKind::space(&scene), &driven));
-    let scene = scene.among_moving(&task.moving, timing)?;
-    Ok(of_kind!(
-        "driven-moving",
-        "robots moved by inputs among obstacles that move",
-        scene.driven(&driven, &task.velocity, task.goals)?
-    ))
 }

@@ -1,0 +1,136 @@
+//! Scenes of the kinds of robots that this crate has. Planners are compiled for each kind, so each is a feature: a program with few kinds
+//! is much smaller.
+
+use crate::robot::{DrivenScene, PlanarBody, PlanarScene, RigidScene, RigidSpace, greatest_speed};
+use crate::{Error, RobotKind, Scene};
+use mp_io::{PlanarProblem, PlanarShape, RigidProblem, RigidTask, SpaceKind};
+use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
+
+/// A scene of a robot of the kind that a feature names; an error in a program made without that feature, which then has no planners for it.
+macro_rules! of_kind {
+    ($feature:literal, $robot:expr) => {
+        if cfg!(feature = $feature) {
+            $crate::Scene::new($robot).of_feature($feature)
+        } else {
+            return Err($crate::kinds::left_out($feature));
+        }
+    };
+}
+#[cfg(feature = "urdf")]
+pub(crate) use of_kind;
+
+/// An error for scenes that a program cannot have without a feature.
+pub(crate) fn left_out(feature: &str) -> Error {
+    let what = match feature {
+        "arms" | "urdf" => "arms",
+        "discs" => "discs",
+        "driven" => "robots moved by inputs",
+        "driven-moving" => "robots moved by inputs among obstacles that move",
+        "floating" => "bodies with joints that fly freely",
+        "moving" => "obstacles that move",
+        "planar" => "worlds of the plane",
+        "plane" => "bodies that turn in the plane",
+        _ => "rigid bodies in space",
+    };
+    Error::new(format!("this program is made without {what}"))
+        .help(format!("take a program made with the feature `{feature}` of mp-plan"))
+}
+
+impl Scene {
+    /// A scene of a rigid body among meshes.
+    ///
+    /// # Errors
+    /// When the bounds of the position are empty, or a mesh or pose is not valid.
+    pub fn from_problem(problem: RigidProblem) -> Result<Self, Error> {
+        Self::of_problem(None, problem)
+    }
+
+    /// The scene of `problem`, which is an edited problem of the scene `before`: what did not change is shared with it.
+    pub(crate) fn of_problem(before: Option<&Self>, problem: RigidProblem) -> Result<Self, Error> {
+        let _span = tracing::info_span!("build", scene = %problem.name).entered();
+        match problem.space {
+            SpaceKind::Se3 => space(RigidScene::after(before.and_then(Self::robot), problem)?),
+            SpaceKind::Se2 => plane(RigidScene::<Planar>::after(before.and_then(Self::robot), problem)?),
+        }
+    }
+
+    /// A scene of a rigid body among meshes of which some move, or with goals that leave something free, or moved by inputs.
+    ///
+    /// # Errors
+    /// When the bounds of the position are empty, or a mesh, a pose or a time is not valid.
+    pub fn from_task(task: RigidTask) -> Result<Self, Error> {
+        let _span = tracing::info_span!("build", scene = %task.problem.name).entered();
+        match (task.problem.space, &task.driven) {
+            (SpaceKind::Se3, Some(_)) => driven_body(task),
+            (SpaceKind::Se3, None) => body(task, space),
+            (SpaceKind::Se2, _) => body::<Planar>(task, plane),
+        }
+    }
+
+    /// A scene of a robot in the plane among polygons.
+    ///
+    /// # Errors
+    /// When world, robot or bounds are not valid.
+    pub fn from_world(problem: PlanarProblem) -> Result<Self, Error> {
+        let _span = tracing::info_span!("build", scene = %problem.name).entered();
+        match problem.file.robot {
+            PlanarShape::Disc(_) => world(problem, disc),
+            PlanarShape::Polygon(_) => world::<PolygonRobot>(problem, plane),
+        }
+    }
+}
+
+fn space(scene: RigidScene<Spatial>) -> Result<Scene, Error> {
+    Ok(of_kind!("space", scene))
+}
+
+fn plane<K: RobotKind + 'static>(scene: K) -> Result<Scene, Error> {
+    Ok(of_kind!("plane", scene))
+}
+
+fn disc(scene: PlanarScene<DiscRobot>) -> Result<Scene, Error> {
+    Ok(of_kind!("discs", scene))
+}
+
+/// The scene of a rigid body that can make any motion; `still` makes it where no obstacle moves.
+fn body<M: RigidSpace>(
+    task: RigidTask,
+    still: fn(RigidScene<M>) -> Result<Scene, Error>,
+) -> Result<Scene, Error> {
+    let scene = RigidScene::<M>::new(task.problem)?.with_goals(task.goals);
+    match &task.timing {
+        Some(timing) => Ok(of_kind!("moving", scene.among_moving(&task.moving, timing)?)),
+        None => still(scene),
+    }
+}
+
+/// The scene of a robot of the plane; `still` makes it where no obstacle moves and the robot can make any motion.
+fn world<B: PlanarBody>(
+    problem: PlanarProblem,
+    still: fn(PlanarScene<B>) -> Result<Scene, Error>,
+) -> Result<Scene, Error> {
+    let (moves, driven) = (!problem.file.moving.is_empty(), problem.file.driven.clone());
+    let scene = PlanarScene::<B>::new(problem)?;
+    Ok(match driven {
+        Some(driven) if moves => of_kind!("driven-moving", scene.driven_among_moving(&driven)?),
+        Some(driven) => of_kind!("driven", scene.driven(&driven)?),
+        None if moves => of_kind!("moving", scene.among_moving()?),
+        None => still(scene)?,
+    })
+}
+
+/// The scene of a rigid body in space that moves by inputs.
+fn driven_body(mut task: RigidTask) -> Result<Scene, Error> {
+    let Some(driven) = task.driven.take() else {
+        return Err(Error::new("the robot does not move by inputs"));
+    };
+    let places = task.goals.iter().map(|goal| goal[..6].to_vec()).collect();
+    let scene = RigidScene::<Spatial>::new(task.problem)?.with_goals(places);
+    let Some(timing) = &mut task.timing else {
+        let scene = DrivenScene::new(scene, &driven, &task.velocity, task.goals)?;
+        return Ok(of_kind!("driven", scene));
+    };
+    timing.speed = Some(greatest_speed(RobotKind::space(&scene), &driven));
+    let scene = scene.among_moving(&task.moving, timing)?;
+    Ok(of_kind!("driven-moving", scene.driven(&driven, &task.velocity, task.goals)?))
+}
