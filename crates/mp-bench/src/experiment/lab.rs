@@ -275,6 +275,7 @@ mod tests {
         };
         let (complete, known) = measure(&lab, 2);
         assert!(!complete && (2..=4).contains(&known), "{known}");
+        drop(lab);
         let lab = Lab::test(folder.path(), 2);
         assert_eq!(measure(&lab, 9), (true, 12));
         let before = made.load(Ordering::Relaxed);

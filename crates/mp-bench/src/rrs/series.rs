@@ -73,12 +73,15 @@ mod tests {
         assert_eq!(log.all().len(), plan.cases().len());
         let solved = log.all().iter().filter(|(_, run)| run.solved).count();
         assert!(solved * 2 > log.all().len(), "{solved} solved");
-        let text = || std::fs::read_to_string(lab.file("a-runs.jsonl")).unwrap();
+        let file = lab.file("a-runs.jsonl");
+        let text = || std::fs::read_to_string(&file).unwrap();
         let before = text();
         assert!(measure(&plan, &lab, &mut lab.log("a", 1.0).unwrap()).unwrap());
         assert_eq!(before, text());
+        drop(lab);
+        let lab = Lab::test(folder.path(), 1);
         let mut alone = lab.log("b", 1.0).unwrap();
-        assert!(measure(&plan, &Lab::test(folder.path(), 1), &mut alone).unwrap());
+        assert!(measure(&plan, &lab, &mut alone).unwrap());
         for ((case, a), (_, b)) in log.all().iter().zip(alone.all()) {
             assert_eq!((a.iterations, a.nodes, a.length), (b.iterations, b.nodes, b.length), "{case:?}");
         }
