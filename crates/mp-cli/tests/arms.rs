@@ -93,7 +93,7 @@ fn bad_problems_are_told_what_to_do() {
         URDF.replace("<link name=\"base\"/>", &format!("<link name=\"base\">{mesh}</link>")),
     );
     for (from, to, words) in [
-        ("two.urdf", "lost.urdf", &["lost.urdf", "line 2", "thumb.stl", "share/hand/thumb.stl"][..]),
+        ("two.urdf", "lost.urdf", &["lost.urdf:2:1:", "thumb.stl", "share/hand/thumb.stl"][..]),
         ("[-0.7, 0]", "[-0.7, 0, 0]", &["the start has 3 numbers", "shoulder, elbow"][..]),
         ("[-0.7, 0]", "[0, 0]", &["the start is in collision", "lower in post", "nearest free"]),
         ("[0.7, 0]", "[0.7, 3]", &["elbow may be from -2.5 to 2.5", "limits"]),
