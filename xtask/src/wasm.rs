@@ -85,7 +85,7 @@ fn kind_of(scene: &OsString) -> Option<&'static str> {
     let mut command = crate::program("mp-motion-cli", "mp");
     let out = command.arg("info").arg(scene).arg("--json").stderr(Stdio::inherit()).output().ok()?;
     let out = String::from_utf8(out.stdout).ok()?;
-    let (_, kind) = out.split_once("\"kind\":")?;
+    let (_, kind) = out.split_once("\"robot\":")?;
     let kind = kind.trim_start().strip_prefix('"')?;
     MODULES.into_iter().find(|name| kind.starts_with(&format!("{name}\"")))
 }

@@ -260,6 +260,7 @@ fn info_tells_meshes_scenes_and_paths_apart() {
     let mesh = mp(&dir, &["info", "robot.off", "--json"]).json();
     assert_eq!((&mesh["triangles"], &mesh["watertight"]), (&12.into(), &true.into()));
     let scene = mp(&dir, &["info", "window.env", "--json"]).json();
+    assert_eq!(scene["robot"], "space");
     assert_eq!(scene["bodies"].as_array().unwrap().len(), 5);
     assert_eq!(mp(&dir, &["info", "p.txt", "--json"]).json()["length"], 1.0);
 }

@@ -103,7 +103,7 @@ fn file_of(given: &Path) -> Option<PathBuf> {
 /// Whether a text file holds a path: its first line has only numbers, and that of a scene has not.
 fn is_path(file: &Path) -> bool {
     let named = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("txt"));
-    let read = || std::fs::File::open(file).ok();
+    let read = || mp_store::open(file, mp_io::MAX_TEXT_BYTES).ok();
     named
         && read().is_some_and(|file| {
             let mut lines = BufReader::new(file.take(HEAD)).lines().map_while(Result::ok);

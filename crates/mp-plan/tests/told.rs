@@ -67,7 +67,7 @@ fn a_run_is_told_from_loading_to_verifying() {
         "mp_cspace: verified",
         "mp_plan roadmap",
         "mp_roadmap: built",
-        "mp_io: written",
+        "mp_store: written",
     ] {
         assert!(told.contains(wanted), "{wanted} is not among {told:?}");
     }

@@ -16,7 +16,7 @@ pub struct SceneInfo {
     /// The configuration space: `SE3`, `SE2`, `R2`, `6 joints`.
     pub space: String,
     /// The kind of robot, as the [feature](Scene::feature) for it is called: `space`, `arms`, ….
-    pub kind: Option<&'static str>,
+    pub robot: Option<&'static str>,
     /// The meaning of each number of a configuration.
     pub columns: Vec<ColumnInfo>,
     /// The start configuration.
@@ -80,7 +80,7 @@ impl SceneInfo {
             file: scene.file().map(|file| file.display().to_string()),
             name: scene.name().to_owned(),
             space: scene.space(),
-            kind: scene.feature(),
+            robot: scene.feature(),
             columns: columns
                 .map(|(i, c)| ColumnInfo {
                     name: c.name,
