@@ -95,7 +95,7 @@ browserTest("a cancel while planning keeps the best path so far", (t) => withIns
 }), withoutPlanner("plane"));
 
 /** A scene of each kind of robot. */
-const KINDS = { arms: "arm", discs: "rrs-high", driven: "parking", floating: "wrench", moving: "crossing", plane: "easy", space: "cubicles" };
+const KINDS = { arms: "arm", discs: "rrs-high", driven: "parking", "driven-moving": "warehouse", floating: "wrench", moving: "crossing", plane: "easy", space: "cubicles" };
 /** Sine and cosine of the C library differ in the last digits from those in a page. */
 const LAST_DIGITS = 1e-9;
 for (const [kind, scene] of Object.entries(KINDS)) {
