@@ -55,7 +55,8 @@ impl fmt::Debug for Scene {
 }
 
 impl Scene {
-    /// A scene with a robot of your own kind, or of one of the kinds of this crate: [`RigidScene`](crate::RigidScene), [`ArmScene`](crate::ArmScene), [`PlanarScene`](crate::PlanarScene).
+    /// A scene with a robot of your own kind, or of one of the kinds of this crate: [`RigidScene`](crate::RigidScene),
+    /// [`ArmScene`](crate::ArmScene), [`PlanarScene`](crate::PlanarScene).
     pub fn new(robot: impl RobotKind + 'static) -> Self {
         Self {
             robot: Arc::new(robot),
