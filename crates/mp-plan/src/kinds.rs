@@ -57,13 +57,15 @@ impl Scene {
     /// A scene of a rigid body among meshes of which some move, or with goals that leave something free, or moved by inputs.
     ///
     /// # Errors
-    /// When the bounds of the position are empty, or a mesh, a pose or a time is not valid.
+    /// When the bounds of the position are empty, a mesh, a pose or a time is not valid, or a mesh in the plane is to move by inputs.
     pub fn from_task(task: RigidTask) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %task.problem.name).entered();
         match (task.problem.space, &task.driven) {
             (SpaceKind::Se3, Some(_)) => driven_body(task),
             (SpaceKind::Se3, None) => body(task, space),
-            (SpaceKind::Se2, _) => body::<Planar>(task, plane),
+            (SpaceKind::Se2, None) => body::<Planar>(task, plane),
+            (SpaceKind::Se2, Some(_)) => Err(Error::new("a mesh in the plane cannot move by inputs")
+                .help("take a polygon in a world of the plane: docs/formats/planar-world.md")),
         }
     }
 
@@ -124,7 +126,7 @@ fn driven_body(mut task: RigidTask) -> Result<Scene, Error> {
     let Some(driven) = task.driven.take() else {
         return Err(Error::new("the robot does not move by inputs"));
     };
-    let places = task.goals.iter().map(|goal| goal[..6].to_vec()).collect();
+    let places = task.goals.iter().map(|goal| goal.iter().copied().take(6).collect()).collect();
     let scene = RigidScene::<Spatial>::new(task.problem)?.with_goals(places);
     let Some(timing) = &mut task.timing else {
         let scene = DrivenScene::new(scene, &driven, &task.velocity, task.goals)?;

@@ -25,9 +25,9 @@
 //! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
 //! | `turns`: fractions of a motion at which rotate-at-s is tried where the straight motion fails | 0, 1, 2, 3 | 0 |
 //! | `straight`: tries straight motions first; `no` leaves rotate-at-s alone | yes, no | yes |
-//! | `ends`, `ends-step`: trees that grow from start and goal, beside (see [`EndGrowth`](crate::EndGrowth)): their part of the attempts, and their longest step | \[0, 1); as `radius` | 0, 3% |
+//! | `ends`, `ends-step`: trees that grow from start and goal beside the samples ([`EndGrowth`](crate::EndGrowth)): their part of the attempts, their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
-//! The last two, by name only, connect in stages ([`StagedConnector`](crate::StagedConnector)).
+//! `turns` and `straight`, by name only, connect in stages ([`StagedConnector`](crate::StagedConnector)).
 //!
 //! The authors mix in uniform samples too, by weights that depend on the scene.
 //!

@@ -32,7 +32,7 @@
 //! | `first`: nodes before the first search | 1, 2, … 10⁹ | 500 |
 //! | `more`: nodes added when there is no path | 1, 2, … 10⁹ | 100 |
 //! | `neighbours`, `radius` | as of [PRM](super::prm) | 15, 100% |
-//! | `ends`, `ends-step`: trees that grow from start and goal, beside (see [`EndGrowth`](crate::EndGrowth)): their part of the attempts, and their longest step | \[0, 1); as `radius` | 0, 3% |
+//! | `ends`, `ends-step`: trees that grow from start and goal beside the samples ([`EndGrowth`](crate::EndGrowth)): their part of the attempts, their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
 //! A point goes around a disc in the unit square, with few motions checked:
 //! ```

@@ -49,7 +49,7 @@
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
 //! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
 //! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
-//! | `ends`, `ends-step`: trees that grow from start and goal, beside (see [`EndGrowth`](crate::EndGrowth)): their part of the attempts, and their longest step | \[0, 1); as `radius` | 0, 3% |
+//! | `ends`, `ends-step`: trees that grow from start and goal beside the samples ([`EndGrowth`](crate::EndGrowth)): their part of the attempts, their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
 //! A disc goes between two boxes:
 //! ```

@@ -38,9 +38,9 @@
 //! | `walk`: longest motion of such a walk, in the metric of the space or with % of its extent | positive | 10% |
 //! | `turns`: fractions of a motion at which rotate-at-s is tried where the straight motion fails | 0, 1, 2, 3 | 0 |
 //! | `straight`: tries straight motions first; `no` leaves rotate-at-s alone | yes, no | yes |
-//! | `ends`, `ends-step`: trees that grow from start and goal, beside (see [`EndGrowth`](crate::EndGrowth)): their part of the attempts, and their longest step | \[0, 1); as `radius` | 0, 3% |
+//! | `ends`, `ends-step`: trees that grow from start and goal beside the samples ([`EndGrowth`](crate::EndGrowth)): their part of the attempts, their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
-//! The last two, by name only, connect in stages ([`StagedConnector`]).
+//! `turns` and `straight`, by name only, connect in stages ([`StagedConnector`]).
 //! The paper chooses K and MAXDIST for each problem. As in the paper, construction adds twice as many nodes as expansion.
 //!
 //! A point goes around a disc in the unit square:

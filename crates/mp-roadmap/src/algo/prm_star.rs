@@ -21,7 +21,7 @@
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `factor`: neighbours, as a multiple of what is needed | \[1, 100\] | 1.1 |
-//! | `ends`, `ends-step`: trees that grow from start and goal, beside (see [`EndGrowth`](crate::EndGrowth)): their part of the attempts, and their longest step | \[0, 1); as `radius` | 0, 3% |
+//! | `ends`, `ends-step`: trees that grow from start and goal beside the samples ([`EndGrowth`](crate::EndGrowth)): their part of the attempts, their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
 //! A point goes around a disc, on ever shorter paths:
 //! ```

@@ -2,9 +2,9 @@
 //!
 //! A roadmap of samples does not get out of a narrow place around the start or goal: few samples are in there. L. E. Kavraki,
 //! P. Švestka, J.-C. Latombe and M. H. Overmars (*Probabilistic roadmaps for path planning in high-dimensional configuration spaces*,
-//! 1996, §3.2) leave it by random-bounce walks in the query phase. Here trees leave it, as an RRT does (S. M. LaValle,
-//! *Rapidly-exploring random trees*, 1998): a uniform sample is drawn, and the node of the tree that is nearest to it takes a step
-//! toward it. The end of the step becomes a node of the roadmap, and is connected as others are.
+//! 1996) leave it by random-bounce walks when they answer a query. Here trees leave it, as an RRT does (S. M. LaValle,
+//! *Rapidly-exploring random trees*, 1998). A uniform sample is drawn. The nearest to it, of up to 64 random nodes of the tree, takes a
+//! step toward it. The end of the step becomes a node of the roadmap, and is connected as others are.
 
 use super::settings::length;
 use super::{Builder, Candidate, Connector, MilestoneKind, NodeGenerator, ParentMotion};
