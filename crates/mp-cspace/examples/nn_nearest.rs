@@ -31,7 +31,9 @@ fn time<C: DefaultNn>(name: &str, space: &C, k: usize, n: usize) {
     let mut index = C::Nn::default();
     (0..n).for_each(|i| index.inserted(space, states, i as u32));
     let one = least(queries.len(), || {
-        queries.iter().for_each(|q| drop(black_box(index.nearest(space, states, q))));
+        for q in queries {
+            black_box(index.nearest(space, states, q));
+        }
     });
     let mut out = Vec::new();
     let many = least(queries.len(), || {
