@@ -6,8 +6,11 @@ use mp_cspace::{
     Certified, Clearance, Coordinates, Joints, MotionCheck, MotionClearance, MotionValidity, Path, Rng,
     Space, Validity, least_clearance,
 };
-use mp_geom::{TriMesh, primitives::cuboid};
-use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};
+use mp_geom::{
+    TriMesh,
+    primitives::{cuboid, cylinder},
+};
+use mp_robot::{Arm, ArmModel, ArmVerifier, Joint, JointKind, Link};
 use nalgebra::{DVector, Isometry3, SVector, Vector3};
 
 fn arm() -> (Arm, Joints<Six>) {
@@ -207,7 +210,7 @@ fn least_clearances_of_parts_are_those_of_the_whole() {
         Arm::new(&six(), [obstacle("ball", cuboid(0.3, 0.3, 0.3).unwrap(), [1.4, 0.2, 0.9, 0.0, 0.0, 0.0])])
             .unwrap();
     let counts = least_clearances_agree(&far, &arm().1, 60);
-    assert!(counts.into_iter().all(|n| n > 10), "{counts:?}");
+    assert!(counts.into_iter().all(|n| n > 4), "{counts:?}");
     // A configuration that is none.
     let nan = Six::repeat(f64::NAN);
     let least = least_clearance(&arm().1, &mut far, &Path::straight(vec![nan, nan]), 0.1).unwrap();
@@ -272,6 +275,37 @@ fn links_do_not_pass_through_each_other() {
         free += usize::from(check.is_free());
     }
     assert!(free > 100 && arm.is_valid(&SVector::from([1.0, 0.0])));
+}
+
+/// Two wheels side by side on an axle, as in the legs of walking robots: all their facets are equally near, all along.
+#[test]
+fn a_wheel_that_turns_beside_another_costs_little() {
+    let wheel = cylinder(0.046, 0.04, 64).unwrap();
+    let turn = JointKind::Revolute { low: -3.0, high: 3.0 };
+    let beside = Isometry3::translation(0.0, 0.0, 0.04235);
+    let model = ArmModel {
+        links: vec![
+            Link::new("hip").with(&wheel, &Isometry3::identity()),
+            Link::new("axle"),
+            Link::new("rotor").with(&wheel, &Isometry3::identity()),
+        ],
+        joints: vec![
+            Joint::new("a", "hip", "axle", turn).axis(Vector3::z()),
+            Joint::new("b", "axle", "rotor", turn).axis(Vector3::z()).at(beside),
+        ],
+        ..ArmModel::default()
+    };
+    let mut arm = Arm::new(&model, []).unwrap();
+    let space: Joints<SVector<f64, 2>> = arm.space().unwrap();
+    let path = Path::straight(vec![SVector::from([-1.0, 0.0]), SVector::from([1.0, 1.5])]);
+    let least = least_clearance(&space, &mut arm, &path, 1e-5).unwrap();
+    assert!((0.00234..=0.00235).contains(&least.clearance), "{least:?}");
+    let work = arm.take_counters();
+    // Almost all by their boxes: hardly a state of the motion needs triangles, of which there are 128 × 128 pairs.
+    assert!(work.work.triangle_tests < work.clearance_checks, "{work:?}");
+    let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
+    assert!(verifier.check_motion(&path.states[0], &path.states[1]).is_free());
+    assert!(verifier.parts() < 500, "{}", verifier.parts());
 }
 
 /// The bound of the whole motion holds for every vertex; it is that of the link that moves most.
