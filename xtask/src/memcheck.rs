@@ -49,7 +49,9 @@ pub(crate) fn run(filters: &[OsString]) -> ExitCode {
 fn programs() -> Result<Vec<String>, String> {
     let mut command = cargo();
     command.args(["test", "--no-run", "--quiet", "--message-format=json"]);
-    PACKAGES.iter().for_each(|package| drop(command.args(["--package", package])));
+    for package in PACKAGES {
+        command.args(["--package", package]);
+    }
     let built = command.stderr(Stdio::inherit()).current_dir(root()).output();
     let built = built.map_err(|e| format!("cannot run cargo: {e}"))?;
     if !built.status.success() {
