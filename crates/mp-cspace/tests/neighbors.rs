@@ -150,7 +150,7 @@ fn unfriendly() -> Vec<(&'static str, Vec<P3>)> {
         }),
         ("sorted", line.clone()),
         ("sorted backwards", line.iter().rev().copied().collect()),
-        ("toward a limit", (0..n).map(|i| P3::repeat(0.99f64.powi(i))).collect()),
+        ("toward a limit", (0..n).map(|i| P3::repeat(mp_math::powi(0.99, i))).collect()),
         ("from both ends", (0..n).map(|i| P3::x() * f64::from(if i % 2 == 0 { i } else { -i })).collect()),
         ("clustered", cluster(1e-2, &mut random)),
         ("tightly clustered", cluster(1e-9, &mut random)),

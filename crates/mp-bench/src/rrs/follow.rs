@@ -75,7 +75,7 @@ pub(super) fn follow(
     let length = path.length(space);
     let planned = least_clearance(space, &mut robot.clone(), path, 1e-4)?.found;
     let mut rng = Rng::stream(seed, 6);
-    let mut pose = Pose { at: points[0], angle: first.y.atan2(first.x) };
+    let mut pose = Pose { at: points[0], angle: mp_math::atan2(first.y, first.x) };
     let mut filter = ParticleFilter::about(pose, &mut rng);
     let (mut driven, mut executed, mut gone, mut arrived) =
         (vec![Point2::from(pose.at)], f64::INFINITY, 0.0, false);
@@ -93,7 +93,7 @@ pub(super) fn follow(
             break;
         }
         let aim = along(points, gone + LOOKAHEAD) - here.at;
-        let error = (aim.y.atan2(aim.x) - here.angle + PI).rem_euclid(TAU) - PI;
+        let error = (mp_math::atan2(aim.y, aim.x) - here.angle + PI).rem_euclid(TAU) - PI;
         // The robot turns in place where the path turns sharply.
         let speed = if error.abs() > 0.6 { 0.0 } else { SPEED * (1.0 - error.abs() / 0.9) };
         let command = [speed, (3.0 * error).clamp(-TURN, TURN)];
@@ -196,7 +196,7 @@ mod tests {
         };
         let done = follow(&robot, &space, &at(0.45), 1).unwrap();
         // The corner (1, 0.9) is nearest, seen from the line through (0.5, 0.5) and (1, 0.45).
-        let corner = 0.225 / 0.5_f64.hypot(0.05) - RADIUS;
+        let corner = 0.225 / mp_math::hypot(0.5, 0.05) - RADIUS;
         assert!(
             done.run.arrived && done.run.executed > 0.25 && (done.run.planned - corner).abs() < 1e-3,
             "{done:?}"
