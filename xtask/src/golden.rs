@@ -1,0 +1,223 @@
+//! `cargo xtask golden`: test programs whose results must not depend on the machine, on other processors.
+
+use crate::{bad, cargo, note, root};
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Output};
+use std::time::Instant;
+
+/// A way of running the test programs.
+struct Way {
+    name: &'static str,
+    /// What it shows.
+    shows: &'static str,
+    /// What must be installed: how to ask for it, and how to get it.
+    needs: &'static [(&'static [&'static str], &'static str)],
+    /// The target to compile for, other than that of this machine, and the packages with their tests.
+    target: Option<&'static str>,
+    tests: &'static [&'static [&'static str]],
+    /// The variables of the compiler and of the programs.
+    variables: &'static [(&'static str, &'static str)],
+    /// What starts a program.
+    runner: &'static [&'static str],
+}
+
+/// Bits of functions, results of planners, and a simulated experiment; as `cargo test` builds them.
+const TESTS: &[&[&str]] =
+    &[&["--workspace", "--test", "bits", "--test", "fingerprints", "--bin", "mp-bench"]];
+
+/// A program for WASI, in node.
+const IN_NODE: &str = "\
+const { WASI } = require('node:wasi'), { readFileSync } = require('node:fs');
+const [program, ...rest] = process.argv.slice(1);
+const wasi = new WASI({ version: 'preview1', args: [program, ...rest], env: process.env });
+WebAssembly.instantiate(readFileSync(program), wasi.getImportObject())
+  .then(({ instance }) => process.exit(wasi.start(instance)));";
+
+const WAYS: [Way; 5] = [
+    Way {
+        name: "native",
+        shows: "this machine",
+        needs: &[],
+        target: None,
+        tests: TESTS,
+        variables: &[],
+        runner: &[],
+    },
+    Way {
+        name: "no-fma",
+        shows: "a C library that uses neither FMA nor AVX2",
+        needs: &[],
+        target: None,
+        tests: TESTS,
+        variables: &[("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-AVX2,-FMA,-FMA4")],
+        runner: &[],
+    },
+    Way {
+        name: "nehalem",
+        shows: "a processor of 2008, with SSE4.2 only; a short list",
+        needs: &[(&["qemu-x86_64", "--version"], "the package qemu-user")],
+        target: None,
+        tests: TESTS,
+        variables: &[("MP_FINGERPRINTS", "shortest")],
+        runner: &["qemu-x86_64", "-cpu", "Nehalem"],
+    },
+    Way {
+        name: "aarch64",
+        shows: "another architecture; a short list",
+        needs: &[
+            (&["qemu-aarch64", "--version"], "the package qemu-user"),
+            (&["aarch64-linux-gnu-gcc", "--version"], "the package gcc-aarch64-linux-gnu"),
+        ],
+        target: Some("aarch64-unknown-linux-gnu"),
+        tests: TESTS,
+        variables: &[
+            ("MP_FINGERPRINTS", "shortest"),
+            ("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER", "aarch64-linux-gnu-gcc"),
+            ("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUSTFLAGS", "-Ctarget-feature=+crt-static"),
+        ],
+        runner: &["qemu-aarch64"],
+    },
+    Way {
+        name: "wasm32",
+        shows: "WebAssembly; a short list without pictures",
+        needs: &[(&["node", "--version"], "node")],
+        target: Some("wasm32-wasip1"),
+        tests: &[
+            &["--package", "mp-math", "--test", "bits"],
+            &[
+                "--package",
+                "mp-plan",
+                "--test",
+                "fingerprints",
+                "--no-default-features",
+                "--features",
+                "kinds,roadmaps,scenes",
+            ],
+        ],
+        variables: &[("MP_FINGERPRINTS", "short"), ("NODE_NO_WARNINGS", "1")],
+        runner: &["node", "--eval", IN_NODE, "--"],
+    },
+];
+
+/// The tests of `mp-bench` whose results must not depend on the machine have names with this.
+const GOLDEN: &str = "on_every_machine";
+
+/// `cargo xtask golden [--required] [WAY…]`.
+pub(crate) fn run(arguments: &[OsString]) -> ExitCode {
+    let mut arguments: Vec<&str> = arguments.iter().filter_map(|a| a.to_str()).collect();
+    let required = arguments.contains(&"--required");
+    arguments.retain(|a| *a != "--required");
+    if let Some(unknown) = arguments.iter().find(|name| WAYS.iter().all(|way| way.name != **name)) {
+        let names: Vec<&str> = WAYS.iter().map(|way| way.name).collect();
+        return bad(&format!("there is no way {unknown} of running: take of {}", names.join(", ")));
+    }
+    let mut failed = Vec::new();
+    for way in WAYS.iter().filter(|way| arguments.is_empty() || arguments.contains(&way.name)) {
+        note(&format!("{}: {}", way.name, way.shows));
+        match way.missing() {
+            Some(missing) => {
+                note(&format!("  skipped: it needs {missing}"));
+                if required {
+                    failed.push(way.name);
+                }
+            }
+            None => {
+                if let Err(message) = way.run() {
+                    note(&format!("  FAILED: {message}"));
+                    failed.push(way.name);
+                }
+            }
+        }
+    }
+    if failed.is_empty() {
+        return ExitCode::SUCCESS;
+    }
+    note(&format!("failed: {}", failed.join(", ")));
+    ExitCode::FAILURE
+}
+
+impl Way {
+    /// What is not installed, if anything.
+    fn missing(&self) -> Option<&'static str> {
+        let starts = |command: &[&str]| Command::new(command[0]).args(&command[1..]).output().is_ok();
+        if matches!(self.name, "no-fma" | "nehalem") && !cfg!(all(target_arch = "x86_64", target_env = "gnu"))
+        {
+            return Some("x86-64 with the C library of GNU");
+        }
+        self.needs.iter().find(|(command, _)| !starts(command)).map(|(_, package)| *package)
+    }
+
+    fn run(&self) -> Result<(), String> {
+        if let Some(target) = self.target {
+            let added = Command::new("rustup").args(["target", "add", target]).output();
+            added.map_err(|e| format!("cannot run rustup: {e}"))?;
+        }
+        for tests in self.tests {
+            for program in self.build(tests)? {
+                self.start(&program)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The test programs.
+    fn build(&self, tests: &[&str]) -> Result<Vec<PathBuf>, String> {
+        let mut command = cargo();
+        command
+            .args(["test", "--no-run", "--quiet", "--message-format=json"])
+            .args(tests)
+            .current_dir(root());
+        command.args(self.target.iter().flat_map(|target| ["--target", target]));
+        let compiling = self.variables.iter().filter(|(name, _)| name.starts_with("CARGO"));
+        let built =
+            command.envs(compiling.copied()).output().map_err(|e| format!("cannot run cargo: {e}"))?;
+        let programs: Vec<PathBuf> = executables(&String::from_utf8_lossy(&built.stdout)).collect();
+        if !built.status.success() || programs.is_empty() {
+            return Err(format!("the tests could not be built:\n{}", String::from_utf8_lossy(&built.stderr)));
+        }
+        Ok(programs)
+    }
+
+    fn start(&self, program: &Path) -> Result<(), String> {
+        let name = program.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let name = name.rsplit_once('-').map_or(name.as_str(), |(name, _)| name);
+        let mut words = self.runner.iter().map(OsString::from).chain([program.into()]);
+        let mut command = Command::new(words.next().unwrap_or_default());
+        command.args(words).arg("--nocapture").envs(self.variables.iter().copied());
+        if name == "mp_bench" {
+            command.arg(GOLDEN);
+        }
+        let began = Instant::now();
+        let Output { status, stdout, stderr } =
+            command.output().map_err(|e| format!("cannot run {name}: {e}"))?;
+        let text = String::from_utf8_lossy(&stdout);
+        if !status.success() || text.contains("running 0 tests") {
+            return Err(format!("{name}\n{text}{}", String::from_utf8_lossy(&stderr)));
+        }
+        let counted = text.lines().find(|line| line.contains(" cases are ")).unwrap_or("passed");
+        note(&format!("  ok     {name}: {counted} ({:.1} s)", began.elapsed().as_secs_f64()));
+        Ok(())
+    }
+}
+
+/// The test programs in the messages of cargo.
+fn executables(messages: &str) -> impl Iterator<Item = PathBuf> {
+    let tests = messages.lines().filter(|line| line.contains("\"test\":true}"));
+    let paths = tests.filter_map(|line| line.split_once("\"executable\":\"")?.1.split_once('"'));
+    paths.map(|(path, _)| PathBuf::from(path.replace("\\\\", "\\")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn test_programs_are_found_in_the_messages_of_cargo() {
+        let messages = r#"{"reason":"compiler-artifact","profile":{"opt_level":"2","test":false},"executable":"/a/mp","fresh":true}
+{"reason":"compiler-artifact","profile":{"opt_level":"2","test":true},"executable":"/a/bits-0f","fresh":true}
+{"reason":"compiler-artifact","profile":{"opt_level":"2","test":true},"executable":null,"fresh":true}
+{"reason":"build-finished","success":true}"#;
+        assert_eq!(executables(messages).collect::<Vec<_>>(), [PathBuf::from("/a/bits-0f")]);
+    }
+}
