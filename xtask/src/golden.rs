@@ -22,9 +22,26 @@ struct Way {
     runner: &'static [&'static str],
 }
 
-/// Bits of functions, results of planners, and a simulated experiment; as `cargo test` builds them.
-const TESTS: &[&[&str]] =
-    &[&["--workspace", "--test", "bits", "--test", "fingerprints", "--bin", "mp-bench"]];
+/// The test programs: bits of functions, results of planners, and a simulated experiment.
+const PROGRAMS: [&str; 3] = ["bits", "fingerprints", "mp_bench"];
+
+/// How they are built.
+const TESTS: &[&[&str]] = &[&[
+    "--package",
+    "mp-math",
+    "--package",
+    "mp-plan",
+    "--package",
+    "mp-bench",
+    "--test",
+    "bits",
+    "--test",
+    "fingerprints",
+    "--lib",
+]];
+
+/// How `cargo test` has built them, with all others.
+const BUILT: &[&[&str]] = &[&["--workspace"]];
 
 /// A program for WASI, in node.
 const IN_NODE: &str = "\
@@ -100,14 +117,15 @@ const WAYS: [Way; 5] = [
     },
 ];
 
-/// The tests of `mp-bench` whose results must not depend on the machine have names with this.
+/// Tests whose results must not depend on the machine have names with this.
 const GOLDEN: &str = "on_every_machine";
 
-/// `cargo xtask golden [--required] [WAY…]`.
+/// `cargo xtask golden [--required] [--built] [WAY…]`. What is missing is an error if all is `--required`. The programs are
+/// those of an earlier `cargo test` if they are `--built`.
 pub(crate) fn run(arguments: &[OsString]) -> ExitCode {
     let mut arguments: Vec<&str> = arguments.iter().filter_map(|a| a.to_str()).collect();
-    let required = arguments.contains(&"--required");
-    arguments.retain(|a| *a != "--required");
+    let [required, built] = ["--required", "--built"].map(|option| arguments.contains(&option));
+    arguments.retain(|a| !["--required", "--built"].contains(a));
     if let Some(unknown) = arguments.iter().find(|name| WAYS.iter().all(|way| way.name != **name)) {
         let names: Vec<&str> = WAYS.iter().map(|way| way.name).collect();
         return bad(&format!("there is no way {unknown} of running: take of {}", names.join(", ")));
@@ -123,7 +141,7 @@ pub(crate) fn run(arguments: &[OsString]) -> ExitCode {
                 }
             }
             None => {
-                if let Err(message) = way.run() {
+                if let Err(message) = way.run(built) {
                     note(&format!("  FAILED: {message}"));
                     failed.push(way.name);
                 }
@@ -148,12 +166,12 @@ impl Way {
         self.needs.iter().find(|(command, _)| !starts(command)).map(|(_, package)| *package)
     }
 
-    fn run(&self) -> Result<(), String> {
+    fn run(&self, built: bool) -> Result<(), String> {
         if let Some(target) = self.target {
             let added = Command::new("rustup").args(["target", "add", target]).output();
             added.map_err(|e| format!("cannot run rustup: {e}"))?;
         }
-        for tests in self.tests {
+        for tests in if built && self.target.is_none() { BUILT } else { self.tests } {
             for program in self.build(tests)? {
                 self.start(&program)?;
             }
@@ -172,7 +190,8 @@ impl Way {
         let compiling = self.variables.iter().filter(|(name, _)| name.starts_with("CARGO"));
         let built =
             command.envs(compiling.copied()).output().map_err(|e| format!("cannot run cargo: {e}"))?;
-        let programs: Vec<PathBuf> = executables(&String::from_utf8_lossy(&built.stdout)).collect();
+        let mut programs: Vec<PathBuf> = executables(&String::from_utf8_lossy(&built.stdout)).collect();
+        programs.retain(|program| PROGRAMS.contains(&name_of(program).as_str()));
         if !built.status.success() || programs.is_empty() {
             return Err(format!("the tests could not be built:\n{}", String::from_utf8_lossy(&built.stderr)));
         }
@@ -180,14 +199,10 @@ impl Way {
     }
 
     fn start(&self, program: &Path) -> Result<(), String> {
-        let name = program.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let name = name.rsplit_once('-').map_or(name.as_str(), |(name, _)| name);
+        let name = name_of(program);
         let mut words = self.runner.iter().map(OsString::from).chain([program.into()]);
         let mut command = Command::new(words.next().unwrap_or_default());
-        command.args(words).arg("--nocapture").envs(self.variables.iter().copied());
-        if name == "mp_bench" {
-            command.arg(GOLDEN);
-        }
+        command.args(words).args([GOLDEN, "--nocapture"]).envs(self.variables.iter().copied());
         let began = Instant::now();
         let Output { status, stdout, stderr } =
             command.output().map_err(|e| format!("cannot run {name}: {e}"))?;
@@ -199,6 +214,12 @@ impl Way {
         note(&format!("  ok     {name}: {counted} ({:.1} s)", began.elapsed().as_secs_f64()));
         Ok(())
     }
+}
+
+/// The name of a test program, without the hash of cargo.
+fn name_of(program: &Path) -> String {
+    let stem = program.file_stem().unwrap_or_default().to_string_lossy();
+    stem.rsplit_once('-').map_or(&*stem, |(name, _)| name).to_owned()
 }
 
 /// The test programs in the messages of cargo.
@@ -218,6 +239,8 @@ mod tests {
 {"reason":"compiler-artifact","profile":{"opt_level":"2","test":true},"executable":"/a/bits-0f","fresh":true}
 {"reason":"compiler-artifact","profile":{"opt_level":"2","test":true},"executable":null,"fresh":true}
 {"reason":"build-finished","success":true}"#;
-        assert_eq!(executables(messages).collect::<Vec<_>>(), [PathBuf::from("/a/bits-0f")]);
+        let found: Vec<PathBuf> = executables(messages).collect();
+        assert_eq!(found, [PathBuf::from("/a/bits-0f")]);
+        assert!(PROGRAMS.contains(&name_of(&found[0]).as_str()));
     }
 }

@@ -19,7 +19,7 @@ Builds and starts the programs of the workspace:
   cargo xtask bench SUITE …     measurements, the program `mp-bench`: see `cargo xtask bench --help`
   cargo xtask wasm [KIND…]      builds the planners inside pages, for `render … --with-planner`
   cargo xtask assets [--check]  generates the shipped scenes, or checks that they are up to date
-  cargo xtask golden [--required] [WAY…]   the same bits on other processors: native, no-fma, nehalem, aarch64, wasm32
+  cargo xtask golden [--required] [--built] [WAY…]   the same bits on other processors: native, no-fma, nehalem, aarch64, wasm32
   cargo xtask ci [--no-tests]   formatting, lints, tests, documentation and tidiness
 
 Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.";
