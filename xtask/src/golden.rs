@@ -1,6 +1,6 @@
 //! `cargo xtask golden`: test programs whose results must not depend on the machine, on other processors.
 
-use crate::{bad, cargo, note, root};
+use crate::{bad, cargo, note, root, wasm};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Output};
@@ -157,20 +157,20 @@ pub(crate) fn run(arguments: &[OsString]) -> ExitCode {
 
 impl Way {
     /// What is not installed, if anything.
-    fn missing(&self) -> Option<&'static str> {
+    fn missing(&self) -> Option<String> {
         let starts = |command: &[&str]| Command::new(command[0]).args(&command[1..]).output().is_ok();
         if matches!(self.name, "no-fma" | "nehalem") && !cfg!(all(target_arch = "x86_64", target_env = "gnu"))
         {
-            return Some("x86-64 with the C library of GNU");
+            return Some("x86-64 with the C library of GNU".to_owned());
         }
-        self.needs.iter().find(|(command, _)| !starts(command)).map(|(_, package)| *package)
+        if let Some((_, package)) = self.needs.iter().find(|(command, _)| !starts(command)) {
+            return Some((*package).to_owned());
+        }
+        let target = self.target?;
+        wasm::install(target).err().map(|how| format!("Rust's target {target}: {how}"))
     }
 
     fn run(&self, built: bool) -> Result<(), String> {
-        if let Some(target) = self.target {
-            let added = Command::new("rustup").args(["target", "add", target]).output();
-            added.map_err(|e| format!("cannot run rustup: {e}"))?;
-        }
         for tests in if built && self.target.is_none() { BUILT } else { self.tests } {
             for program in self.build(tests)? {
                 self.start(&program)?;

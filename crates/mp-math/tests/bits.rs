@@ -103,7 +103,7 @@ fn values_are_those_of_the_standard_library_up_to_rounding() {
         assert!(far <= Some(3), "{name}: {far:?}");
     }
     for (name, f, standard, of, _) in OF_TWO {
-        let far = numbers().take(MANY).map(|u| of(u)).map(|[x, y]| units(f(x, y), standard(x, y))).max();
+        let far = numbers().take(MANY).map(of).map(|[x, y]| units(f(x, y), standard(x, y))).max();
         assert!(far <= Some(3), "{name}: {far:?}");
     }
 }

@@ -214,12 +214,11 @@ mod tests {
     #[test]
     fn a_path_is_followed_to_the_same_bits_on_every_machine() {
         let scene = tight();
-        let hash = |kind: &str, trial: u64| {
-            let followed = planned_and_followed(&scene, kind, trial).unwrap().unwrap();
-            let places = followed.path.iter().chain(&followed.driven).flat_map(|p| [p.x, p.y]);
-            let numbers = places.chain([followed.run.executed, followed.run.error, followed.run.uncertainty]);
-            numbers.fold(0xcbf2_9ce4_8422_2325_u64, |h, v| (h ^ v.to_bits()).wrapping_mul(0x0100_0000_01b3))
-        };
-        assert_eq!([hash("rrs relaxed", 0), hash("rrt", 1)], [0, 0]);
+        let followed = planned_and_followed(&scene, "rrs relaxed", 0).unwrap().unwrap();
+        let places = followed.path.iter().chain(&followed.driven).flat_map(|p| [p.x, p.y]);
+        let numbers = places.chain([followed.run.executed, followed.run.error, followed.run.uncertainty]);
+        let hash =
+            numbers.fold(0xcbf2_9ce4_8422_2325_u64, |h, v| (h ^ v.to_bits()).wrapping_mul(0x0100_0000_01b3));
+        assert_eq!(hash, 0x8890_1063_0e33_e1b1, "{hash:#x}");
     }
 }
