@@ -62,3 +62,53 @@ fn run_cargo(args: &[&str]) -> bool {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::root;
+    use std::process::{Command, Stdio};
+
+    /// Methods of `f64` and `f32` whose bits depend on the machine and that `mp-math` does not have.
+    const OTHERS: [&str; 9] = ["sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp_m1", "ln_1p", "log"];
+
+    /// The functions of `mp-math`.
+    fn functions() -> Vec<String> {
+        let text = std::fs::read_to_string(root().join("crates/mp-math/src/lib.rs")).unwrap();
+        let in_macro = text.lines().filter_map(|line| line.trim().strip_suffix(");")?.split_once(" = "));
+        let plain = text.lines().filter_map(|line| line.strip_prefix("pub fn ")?.split_once('('));
+        let names = in_macro.chain(plain).map(|(name, _)| name.to_owned());
+        names.filter(|name| !name.contains(' ')).collect()
+    }
+
+    /// Clippy finds a call of each method in `clippy.toml`, and the list has all of them, for both types.
+    #[test]
+    fn functions_whose_bits_depend_on_the_machine_are_forbidden() {
+        let mut names = functions();
+        assert!(names.len() == 17 && names.contains(&"sin_cos".to_owned()), "{names:?}");
+        names.extend(OTHERS.map(str::to_owned));
+        let folder = std::env::temp_dir().join(format!("mp-lint-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let uses = ["f64", "f32"].map(|float| {
+            names.iter().map(|name| format!("    let _ = {float}::{name};\n")).collect::<String>()
+        });
+        let source = folder.join("lint.rs");
+        std::fs::write(&source, format!("pub fn all() {{\n{}}}\n", uses.concat())).unwrap();
+        let mut clippy = Command::new("clippy-driver");
+        clippy.args([
+            "--edition=2024",
+            "--crate-type=lib",
+            "--emit=metadata",
+            "-Dclippy::disallowed_methods",
+        ]);
+        clippy.arg("--out-dir").arg(&folder).arg(&source).env("CLIPPY_CONF_DIR", root()).stdin(Stdio::null());
+        let out = clippy.output();
+        std::fs::remove_dir_all(&folder).unwrap();
+        let out = out.expect("clippy is a component of rustup");
+        let found = String::from_utf8_lossy(&out.stderr);
+        for float in ["f64", "f32"] {
+            for name in &names {
+                assert!(found.contains(&format!("method `{float}::{name}`")), "{float}::{name}\n{found}");
+            }
+        }
+    }
+}

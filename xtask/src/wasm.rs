@@ -16,16 +16,7 @@ const VARIABLE: &str = "MP_PLANNERS";
 
 /// Builds the modules with these names. Returns the folder of all modules.
 fn build(names: &[&str]) -> Result<PathBuf, String> {
-    if !has_target() {
-        note(&format!("adding the target {TARGET} by rustup"));
-        let added = Command::new("rustup").args(["target", "add", TARGET]).status();
-        if !added.is_ok_and(|status| status.success()) {
-            return Err(format!(
-                "the planner inside pages needs Rust's target {TARGET}: install it, by rustup with\n    \
-                 rustup target add {TARGET}"
-            ));
-        }
-    }
+    install(TARGET).map_err(|how| format!("the planner inside pages needs Rust's target {TARGET}: {how}"))?;
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
     let folder = target.join("planners");
     std::fs::create_dir_all(&folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
@@ -46,9 +37,18 @@ fn build(names: &[&str]) -> Result<PathBuf, String> {
     Ok(folder)
 }
 
-fn has_target() -> bool {
-    let listed = Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output();
-    listed.is_ok_and(|out| PathBuf::from(String::from_utf8_lossy(&out.stdout).trim()).is_dir())
+/// Installs a target of the compiler by rustup, if it is not there. The error says how to install it.
+pub(crate) fn install(target: &str) -> Result<(), String> {
+    let listed = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
+    if listed.is_ok_and(|out| PathBuf::from(String::from_utf8_lossy(&out.stdout).trim()).is_dir()) {
+        return Ok(());
+    }
+    note(&format!("adding the target {target} by rustup"));
+    let added = Command::new("rustup").args(["target", "add", target]).status();
+    if added.is_ok_and(|status| status.success()) {
+        return Ok(());
+    }
+    Err(format!("install it, by rustup with\n    rustup target add {target}"))
 }
 
 /// `cargo xtask wasm [KIND…]`.

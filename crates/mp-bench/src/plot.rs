@@ -265,7 +265,7 @@ fn number(v: f64) -> String {
         return "0".into();
     }
     if (1e-3..1e5).contains(&v) {
-        let digits = (2 - v.log10().floor() as i32).max(0) as usize;
+        let digits = (2 - mp_math::log10(v).floor() as i32).max(0) as usize;
         let text = format!("{v:.digits$}");
         return if text.contains('.') {
             text.trim_end_matches('0').trim_end_matches('.').into()

@@ -27,9 +27,9 @@ const R: f64 = -1.0;
 #[must_use]
 pub fn dubins(from: &Se2State, to: &Se2State, radius: f64) -> Vec<CurvePart> {
     let [x, y, phi] = seen_from(from, to, radius);
-    let (d, theta) = (x.hypot(y), y.atan2(x));
+    let (d, theta) = (mp_math::hypot(x, y), mp_math::atan2(y, x));
     let (a, b) = (forward(-theta), forward(phi - theta));
-    let ([sa, ca], [sb, cb], cab) = ([a.sin(), a.cos()], [b.sin(), b.cos()], (a - b).cos());
+    let ((sa, ca), (sb, cb), cab) = (mp_math::sin_cos(a), mp_math::sin_cos(b), mp_math::cos(a - b));
     let mut best = Best::default();
     let mut try_it = |turns: [f64; 3], lengths: [f64; 3]| {
         let lengths = [forward(lengths[0]), lengths[1], forward(lengths[2])];
@@ -37,28 +37,28 @@ pub fn dubins(from: &Se2State, to: &Se2State, radius: f64) -> Vec<CurvePart> {
     };
     let straight = |square: f64| (square >= 0.0).then(|| square.sqrt());
     if let Some(p) = straight(2.0 + d * d - 2.0 * cab + 2.0 * d * (sa - sb)) {
-        let t = (cb - ca).atan2(d + sa - sb);
+        let t = mp_math::atan2(cb - ca, d + sa - sb);
         try_it([L, S, L], [t - a, p, b - t]);
     }
     if let Some(p) = straight(2.0 + d * d - 2.0 * cab + 2.0 * d * (sb - sa)) {
-        let t = (ca - cb).atan2(d - sa + sb);
+        let t = mp_math::atan2(ca - cb, d - sa + sb);
         try_it([R, S, R], [a - t, p, t - b]);
     }
     if let Some(p) = straight(d * d - 2.0 + 2.0 * cab + 2.0 * d * (sa + sb)) {
-        let t = (-ca - cb).atan2(d + sa + sb) - (-2.0_f64).atan2(p);
+        let t = mp_math::atan2(-ca - cb, d + sa + sb) - mp_math::atan2(-2.0, p);
         try_it([L, S, R], [t - a, p, t - b]);
     }
     if let Some(p) = straight(d * d - 2.0 + 2.0 * cab - 2.0 * d * (sa + sb)) {
-        let t = (ca + cb).atan2(d - sa - sb) - 2.0_f64.atan2(p);
+        let t = mp_math::atan2(ca + cb, d - sa - sb) - mp_math::atan2(2.0, p);
         try_it([R, S, L], [a - t, p, b - t]);
     }
-    let middle = |cosine: f64| (cosine.abs() <= 1.0).then(|| TAU - cosine.acos());
+    let middle = |cosine: f64| (cosine.abs() <= 1.0).then(|| TAU - mp_math::acos(cosine));
     if let Some(p) = middle((6.0 - d * d + 2.0 * cab + 2.0 * d * (sa - sb)) / 8.0) {
-        let t = a - (ca - cb).atan2(d - sa + sb) + 0.5 * p;
+        let t = a - mp_math::atan2(ca - cb, d - sa + sb) + 0.5 * p;
         try_it([R, L, R], [t, p, a - b - t + p]);
     }
     if let Some(p) = middle((6.0 - d * d + 2.0 * cab + 2.0 * d * (sb - sa)) / 8.0) {
-        let t = -a + (cb - ca).atan2(d + sa - sb) + 0.5 * p;
+        let t = -a + mp_math::atan2(cb - ca, d + sa - sb) + 0.5 * p;
         try_it([L, R, L], [t, p, b - a - t + p]);
     }
     best.scaled(radius)
@@ -74,7 +74,7 @@ pub fn reeds_shepp(from: &Se2State, to: &Se2State, radius: f64) -> Vec<CurvePart
     for [back, side] in [[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]] {
         let (x, y, phi) = (back * x, side * y, back * side * phi);
         // From the goal to the start: the parts in reverse order.
-        let (s, c) = phi.sin_cos();
+        let (s, c) = mp_math::sin_cos(phi);
         let (xb, yb) = (x * c + y * s, x * s - y * c);
         let mut take = |parts: &[Part], reversed: bool| {
             let made = |part: &Part| (side * part.0, back * part.1);
@@ -141,7 +141,7 @@ const ROUNDING: f64 = 1e-12;
 /// The pose `to` in the frame of `from`, for a turning radius of 1.
 fn seen_from(from: &Se2State, to: &Se2State, radius: f64) -> [f64; 3] {
     let offset = (to.translation - from.translation) / radius;
-    let (s, c) = from.angle.sin_cos();
+    let (s, c) = mp_math::sin_cos(from.angle);
     [offset.x * c + offset.y * s, offset.y * c - offset.x * s, wrap_angle(to.angle - from.angle)]
 }
 
@@ -152,14 +152,14 @@ fn forward(angle: f64) -> f64 {
 }
 
 fn polar(x: f64, y: f64) -> (f64, f64) {
-    (x.hypot(y), y.atan2(x))
+    (mp_math::hypot(x, y), mp_math::atan2(y, x))
 }
 
 fn tau_omega(u: f64, v: f64, xi: f64, eta: f64, phi: f64) -> (f64, f64) {
     let delta = wrap_angle(u - v);
-    let (a, b) = (u.sin() - delta.sin(), u.cos() - delta.cos() - 1.0);
-    let t = (eta * a - xi * b).atan2(xi * a + eta * b);
-    let side = 2.0 * (delta.cos() - v.cos() - u.cos()) + 3.0;
+    let (a, b) = (mp_math::sin(u) - mp_math::sin(delta), mp_math::cos(u) - mp_math::cos(delta) - 1.0);
+    let t = mp_math::atan2(eta * a - xi * b, xi * a + eta * b);
+    let side = 2.0 * (mp_math::cos(delta) - mp_math::cos(v) - mp_math::cos(u)) + 3.0;
     let tau = wrap_angle(if side < 0.0 { t + PI } else { t });
     (tau, wrap_angle(tau - u + v - phi))
 }
@@ -171,60 +171,60 @@ fn ahead(length: f64) -> bool {
 
 /// Formula 8.1.
 fn lp_sp_lp(x: f64, y: f64, phi: f64) -> Option<[f64; 3]> {
-    let (u, t) = polar(x - phi.sin(), y - 1.0 + phi.cos());
+    let (u, t) = polar(x - mp_math::sin(phi), y - 1.0 + mp_math::cos(phi));
     let v = wrap_angle(phi - t);
     (ahead(t) && ahead(v)).then_some([t, u, v])
 }
 
 /// Formula 8.2.
 fn lp_sp_rp(x: f64, y: f64, phi: f64) -> Option<[f64; 3]> {
-    let (far, t) = polar(x + phi.sin(), y - 1.0 - phi.cos());
+    let (far, t) = polar(x + mp_math::sin(phi), y - 1.0 - mp_math::cos(phi));
     let square = far * far - 4.0;
     let u = (square >= 0.0).then(|| square.sqrt())?;
-    let t = wrap_angle(t + 2.0_f64.atan2(u));
+    let t = wrap_angle(t + mp_math::atan2(2.0, u));
     let v = wrap_angle(t - phi);
     (ahead(t) && ahead(v)).then_some([t, u, v])
 }
 
 /// Formulas 8.3 and 8.4.
 fn lp_rm_l(x: f64, y: f64, phi: f64) -> Option<[f64; 3]> {
-    let (far, theta) = polar(x - phi.sin(), y - 1.0 + phi.cos());
-    let u = (far <= 4.0).then(|| -2.0 * (0.25 * far).asin())?;
+    let (far, theta) = polar(x - mp_math::sin(phi), y - 1.0 + mp_math::cos(phi));
+    let u = (far <= 4.0).then(|| -2.0 * mp_math::asin(0.25 * far))?;
     let t = wrap_angle(theta + 0.5 * u + PI);
     (ahead(t) && ahead(-u)).then(|| [t, u, wrap_angle(phi - t + u)])
 }
 
 /// Formula 8.7.
 fn lp_rup_lum_rm(x: f64, y: f64, phi: f64) -> Option<[f64; 3]> {
-    let (xi, eta) = (x + phi.sin(), y - 1.0 - phi.cos());
-    let rho = 0.25 * (2.0 + xi.hypot(eta));
-    let u = (rho <= 1.0).then(|| rho.acos())?;
+    let (xi, eta) = (x + mp_math::sin(phi), y - 1.0 - mp_math::cos(phi));
+    let rho = 0.25 * (2.0 + mp_math::hypot(xi, eta));
+    let u = (rho <= 1.0).then(|| mp_math::acos(rho))?;
     let (t, v) = tau_omega(u, -u, xi, eta, phi);
     (ahead(t) && ahead(-v)).then_some([t, u, v])
 }
 
 /// Formula 8.8.
 fn lp_rum_lum_rp(x: f64, y: f64, phi: f64) -> Option<[f64; 3]> {
-    let (xi, eta) = (x + phi.sin(), y - 1.0 - phi.cos());
+    let (xi, eta) = (x + mp_math::sin(phi), y - 1.0 - mp_math::cos(phi));
     let rho = (20.0 - xi * xi - eta * eta) / 16.0;
-    let u = (0.0..=1.0).contains(&rho).then(|| -rho.acos())?;
+    let u = (0.0..=1.0).contains(&rho).then(|| -mp_math::acos(rho))?;
     let (t, v) = tau_omega(u, u, xi, eta, phi);
     (ahead(t) && ahead(v)).then_some([t, u, v])
 }
 
 /// Formula 8.9.
 fn lp_rm_sm_lm(x: f64, y: f64, phi: f64) -> Option<[f64; 3]> {
-    let (rho, theta) = polar(x - phi.sin(), y - 1.0 + phi.cos());
+    let (rho, theta) = polar(x - mp_math::sin(phi), y - 1.0 + mp_math::cos(phi));
     let r = (rho >= 2.0).then(|| (rho * rho - 4.0).sqrt())?;
     let u = 2.0 - r;
-    let t = wrap_angle(theta + r.atan2(-2.0));
+    let t = wrap_angle(theta + mp_math::atan2(r, -2.0));
     let v = wrap_angle(phi - FRAC_PI_2 - t);
     (ahead(t) && ahead(-u) && ahead(-v)).then_some([t, u, v])
 }
 
 /// Formula 8.10.
 fn lp_rm_sm_rm(x: f64, y: f64, phi: f64) -> Option<[f64; 3]> {
-    let (rho, t) = polar(1.0 + phi.cos() - y, x + phi.sin());
+    let (rho, t) = polar(1.0 + mp_math::cos(phi) - y, x + mp_math::sin(phi));
     let u = (rho >= 2.0).then_some(2.0 - rho)?;
     let v = wrap_angle(t + FRAC_PI_2 - phi);
     (ahead(t) && ahead(-u) && ahead(-v)).then_some([t, u, v])
@@ -232,10 +232,10 @@ fn lp_rm_sm_rm(x: f64, y: f64, phi: f64) -> Option<[f64; 3]> {
 
 /// Formula 8.11, with a misprint mended.
 fn lp_rm_s_lm_rp(x: f64, y: f64, phi: f64) -> Option<[f64; 3]> {
-    let (xi, eta) = (x + phi.sin(), y - 1.0 - phi.cos());
-    let rho = xi.hypot(eta);
+    let (xi, eta) = (x + mp_math::sin(phi), y - 1.0 - mp_math::cos(phi));
+    let rho = mp_math::hypot(xi, eta);
     let u = (rho >= 2.0).then(|| 4.0 - (rho * rho - 4.0).sqrt()).filter(|u| *u <= 0.0)?;
-    let t = wrap_angle(((4.0 - u) * xi - 2.0 * eta).atan2(-2.0 * xi + (u - 4.0) * eta));
+    let t = wrap_angle(mp_math::atan2((4.0 - u) * xi - 2.0 * eta, -2.0 * xi + (u - 4.0) * eta));
     let v = wrap_angle(t - phi);
     (ahead(t) && ahead(v)).then_some([t, u, v])
 }

@@ -169,7 +169,7 @@ impl InputSet<Vec<f64>> {
         let limits = reaches(space, reach)?;
         let vectors = if directions == 0 { axes(&limits)? } else { self::directions(&limits, directions)? };
         let scaled = |level: u32| {
-            let factor = 0.25_f64.powi(level.min(99) as i32);
+            let factor = mp_math::powi(0.25, level.min(99) as i32);
             vectors.iter().map(move |v| v.iter().map(|x| x * factor).collect())
         };
         Self::new((0..levels).flat_map(scaled))
@@ -278,8 +278,8 @@ fn spread(limits: &[f64], count: usize) -> Result<Vec<Vec<f64>>, InputError> {
     let mut direction = || -> Vec<f64> {
         let u = halton.sample(&mut rng);
         let normal = |d: usize| {
-            let (radius, angle) = ((-2.0 * (1.0 - u[d & !1]).ln()).sqrt(), TAU * u[d | 1]);
-            radius * if d.is_multiple_of(2) { angle.cos() } else { angle.sin() }
+            let (radius, angle) = ((-2.0 * mp_math::ln(1.0 - u[d & !1])).sqrt(), TAU * u[d | 1]);
+            radius * if d.is_multiple_of(2) { mp_math::cos(angle) } else { mp_math::sin(angle) }
         };
         let v: Vec<f64> = (0..n).map(normal).collect();
         let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();

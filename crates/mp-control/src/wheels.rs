@@ -8,8 +8,8 @@ use mp_cspace::{ParameterError, Se2State};
 fn arc(from: &Se2State, speed: f64, rate: f64, time: f64) -> Se2State {
     let (half, length) = (0.5 * rate * time, speed * time);
     // The chord: sin(x)/x times the arc's length, x being half the turn, in the direction at half the turn.
-    let chord = if half.abs() < 1e-4 { 1.0 - half * half / 6.0 } else { half.sin() / half } * length;
-    let (s, c) = (from.angle + half).sin_cos();
+    let chord = if half.abs() < 1e-4 { 1.0 - half * half / 6.0 } else { mp_math::sin(half) / half } * length;
+    let (s, c) = mp_math::sin_cos(from.angle + half);
     let t = from.translation;
     Se2State::new(t.x + chord * c, t.y + chord * s, from.angle + rate * time)
 }
@@ -78,7 +78,7 @@ impl Car {
 
     #[inline]
     fn drive(&self, from: &Se2State, [speed, angle]: [f64; 2], time: f64) -> Se2State {
-        arc(from, speed, speed * angle.tan() / self.wheelbase, time)
+        arc(from, speed, speed * mp_math::tan(angle) / self.wheelbase, time)
     }
 }
 

@@ -157,7 +157,7 @@ fn systems_move_as_their_equations_say() {
     assert!((ahead.translation - Vector2::new(6.0, 9e-9)).norm() < 1e-12);
     // Wheelbase over the tangent of the steering angle is the radius.
     let car = Car::new(2.0).unwrap();
-    let quarter = car.integrate(&origin, &[-1.0, 0.5_f64.atan()], FRAC_PI_2 * 4.0);
+    let quarter = car.integrate(&origin, &[-1.0, mp_math::atan(0.5)], FRAC_PI_2 * 4.0);
     assert!((quarter.translation - Vector2::new(-4.0, 4.0)).norm() < 1e-12, "{quarter:?}");
 
     // About a fixed axis the integrator of rotations is exact; about several it agrees with small steps.
@@ -176,7 +176,7 @@ fn systems_move_as_their_equations_say() {
     assert!(error(0.2) < 3e-4 && error(0.1) < error(0.2) / 7.0, "{} {}", error(0.2), error(0.1));
 
     let decay = Rk4::new(|q: &SVector<f64, 1>, u: &f64| -q * *u, 0.1).unwrap();
-    assert!((decay.integrate(&[1.0].into(), &1.0, 1.0).x - (-1.0_f64).exp()).abs() < 1e-6);
+    assert!((decay.integrate(&[1.0].into(), &1.0, 1.0).x - mp_math::exp(-1.0)).abs() < 1e-6);
 }
 
 /// The reversed flow, run forward again, leads back up to rounding.
@@ -416,7 +416,7 @@ fn uniform_inputs_reach<C: Space>(space: &C, reach: f64, directions: usize) {
     let count = inputs.len() / 3;
     for (i, input) in inputs.inputs().iter().enumerate() {
         let length = space.distance(&middle, &flow.integrate(&middle, input, 1.0));
-        let expected = reach * 0.25_f64.powi((i / count) as i32);
+        let expected = reach * mp_math::powi(0.25, (i / count) as i32);
         let tolerance = if directions == 0 { 1e-6 } else { 1.0 };
         assert!((length / expected - 1.0).abs() < tolerance, "{length} for {expected}: {input:?}");
     }
@@ -446,7 +446,7 @@ fn uniform_inputs_move_by_the_step() {
     assert_eq!(sets[1].len(), 48);
     assert!(sets.windows(2).all(|pair| pair[1].inputs().starts_with(pair[0].inputs())));
     for v in sets[2].inputs() {
-        let on_ellipsoid: f64 = v.iter().zip(&limits).map(|(x, limit)| (x / limit).powi(2)).sum();
+        let on_ellipsoid: f64 = v.iter().zip(&limits).map(|(x, limit)| mp_math::powi(x / limit, 2)).sum();
         assert!((on_ellipsoid - 1.0).abs() < 1e-12);
         assert!(sets[2].inputs().iter().any(|w| (v + w).norm() < 1e-12), "the opposite is missing");
     }

@@ -70,7 +70,7 @@ pub(crate) fn half_chord(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
 #[must_use]
 pub fn rotation_angle(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> f64 {
     let (a, b) = (&a.as_ref().coords, &b.as_ref().coords);
-    (4.0 * half_chord(a, &nearer(a, b)).asin()).min(PI)
+    (4.0 * mp_math::asin(half_chord(a, &nearer(a, b)))).min(PI)
 }
 
 /// The rotation at fraction `t` along the shorter turn from `a` to `b`; exact at both ends. From `b` to
@@ -88,12 +88,12 @@ pub fn slerp(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>, t: f64) -> UnitQu
     let vb = nearer(va, vb);
     // The angle between the quaternions, half that of the rotation: at most a right angle, so
     // its sine is well away from zero unless the angle itself is.
-    let angle = 2.0 * half_chord(va, &vb).asin();
-    let sine = angle.sin();
+    let angle = 2.0 * mp_math::asin(half_chord(va, &vb));
+    let sine = mp_math::sin(angle);
     if sine < 1e-150 {
         return *a;
     }
-    let q = (va * (angle * (1.0 - t)).sin() + vb * (angle * t).sin()) / sine;
+    let q = (va * mp_math::sin(angle * (1.0 - t)) + vb * mp_math::sin(angle * t)) / sine;
     // One Newton step toward unit length, so that errors do not add up along a path.
     let q = q * (1.5 - 0.5 * q.norm_squared());
     UnitQuaternion::new_unchecked(Quaternion::from(q))

@@ -66,7 +66,7 @@ impl<C: Space> Sampler<C::State> for Ball<'_, C> {
         let q = self.space.sample_uniform(rng);
         let distance = self.space.distance(&self.center, &q);
         let share: f64 = rng.random();
-        let reach = self.radius * share.powf(1.0 / self.space.dim().max(1) as f64);
+        let reach = self.radius * mp_math::powf(share, 1.0 / self.space.dim().max(1) as f64);
         if distance <= reach { q } else { self.space.interpolate(&self.center, &q, reach / distance) }
     }
 }

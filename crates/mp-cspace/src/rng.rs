@@ -45,7 +45,7 @@ impl Rng {
     /// A standard normal deviate (Box and Muller 1958).
     pub(crate) fn normal(&mut self) -> f64 {
         let (u, v) = (1.0 - self.random::<f64>(), self.random::<f64>());
-        (-2.0 * u.ln()).sqrt() * (TAU * v).cos()
+        (-2.0 * mp_math::ln(u)).sqrt() * mp_math::cos(TAU * v)
     }
 }
 

@@ -47,7 +47,8 @@ impl<C: Space> SpaceTime<C> {
     pub fn new(positions: C, horizon: f64, speed: f64) -> Result<Self, SpaceError> {
         let horizon = weight("the horizon", horizon)?;
         let speed = weight("the speed limit", speed)?;
-        let diagonal = weight("the extent of space and time", positions.extent().hypot(speed * horizon))?;
+        let diagonal =
+            weight("the extent of space and time", mp_math::hypot(positions.extent(), speed * horizon))?;
         Ok(Self { positions, horizon, speed, diagonal })
     }
 

@@ -150,7 +150,7 @@ fn unfriendly() -> Vec<(&'static str, Vec<P3>)> {
         }),
         ("sorted", line.clone()),
         ("sorted backwards", line.iter().rev().copied().collect()),
-        ("toward a limit", (0..n).map(|i| P3::repeat(0.99f64.powi(i))).collect()),
+        ("toward a limit", (0..n).map(|i| P3::repeat(mp_math::powi(0.99, i))).collect()),
         ("from both ends", (0..n).map(|i| P3::x() * f64::from(if i % 2 == 0 { i } else { -i })).collect()),
         ("clustered", cluster(1e-2, &mut random)),
         ("tightly clustered", cluster(1e-9, &mut random)),
@@ -320,7 +320,7 @@ impl Space for Stretched {
     type State = SVector<f64, 2>;
     fn distance(&self, from: &Self::State, to: &Self::State) -> f64 {
         let along = (from.x - to.x).abs();
-        let stretch = 1.0 + (self.factor - 1.0) * (0.5 + 0.5 * (40.0 * from.y).sin());
+        let stretch = 1.0 + (self.factor - 1.0) * (0.5 + 0.5 * mp_math::sin(40.0 * from.y));
         match along {
             a if a > 1.9 => f64::NAN,
             a if a > 1.5 => f64::INFINITY,

@@ -23,7 +23,7 @@ fn rambling(space: &Se2, seed: u64) -> Path<Se2State> {
     let mut states = vec![Se2State::new(-2.0, 0.0, 0.0)];
     for i in 1..=12 {
         let around = std::f64::consts::PI * (1.0 - f64::from(i) / 12.0);
-        let wished = Se2State::new(2.2 * around.cos(), 2.2 * around.sin(), 0.0);
+        let wished = Se2State::new(2.2 * mp_math::cos(around), 2.2 * mp_math::sin(around), 0.0);
         let last = states[states.len() - 1];
         for _ in 0..100 {
             let noise = space.sample_uniform(&mut rng);

@@ -284,7 +284,7 @@ proptest! {
     fn angles_wrap(angle in prop_oneof![-10.0..10.0f64, -1e6..1e6f64]) {
         let wrapped = wrap_angle(angle);
         prop_assert!(circles::<1>().contains(&[wrapped].into()));
-        prop_assert!((wrapped.sin() - angle.sin()).abs() < 1e-9 && (wrapped.cos() - angle.cos()).abs() < 1e-9);
+        prop_assert!((mp_math::sin(wrapped) - mp_math::sin(angle)).abs() < 1e-9 && (mp_math::cos(wrapped) - mp_math::cos(angle)).abs() < 1e-9);
         prop_assert!(angle_difference(angle, wrapped).abs() < 1e-9);
     }
 }

@@ -39,7 +39,7 @@ impl Features {
     /// 1, a cube 0.37, a rod or a plate nearly 0.
     #[must_use]
     pub fn volume_ratio(&self) -> f64 {
-        let sphere = 4.0 / 3.0 * PI * self.radius.powi(3);
+        let sphere = 4.0 / 3.0 * PI * mp_math::powi(self.radius, 3);
         if sphere > 0.0 { (self.volume / sphere).min(1.0) } else { 1.0 }
     }
 
@@ -108,7 +108,7 @@ mod tests {
             prop_assert!((found.center.coords - pose.translation.vector).norm() < 1e-9);
             prop_assert!((found.radius - radius).abs() < 1e-9 && (found.volume - x * y * z).abs() < 1e-9);
             prop_assert!(along(found.axis, pose.rotation * Vector3::z()));
-            prop_assert!((found.volume_ratio() - x * y * z / (4.0 / 3.0 * PI * radius.powi(3))).abs() < 1e-9);
+            prop_assert!((found.volume_ratio() - x * y * z / (4.0 / 3.0 * PI * mp_math::powi(radius, 3))).abs() < 1e-9);
             let moved = mesh.features().transformed(&pose);
             prop_assert!((moved.center - found.center).norm() < 1e-9 && (moved.axis.into_inner() - found.axis.into_inner()).norm() < 1e-6);
         }

@@ -254,7 +254,7 @@ fn spread_directions(n: usize) -> impl Iterator<Item = Vector3<f64>> {
     let golden_angle = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     (0..n).map(move |k| {
         let z = (k as f64 + 0.5) / n as f64;
-        let (s, c) = (golden_angle * k as f64).sin_cos();
+        let (s, c) = mp_math::sin_cos(golden_angle * k as f64);
         let r = (1.0 - z * z).sqrt();
         Vector3::new(r * c, r * s, z)
     })
@@ -286,7 +286,7 @@ fn tilted(points: &[Vector3<f64>], mut fit: Fit, thickness: f64) -> Fit {
         }
         let [x, y, z] = [0, 1, 2].map(|k| fit.frame.column(k).into_owned());
         let tries = (0..8).filter_map(|k| {
-            let (s, c) = (std::f64::consts::FRAC_PI_4 * f64::from(k)).sin_cos();
+            let (s, c) = mp_math::sin_cos(std::f64::consts::FRAC_PI_4 * f64::from(k));
             let frame = frame_of(&(x + (y * c + z * s) * tilt))?;
             Some(Fit::new(points, calipers(points, &frame, 0), thickness))
         });
@@ -370,7 +370,7 @@ mod tests {
             prop_assert!(holds(&obb, &mesh));
             prop_assert!((obb.volume() - x * y * z).abs() < 1e-9 * x * y * z, "{} {}", obb.volume(), x * y * z);
             let cube = cuboid(x, x, x).unwrap().transformed(&pose);
-            prop_assert!((cube.obb().volume() - x.powi(3)).abs() < 1e-9 * x.powi(3));
+            prop_assert!((cube.obb().volume() - mp_math::powi(x, 3)).abs() < 1e-9 * mp_math::powi(x, 3));
         }
 
         #[test]
@@ -414,7 +414,7 @@ mod tests {
     fn of_a_large_flat_prism() {
         let star: Vec<_> = (0..10)
             .map(|k| {
-                let (s, c) = (std::f64::consts::TAU * f64::from(k) / 10.0).sin_cos();
+                let (s, c) = mp_math::sin_cos(std::f64::consts::TAU * f64::from(k) / 10.0);
                 Point2::new(c, s) * if k % 2 == 0 { 1.0 } else { 0.4 }
             })
             .collect();

@@ -68,15 +68,15 @@ pub fn pose_from_six(six: [f64; 6]) -> Isometry3<f64> {
 #[must_use]
 pub fn six_from_pose(pose: &Isometry3<f64>) -> [f64; 6] {
     let r = pose.rotation.to_rotation_matrix().into_inner();
-    let cos_beta = r[(0, 0)].hypot(r[(1, 0)]);
-    let beta = (-r[(2, 0)]).atan2(cos_beta);
+    let cos_beta = mp_math::hypot(r[(0, 0)], r[(1, 0)]);
+    let beta = mp_math::atan2(-r[(2, 0)], cos_beta);
     let (alpha, gamma) = if cos_beta <= GIMBAL_COSINE {
-        ((-r[(0, 1)]).atan2(r[(1, 1)]), 0.0)
+        (mp_math::atan2(-r[(0, 1)], r[(1, 1)]), 0.0)
     } else {
         // Undo the yaw, then read the roll: accurate however small the cosine of the pitch.
-        let alpha = r[(1, 0)].atan2(r[(0, 0)]);
-        let (s, c) = alpha.sin_cos();
-        (alpha, (s * r[(0, 2)] - c * r[(1, 2)]).atan2(c * r[(1, 1)] - s * r[(0, 1)]))
+        let alpha = mp_math::atan2(r[(1, 0)], r[(0, 0)]);
+        let (s, c) = mp_math::sin_cos(alpha);
+        (alpha, mp_math::atan2(s * r[(0, 2)] - c * r[(1, 2)], c * r[(1, 1)] - s * r[(0, 1)]))
     };
     let t = pose.translation.vector;
     [t.x, t.y, t.z, alpha, beta, gamma]
@@ -161,9 +161,10 @@ mod tests {
 
     fn by_equations(six: [f64; 6]) -> Matrix4<f64> {
         let [x, y, z, a, b, g] = six;
-        let rz = Matrix3::new(a.cos(), -a.sin(), 0.0, a.sin(), a.cos(), 0.0, 0.0, 0.0, 1.0);
-        let ry = Matrix3::new(b.cos(), 0.0, b.sin(), 0.0, 1.0, 0.0, -b.sin(), 0.0, b.cos());
-        let rx = Matrix3::new(1.0, 0.0, 0.0, 0.0, g.cos(), -g.sin(), 0.0, g.sin(), g.cos());
+        let [(sa, ca), (sb, cb), (sg, cg)] = [a, b, g].map(mp_math::sin_cos);
+        let rz = Matrix3::new(ca, -sa, 0.0, sa, ca, 0.0, 0.0, 0.0, 1.0);
+        let ry = Matrix3::new(cb, 0.0, sb, 0.0, 1.0, 0.0, -sb, 0.0, cb);
+        let rx = Matrix3::new(1.0, 0.0, 0.0, 0.0, cg, -sg, 0.0, sg, cg);
         let mut t = (rz * ry * rx).to_homogeneous();
         t.fixed_view_mut::<3, 1>(0, 3).copy_from(&Vector3::new(x, y, z));
         t
@@ -196,7 +197,7 @@ mod tests {
 
         #[test]
         fn near_gimbal_lock_too(alpha in -3.0..3.0, gamma in -3.0..3.0, exponent in -17.0..-1.0_f64, up in any::<bool>()) {
-            let beta = (FRAC_PI_2 - 10.0_f64.powf(exponent)) * if up { 1.0 } else { -1.0 };
+            let beta = (FRAC_PI_2 - mp_math::powf(10.0, exponent)) * if up { 1.0 } else { -1.0 };
             let pose = pose_from_six([0.0, 0.0, 0.0, alpha, beta, gamma]);
             let back = pose_from_six(six_from_pose(&pose));
             prop_assert!((pose.to_homogeneous() - back.to_homogeneous()).amax() < 4e-12);
@@ -230,7 +231,7 @@ mod tests {
         #[test]
         fn quaternions_of_any_length(six in six(), exponent in -300_i32..300) {
             let pose = pose_from_six(six);
-            let (q, s) = (pose.rotation, 10.0_f64.powi(exponent));
+            let (q, s) = (pose.rotation, mp_math::powi(10.0, exponent));
             let back = pose_from_quaternion([six[0], six[1], six[2]], q.w * s, q.i * s, q.j * s, q.k * s).unwrap();
             prop_assert!((back.to_homogeneous() - pose.to_homogeneous()).amax() < 1e-14);
         }

@@ -186,7 +186,7 @@ pub fn capsule(radius: f64, length: f64, segments: u32, rings: u32) -> Made {
     count("rings", rings, 1, MAX_SEGMENTS)?;
     let mut profile = vec![(0.0, -h - r)];
     for k in 1..=rings {
-        let (s, c) = (FRAC_PI_2 * f64::from(k) / f64::from(rings)).sin_cos();
+        let (s, c) = mp_math::sin_cos(FRAC_PI_2 * f64::from(k) / f64::from(rings));
         profile.push(if k == rings { (r, -h) } else { (r * s, -h - r * c) });
     }
     profile.extend(profile.clone().into_iter().rev().map(|(r, z)| (r, -z)));
@@ -210,7 +210,7 @@ pub fn torus(ring: f64, tube: f64, segments: u32, tube_segments: u32) -> Made {
     for i in 0..n {
         let around = circle_point(i, n);
         for j in 0..m {
-            let (s, c) = (TAU * f64::from(j) / f64::from(m)).sin_cos();
+            let (s, c) = mp_math::sin_cos(TAU * f64::from(j) / f64::from(m));
             let r = ring + tube * c;
             vertices.push(Point3::new(r * around.x, r * around.y, tube * s));
             let at = |i: u32, j: u32| (i % n) * m + j % m;
@@ -245,7 +245,7 @@ pub fn tetrahedron_of(corners: [Point3<f64>; 4]) -> Made {
     let volume = u.cross(&v).dot(&w);
     let scale = u.norm().max(v.norm()).max(w.norm());
     // NaN passes here: the mesh reports it.
-    if volume.abs() <= 1e-14 * scale.powi(3) {
+    if volume.abs() <= 1e-14 * mp_math::powi(scale, 3) {
         return Err(PrimitiveError::Flat);
     }
     let mut mesh = TriMesh::new(corners.to_vec(), vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
@@ -294,7 +294,7 @@ pub fn prism(polygon: &[Point2<f64>], z_min: f64, z_max: f64) -> Made {
 
 /// Point `k` of `n` on the unit circle.
 fn circle_point(k: u32, n: u32) -> Vector3<f64> {
-    let (s, c) = (TAU * f64::from(k) / f64::from(n)).sin_cos();
+    let (s, c) = mp_math::sin_cos(TAU * f64::from(k) / f64::from(n));
     Vector3::new(c, s, 0.0)
 }
 
@@ -358,7 +358,7 @@ mod tests {
 
     /// Area of the regular n-gon in the unit circle.
     fn disc(n: u32) -> f64 {
-        0.5 * f64::from(n) * (TAU / f64::from(n)).sin()
+        0.5 * f64::from(n) * mp_math::sin(TAU / f64::from(n))
     }
 
     proptest! {
@@ -367,10 +367,10 @@ mod tests {
             check_solid(&cuboid(r, h, 2.0).unwrap(), 2, r * h * 2.0)?;
             check_solid(&cone(r, h, n).unwrap(), 2, disc(n) * r * r * h / 3.0)?;
             check_solid(&cylinder(r, h, n).unwrap(), 2, disc(n) * r * r * h)?;
-            check_solid(&tetrahedron(r).unwrap(), 2, r.powi(3) / (6.0 * 2.0_f64.sqrt()))?;
+            check_solid(&tetrahedron(r).unwrap(), 2, mp_math::powi(r, 3) / (6.0 * 2.0_f64.sqrt()))?;
             let c = capsule(r, h, n, m).unwrap();
             // Each half sphere is a stack of frusta over similar n-gons.
-            let ring = |k: u32| (FRAC_PI_2 * f64::from(k) / f64::from(m)).sin_cos();
+            let ring = |k: u32| mp_math::sin_cos(FRAC_PI_2 * f64::from(k) / f64::from(m));
             let half: f64 = (0..m).map(|k| {
                 let ((s0, c0), (s1, c1)) = (ring(k), ring(k + 1));
                 (c0 - c1) * (s0 * s0 + s0 * s1 + s1 * s1) / 3.0
@@ -394,7 +394,7 @@ mod tests {
                 polygon.reverse();
             }
             let wedges: f64 = (0..n).map(|i| radii[i] * radii[(i + 1) % n]).sum();
-            check_solid(&prism(&polygon, z, z + h).unwrap(), 2, 0.5 * (TAU / n as f64).sin() * wedges * h)?;
+            check_solid(&prism(&polygon, z, z + h).unwrap(), 2, 0.5 * mp_math::sin(TAU / n as f64) * wedges * h)?;
         }
 
         #[test]

@@ -169,7 +169,7 @@ mod tests {
 
         #[test]
         fn flat_and_needle_shaped_sets(points in prop::collection::vec(point(), 1..8), y in -14.0..0.0_f64, z in -14.0..0.0_f64) {
-            let squeeze = Vector3::new(1.0, 10.0_f64.powf(y), 10.0_f64.powf(z));
+            let squeeze = Vector3::new(1.0, mp_math::powf(10.0, y), mp_math::powf(10.0, z));
             let points: Vec<_> = points.iter().map(|p| Point3::from(p.coords.component_mul(&squeeze))).collect();
             let s = minimal_sphere(&points).unwrap();
             prop_assert!(points.iter().all(|p| s.contains(p)));

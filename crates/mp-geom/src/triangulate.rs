@@ -297,7 +297,7 @@ mod tests {
         fn star_shaped_polygons(radii in prop::collection::vec(0.05..1.0_f64, 3..40)) {
             let n = radii.len() as f64;
             let polygon: Vec<_> = radii.iter().enumerate().map(|(i, r)| {
-                let (s, c) = (std::f64::consts::TAU * i as f64 / n).sin_cos();
+                let (s, c) = mp_math::sin_cos(std::f64::consts::TAU * i as f64 / n);
                 Point2::new(r * c, r * s)
             }).collect();
             check(&polygon)?;
@@ -326,7 +326,7 @@ mod tests {
             let n = radii.len() as f64;
             let turn = nalgebra::Rotation3::new(Vector3::from(axis) * 3.0);
             let mut corners: Vec<_> = radii.iter().enumerate().map(|(i, r)| {
-                let (s, c) = (std::f64::consts::TAU * i as f64 / n).sin_cos();
+                let (s, c) = mp_math::sin_cos(std::f64::consts::TAU * i as f64 / n);
                 turn * Point3::new(r * c + 5.0, r * s - 3.0, 2.0)
             }).collect();
             if reverse {
@@ -358,7 +358,7 @@ mod tests {
         for depth in [0.0, 0.3] {
             let polygon: Vec<_> = (0..10_000)
                 .map(|i| {
-                    let (s, c) = (std::f64::consts::TAU * f64::from(i) / 1e4).sin_cos();
+                    let (s, c) = mp_math::sin_cos(std::f64::consts::TAU * f64::from(i) / 1e4);
                     Point2::new(c, s) * (1.0 - depth * f64::from(i % 3))
                 })
                 .collect();

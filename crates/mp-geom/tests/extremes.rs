@@ -7,7 +7,7 @@ use proptest::prelude::*;
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![
         -1.0..1.0,
-        (-308_i32..308, -9.9..9.9).prop_map(|(e, m)| m * 10.0_f64.powi(e)),
+        (-308_i32..308, -9.9..9.9).prop_map(|(e, m)| m * mp_math::powi(10.0, e)),
         prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO,
     ]
 }

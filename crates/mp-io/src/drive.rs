@@ -148,7 +148,7 @@ impl DriveTable {
                         *angle.get_ref()
                     }
                     (None, Some(_)) => {
-                        (wheelbase / positive("turning_radius", "", &self.turning_radius)?).atan()
+                        mp_math::atan(wheelbase / positive("turning_radius", "", &self.turning_radius)?)
                     }
                     (Some(_), Some(radius)) => {
                         let message = "there is a steering angle and a turning radius";

@@ -134,7 +134,9 @@ mod tests {
     fn polygons_that_would_take_hours_are_refused() {
         let circle = |n: u32| {
             let angle = |i| f64::from(i) / f64::from(n) * std::f64::consts::TAU;
-            (0..n).map(|i| Point3::new(angle(i).cos(), angle(i).sin(), 0.0)).collect::<Vec<_>>()
+            (0..n)
+                .map(|i| Point3::new(mp_math::cos(angle(i)), mp_math::sin(angle(i)), 0.0))
+                .collect::<Vec<_>>()
         };
         let face: Vec<u32> = (0..200).collect();
         let some = build("m", circle(200), std::iter::repeat_n(face.as_slice(), 3)).unwrap();

@@ -32,10 +32,16 @@ pub fn in_parallel<T: Send>(
             }
         }
     };
-    std::thread::scope(|scope| {
-        for _ in 0..threads.clamp(1, count.max(1)) {
-            scope.spawn(work);
-        }
-    });
+    let threads = threads.min(count);
+    if threads > 1 {
+        std::thread::scope(|scope| {
+            for _ in 0..threads {
+                scope.spawn(work);
+            }
+        });
+    } else {
+        // Some systems have no threads.
+        work();
+    }
     done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)
 }

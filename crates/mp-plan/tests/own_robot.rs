@@ -31,7 +31,8 @@ struct Load {
 }
 
 fn place(q: &Configuration) -> Vector2<f64> {
-    Vector2::new(q[1] * q[0].cos(), q[1] * q[0].sin())
+    let (sine, cosine) = mp_math::sin_cos(q[0]);
+    Vector2::new(q[1] * cosine, q[1] * sine)
 }
 
 impl Validity<Configuration> for Load {
@@ -70,9 +71,9 @@ impl MotionValidity<Configuration> for Steps<'_> {
         for i in 0..=2000 {
             let at = f64::from(i) / 2000.0;
             let (turn, reach) = (a[0] + at * (b[0] - a[0]), a[1] + at * (b[1] - a[1]));
-            let (sine, cosine) = turn.sin_cos();
+            let (sine, cosine) = mp_math::sin_cos(turn);
             for post in &self.0.check.posts {
-                let clearance = (post.x - reach * cosine).hypot(post.y - reach * sine) - LOAD;
+                let clearance = mp_math::hypot(post.x - reach * cosine, post.y - reach * sine) - LOAD;
                 least = least.min(clearance);
                 if clearance <= 0.0 {
                     return MotionCheck::Collision { at };

@@ -78,7 +78,7 @@ fn images_are_where_they_should_be() {
             let cell = if k == 0 { i % risk.width } else { i / risk.width };
             risk.origin[k] + (cell as f64 + 0.5) * risk.cell
         });
-        path.rows.iter().all(|row| (row[0] - at[0]).hypot(row[1] - at[1]) > 1.5)
+        path.rows.iter().all(|row| mp_math::hypot(row[0] - at[0], row[1] - at[1]) > 1.5)
     });
     assert!(far.map(|(_, r)| *r).fold(0.0, f64::max) < 0.05);
 }

@@ -15,7 +15,8 @@ pub(crate) fn darken_creases(layer: &mut Layer, camera: &Camera, extent: f64) {
             std::array::from_fn(|k| {
                 let r = (k as f32 + 0.25 + 0.5 * ((turn * 7 % 16) as f32 / 16.0)) / PAIRS as f32;
                 let angle = 2.4 * k as f32 + std::f32::consts::TAU * (turn as f32 / 16.0);
-                (r * angle.cos(), r * angle.sin())
+                let (s, c) = mp_math::sin_cos(f64::from(angle));
+                (r * c as f32, r * s as f32)
             })
         })
         .collect();

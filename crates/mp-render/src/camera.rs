@@ -46,7 +46,7 @@ fn basis(forward: &Vector3<f64>, up: &Vector3<f64>) -> UnitQuaternion<f64> {
 /// The rotation (camera from world) of a camera that sees the scene from `azimuth` and `elevation`, radians, with z upwards; from
 /// above and from below too.
 pub(crate) fn seen_from(azimuth: f64, elevation: f64) -> UnitQuaternion<f64> {
-    let ((sa, ca), (se, ce)) = (azimuth.sin_cos(), elevation.sin_cos());
+    let ((sa, ca), (se, ce)) = (mp_math::sin_cos(azimuth), mp_math::sin_cos(elevation));
     let (toward_eye, right) = (Vector3::new(ca * ce, sa * ce, se), Vector3::new(-sa, ca, 0.0));
     let down = right.cross(&toward_eye);
     let rows = Matrix3::from_rows(&[right.transpose(), down.transpose(), -toward_eye.transpose()]);
@@ -63,8 +63,11 @@ impl Camera {
         (width, height): (usize, usize),
         margin: [f64; 4],
     ) -> Self {
-        let toward_eye =
-            Vector3::new(azimuth.cos() * elevation.cos(), azimuth.sin() * elevation.cos(), elevation.sin());
+        let toward_eye = Vector3::new(
+            mp_math::cos(azimuth) * mp_math::cos(elevation),
+            mp_math::sin(azimuth) * mp_math::cos(elevation),
+            mp_math::sin(elevation),
+        );
         Self::perspective(basis(&-toward_eye, &Vector3::z()), points, (width, height), margin)
     }
 
@@ -76,7 +79,7 @@ impl Camera {
         margin: [f64; 4],
     ) -> Self {
         let (w, h) = (width as f64, height as f64);
-        let focal = w.max(h) / 2.0 / (FIELD_OF_VIEW / 2.0).tan();
+        let focal = w.max(h) / 2.0 / mp_math::tan(FIELD_OF_VIEW / 2.0);
         let [left, top, right, bottom] = margin;
         // Tangents of the four sides of the view, the margins taken off.
         let (tl, tr) = ((w / 2.0 - left * w) / focal, (w / 2.0 - right * w) / focal);
@@ -149,7 +152,7 @@ impl Camera {
         let upright = forward.xy().norm() > 1e-9 * distance;
         let rotation = basis(&forward, &if upright { Vector3::z() } else { Vector3::y() });
         let pose_cw = Isometry3::from_parts(Translation3::from(-(rotation * eye.coords)), rotation);
-        let focal = height as f64 / 2.0 / (field_of_view / 2.0).tan();
+        let focal = height as f64 / 2.0 / mp_math::tan(field_of_view / 2.0);
         let first = points.iter().map(|p| (pose_cw * p).z).fold(f64::INFINITY, f64::min);
         let nearest = first.clamp(1e-2 * distance, distance);
         Self {
@@ -194,7 +197,11 @@ impl Camera {
 
     /// The weight of a translucent surface at `key` when it is blended with others.
     pub(crate) fn prominence(&self, key: f32) -> f32 {
-        if self.perspective { (6.0 - 6.0 * self.depth(key) / self.nearest).exp().max(1e-9) } else { 1.0 }
+        if self.perspective {
+            (mp_math::exp(f64::from(6.0 - 6.0 * self.depth(key) / self.nearest)) as f32).max(1e-9)
+        } else {
+            1.0
+        }
     }
 
     /// The width of a sample at `depth` metres, metres.
@@ -243,7 +250,7 @@ mod tests {
             let middle = at(target);
             assert!((middle.x - 200.0).abs() < 1e-3 && (middle.y - 150.0).abs() < 1e-3);
             let up = camera.pose_cw.inverse_transform_vector(&-Vector3::y());
-            let top = at(target + up * (eye - target).norm() * 0.3f64.tan());
+            let top = at(target + up * (eye - target).norm() * mp_math::tan(0.3));
             assert!(top.y.abs() < 1e-3, "{top:?}");
             let moved = camera.moved(&target, &Point3::new(7.0, 8.0, 9.0), 1.0);
             let middle = moved.project(&(moved.pose_cw * Point3::new(7.0, 8.0, 9.0)));

@@ -8,8 +8,8 @@ pub(crate) type Colour = [f32; 3];
 /// The linear colour of an sRGB one.
 pub(crate) fn srgb(hex: u32) -> Colour {
     [16, 8, 0].map(|shift| {
-        let v = ((hex >> shift) & 255) as f32 / 255.0;
-        if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+        let v = f64::from((hex >> shift) & 255) / 255.0;
+        (if v <= 0.04045 { v / 12.92 } else { mp_math::powf((v + 0.055) / 1.055, 2.4) }) as f32
     })
 }
 
@@ -87,8 +87,8 @@ pub(crate) fn resolve(samples: &[Colour], (width, height): (usize, usize), facto
     const GRID: usize = 4096;
     let curve: Vec<u8> = (0..=GRID)
         .map(|i| {
-            let v = i as f32 / GRID as f32;
-            let s = if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+            let v = i as f64 / GRID as f64;
+            let s = if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * mp_math::powf(v, 1.0 / 2.4) - 0.055 };
             (s * 255.0 + 0.5) as u8
         })
         .collect();

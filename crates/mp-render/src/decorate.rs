@@ -79,7 +79,7 @@ pub(crate) fn outlines(
 
 /// 1, 2 or 5 times a power of ten, at most `length`.
 fn round_length(length: f64) -> f64 {
-    let power = 10f64.powf(length.log10().floor());
+    let power = mp_math::powf(10.0, mp_math::log10(length).floor());
     [5.0, 2.0, 1.0].into_iter().map(|d| d * power).find(|d| *d <= length).unwrap_or(power)
 }
 

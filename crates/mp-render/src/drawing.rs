@@ -250,10 +250,10 @@ impl Drawing {
 
 /// The outline of a thick line with round ends.
 fn capsule(a: [f64; 2], b: [f64; 2], half: f64) -> Vec<[f64; 2]> {
-    let along = (b[1] - a[1]).atan2(b[0] - a[0]);
+    let along = mp_math::atan2(b[1] - a[1], b[0] - a[0]);
     let end = |p: [f64; 2], from: f64| {
         (0..=6).map(move |i| {
-            let (s, c) = (from + f64::from(i) * std::f64::consts::PI / 6.0).sin_cos();
+            let (s, c) = mp_math::sin_cos(from + f64::from(i) * std::f64::consts::PI / 6.0);
             [p[0] + half * c, p[1] + half * s]
         })
     };

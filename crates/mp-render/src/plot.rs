@@ -43,7 +43,8 @@ pub fn plot(
     let size = (width * SUPERSAMPLING, height * SUPERSAMPLING);
     let mut sheet = Sheet { size, colour: vec![[1.0; 3]; size.0 * size.1], unit: size.1 as f32 / 600.0 };
     let points = || series.iter().flat_map(|s| &s.points);
-    let decades = |edge: fn(f64, f64) -> f64, start: f64| points().map(|p| p.0.log10()).fold(start, edge);
+    let decades =
+        |edge: fn(f64, f64) -> f64, start: f64| points().map(|p| mp_math::log10(p.0)).fold(start, edge);
     let (low, high) = (decades(f64::min, f64::INFINITY), decades(f64::max, f64::NEG_INFINITY));
     if low > high {
         return Ok(resolve(&sheet.colour, size, SUPERSAMPLING));
@@ -58,20 +59,20 @@ pub fn plot(
     let (left, right) = (70.0 * u, size.0 as f32 - 30.0 * u);
     let (up, down) = (80.0 * u, size.1 as f32 - 60.0 * u);
     let at = |x: f64, y: f64| {
-        let (x, y) = ((x.log10() - low) / (high - low), y / top);
+        let (x, y) = ((mp_math::log10(x) - low) / (high - low), y / top);
         Projected { x: left + x as f32 * (right - left), y: down - y as f32 * (down - up), key: 0.0 }
     };
     sheet.write(title, (left, 36.0 * u), 13.0, 1.2, INK);
     sheet.write(axes[1], (left, 62.0 * u), 9.5, 1.0, GREY);
     sheet.write_right(axes[0], (right, size.1 as f32 - 14.0 * u), 9.5, GREY);
     for decade in low as i32..=high as i32 {
-        let x = 10.0_f64.powi(decade);
+        let x = mp_math::powi(10.0, decade);
         sheet.line([at(x, 0.0), at(x, top)], 0.6, GRID);
         sheet.write(&short(x), (at(x, 0.0).x - 8.0 * u, down + 20.0 * u), 9.5, 1.0, GREY);
     }
     for i in 0..=(top / step).round() as i32 {
         let y = f64::from(i) * step;
-        sheet.line([at(10.0_f64.powf(low), y), at(10.0_f64.powf(high), y)], 0.6, GRID);
+        sheet.line([at(mp_math::powf(10.0, low), y), at(mp_math::powf(10.0, high), y)], 0.6, GRID);
         sheet.write_right(&short(y), (left - 8.0 * u, at(1.0, y).y + 4.0 * u), 9.5, GREY);
     }
     for (i, s) in series.iter().enumerate() {
@@ -118,7 +119,7 @@ impl Sheet {
 
 /// 1, 2 or 5 times a power of ten, at least `step`.
 fn nice(step: f64) -> f64 {
-    let power = 10.0_f64.powf(step.max(1e-300).log10().floor());
+    let power = mp_math::powf(10.0, mp_math::log10(step.max(1e-300)).floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|v| *v >= step * (1.0 - 1e-9)).unwrap_or(power)
 }
 

@@ -29,7 +29,7 @@ impl Colours {
         let weight: f64 = self.0.iter().map(|(_, w)| w).sum();
         let of = |k: usize| {
             let mean = self.0.iter().map(|(c, w)| w * c[k]).sum::<f64>() / weight;
-            (mean, self.0.iter().map(|(c, w)| w * (c[k] - mean).powi(2)).sum::<f64>())
+            (mean, self.0.iter().map(|(c, w)| w * mp_math::powi(c[k] - mean, 2)).sum::<f64>())
         };
         let [r, g, b] = [of(0), of(1), of(2)];
         ([r.0, g.0, b.0], [r.1, g.1, b.1])
@@ -46,7 +46,7 @@ impl Palette {
             *count += 1.0;
         }
         // By less than their count: small things in colours of their own keep them.
-        let mean = |(sum, count): ([f64; 3], f64)| (sum.map(|s| s / count), count.powf(0.75));
+        let mean = |(sum, count): ([f64; 3], f64)| (sum.map(|s| s / count), mp_math::powf(count, 0.75));
         let all = Colours(cells.into_values().map(mean).collect());
         let spread = all.spread();
         let mut boxes = vec![(all, spread)];

@@ -122,7 +122,8 @@ pub(crate) fn stroke(
         for column in columns {
             let (px, py) = (column as f32 + 0.5 - a.x, y - a.y);
             let t = if length2 > 0.0 { ((px * dx + py * dy) / length2).clamp(0.0, 1.0) } else { 0.0 };
-            let away = ((px - t * dx).powi(2) + (py - t * dy).powi(2)).sqrt();
+            let (x, y) = (px - t * dx, py - t * dy);
+            let away = (x * x + y * y).sqrt();
             let coverage = (half + 0.5 - away).clamp(0.0, 1.0) * (2.0 * half).min(1.0);
             if coverage > 0.0 {
                 fragment(row * width + column, a.key + (b.key - a.key) * t, coverage);
@@ -179,7 +180,7 @@ mod tests {
             let mut sum = 0.0;
             let (a, b) = (corner(-x, -y).at, corner(x, y).at);
             line(&camera(), &a, &b, 1.0, |_, _, c| sum += f64::from(c));
-            let length = 64.0 * f64::hypot(x, y);
+            let length = 64.0 * mp_math::hypot(x, y);
             assert!((sum / (2.0 * length) - 1.0).abs() < 0.08, "{sum} {length}");
         }
     }

@@ -111,7 +111,7 @@ impl<'s> Shot<'s> {
             View::At { eye, target, field_of_view, parallel } => {
                 centre = target;
                 let place = |size| Camera::placed([eye, target], field_of_view, parallel, &frame, size);
-                let elevation = (eye.z - target.z).atan2((eye - target).xy().norm());
+                let elevation = mp_math::atan2(eye.z - target.z, (eye - target).xy().norm());
                 (place(size), opening(elevation, &place(viewpoint::COARSE)))
             }
         };
@@ -231,7 +231,7 @@ impl<'s> Shot<'s> {
             robot.model.faces(camera, &robot.pose_wb, lights, |i, key, _| nearest[i] = nearest[i].min(key));
         }
         let slack = 0.02 * self.scene.robots().next().map_or(0.0, Body::radius) as f32;
-        cutaway::thresholds(camera, &nearest, 1.0 / self.half_angle.tan() as f32, slack)
+        cutaway::thresholds(camera, &nearest, 1.0 / mp_math::tan(self.half_angle) as f32, slack)
     }
 
     /// Edges only: `solid` bodies strong, `copies` faint.
@@ -306,7 +306,7 @@ fn rotated(points: &[Point3<f64>], centre: &Point3<f64>) -> Vec<Point3<f64>> {
     let (low, high) = corners(points);
     let radius = (high - low).xy().norm() / 2.0;
     let at = |k: u32, z: f64| {
-        let (s, c) = (TAU * f64::from(k) / f64::from(ANGLES)).sin_cos();
+        let (s, c) = mp_math::sin_cos(TAU * f64::from(k) / f64::from(ANGLES));
         Point3::new(centre.x + radius * c, centre.y + radius * s, z)
     };
     (0..ANGLES).flat_map(|k| [at(k, low.z), at(k, high.z)]).collect()

@@ -50,7 +50,8 @@ fn rounded(points: Vec<[f32; 2]>) -> Vec<[f32; 2]> {
     let mut out = vec![points[0]];
     for w in points.windows(3) {
         let toward = |end: [f32; 2]| {
-            let length = f32::hypot(end[0] - w[1][0], end[1] - w[1][1]).max(1e-6);
+            let (x, y) = (end[0] - w[1][0], end[1] - w[1][1]);
+            let length = (x * x + y * y).sqrt().max(1e-6);
             let t = (0.4 * length).min(1.0) / length;
             [w[1][0] + (end[0] - w[1][0]) * t, w[1][1] + (end[1] - w[1][1]) * t]
         };

@@ -70,6 +70,7 @@ fn judge(camera: &Camera, obstacles: &[Body], marks: &[Point3<f64>]) -> (f64, f6
     if marks.is_empty() {
         return (0.0, 0.0);
     }
-    let spread = f64::from((hi[0] - lo[0]).hypot(hi[1] - lo[1])) / f64::from(COARSE.0 as u32);
+    let spread =
+        mp_math::hypot(f64::from(hi[0] - lo[0]), f64::from(hi[1] - lo[1])) / f64::from(COARSE.0 as u32);
     (seen as f64 / marks.len() as f64, spread.min(1.0))
 }

@@ -157,7 +157,8 @@ impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
                 None => UnitQuaternion::identity(),
             },
             [2] => {
-                let yaw = |v: &Vector3<f64>| if v.xy().norm() > 1e-12 { v.y.atan2(v.x) } else { 0.0 };
+                let yaw =
+                    |v: &Vector3<f64>| if v.xy().norm() > 1e-12 { mp_math::atan2(v.y, v.x) } else { 0.0 };
                 let turn = yaw(direction) - yaw(&robot.axis) + angle;
                 UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn)
             }

@@ -23,7 +23,7 @@ impl BodyRadii {
     /// The radii of `mesh`.
     #[must_use]
     pub fn of(mesh: &TriMesh) -> Self {
-        let from_z = mesh.vertices().iter().map(|p| p.x.hypot(p.y)).fold(0.0, f64::max);
+        let from_z = mesh.vertices().iter().map(|p| mp_math::hypot(p.x, p.y)).fold(0.0, f64::max);
         Self {
             radius: mesh.radius_about(&Point3::origin()),
             radius_about_z: from_z,
@@ -100,7 +100,7 @@ impl Placement for Spatial {
         let lever = radii.radius_about(&axis) + radii.radius * 1e-9;
         let along = velocity.dot(&(from.rotation * axis));
         let across = (velocity.norm_squared() - along * along).max(0.0).sqrt() + velocity.norm() * 1e-9;
-        along.hypot(across + lever * angle) * ROUND_UP
+        mp_math::hypot(along, across + lever * angle) * ROUND_UP
     }
 
     const MOVES: &'static [usize] = &[0, 1, 2];
@@ -208,7 +208,7 @@ mod tests {
             let space = Se3::new([-5.0; 3], [5.0; 3]).unwrap();
             let radii = BodyRadii::of(&mesh);
             check::<Spatial, _>(&space, (&mesh, &radii), &a, &b)?;
-            let near = a.lerp_slerp(&b, 10.0_f64.powf(small));
+            let near = a.lerp_slerp(&b, mp_math::powf(10.0, small));
             check::<Spatial, _>(&space, (&mesh, &radii), &a, &near)?;
             let customary = |p: &Isometry3<f64>, q: &Isometry3<f64>| {
                 (p.translation.vector - q.translation.vector).norm()

@@ -40,7 +40,7 @@ fn winding_number(mesh: &TriMesh, p: &Point3<f64>) -> f64 {
             let [a, b, c] = mesh.triangle(i).map(|v| v - p);
             let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
             let scale = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
-            2.0 * a.dot(&b.cross(&c)).atan2(scale)
+            2.0 * mp_math::atan2(a.dot(&b.cross(&c)), scale)
         })
         .sum();
     angle / (4.0 * PI)
@@ -60,7 +60,7 @@ mod tests {
         #[test]
         fn inside_a_torus_is_known_by_its_equation(p in prop::array::uniform3(-3.0..3.0_f64)) {
             let solid = solid(torus(2.0, 0.7, 96, 48).unwrap()).unwrap();
-            let from_tube = (p[0].hypot(p[1]) - 2.0).hypot(p[2]);
+            let from_tube = mp_math::hypot(mp_math::hypot(p[0], p[1]) - 2.0, p[2]);
             // The mesh is inscribed.
             prop_assume!(!(0.69..=0.7).contains(&from_tube));
             prop_assert_eq!(solid.contains(&Point3::from(p)), from_tube < 0.7);

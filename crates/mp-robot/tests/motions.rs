@@ -151,7 +151,7 @@ fn the_verifier_catches_an_edge_whose_ends_are_free() {
 fn grazing_motions() {
     let space = se3();
     for exponent in 2..9 {
-        let gap = 0.1_f64.powi(exponent);
+        let gap = mp_math::powi(0.1, exponent);
         let floor = obstacle(
             "floor",
             primitives::cuboid(8.0, 8.0, 1.0).unwrap(),

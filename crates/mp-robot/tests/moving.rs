@@ -24,7 +24,7 @@ fn there_and_back() -> Trajectory {
 fn moving_bodies() -> Vec<(String, TriMesh, Trajectory)> {
     let circling = (0..=8).map(|i| {
         let a = f64::from(i) * 0.7;
-        (0.6 * f64::from(i), pose_from_six([a.cos(), a.sin(), 0.1, a, 0.0, 0.0]))
+        (0.6 * f64::from(i), pose_from_six([mp_math::cos(a), mp_math::sin(a), 0.1, a, 0.0, 0.0]))
     });
     vec![
         ("drone".to_owned(), primitives::cuboid(0.5, 0.3, 0.2).unwrap(), there_and_back()),

@@ -82,7 +82,7 @@ mod tests {
                 let (x, y) = place(n);
                 let squares = (0..mask.values().len()).filter(|&m| mask.values()[m] > 0.5).map(|m| {
                     let (u, v) = place(m);
-                    0.25 * ((x - u).powi(2) + (y - v).powi(2))
+                    0.25 * (mp_math::powi(x - u, 2) + mp_math::powi(y - v, 2))
                 });
                 prop_assert_eq!(*d, squares.fold(f64::INFINITY, f64::min));
             }

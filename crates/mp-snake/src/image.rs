@@ -32,7 +32,7 @@ pub fn blurred(grid: &Grid, sigma: f64) -> Result<Grid, ParameterError> {
         return Err(ParameterError { name: "the deviation of a blur", expected, value: sigma });
     }
     let reach = (4.0 * cells).ceil() as isize;
-    let weight = |k: isize| (-0.5 * (k as f64 / cells).powi(2)).exp();
+    let weight = |k: isize| mp_math::exp(-0.5 * mp_math::powi(k as f64 / cells, 2));
     let sum: f64 = (-reach..=reach).map(weight).sum();
     let kernel: Vec<f64> = (-reach..=reach).map(|k| weight(k) / sum).collect();
     Ok(by_lines(grid, |from, to| {
@@ -105,7 +105,7 @@ mod tests {
         let grid = blurred(&Grid::from_fn([0.0, 0.0], cell, (n, n), spike).unwrap(), sigma).unwrap();
         let total: f64 = grid.values().iter().sum();
         let second: f64 = (grid.values().iter().enumerate())
-            .map(|(k, v)| v * ((k % n) as f64 * cell + 0.5 * cell - middle).powi(2))
+            .map(|(k, v)| v * mp_math::powi((k % n) as f64 * cell + 0.5 * cell - middle, 2))
             .sum();
         assert!((total - 1.0).abs() < 1e-9 && (second.sqrt() - sigma).abs() < 2e-3, "{total} {second}");
         assert!(blurred(&grid, 0.0).is_err() && blurred(&grid, 1e9).is_err());

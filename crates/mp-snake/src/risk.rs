@@ -71,7 +71,7 @@ impl MotionNoise {
         if far <= 0.0 {
             return 0.0;
         }
-        let angle = wrap_angle(offset.y.atan2(offset.x) - heading - turn);
+        let angle = wrap_angle(mp_math::atan2(offset.y, offset.x) - heading - turn);
         let turns = self.turn + self.turn_per_turn * turn.abs();
         let ways = self.way + self.way_per_way * way.abs();
         // The area of a cell in polar coordinates has a factor `far`.
@@ -90,7 +90,7 @@ impl MotionNoise {
             if way.norm() == 0.0 {
                 continue;
             }
-            let angle = way.y.atan2(way.x);
+            let angle = mp_math::atan2(way.y, way.x);
             let before = heading.replace(angle).unwrap_or(angle);
             let step = (wrap_angle(angle - before), way.norm());
             for (n, missed) in missed.iter_mut().enumerate() {
@@ -202,7 +202,7 @@ pub fn path_cost(path: &Path<Vector2<f64>>, risk: &Grid, weight: f64) -> Result<
 }
 
 fn gauss(x: f64, sigma: f64) -> f64 {
-    (-0.5 * (x / sigma).powi(2)).exp() / (sigma * TAU.sqrt())
+    mp_math::exp(-0.5 * mp_math::powi(x / sigma, 2)) / (sigma * TAU.sqrt())
 }
 
 #[cfg(test)]
@@ -222,14 +222,15 @@ mod tests {
         let at = |p: Vector2<f64>| NOISE.density(&from, 0.3, (0.5, 1.2), &p);
         let sum: f64 = cells(at).values().iter().sum::<f64>() * 0.02 * 0.02;
         assert!((sum - 1.0).abs() < 1e-3, "{sum}");
-        let polar = |angle: f64, far: f64| at(from + Vector2::new(angle.cos(), angle.sin()) * far);
+        let polar =
+            |angle: f64, far: f64| at(from + Vector2::new(mp_math::cos(angle), mp_math::sin(angle)) * far);
         let peak = polar(0.8, 1.2);
         // A deviation to the side on the arc is as likely either way, and likelier than straight across it.
         assert!((polar(1.05, 1.2) - polar(0.55, 1.2)).abs() < 1e-9 && polar(1.05, 1.2) > 0.5 * peak);
         let across = from
-            + Vector2::new(0.8_f64.cos(), 0.8_f64.sin()) * 1.2
-            + Vector2::new(-0.8_f64.sin(), 0.8_f64.cos()) * 0.6;
-        assert!(at(across) < polar(0.8 + (0.6_f64 / 1.2).atan(), 1.2));
+            + Vector2::new(mp_math::cos(0.8), mp_math::sin(0.8)) * 1.2
+            + Vector2::new(-mp_math::sin(0.8), mp_math::cos(0.8)) * 0.6;
+        assert!(at(across) < polar(0.8 + mp_math::atan(0.6 / 1.2), 1.2));
     }
 
     /// The risk is where the way and an obstacle come near, and a path that keeps away costs less.

@@ -81,7 +81,7 @@ impl SceneFile {
 
     /// The distance of the farthest point of the robot's bodies from the origins of their frames, metres.
     fn reach(&self, robot: &[&crate::Body]) -> f64 {
-        let norm = |p: &[f32]| p.iter().map(|c| f64::from(*c).powi(2)).sum::<f64>().sqrt();
+        let norm = |p: &[f32]| p.iter().map(|c| mp_math::powi(f64::from(*c), 2)).sum::<f64>().sqrt();
         let of = |body: &&crate::Body| match &body.shape {
             Shape::Mesh(i) => self.meshes[*i].positions.chunks_exact(3).map(norm).fold(0.0, f64::max),
             Shape::Area(i) => {
@@ -189,7 +189,7 @@ impl<'s> Glb<'s> {
         }
         let linear = |shift: u32| {
             let v = f64::from((colour >> shift) & 255) / 255.0;
-            if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+            if v <= 0.04045 { v / 12.92 } else { mp_math::powf((v + 0.055) / 1.055, 2.4) }
         };
         let mut material = json!({
             "pbrMetallicRoughness": {

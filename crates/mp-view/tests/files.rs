@@ -68,7 +68,8 @@ fn tracks_are_fine_enough_for_a_film() {
     let path = &file.paths[0];
     let size = (0..3).map(|i| file.bounds[1][i] - file.bounds[0][i]).fold(0.0, f64::max) as f32;
     for pair in path.poses.chunks_exact(7).collect::<Vec<_>>().windows(2) {
-        let step = (0..3).map(|i| (pair[1][i] - pair[0][i]).powi(2)).sum::<f32>().sqrt();
+        let step =
+            (0..3).map(|i| mp_math::powi(f64::from(pair[1][i] - pair[0][i]), 2)).sum::<f64>().sqrt() as f32;
         let dot = (3..7).map(|i| pair[1][i] * pair[0][i]).sum::<f32>().abs();
         assert!(step < 0.03 * size && dot > 0.99, "{step} of {size}, {dot}");
     }

@@ -2,6 +2,7 @@
 //!
 //! | crate | what it holds |
 //! |---|---|
+//! | [`math`] | sine, logarithm, power, with the same bits on every machine |
 //! | [`geom`] | triangle meshes, primitives, poses, boxes and spheres around things |
 //! | [`collide`] | exact collision and distance between meshes |
 //! | [`cspace`] | spaces, metrics, samplers, motion checks, neighbours, paths: the traits |
@@ -63,6 +64,7 @@ pub use mp_control as control;
 pub use mp_cspace as cspace;
 pub use mp_geom as geom;
 pub use mp_io as io;
+pub use mp_math as math;
 pub use mp_plan as plan;
 pub use mp_render as render;
 pub use mp_roadmap as roadmap;

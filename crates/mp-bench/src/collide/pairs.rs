@@ -86,10 +86,10 @@ fn torus(n: usize, ring: f64, tube: f64, bumps: &[[f64; 3]]) -> Result<TriMesh> 
     let angle = |i: usize| i as f64 * TAU / n as f64;
     let point = |i: usize, j: usize| {
         let (u, v) = (angle(i), angle(j));
-        let waves: f64 = bumps.iter().map(|[height, p, q]| height * (p * u + q * v).sin()).sum();
+        let waves: f64 = bumps.iter().map(|[height, p, q]| height * mp_math::sin(p * u + q * v)).sum();
         let r = tube * (1.0 + waves);
-        let from_axis = ring + r * v.cos();
-        Point3::new(from_axis * u.cos(), from_axis * u.sin(), r * v.sin())
+        let from_axis = ring + r * mp_math::cos(v);
+        Point3::new(from_axis * mp_math::cos(u), from_axis * mp_math::sin(u), r * mp_math::sin(v))
     };
     let vertices = (0..n).flat_map(|i| (0..n).map(move |j| point(i, j))).collect();
     let index = |i: usize, j: usize| (i % n * n + j % n) as u32;

@@ -106,7 +106,7 @@ pub(crate) fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
 
 /// The geometric mean; `None` without values.
 pub(crate) fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
-    mean(values.into_iter().map(f64::ln)).map(f64::exp)
+    mean(values.into_iter().map(mp_math::ln)).map(mp_math::exp)
 }
 
 /// The 95% confidence interval of a probability, after `k` successes in `n` trials (Wilson 1927, *Probable inference,
@@ -130,14 +130,14 @@ pub(crate) fn short(v: f64) -> String {
 
 /// A time in seconds with three digits, at most to the microsecond, for a table cell.
 pub(crate) fn seconds(v: f64) -> String {
-    let digits = (2 - v.max(1e-9).log10().floor() as i32).clamp(0, 6) as usize;
+    let digits = (2 - mp_math::log10(v.max(1e-9)).floor() as i32).clamp(0, 6) as usize;
     format!("{v:.digits$}")
 }
 
 /// How many of `n` sorted values to leave out on either side, so that those left hold the median with
 /// 95%: the largest k with P(Bin(n, ½) < k) ≤ 2.5%, zero if there is none.
 fn outside(n: usize) -> usize {
-    let (mut term, mut sum, mut k) = (0.5_f64.powi(n as i32), 0.0, 0);
+    let (mut term, mut sum, mut k) = (mp_math::powi(0.5, n as i32), 0.0, 0);
     while k < n / 2 {
         sum += term;
         if sum > 0.025 {

@@ -81,7 +81,7 @@ impl<'a> Results<'a> {
             let both = pairs.iter().filter_map(|pair| {
                 let [before, after] = [self.run(&pair[0], scene, seed)?, self.run(&pair[1], scene, seed)?];
                 let points = 100.0 * (f64::from(u8::from(after.solved)) - f64::from(u8::from(before.solved)));
-                Some((points, (self.queries(before) / self.queries(after)).ln()))
+                Some((points, mp_math::ln(self.queries(before) / self.queries(after))))
             });
             let both: Vec<(f64, f64)> = both.collect();
             Some((mean(both.iter().map(|b| b.0))?, mean(both.iter().map(|b| b.1))?))
@@ -93,7 +93,7 @@ impl<'a> Results<'a> {
             let (low, high) = bootstrap(units.len(), mean);
             [mean(&(0..units.len()).collect::<Vec<_>>()), low, high]
         };
-        (!units.is_empty()).then(|| Change { solved: of(|u| u.0), queries: of(|u| u.1).map(f64::exp) })
+        (!units.is_empty()).then(|| Change { solved: of(|u| u.0), queries: of(|u| u.1).map(mp_math::exp) })
     }
 
     fn changed(&self, pairs: &[Pair], scene: Option<&str>) -> [String; 2] {

@@ -42,7 +42,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
         builder.build(&mut rng, &mut Nodes(size), &mut ());
         seconds += seconds_since(began);
         let n = size as f64;
-        let exponent = before.map(|(m, s)| (seconds / s).ln() / (n / m).ln());
+        let exponent = before.map(|(m, s)| mp_math::ln(seconds / s) / mp_math::ln(n / m));
         before = Some((n, seconds));
         let motions = builder.progress().motions;
         let sizes = builder.map_mut().component_sizes();

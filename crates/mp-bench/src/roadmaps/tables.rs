@@ -20,7 +20,7 @@ fn falls(points: &[(f64, f64)]) -> f64 {
     let Some(before) = i.checked_sub(1) else { return f64::INFINITY };
     let [(wide, high), (narrow, low)] = [points[before], points[i]];
     let t = (high - 0.5) / (high - low);
-    (wide.ln() + t * (narrow.ln() - wide.ln())).exp()
+    mp_math::exp(mp_math::ln(wide) + t * (mp_math::ln(narrow) - mp_math::ln(wide)))
 }
 
 /// The number in thousands.

@@ -108,7 +108,7 @@ fn picture(scene: &DiscScene, kind: &str, followed: &Followed, colour: u32) -> R
     let mut drawing = Drawing::of_world(robot.world(), corners, title, subtitle);
     for place in followed.driven.iter().step_by(15) {
         let corner = |i: u32| {
-            let (s, c) = (f64::from(i) * std::f64::consts::TAU / 40.0).sin_cos();
+            let (s, c) = mp_math::sin_cos(f64::from(i) * std::f64::consts::TAU / 40.0);
             place + nalgebra::Vector2::new(c, s) * RADIUS
         };
         drawing.items.push(Item::area(vec![(0..40).map(corner).collect()], colour).faint(0.12));

@@ -25,10 +25,16 @@ pub(super) struct Pose {
     pub(super) angle: f64,
 }
 
+/// The unit vector at `angle` from the first axis.
+fn direction(angle: f64) -> Vector2<f64> {
+    let (sine, cosine) = mp_math::sin_cos(angle);
+    Vector2::new(cosine, sine)
+}
+
 /// A normal random number with mean 0.
 fn normal(rng: &mut Rng, deviation: f64) -> f64 {
     let (u, v): (f64, f64) = (1.0 - rng.random::<f64>(), rng.random());
-    deviation * (-2.0 * u.ln()).sqrt() * (TAU * v).cos()
+    deviation * (-2.0 * mp_math::ln(u)).sqrt() * mp_math::cos(TAU * v)
 }
 
 impl Pose {
@@ -38,10 +44,7 @@ impl Pose {
         let speed = speed + normal(rng, a * speed.abs() + b * turn.abs());
         let turn = turn + normal(rng, c * speed.abs() + d * turn.abs());
         let middle = self.angle + 0.5 * turn * TICK;
-        Self {
-            at: self.at + Vector2::new(middle.cos(), middle.sin()) * speed * TICK,
-            angle: self.angle + turn * TICK,
-        }
+        Self { at: self.at + direction(middle) * speed * TICK, angle: self.angle + turn * TICK }
     }
 
     /// The laser ranges at this pose, with noise.
@@ -56,7 +59,7 @@ impl Pose {
     /// The direction of beam `i`.
     fn beam(&self, i: usize) -> Vector2<f64> {
         let angle = self.angle + (i as f64 / (BEAMS - 1) as f64 - 0.5) * 240.0_f64.to_radians();
-        Vector2::new(angle.cos(), angle.sin())
+        direction(angle)
     }
 }
 
@@ -92,9 +95,8 @@ impl ParticleFilter {
     pub(super) fn mean(&self) -> Pose {
         let n = self.poses.len() as f64;
         let at = self.poses.iter().map(|p| p.at).sum::<Vector2<f64>>() / n;
-        let toward =
-            self.poses.iter().map(|p| Vector2::new(p.angle.cos(), p.angle.sin())).sum::<Vector2<f64>>();
-        Pose { at, angle: toward.y.atan2(toward.x) }
+        let toward = self.poses.iter().map(|p| direction(p.angle)).sum::<Vector2<f64>>();
+        Pose { at, angle: mp_math::atan2(toward.y, toward.x) }
     }
 
     /// The uncertainty of the position: the root of the mean squared distance of the particles from their mean, metres.
@@ -113,7 +115,7 @@ impl ParticleFilter {
                 |(i, d): (usize, &f64)| (range(world, pose.at, pose.beam(i)) - d).abs().min(0.5) / JUDGED;
             let misfit: f64 = seen.iter().enumerate().map(off).map(|v| 0.5 * v * v).sum();
             // Errors of beams are correlated: the exponent is less than one.
-            weights.push((-0.3 * misfit).exp() + 1e-300);
+            weights.push(mp_math::exp(-0.3 * misfit) + 1e-300);
         }
         // Low-variance resampling.
         let total: f64 = weights.iter().sum();

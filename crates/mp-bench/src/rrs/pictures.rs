@@ -51,7 +51,9 @@ fn field(prepared: &PreparedWorld) -> Drawing {
         format!("energy of a snake where the robot is less than {:.0} cm from an obstacle", 100.0 * RANGE);
     let mut drawing = world(prepared, "What pushes snakes", subtitle);
     // 1 at a clearance of zero, where the robot touches an obstacle.
-    shade(&mut drawing, &prepared.map, |clearance| (1.0 - clearance / RANGE).clamp(0.0, 1.0).powi(2));
+    shade(&mut drawing, &prepared.map, |clearance| {
+        mp_math::powi((1.0 - clearance / RANGE).clamp(0.0, 1.0), 2)
+    });
     drawing
 }
 
@@ -82,7 +84,9 @@ fn relaxed(prepared: &PreparedWorld) -> Result<Drawing> {
         safety(&after)
     );
     let mut drawing = world(prepared, "A path of RRT, relaxed by a snake", subtitle);
-    shade(&mut drawing, &prepared.map, |clearance| (1.0 - clearance / RANGE).clamp(0.0, 1.0).powi(2));
+    shade(&mut drawing, &prepared.map, |clearance| {
+        mp_math::powi((1.0 - clearance / RANGE).clamp(0.0, 1.0), 2)
+    });
     for (path, colour, width) in [(&path, 0x2b3440, 2.0), (&after, PATH, 3.5)] {
         let line = path.states.iter().map(|q| Point2::from(*q)).collect();
         drawing.items.push(Item::lines(vec![line], colour, width));

@@ -311,7 +311,7 @@ const PAIRS: [(&str, &str); 5] = [
 pub(super) fn interval(values: &[f64]) -> String {
     let n = values.len() as f64;
     let Some(mean) = mean(values.iter().copied()) else { return "–".into() };
-    let spread = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    let spread = values.iter().map(|v| mp_math::powi(v - mean, 2)).sum::<f64>() / (n - 1.0).max(1.0);
     let half = 1.96 * (spread / n).sqrt();
     let digits = if half < 0.0995 {
         3

@@ -198,7 +198,7 @@ fn triangles_drawing(tree: &GrownTree, expansions: usize) -> Result<Drawing> {
 /// A drawing of the square with the start.
 fn drawing(item: Item, tree: &GrownTree, title: String, subtitle: String) -> Drawing {
     let around = |angle: f64| {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = mp_math::sin_cos(angle);
         let start = tree.nodes[0].0;
         nalgebra::Point2::new(start.x + 0.012 * cos, start.y + 0.012 * sin)
     };

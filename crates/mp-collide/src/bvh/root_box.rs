@@ -140,8 +140,8 @@ fn eigenvectors(mut m: Matrix3<f64>) -> [Vector3<f64>; 3] {
                     continue;
                 }
                 let theta = (m[(q, q)] - m[(p, p)]) / (2.0 * m[(p, q)]);
-                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-                let c = 1.0 / t.hypot(1.0);
+                let t = theta.signum() / (theta.abs() + mp_math::hypot(theta, 1.0));
+                let c = 1.0 / mp_math::hypot(t, 1.0);
                 let s = t * c;
                 let mut j = Matrix3::identity();
                 (j[(p, p)], j[(q, q)], j[(p, q)], j[(q, p)]) = (c, c, s, -s);

@@ -85,7 +85,7 @@ impl<'s> LeafMotion<'s> {
         let far = interval.in_a.at_point(&center.into()).norm() + f64::from(interval.slop(own));
         // The rounding of the transform is added to the distance to keep.
         let rounded = keep + f64::from(interval.frames.slack);
-        let squared = (far.min(f64::from(most)) + rounded).powi(2);
+        let squared = mp_math::powi(far.min(f64::from(most)) + rounded, 2);
         let maybe = ((squared * (1.0 + 1e-6)) as f32).next_up();
         let beside = f64::from(interval.rest) + rounded;
         Self { drift: &interval.in_a, origin: &a.center, keep, beside, squared, maybe }
@@ -155,7 +155,7 @@ mod tests {
             let keep = 0.1 * vector(1.0).x.abs();
             let drifts = a.map(|corner| drift.at_point(&(corner - origin)));
             let far = drifts.iter().map(|d| d.norm()).fold(0.0, f64::max);
-            let squared = (far + keep).powi(2);
+            let squared = mp_math::powi(far + keep, 2);
             let swept = LeafMotion {
                 drift: &drift,
                 origin: &origin,

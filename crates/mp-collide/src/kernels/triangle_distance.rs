@@ -303,7 +303,7 @@ mod tests {
     #[test]
     fn distances_lie_between_the_bounds() {
         let mut rng = Pcg64::seed_from_u64(8);
-        let mut power = |low: f64, high: f64| 10f64.powf(rng.random_range(low..high));
+        let mut power = |low: f64, high: f64| mp_math::powf(10.0, rng.random_range(low..high));
         let mut other = Pcg64::seed_from_u64(9);
         let mut any = || Vector3::from_fn(|_, _| other.random_range(-1.0..1.0));
         let obb = NodeBox::new([[0.0; 4]; 3], [0.0; 3]);

@@ -289,8 +289,10 @@ mod tests {
             .map(|_| {
                 let mut at = |r: f64| Vector3::from_fn(|_, _| rng.random_range(-r..r));
                 let (middle, long, wide) = (at(1.0), at(1.0), at(1.0));
-                let (long, wide) =
-                    (long * 10f64.powf(at(1.0).x * 1.5), wide * 10f64.powf(at(1.0).x * 1.5 - 1.0));
+                let (long, wide) = (
+                    long * mp_math::powf(10.0, at(1.0).x * 1.5),
+                    wide * mp_math::powf(10.0, at(1.0).x * 1.5 - 1.0),
+                );
                 [Point3::from(middle), Point3::from(middle + long), Point3::from(middle + wide)]
             })
             .collect()

@@ -26,7 +26,7 @@ pub(super) fn mesh(solid: &Solid, excess: f64) -> Result<TriMesh, ParryError> {
             // A little less than half for the circles about the axis and for those through the poles: the factors multiply.
             let (n, larger) = segments(radius, 0.45 * excess)?;
             let rings = n.div_ceil(4);
-            let bands = 1.0 / (0.5 * FRAC_PI_2 / f64::from(rings)).cos();
+            let bands = 1.0 / mp_math::cos(0.5 * FRAC_PI_2 / f64::from(rings));
             Ok(primitives::capsule(radius * larger * bands, 2.0 * half, n, rings)?)
         }
         Dimensions::Ball { radius } => {
@@ -50,13 +50,13 @@ pub(super) fn mesh(solid: &Solid, excess: f64) -> Result<TriMesh, ParryError> {
 /// The number of segments, a multiple of four, of a polygon around a circle that extends nowhere more than `excess` beyond
 /// it, and the factor by which the polygon is larger than the circle.
 fn segments(radius: f64, excess: f64) -> Result<(u32, f64), ParryError> {
-    let angle = (radius / (radius + excess)).acos();
+    let angle = mp_math::acos(radius / (radius + excess));
     let wanted = (PI / angle / 4.0).ceil() * 4.0;
     if wanted.is_nan() || wanted > f64::from(primitives::MAX_SEGMENTS) {
         return Err(out_of_range(excess));
     }
     let n = (wanted as u32).max(8);
-    Ok((n, 1.0 / (PI / f64::from(n)).cos()))
+    Ok((n, 1.0 / mp_math::cos(PI / f64::from(n))))
 }
 
 fn out_of_range(value: f64) -> ParryError {

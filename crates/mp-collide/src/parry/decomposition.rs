@@ -65,7 +65,7 @@ pub fn convex_decomposition(mesh: &TriMesh, params: &Decomposition) -> Result<Ve
     let (low, high) = bounds(mesh.vertices()).ok_or(ParryError::Flat)?;
     // Scaled so that squares and cubes in parry do not overflow; powers of two change no digits.
     let size = low.coords.amax().max(high.coords.amax());
-    let scale = size.log2().floor().clamp(-1000.0, 1000.0).exp2();
+    let scale = mp_math::exp2(mp_math::log2(size).floor().clamp(-1000.0, 1000.0));
     if (high - low).amax() / scale <= f64::EPSILON {
         return Err(ParryError::Flat);
     }

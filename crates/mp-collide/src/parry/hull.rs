@@ -57,7 +57,7 @@ pub(super) fn hull_of(points: &[Point3<f64>]) -> Result<TriMesh, ParryError> {
 /// The points times a power of two, so that no product of coordinates overflows, and none that matters underflows.
 fn power_of_two(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
     let size = points.iter().map(|p| p.coords.amax()).fold(0.0, f64::max);
-    let scale = (-size.log2().floor()).clamp(-1000.0, 1000.0).exp2();
+    let scale = mp_math::exp2((-mp_math::log2(size).floor()).clamp(-1000.0, 1000.0));
     points.iter().map(|p| p * scale).collect()
 }
 

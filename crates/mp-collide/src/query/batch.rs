@@ -177,7 +177,7 @@ impl PoseSchedule<'_> {
         let shift = (to.translation.vector - from.translation.vector) * scale;
         let StepBounds { turn, bend, twist, .. } = self.steps;
         let radius = self.a.radius;
-        let curve = n * (n + 1.0) * (0.5 * bend + twist * radius) + (n * turn).powi(2) * radius;
+        let curve = n * (n + 1.0) * (0.5 * bend + twist * radius) + mp_math::powi(n * turn, 2) * radius;
         let rest = curve + by.w.abs() * radius + n * relative.slack;
         if rest > 0.5 * most {
             // The poses are not smooth: points may move in any direction.

@@ -43,7 +43,8 @@ impl RigidMotion {
         if cosine.abs() < 1e-6 {
             return None;
         }
-        let scale = if sine > 0.0 { 2.0 * sine.atan2(cosine.abs()) / sine * cosine.signum() } else { 2.0 };
+        let scale =
+            if sine > 0.0 { 2.0 * mp_math::atan2(sine, cosine.abs()) / sine * cosine.signum() } else { 2.0 };
         Some(Self { shift, turn: by.imag() * (scale * share), most })
     }
 

@@ -51,7 +51,7 @@ impl Frustum {
         let side = (low + along * across, along * up - half);
         let mut best = (f64::INFINITY, side);
         for at in [side, (rho.min(low), -half), (rho.min(high), half)] {
-            let square = (rho - at.0).powi(2) + (z - at.1).powi(2);
+            let square = mp_math::powi(rho - at.0, 2) + mp_math::powi(z - at.1, 2);
             if square < best.0 {
                 best = (square, at);
             }

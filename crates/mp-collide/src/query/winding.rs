@@ -66,7 +66,7 @@ mod tests {
     fn naive_winding(mesh: &TriMesh, p: &Point3<f64>) -> f64 {
         let angle = (0..mesh.triangles().len()).map(|i| {
             let [a, b, c] = mesh.triangle(i).map(|v| (v - p).normalize());
-            2.0 * a.dot(&b.cross(&c)).atan2(1.0 + a.dot(&b) + b.dot(&c) + c.dot(&a))
+            2.0 * mp_math::atan2(a.dot(&b.cross(&c)), 1.0 + a.dot(&b) + b.dot(&c) + c.dot(&a))
         });
         angle.sum::<f64>() / (4.0 * std::f64::consts::PI)
     }

@@ -168,7 +168,7 @@ impl Sweep {
         }
         let [from, to] = ends.map(|(_, pose)| pose.rotation.into_inner());
         let between = from.conjugate() * to;
-        let turn = 2.0 * between.imag().norm().atan2(between.w.abs());
+        let turn = 2.0 * mp_math::atan2(between.imag().norm(), between.w.abs());
         self.parts.push(Part { ends: [0, 1], bend: turn * turn / 8.0, halves: None });
         let far = self.moments.iter().map(|moment| moment.origin.norm()).fold(0.0, f64::max);
         let task = Task { moving, standing, margin, touching: TOUCHING * (size + far) };
@@ -438,9 +438,16 @@ mod tests {
         let mut used = Sweep::default();
         for i in 0..200 {
             let x = f64::from(i);
-            let from =
-                pose_from_six([1.5 * (0.7 * x).sin(), 1.5 * (1.1 * x).cos(), 0.1, x, 2.0 * x, 0.3 * x]);
-            let by = [(0.9 * x).cos(), 0.4 * (1.7 * x).sin(), 0.1, 0.5, (0.3 * x).sin(), 0.2];
+            let from = pose_from_six([
+                1.5 * mp_math::sin(0.7 * x),
+                1.5 * mp_math::cos(1.1 * x),
+                0.1,
+                x,
+                2.0 * x,
+                0.3 * x,
+            ]);
+            let by =
+                [mp_math::cos(0.9 * x), 0.4 * mp_math::sin(1.7 * x), 0.1, 0.5, mp_math::sin(0.3 * x), 0.2];
             let again = used.sweep(&bar, motion(from, by), &other, 1e-4);
             assert_eq!(again, Sweep::default().sweep(&bar, motion(from, by), &other, 1e-4), "{i}");
         }

@@ -150,7 +150,7 @@ fn trees_of_any_shape_are_built_and_stay_shallow() {
     let same = (0..300).map(|_| [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).collect::<Vec<_>>();
     let halves = (0..1000)
         .map(|i| {
-            let s = 0.5_f64.powi(i);
+            let s = mp_math::powi(0.5, i);
             [[s, 0.0, 0.0], [s, s, 0.0], [s, 0.0, s]]
         })
         .collect();

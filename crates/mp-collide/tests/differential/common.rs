@@ -28,8 +28,12 @@ pub(crate) fn bumpy(n: usize, radius: f64, bump: f64) -> TriMesh {
     let at = |i: usize, j: usize| {
         let (u, v) =
             (std::f64::consts::PI * i as f64 / n as f64, std::f64::consts::TAU * j as f64 / n as f64);
-        let r = radius * (1.0 + bump * (5.0 * u).sin() * (7.0 * v).cos());
-        Point3::new(r * u.sin() * v.cos(), r * u.sin() * v.sin(), r * u.cos())
+        let r = radius * (1.0 + bump * mp_math::sin(5.0 * u) * mp_math::cos(7.0 * v));
+        Point3::new(
+            r * mp_math::sin(u) * mp_math::cos(v),
+            r * mp_math::sin(u) * mp_math::sin(v),
+            r * mp_math::cos(u),
+        )
     };
     let vertices = (0..=n).flat_map(|i| (0..n).map(move |j| at(i, j))).collect();
     let index = |i: usize, j: usize| (i * n + j % n) as u32;

@@ -108,7 +108,7 @@ fn random_poses_agree_with_an_equation() {
         }
         // Where the middle of the robot is, which is farther from the mesh than that is from the true torus.
         let p = pose.translation.vector;
-        let inside = (p.x.hypot(p.y) - 1.0).hypot(p.z) < 0.45;
+        let inside = mp_math::hypot(mp_math::hypot(p.x, p.y) - 1.0, p.z) < 0.45;
         let hit = scene.collides(&mut query, &robot, &pose);
         assert_eq!(hit, inside, "{pose}");
         seen[usize::from(hit)] += 1;

@@ -67,8 +67,8 @@ fn hulls_hold_all_and_are_convex_and_closed() {
             let hull = convex_hull(&moved).unwrap();
             check(&moved, &hull);
             assert_eq!(hull, convex_hull(&moved).unwrap());
-            let volume = convex_hull(mesh).unwrap().signed_volume() * size.powi(3);
-            assert!((hull.signed_volume() - volume).abs() <= 1e-8 * size.powi(3));
+            let volume = convex_hull(mesh).unwrap().signed_volume() * mp_math::powi(size, 3);
+            assert!((hull.signed_volume() - volume).abs() <= 1e-8 * mp_math::powi(size, 3));
         }
     }
 }
@@ -201,7 +201,7 @@ fn surface_points(rng: &mut Pcg64, mesh: &TriMesh, n: usize) -> Vec<Point3<f64>>
 fn is_inside(mesh: &TriMesh, p: &Point3<f64>) -> bool {
     let angle = (0..mesh.triangles().len()).map(|i| {
         let [a, b, c] = mesh.triangle(i).map(|v| (v - p).normalize());
-        2.0 * a.dot(&b.cross(&c)).atan2(1.0 + a.dot(&b) + b.dot(&c) + c.dot(&a))
+        2.0 * mp_math::atan2(a.dot(&b.cross(&c)), 1.0 + a.dot(&b) + b.dot(&c) + c.dot(&a))
     });
     angle.sum::<f64>() > std::f64::consts::TAU
 }

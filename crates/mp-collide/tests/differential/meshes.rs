@@ -250,9 +250,9 @@ fn brute_distance(a: &TriMesh, b: &TriMesh, pose_ab: &Isometry3<f64>) -> f64 {
 fn awkward(rng: &mut Pcg64, n: usize, size: f64) -> TriMesh {
     let mut vertices = Vec::new();
     for _ in 0..n {
-        let (at, edge) = (point(rng, size), 10.0_f64.powf(rng.random_range(-12.0..0.0)));
+        let (at, edge) = (point(rng, size), mp_math::powf(10.0, rng.random_range(-12.0..0.0)));
         let (u, v) = (point(rng, 1.0).coords * edge, point(rng, 1.0).coords * edge);
-        let thin = 10.0_f64.powf(rng.random_range(-12.0..0.0));
+        let thin = mp_math::powf(10.0, rng.random_range(-12.0..0.0));
         vertices.extend(match rng.random_range(0..6) {
             0 => [at, at + u, at + u * 0.5 + v * thin],
             1 => [at, at + u, at + v],
@@ -353,7 +353,7 @@ fn faces_count_at_any_scale() {
     let above = [[0.0, 0.0, 1.0], [0.1, 0.0, 1.1], [0.0, 0.1, 1.1]];
     let crossing = [[20.5, -0.5, 1.5], [20.5, 0.5, 1.5], [20.5, 0.0, 3.0]];
     for exponent in -40..40 {
-        let scale = 10.0_f64.powi(exponent);
+        let scale = mp_math::powi(10.0, exponent);
         let mesh = |triangles: [[[f64; 3]; 3]; 2]| {
             let vertices = triangles.iter().flatten().map(|p| Point3::from(*p) * scale).collect();
             CollisionMesh::new(&TriMesh::new(vertices, vec![[0, 1, 2], [3, 4, 5]]).unwrap())

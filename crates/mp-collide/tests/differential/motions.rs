@@ -25,7 +25,7 @@ fn pair(rng: &mut Pcg64, kind: usize) -> (TriMesh, TriMesh) {
 /// A row of poses near the origin: along a straight motion, bent, in another order, or anywhere.
 fn row(rng: &mut Pcg64, n: usize) -> Vec<Isometry3<f64>> {
     let from = pose(rng, 1.5);
-    let step = 10.0_f64.powf(rng.random_range(-8.0..-0.3));
+    let step = mp_math::powf(10.0, rng.random_range(-8.0..-0.3));
     let along = point(rng, step).coords;
     let turn = if rng.random_range(0..4) == 0 { Vector3::zeros() } else { point(rng, step).coords };
     let at = |t: f64| {
@@ -104,7 +104,7 @@ fn batches_are_exact_at_contact() {
             }
             if query.intersects(&a, &at(middle), &b, &here) { near = middle } else { far = middle }
         }
-        let step = 10.0_f64.powf(rng.random_range(-15.5..-2.0));
+        let step = mp_math::powf(10.0, rng.random_range(-15.5..-2.0));
         let poses: Vec<_> = (0..40).map(|i| at(near + step * f64::from(30 - i))).collect();
         let expected = poses.iter().position(|p| query.intersects(&a, p, &b, &here));
         assert!(expected.is_some());
@@ -114,7 +114,7 @@ fn batches_are_exact_at_contact() {
 
 /// An interval of a motion and the pose at `t` in [−1, 1].
 fn interval(rng: &mut Pcg64, radius: f64) -> (Isometry3<f64>, RigidMotion) {
-    let size = 10.0_f64.powf(rng.random_range(-6.0..0.0));
+    let size = mp_math::powf(10.0, rng.random_range(-6.0..0.0));
     let mut part = || if rng.random_range(0..4) == 0 { Vector3::zeros() } else { point(rng, size).coords };
     let motion = RigidMotion::new(part(), part(), radius);
     (pose(rng, 1.8), motion)
@@ -136,7 +136,7 @@ fn what_is_clear_stays_clear_and_wide_room_is_found_clear() {
         for _ in 0..30 {
             let (middle, motion) = interval(&mut rng, a.radius());
             let here = if kind % 2 == 0 { Isometry3::identity() } else { pose(&mut rng, 0.5) };
-            let margin = 10.0_f64.powf(rng.random_range(-9.0..-1.0));
+            let margin = mp_math::powf(10.0, rng.random_range(-9.0..-1.0));
             let answers: Vec<IntervalCheck> = queries
                 .iter_mut()
                 .map(|q| q.check_interval(&a, &middle, &motion, &b, &here, margin))
@@ -188,7 +188,7 @@ fn sliding_past_is_clear_to_the_margin() {
     let mut placed = 0;
     for round in 0..90 {
         let a = CollisionMesh::new(&shapes[round % 3]);
-        let margin = 10.0_f64.powf(rng.random_range(-3.0..-1.0));
+        let margin = mp_math::powf(10.0, rng.random_range(-3.0..-1.0));
         let along = Vector3::new(0.0, rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0));
         let place = Vector3::new(3.0, along.y, along.z);
         let motion = RigidMotion::new(here.rotation * along, Vector3::zeros(), a.radius());
@@ -220,7 +220,7 @@ fn no_wall_is_too_thin() {
     let a = CollisionMesh::new(&bumpy(6, 0.1, 0.2));
     let here = Isometry3::identity();
     for exponent in 1..=13 {
-        let thickness = if exponent == 13 { 0.0 } else { 0.1_f64.powi(exponent) };
+        let thickness = if exponent == 13 { 0.0 } else { mp_math::powi(0.1, exponent) };
         let b = CollisionMesh::new(&cuboid(Vector3::new(0.5 * thickness, 3.0, 3.0)));
         for _ in 0..200 {
             let (mut middle, motion) = interval(&mut rng, a.radius());

@@ -79,7 +79,7 @@ fn least(f: impl Fn(f64) -> f64) -> f64 {
 
 /// The distance of a point from the solid between two discs about Z: from the outline of its section.
 fn to_frustum(p: &Point3<f64>, low: f64, high: f64, half: f64) -> f64 {
-    let p = [p.x.hypot(p.y), p.z];
+    let p = [mp_math::hypot(p.x, p.y), p.z];
     let outline = [[0.0, -half], [low, -half], [high, half], [0.0, half]];
     let (mut inside, mut least) = (true, f64::INFINITY);
     for [a, b] in [[outline[0], outline[1]], [outline[1], outline[2]], [outline[2], outline[3]]] {
@@ -87,7 +87,7 @@ fn to_frustum(p: &Point3<f64>, low: f64, high: f64, half: f64) -> f64 {
         inside &= d[0] * e[1] - d[1] * e[0] >= 0.0;
         let length = d[0] * d[0] + d[1] * d[1];
         let t = if length > 0.0 { ((d[0] * e[0] + d[1] * e[1]) / length).clamp(0.0, 1.0) } else { 0.0 };
-        least = least.min((e[0] - d[0] * t).hypot(e[1] - d[1] * t));
+        least = least.min(mp_math::hypot(e[0] - d[0] * t, e[1] - d[1] * t));
     }
     if inside { 0.0 } else { least }
 }

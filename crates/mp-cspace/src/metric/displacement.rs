@@ -72,11 +72,12 @@ impl Metric<Se2> for MaxDisplacement<Point2<f64>> {
     type Nn = MetricTree;
 
     fn distance(&self, _: &Se2, from: &Se2State, to: &Se2State) -> f64 {
-        let ((sa, ca), (sb, cb)) = (from.angle.sin_cos(), to.angle.sin_cos());
+        let ((sa, ca), (sb, cb)) = (mp_math::sin_cos(from.angle), mp_math::sin_cos(to.angle));
         let (c, s) = (cb - ca, sb - sa);
         let shift = to.translation - from.translation;
-        let squared =
-            |p: &Point2<f64>| (c * p.x - s * p.y + shift.x).powi(2) + (s * p.x + c * p.y + shift.y).powi(2);
+        let squared = |p: &Point2<f64>| {
+            mp_math::powi(c * p.x - s * p.y + shift.x, 2) + mp_math::powi(s * p.x + c * p.y + shift.y, 2)
+        };
         self.points.iter().map(squared).fold(0.0, f64::max).sqrt()
     }
     /// The diagonal of the box, and twice the farthest point's distance from the body's origin.

@@ -74,12 +74,12 @@ impl<C: Factored> Metric<C> for ScaledEuclidean {
     #[inline]
     fn distance(&self, space: &C, from: &C::State, to: &C::State) -> f64 {
         let mut sum = 0.0;
-        space.each_factor(from, to, &mut |i, d| sum += (self.weight(i) * d).powi(2));
+        space.each_factor(from, to, &mut |i, d| sum += mp_math::powi(self.weight(i) * d, 2));
         sum.sqrt()
     }
     fn extent(&self, space: &C) -> f64 {
         let mut sum = 0.0;
-        over_extents(space, |i, d| sum += (self.weight(i) * d).powi(2));
+        over_extents(space, |i, d| sum += mp_math::powi(self.weight(i) * d, 2));
         sum.sqrt()
     }
 }

@@ -132,7 +132,7 @@ mod tests {
     fn a_rod_that_turns_sweeps_sectors() {
         let swept = SweptVolume::new(sides(Vector3::new(2.0, 1e-3, 0.5), 40)).unwrap();
         let (a, b) = (Se2State::new(3.0, 1.0, 0.4), Se2State::new(3.0, 1.0, 0.4 + 0.2));
-        let sectors = 0.5 * 0.2 * 1.0_f64.powi(2) * 2.0 * 0.5;
+        let sectors = 0.5 * 0.2 * mp_math::powi(1.0, 2) * 2.0 * 0.5;
         let found = swept.swept(&a.to_isometry3(0.0), &b.to_isometry3(0.0));
         assert!((found / sectors - 1.0).abs() < 0.02, "{found} {sectors}");
         // About its own axis the rod sweeps next to nothing.

@@ -424,7 +424,7 @@ mod tests {
         let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0]).unwrap();
         let mut rng = Rng::seed(6);
         for exponent in 1..=12 {
-            let mut check = Certified::new(&space, Wall(0.1_f64.powi(exponent)), 1e-4).unwrap();
+            let mut check = Certified::new(&space, Wall(mp_math::powi(0.1, exponent)), 1e-4).unwrap();
             for _ in 0..500 {
                 let (a, b) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
                 if (a.x < 0.3) != (b.x < 0.3) {

@@ -15,7 +15,7 @@ pub(super) fn sample(from: &[f64], to: &[f64], sum: f64, rng: &mut Rng, out: &mu
         *x = rng.normal();
         norm += *x * *x;
     }
-    let radius = rng.random::<f64>().powf(1.0 / n as f64) / norm.sqrt().max(f64::MIN_POSITIVE);
+    let radius = mp_math::powf(rng.random::<f64>(), 1.0 / n as f64) / norm.sqrt().max(f64::MIN_POSITIVE);
     let across = 0.5 * (sum * sum - between * between).max(0.0).sqrt();
     for (i, x) in out.iter_mut().enumerate() {
         *x *= radius * if i == 0 { 0.5 * sum.max(between) } else { across };

@@ -47,7 +47,7 @@ impl FloatingJoints {
     /// # Errors
     /// When the extent of the product is not finite.
     pub fn new(base: Se3, joints: Joints<DVector<f64>>) -> Result<Self, SpaceError> {
-        let extent = base.extent().hypot(joints.extent());
+        let extent = mp_math::hypot(base.extent(), joints.extent());
         let extent = crate::error::weight("the extent of the space", extent)?;
         Ok(Self { base, joints, extent })
     }
@@ -110,7 +110,7 @@ impl Space for FloatingJoints {
         };
         let base = self.base.distance(&a, &b);
         let count = self.joints.dim().min(p.len()).min(q.len());
-        let joints = (0..count).map(|i| self.joints.difference(i, p[i], q[i]).powi(2));
+        let joints = (0..count).map(|i| mp_math::powi(self.joints.difference(i, p[i], q[i]), 2));
         (base * base + joints.sum::<f64>()).sqrt()
     }
 

@@ -129,7 +129,7 @@ impl<Q: Coordinates> Joints<Q> {
         }
         let bounds = |end: usize| ranges.iter().map(|r| r.bounds()[end]).collect::<Vec<_>>();
         crate::error::diagonal(&bounds(0), &bounds(1))?;
-        let extent = ranges.iter().map(|r| r.extent().powi(2)).sum::<f64>().sqrt();
+        let extent = ranges.iter().map(|r| mp_math::powi(r.extent(), 2)).sum::<f64>().sqrt();
         let unwrapped = Q::from_fn(ranges.len(), |i| match ranges[i] {
             JointRange::Interval { .. } => f64::INFINITY,
             JointRange::Circle => PI,

@@ -29,7 +29,7 @@ impl Se2State {
     #[inline]
     #[must_use]
     pub fn transform_point(&self, p: &Point2<f64>) -> Point2<f64> {
-        let (s, c) = self.angle.sin_cos();
+        let (s, c) = mp_math::sin_cos(self.angle);
         Point2::new(c * p.x - s * p.y + self.translation.x, s * p.x + c * p.y + self.translation.y)
     }
 

@@ -38,7 +38,7 @@ pub(crate) fn turn(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> Vector3<
 #[inline]
 pub(crate) fn rotation_at(u: [f64; 3]) -> UnitQuaternion<f64> {
     let (r1, r2) = ((1.0 - u[0]).sqrt(), u[0].sqrt());
-    let ((s1, c1), (s2, c2)) = ((TAU * u[1]).sin_cos(), (TAU * u[2]).sin_cos());
+    let ((s1, c1), (s2, c2)) = (mp_math::sin_cos(TAU * u[1]), mp_math::sin_cos(TAU * u[2]));
     UnitQuaternion::new_unchecked(Quaternion::new(c2 * r2, s1 * r1, c1 * r1, s2 * r2))
 }
 

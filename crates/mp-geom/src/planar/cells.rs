@@ -118,7 +118,7 @@ impl Cells {
         };
         let first = self.candidates.len();
         self.cells.push(Cell { kind, first: first as u32, from_center });
-        let within = (from_center + 2.0 * reach).powi(2);
+        let within = mp_math::powi(from_center + 2.0 * reach, 2);
         if within.is_finite() {
             let candidates = &mut self.candidates;
             tree.near(&center, within, |i, within| {

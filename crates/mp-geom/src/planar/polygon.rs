@@ -104,9 +104,9 @@ impl Polygon {
     pub fn around_circle(center: [f64; 2], radius: f64, corners: usize) -> Result<Self, PolygonError> {
         positive("the radius", radius)?;
         let step = std::f64::consts::TAU / corners.max(1) as f64;
-        let reach = radius / (0.5 * step).cos();
+        let reach = radius / mp_math::cos(0.5 * step);
         let corner = |i: usize| {
-            let (s, c) = (step * i as f64).sin_cos();
+            let (s, c) = mp_math::sin_cos(step * i as f64);
             [center[0] + reach * c, center[1] + reach * s]
         };
         Self::outlined((0..corners).map(corner))
@@ -262,7 +262,7 @@ mod tests {
             (0..n * n).map(move |i| square((i % n) as f64 * 2.0 + 2.0, (i / n) as f64 * 2.0 + 2.0, r))
         };
         let round = |x: f64, y: f64, r: f64, n: u32| -> Vec<Point2<f64>> {
-            let corner = |k: u32| (std::f64::consts::TAU * f64::from(k) / f64::from(n)).sin_cos();
+            let corner = |k: u32| mp_math::sin_cos(std::f64::consts::TAU * f64::from(k) / f64::from(n));
             (0..n).map(corner).map(|(s, c)| Point2::new(x + r * c, y + r * s)).collect()
         };
         let mut sieve = vec![square(5.0, 5.0, 5.0)];
@@ -299,7 +299,7 @@ mod tests {
         let least = p.edges().map(|[a, b]| ((a + b.coords) / 2.0 - Point2::new(1.0, 2.0)).norm());
         assert!((least.fold(f64::INFINITY, f64::min) - 0.5).abs() < 1e-12);
         assert!(
-            (p.radius_about(&Point2::new(1.0, 2.0)) - 0.5 / (std::f64::consts::PI / 12.0).cos()).abs()
+            (p.radius_about(&Point2::new(1.0, 2.0)) - 0.5 / mp_math::cos(std::f64::consts::PI / 12.0)).abs()
                 < 1e-12
         );
     }

@@ -258,7 +258,7 @@ impl PlanarWorld {
         let Some(cells) = inside else {
             // Edges that can be near are within a disc around the segment.
             let (middle, half) = (a + u * 0.5, 0.5 * length);
-            let within = |below: f64| (half + below).powi(2) * (1.0 + 1e-12);
+            let within = |below: f64| mp_math::powi(half + below, 2) * (1.0 + 1e-12);
             self.tree.near(&middle, within(below), |i, _| {
                 below = look(i, below);
                 within(below)
@@ -338,7 +338,7 @@ mod tests {
             polygons in prop::collection::vec(polygon(), 0..12),
             walled in any::<bool>(),
             points in prop::collection::vec((-1.0..11.0_f64, -1.0..7.0_f64), 2..30),
-            below in (-12.0..0.5_f64).prop_map(|e| 10.0_f64.powf(e)),
+            below in (-12.0..0.5_f64).prop_map(|e| mp_math::powf(10.0, e)),
         ) {
             let walls = walled.then_some([[0.0, 0.0], [10.0, 6.0]]);
             let world = PlanarWorld::new(polygons, walls).unwrap();

@@ -116,7 +116,7 @@ impl<'a> Figures<'a> {
             ObstacleShape::Box([x, y, z]) => primitive(primitives::cuboid(*x, *y, *z))?,
             ObstacleShape::Sphere(radius) => primitive(ball(*radius))?,
             ObstacleShape::Cylinder([radius, height]) => {
-                let around = radius / (std::f64::consts::PI / f64::from(SEGMENTS)).cos();
+                let around = radius / mp_math::cos(std::f64::consts::PI / f64::from(SEGMENTS));
                 primitive(primitives::cylinder(around, *height, SEGMENTS))?
             }
             ObstacleShape::Mesh(name) => {

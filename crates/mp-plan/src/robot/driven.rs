@@ -291,7 +291,7 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
                 if *reverse { "" } else { " forward only" },
                 brief(*wheelbase),
                 brief(*steering),
-                brief(wheelbase / steering.tan())
+                brief(wheelbase / mp_math::tan(*steering))
             ),
             Drive::Unicycle { speed, turning, reverse } => format!(
                 "a unicycle: {} m/s{}, turns by {} rad/s",

@@ -93,7 +93,7 @@ pub trait PlanarBody:
 impl<B: PlanarBody> SpeedBound for PlanarScene<B> {
     fn speed_bound(&self, rates: &[f64]) -> f64 {
         let rate = |i: usize| rates.get(i).copied().unwrap_or(0.0);
-        rate(0).hypot(rate(1)) + PlanarBody::radius(&self.robot) * rate(2)
+        mp_math::hypot(rate(0), rate(1)) + PlanarBody::radius(&self.robot) * rate(2)
     }
 }
 
@@ -179,7 +179,7 @@ impl PlanarBody for DiscRobot {
     }
     fn rings(&self) -> Vec<Vec<Point2<f64>>> {
         let corner = |i: u32| {
-            let (s, c) = (f64::from(i) * TAU / f64::from(CORNERS)).sin_cos();
+            let (s, c) = mp_math::sin_cos(f64::from(i) * TAU / f64::from(CORNERS));
             Point2::new(c, s) * self.radius()
         };
         vec![(0..CORNERS).map(corner).collect()]
@@ -452,7 +452,7 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         let mut reach = 0.01 * self.robot.radius().max(1e-3 * self.space.extent());
         while reach < self.space.extent() {
             let around = (0..64).map(|i| {
-                let (s, c) = (TAU * f64::from(i) / 64.0).sin_cos();
+                let (s, c) = mp_math::sin_cos(TAU * f64::from(i) / 64.0);
                 B::moved(q, Vector2::new(c, s) * reach)
             });
             let mut free = around.filter(|p| {

@@ -215,7 +215,7 @@ pub struct AroundObstacles<H> {
 
 /// MIN and MAX of the elastic band between robot and obstacle, metres.
 fn limits(robot: &BodyFeatures, obstacle: &BodyFeatures) -> [f64; 2] {
-    let equal = |body: &BodyFeatures| body.radius * body.volume_ratio.cbrt();
+    let equal = |body: &BodyFeatures| body.radius * mp_math::cbrt(body.volume_ratio);
     [equal(robot) + equal(obstacle), robot.radius + obstacle.radius]
 }
 
@@ -223,13 +223,13 @@ fn limits(robot: &BodyFeatures, obstacle: &BodyFeatures) -> [f64; 2] {
 fn random_unit(axis: Option<&Vector3<f64>>, rng: &mut Rng) -> Vector3<f64> {
     let (z, angle) = (2.0 * rng.random::<f64>() - 1.0, TAU * rng.random::<f64>());
     let round = (1.0 - z * z).sqrt();
-    let v = Vector3::new(round * angle.cos(), round * angle.sin(), z);
+    let v = Vector3::new(round * mp_math::cos(angle), round * mp_math::sin(angle), z);
     match axis {
         None => v,
         Some(axis) => {
             let other = Vector3::ith(axis.iamin(), 1.0);
             let across = axis.cross(&other).try_normalize(0.0).unwrap_or(other);
-            across * angle.cos() + axis.cross(&across) * angle.sin()
+            across * mp_math::cos(angle) + axis.cross(&across) * mp_math::sin(angle)
         }
     }
 }

@@ -105,7 +105,7 @@ impl Star {
 
     /// k(n).
     fn neighbours(&self, n: usize) -> usize {
-        (self.per_log * (n as f64).ln()).ceil().max(1.0) as usize
+        (self.per_log * mp_math::ln(n as f64)).ceil().max(1.0) as usize
     }
 }
 

@@ -243,7 +243,7 @@ fn more_nodes_make_shorter_paths() {
         lengths.extend(planner.step(&mut rng, &mut ()).map(|path| path.length(&space)));
     }
     // Over both corners of the block.
-    let least = 2.0 * (0.3_f64.powi(2) + 0.5_f64.powi(2)).sqrt() + 0.2;
+    let least = 2.0 * (mp_math::powi(0.3, 2) + mp_math::powi(0.5, 2)).sqrt() + 0.2;
     assert!(lengths.is_sorted_by(|a, b| a > b) && lengths.len() > 3, "{lengths:?}");
     assert!((least..1.02 * least).contains(lengths.last().unwrap()), "{lengths:?}");
 }

@@ -140,7 +140,7 @@ fn shape(
     geometry: &Geometry,
     mesh: &mut impl FnMut(&str) -> Result<TriMesh, String>,
 ) -> Result<TriMesh, String> {
-    let grown = 1.0 / (std::f64::consts::PI / f64::from(SEGMENTS)).cos();
+    let grown = 1.0 / mp_math::cos(std::f64::consts::PI / f64::from(SEGMENTS));
     let made = match geometry {
         Geometry::Box { size } => primitives::cuboid(size[0], size[1], size[2]),
         Geometry::Cylinder { radius, length } => primitives::cylinder(radius * grown, *length, SEGMENTS),

@@ -127,8 +127,9 @@ impl ReferenceArm {
                 JointMotion::Slides => motion.fixed_view_mut::<3, 1>(0, 3).copy_from(&(link.axis * value)),
                 JointMotion::Turns => {
                     let across = link.axis.cross_matrix();
-                    let turn =
-                        Matrix3::identity() + across * value.sin() + across * across * (1.0 - value.cos());
+                    let turn = Matrix3::identity()
+                        + across * mp_math::sin(value)
+                        + across * across * (1.0 - mp_math::cos(value));
                     motion.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
                 }
             }
@@ -227,7 +228,7 @@ fn base_matrix(pose: &[f64]) -> Matrix4<f64> {
 /// How far the place of a base goes between two configurations, and the angle of its turn.
 fn base_travel(a: &[f64], b: &[f64]) -> [f64; 2] {
     let (&[ax, ay, az, ai, aj, ak, aw], &[bx, by, bz, bi, bj, bk, bw]) = (a, b) else { return [f64::NAN; 2] };
-    let slide = (bx - ax).hypot(by - ay).hypot(bz - az);
+    let slide = mp_math::hypot(mp_math::hypot(bx - ax, by - ay), bz - az);
     // The quaternion of the turn: the conjugate of one times the other.
     let real = aw * bw + ai * bi + aj * bj + ak * bk;
     let [i, j, k] = [
@@ -235,7 +236,7 @@ fn base_travel(a: &[f64], b: &[f64]) -> [f64; 2] {
         aw * bj - aj * bw - ak * bi + ai * bk,
         aw * bk - ak * bw - ai * bj + aj * bi,
     ];
-    [slide, 2.0 * i.hypot(j).hypot(k).atan2(real.abs())]
+    [slide, 2.0 * mp_math::atan2(mp_math::hypot(mp_math::hypot(i, j), k), real.abs())]
 }
 
 /// A link and another link, or a link and the obstacles: they must not touch.

@@ -102,7 +102,7 @@ impl MovingArea {
 /// The pose in the plane of a pose in space.
 fn planar(pose: &Isometry3<f64>) -> Isometry2<f64> {
     let turned = pose.rotation * nalgebra::Vector3::x();
-    Isometry2::new(pose.translation.vector.xy(), turned.y.atan2(turned.x))
+    Isometry2::new(pose.translation.vector.xy(), mp_math::atan2(turned.y, turned.x))
 }
 
 /// A [`DiscRobot`] or [`PolygonRobot`], and the areas that move around it, each on its [`Trajectory`] whatever the robot does.
@@ -270,7 +270,7 @@ pub trait PlanarConfiguration: Clone {
 
 impl PlanarConfiguration for Vector2<f64> {
     fn seen_in(&self, origin: Vector2<f64>, angle: f64) -> Self {
-        let (s, c) = angle.sin_cos();
+        let (s, c) = mp_math::sin_cos(angle);
         let d = self - origin;
         Vector2::new(c * d.x + s * d.y, c * d.y - s * d.x)
     }

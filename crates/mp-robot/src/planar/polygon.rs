@@ -52,7 +52,7 @@ struct BodyPose {
 
 impl BodyPose {
     fn of(q: &Se2State) -> Self {
-        let (sin, cos) = q.angle.sin_cos();
+        let (sin, cos) = mp_math::sin_cos(q.angle);
         Self { sin, cos, at: q.translation }
     }
     #[inline]

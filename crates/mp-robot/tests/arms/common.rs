@@ -138,7 +138,8 @@ pub(crate) fn matrix(model: &ArmModel, values: &dyn Fn(&str) -> f64, link: &str)
         JointKind::Revolute { .. } | JointKind::Continuous => {
             // Rodrigues.
             let k = n.cross_matrix();
-            let r = nalgebra::Matrix3::identity() + k * value.sin() + k * k * (1.0 - value.cos());
+            let r =
+                nalgebra::Matrix3::identity() + k * mp_math::sin(value) + k * k * (1.0 - mp_math::cos(value));
             motion.fixed_view_mut::<3, 3>(0, 0).copy_from(&r);
         }
     }

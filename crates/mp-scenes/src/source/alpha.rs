@@ -62,7 +62,7 @@ fn alpha(scale: f64) -> TriMesh {
 /// the lower arm to that of the upper, slowly at both ends.
 fn on_loop(angle: f64, scale: f64) -> Point3<f64> {
     let t = (angle - PI) / (0.75 * PI);
-    let (s, c) = angle.sin_cos();
+    let (s, c) = mp_math::sin_cos(angle);
     Point3::new(LOOP * (c - SQRT_2), LOOP * s, 0.5 * level(scale) * t * (3.0 - t * t))
 }
 
@@ -90,7 +90,7 @@ fn separation() -> Vec<Six> {
 /// `angle` + π/2. The far end of the robot's loop is at `distance` from there, on the side of the loop's
 /// centre for `tilt` 0 and below for π/2; the robot's crossing is on the other side.
 fn ring(wire: Point3<f64>, distance: f64, angle: f64, tilt: f64) -> Six {
-    let ((s, c), (up, horizontal)) = (angle.sin_cos(), tilt.sin_cos());
+    let ((s, c), (up, horizontal)) = (mp_math::sin_cos(angle), mp_math::sin_cos(tilt));
     let out = Vector3::new(c * horizontal, s * horizontal, up);
     let origin = wire + out * (LOOP * (SQRT_2 + 1.0) + MIDDLE - distance);
     [origin.x, origin.y, origin.z, angle - 2.0 * PI, -tilt, -0.5 * PI].map(on_grid)

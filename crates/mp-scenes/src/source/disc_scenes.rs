@@ -148,8 +148,8 @@ fn block(rng: &mut Rng, size: [f64; 2], [small, large]: [f64; 2]) -> Vec<[f64; 2
     let turn = rng.random_range(0.0..std::f64::consts::PI);
     let phase = rng.random_range(0.0..1.0);
     let corner = |i: usize| {
-        let (s, c) = (std::f64::consts::TAU * (i as f64 + phase) / f64::from(corners)).sin_cos();
-        let (sin, cos) = turn.sin_cos();
+        let (s, c) = mp_math::sin_cos(std::f64::consts::TAU * (i as f64 + phase) / f64::from(corners));
+        let (sin, cos) = mp_math::sin_cos(turn);
         let (x, y) = (long * c, long * slim * s);
         [rounded(center.x + cos * x - sin * y), rounded(center.y + sin * x + cos * y)]
     };

@@ -153,7 +153,7 @@ pub(super) fn plant() -> TriMesh {
     let mut parts = vec![pot];
     for i in 0..16u32 {
         // Successive leaves stand at the golden angle.
-        let (s, c) = (TAU * 0.381966 * f64::from(i)).sin_cos();
+        let (s, c) = mp_math::sin_cos(TAU * 0.381966 * f64::from(i));
         let spread = 0.12 + 0.028 * f64::from(i);
         let height = 0.95 - 0.04 * f64::from(i);
         let line: Vec<_> = (0..=9)
@@ -213,7 +213,7 @@ pub(super) fn bath() -> TriMesh {
     );
     let long = mapped(&round, |p| [2.0 * p.x, p.y, p.z]);
     let arch = |i: u32| {
-        let (s, c) = (std::f64::consts::PI * f64::from(i) / 12.0).sin_cos();
+        let (s, c) = mp_math::sin_cos(std::f64::consts::PI * f64::from(i) / 12.0);
         Point3::new(0.72 - 0.09 * (1.0 - c), 0.0, 0.68 + 0.09 * s)
     };
     let spout: Vec<_> = std::iter::once(Point3::new(0.72, 0.0, 0.45)).chain((0..=12).map(arch)).collect();
@@ -312,7 +312,7 @@ pub(super) fn counter() -> TriMesh {
     }
     let line: Vec<_> = (0..=12)
         .map(|i| {
-            let (s, c) = (FRAC_PI_2 * 2.0 * f64::from(i) / 12.0).sin_cos();
+            let (s, c) = mp_math::sin_cos(FRAC_PI_2 * 2.0 * f64::from(i) / 12.0);
             Point3::new(0.6, 0.2 - 0.1 * (1.0 - c), 1.1 + 0.1 * s)
         })
         .collect();

@@ -78,7 +78,7 @@ fn outline(edge: f64) -> Vec<Point2<f64>> {
     }));
     let tail = 16;
     line.extend((1..tail).map(|i| {
-        let (s, c) = (FRAC_PI_2 * 2.0 * f64::from(i) / f64::from(tail)).sin_cos();
+        let (s, c) = mp_math::sin_cos(FRAC_PI_2 * 2.0 * f64::from(i) / f64::from(tail));
         Point2::new(-0.34 + (0.36 + edge) * c, 0.5 + (0.26 + edge) * s)
     }));
     line.push(Point2::new(-0.7 - edge, 0.5));

@@ -130,7 +130,7 @@ pub(super) fn lathe(profile: &[[f64; 2]], sides: u32) -> TriMesh {
             vertices.push(Point3::new(0.0, 0.0, z));
         } else {
             vertices.extend((0..sides).map(|i| {
-                let (s, c) = (TAU * f64::from(i) / f64::from(sides)).sin_cos();
+                let (s, c) = mp_math::sin_cos(TAU * f64::from(i) / f64::from(sides));
                 Point3::new(r * c, r * s, z)
             }));
         }
@@ -163,7 +163,7 @@ pub(super) fn ball(radius: f64, sides: u32, rows: u32) -> TriMesh {
             0 => [0.0, -radius],
             i if i == rows => [0.0, radius],
             i => {
-                let (s, c) = (PI * f64::from(i) / f64::from(rows) - FRAC_PI_2).sin_cos();
+                let (s, c) = mp_math::sin_cos(PI * f64::from(i) / f64::from(rows) - FRAC_PI_2);
                 [radius * c, radius * s]
             }
         })
@@ -188,7 +188,7 @@ pub(super) fn tube(
         side = (side - t * t.dot(&side)).normalize();
         let other = t.cross(&side);
         vertices.extend((0..sides).map(|k| {
-            let (s, c) = (TAU * f64::from(k) / f64::from(sides)).sin_cos();
+            let (s, c) = mp_math::sin_cos(TAU * f64::from(k) / f64::from(sides));
             p + (side * c + other * s) * radius(i)
         }));
     }
@@ -226,10 +226,10 @@ pub(super) fn cushion(half: [f64; 3], radius: f64, m: u32) -> TriMesh {
         );
     }
     for &(latitude, sign) in &rows {
-        let (up, out) = latitude.sin_cos();
+        let (up, out) = mp_math::sin_cos(latitude);
         for q in 0..4 {
             for i in 0..=m {
-                let (s, c) = (FRAC_PI_2 * (f64::from(q) + f64::from(i) / f64::from(m))).sin_cos();
+                let (s, c) = mp_math::sin_cos(FRAC_PI_2 * (f64::from(q) + f64::from(i) / f64::from(m)));
                 vertices.push(Point3::new(
                     corner(q)[0] * core[0] + radius * out * c,
                     corner(q)[1] * core[1] + radius * out * s,

@@ -178,7 +178,7 @@ fn the_wrench_must_shut_to_pass_and_open_to_arrive() {
     for i in 0..40_000 {
         let mut near = |middle: f64, off: f64| middle + off * (2.0 * rng.unit() - 1.0);
         let (back, over) = (PI * f64::from(i & 1), PI * f64::from((i >> 1) & 1));
-        let place = [near(-0.1 * back.cos(), 0.07), near(0.0, 0.2), near(0.0, 0.1)];
+        let place = [near(-0.1 * mp_math::cos(back), 0.07), near(0.0, 0.2), near(0.0, 0.1)];
         let row = [place, [near(back, 0.35), near(0.0, 0.35), near(over, 0.6)]].concat();
         for (free, width) in free.iter_mut().zip([shut, wide]) {
             *free += usize::from(checker.is_valid(&with_jaw(&row, width)));

@@ -208,7 +208,7 @@ fn the_local_planner_keeps_the_contract() {
 fn the_pace_follows_the_field() {
     let space = Rn::<2>::new([-1.0; 2], [1.0; 2]).unwrap();
     let path = Path::straight(vec![Vector2::new(-1.0, 0.0), Vector2::new(1.0, 0.0)]);
-    let bed = |x: f64| 0.03 * (0.5 * std::f64::consts::PI * x).cos();
+    let bed = |x: f64| 0.03 * mp_math::cos(0.5 * std::f64::consts::PI * x);
     for width in [0.05, 0.01, 0.005] {
         let mut field = |q: &Vector2<f64>, gradient: &mut [f64]| {
             let off = (q.y - bed(q.x)) / width;

@@ -20,7 +20,7 @@ fn straightens<C: Space>(space: &C, seed: u64) {
     let mut curve = straight.clone();
     let n = curve.len();
     for (i, q) in curve[1..n - 1].iter_mut().enumerate() {
-        let bump = 0.3 * (std::f64::consts::PI * (i + 1) as f64 / (n - 1) as f64).sin();
+        let bump = 0.3 * mp_math::sin(std::f64::consts::PI * (i + 1) as f64 / (n - 1) as f64);
         let velocity: Vec<f64> = (0..space.dim()).map(|k| if k % 2 == 0 { bump } else { -bump }).collect();
         let moved = space.moved(q, &velocity, 1.0).unwrap();
         if space.contains(&moved) {
@@ -116,7 +116,7 @@ fn a_step_is_that_of_a_dense_solve() {
         1 => -2.0,
         _ => 0.0,
     });
-    let (a, b) = (params.pace * params.membrane / (h * h), params.pace * params.plate / h.powi(4));
+    let (a, b) = (params.pace * params.membrane / (h * h), params.pace * params.plate / mp_math::powi(h, 4));
     let inner = second.columns(1, n - 1).into_owned();
     let stiff = -&inner * a + inner.transpose() * &inner * b;
     for k in 0..2 {

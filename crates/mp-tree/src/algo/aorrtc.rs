@@ -101,7 +101,7 @@ fn nearest_within<C: Space, E, Se: Selector<C>>(
     loop {
         selector.k_nearest(space, tree.states(), q, k, &mut hits);
         let fit = hits.iter().filter(|hit| tree.cost(hit.id) + hit.distance <= bound);
-        let both = fit.map(|hit| (hit.distance.hypot(bound - tree.cost(hit.id)), hit.id));
+        let both = fit.map(|hit| (mp_math::hypot(hit.distance, bound - tree.cost(hit.id)), hit.id));
         let best = both.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let farthest = hits.last().map_or(f64::INFINITY, |hit| hit.distance);
         // Nodes not seen yet are at least that far away in states alone.

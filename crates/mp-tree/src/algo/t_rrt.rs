@@ -130,7 +130,7 @@ pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<
     let mut gradient = vec![0.0; problem.space().dim()];
     let cost = move |q: &T::State| {
         let clearance = field.clearance_gradient(q, range, &mut gradient);
-        (1.0 - (clearance / range).clamp(0.0, 1.0)).powi(2)
+        mp_math::powi(1.0 - (clearance / range).clamp(0.0, 1.0), 2)
     };
     let default = Temperature::default();
     let with = Temperature {
@@ -233,9 +233,9 @@ impl<F> Transition<F> {
             self.seen = [self.seen[0].min(cost), self.seen[1].max(cost)];
         }
         let up = (to - from) / (self.seen[1] - self.seen[0]);
-        let passes = rng.random::<f64>() < (-up / self.temperature).exp();
+        let passes = rng.random::<f64>() < mp_math::exp(-up / self.temperature);
         if passes {
-            self.temperature /= self.with.alpha.powf(up);
+            self.temperature /= mp_math::powf(self.with.alpha, up);
         } else if self.fails >= self.with.fails {
             (self.temperature, self.fails) = (self.temperature * self.with.alpha, 0);
         } else {

@@ -136,7 +136,7 @@ impl<S: Clone> UtilityGuided<S> {
         let mut free = (f64::from(past.grown) + 1.0) / (f64::from(past.tried) + 2.0);
         for failed in &past.failed {
             let off = space.distance(&end, failed) / (0.25 * step);
-            free *= 1.0 - (-0.5 * off * off).exp();
+            free *= 1.0 - mp_math::exp(-0.5 * off * off);
         }
         let known = if drawn { f64::from(past.tried) + 1.0 } else { 1.0 };
         Expansion { from, toward, end, utility: free * length / step / known }

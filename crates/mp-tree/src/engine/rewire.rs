@@ -39,11 +39,11 @@ impl Near {
         let (n, d) = (points.len() as f64 + 1.0, space.dim() as f64);
         match self {
             Self::KNearest { factor } => {
-                let k = (factor * std::f64::consts::E * (1.0 + 1.0 / d) * n.ln()).ceil();
+                let k = (factor * std::f64::consts::E * (1.0 + 1.0 / d) * mp_math::ln(n)).ceil();
                 selector.k_nearest(space, points, q, k as usize, out);
             }
             Self::Radius { gamma } => {
-                let radius = (gamma * (n.ln() / n).powf(1.0 / d)).min(step);
+                let radius = (gamma * mp_math::powf(mp_math::ln(n) / n, 1.0 / d)).min(step);
                 selector.near(space, points, q, radius, out);
             }
         }

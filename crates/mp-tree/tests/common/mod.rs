@@ -15,7 +15,7 @@ impl<const N: usize> Boxes<N> {
     /// Distance from a point to the nearest box.
     pub(crate) fn distance(&self, q: &SVector<f64, N>) -> f64 {
         let to_box = |(low, high): &([f64; N], [f64; N])| {
-            (0..N).map(|i| (low[i] - q[i]).max(q[i] - high[i]).max(0.0).powi(2)).sum::<f64>().sqrt()
+            (0..N).map(|i| mp_math::powi((low[i] - q[i]).max(q[i] - high[i]).max(0.0), 2)).sum::<f64>().sqrt()
         };
         self.0.iter().map(to_box).fold(f64::INFINITY, f64::min)
     }
@@ -144,7 +144,7 @@ pub(crate) struct Rod {
 
 impl Rod {
     fn centers(&self, q: &Se2State) -> [Vector2<f64>; 5] {
-        let (s, c) = q.angle.sin_cos();
+        let (s, c) = mp_math::sin_cos(q.angle);
         [-1.0, -0.5, 0.0, 0.5, 1.0].map(|k| q.translation + Vector2::new(c, s) * (k * self.half_length))
     }
 }
@@ -183,7 +183,7 @@ impl<const N: usize> Arm<N> {
         let mut joints = vec![at];
         for turn in q.iter() {
             angle += turn;
-            at += Vector2::new(angle.cos(), angle.sin()) * self.link;
+            at += Vector2::new(mp_math::cos(angle), mp_math::sin(angle)) * self.link;
             joints.push(at);
         }
         joints

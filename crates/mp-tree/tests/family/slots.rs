@@ -175,7 +175,7 @@ const TURNS: [f64; 3] = [-0.4, 0.0, 0.4];
 
 fn drive(from: &Se2State, turn: f64, part: f64) -> Se2State {
     let half = from.angle + 0.5 * turn * part;
-    let t = from.translation + Vector2::new(half.cos(), half.sin()) * (DRIVE * part);
+    let t = from.translation + Vector2::new(mp_math::cos(half), mp_math::sin(half)) * (DRIVE * part);
     Se2State::new(t.x, t.y, from.angle + turn * part)
 }
 

@@ -10,7 +10,7 @@ type Point = Vector2<f64>;
 
 /// A hill in the middle, on a slope.
 fn hill(q: &Point) -> f64 {
-    1.0 + q.x + 20.0 * (-((q - Point::new(0.5, 0.5)).norm() / 0.15).powi(2)).exp()
+    1.0 + q.x + 20.0 * mp_math::exp(-mp_math::powi((q - Point::new(0.5, 0.5)).norm() / 0.15, 2))
 }
 
 /// The mean cost along a path, and its mechanical work: the sum of what it climbs.
@@ -64,7 +64,7 @@ fn it_keeps_away_from_obstacles() {
     let walls = [(-1.0, 0.26), (0.34, 0.5), (0.9, 2.0)];
     let boxes = Boxes(walls.map(|(low, high)| ([0.45, low], [0.55, high])).to_vec());
     let settings = Settings::parse(["step=0.05"]).unwrap();
-    let clearance = |q: &Point| (1.0 - (boxes.distance(q) / (0.1 * space.extent())).min(1.0)).powi(2);
+    let clearance = |q: &Point| mp_math::powi(1.0 - (boxes.distance(q) / (0.1 * space.extent())).min(1.0), 2);
     let [mut ours, mut plain] = [0.0; 2];
     for seed in 0..20 {
         for (name, sum) in [("t-rrt", &mut ours), ("rrt", &mut plain)] {

@@ -127,7 +127,7 @@ mod tests {
         for v in [0.0, 1.0, -3.0, 0.1, 1e-310, -1e300, 5e-324] {
             let (m, e) = parts(v);
             let half = e / 2;
-            assert_eq!(m as f64 * 2.0_f64.powi(half) * 2.0_f64.powi(e - half), v);
+            assert_eq!(m as f64 * mp_math::powi(2.0, half) * mp_math::powi(2.0, e - half), v);
         }
         assert_eq!(parts(-12.0), (-3, 2));
     }

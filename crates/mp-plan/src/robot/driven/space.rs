@@ -46,7 +46,7 @@ impl<C: Space<State: StateVector>> DrivenSpace<C> {
         if from.velocity.is_empty() {
             of_position
         } else {
-            of_position.hypot(self.weight * of_velocity.sqrt())
+            mp_math::hypot(of_position, self.weight * of_velocity.sqrt())
         }
     }
 
@@ -75,7 +75,7 @@ impl<C: Space<State: StateVector>> Space for DrivenSpace<C> {
     }
     fn extent(&self) -> f64 {
         let extent = self.positions.extent();
-        if self.system.velocities == 0 { extent } else { extent.hypot(extent) }
+        if self.system.velocities == 0 { extent } else { mp_math::hypot(extent, extent) }
     }
     fn interpolate_into(&self, from: &DVector<f64>, to: &DVector<f64>, t: f64, out: &mut DVector<f64>) {
         let ends = [from, to].map(|q| self.parts(q));

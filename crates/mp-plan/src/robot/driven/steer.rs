@@ -37,14 +37,14 @@ impl System {
             mp_io::Drive::Car { speed, wheelbase, steering, reverse } => {
                 let ((a, _), (b, _)) = (self.pose(&from.q)?, self.pose(&to.q)?);
                 let curve = if *reverse { reeds_shepp } else { dubins };
-                let parts = curve(&a, &b, wheelbase / steering.tan()).into_iter();
+                let parts = curve(&a, &b, wheelbase / mp_math::tan(*steering)).into_iter();
                 let input = |turn: f64, way: f64| vec![speed.copysign(way), steering * turn];
                 parts.map(|part| (input(part.turn, part.length), part.length.abs() / speed)).collect()
             }
             mp_io::Drive::Unicycle { speed, turning, reverse } => {
                 let ((a, _), (b, _)) = (self.pose(&from.q)?, self.pose(&to.q)?);
                 let way = b.translation - a.translation;
-                let ahead = if way.norm() > 0.0 { way.y.atan2(way.x) } else { a.angle };
+                let ahead = if way.norm() > 0.0 { mp_math::atan2(way.y, way.x) } else { a.angle };
                 let turn = |angle: f64| (vec![0.0, turning.copysign(angle)], angle.abs() / turning);
                 let driven = |heading: f64, speed: f64| {
                     let drive = (vec![speed, 0.0], way.norm() / speed.abs());
@@ -109,7 +109,7 @@ impl System {
             }
             None
         };
-        let tried = (1..=TIMES).map(|i| most * 2.0_f64.powf(0.25 * f64::from(i - TIMES)));
+        let tried = (1..=TIMES).map(|i| most * mp_math::powf(2.0, 0.25 * f64::from(i - TIMES)));
         let (mut low, mut best) = (0.0, None);
         for time in tried {
             if let Some(held) = in_time(time) {

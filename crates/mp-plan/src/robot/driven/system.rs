@@ -119,7 +119,7 @@ impl System {
     pub(super) fn greatest_rates(drive: &Drive) -> Vec<f64> {
         match drive {
             Drive::Car { speed, wheelbase, steering, .. } => {
-                vec![*speed, 0.0, speed * steering.tan() / wheelbase]
+                vec![*speed, 0.0, speed * mp_math::tan(*steering) / wheelbase]
             }
             Drive::Unicycle { speed, turning, .. } => vec![*speed, 0.0, *turning],
             Drive::Velocities { speeds } | Drive::Accelerations { speeds, .. } => speeds.clone(),
@@ -132,7 +132,7 @@ impl System {
         let input = &to.input;
         match &self.drive {
             Drive::Car { wheelbase, .. } => {
-                vec![input[0].abs(), 0.0, (input[0] * input[1].tan() / wheelbase).abs()]
+                vec![input[0].abs(), 0.0, (input[0] * mp_math::tan(input[1]) / wheelbase).abs()]
             }
             Drive::Unicycle { .. } => vec![input[0].abs(), 0.0, input[1].abs()],
             Drive::Velocities { .. } => input.iter().map(|u| u.abs()).collect(),
@@ -181,7 +181,7 @@ impl System {
     pub(super) fn choices(&self, directions: usize, levels: u32) -> Vec<Vec<f64>> {
         let scaled = |inputs: Vec<Vec<f64>>, scale: fn(&mut Vec<f64>, f64)| {
             let level = |level: u32| {
-                let factor = 0.25_f64.powi(level.min(99) as i32);
+                let factor = mp_math::powi(0.25, level.min(99) as i32);
                 let mut inputs = inputs.clone();
                 inputs.iter_mut().for_each(|input| scale(input, factor));
                 inputs
