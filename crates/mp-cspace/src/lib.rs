@@ -112,9 +112,8 @@ pub use space::{
     AsVectors, Coordinates, Factored, FloatingJoints, JointRange, Joints, Product, Rn, Se2, Se2State, Se3,
     So3, Space, TrueMetric,
 };
-pub use stop::{
-    Cancel, Clock, Deadline, Iterations, Motions, Nodes, Or, Progress, SparseClock, Stop, StopReason,
-};
+pub use mp_stop::{Cancel, Clock, Interrupt, SparseClock, StopReason};
+pub use stop::{Deadline, Iterations, Motions, Nodes, Or, Progress, Stop};
 pub use validity::{
     Clearance, IntervalClearance, KnownFree, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
     Validity,
