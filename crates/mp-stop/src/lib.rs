@@ -23,7 +23,7 @@
 //! ```
 
 use std::fmt;
-use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
@@ -162,7 +162,8 @@ pub struct Interrupt {
 #[derive(Debug)]
 struct Shared {
     cancel: Cancel,
-    at: Option<Duration>,
+    /// The deadline in nanoseconds of the clock, if there is a clock.
+    at: AtomicU64,
     /// 0, or why an answer was to end: see [`Interrupt::raised`].
     told: AtomicU8,
 }
@@ -181,17 +182,25 @@ impl Interrupt {
     /// Ends work when `cancel` is raised.
     #[must_use]
     pub fn new(cancel: Cancel) -> Self {
-        Self::made(cancel, None, None)
+        Self::made(cancel, Duration::MAX, None)
     }
 
     /// Ends work when `cancel` is raised, or at the time `at` of `clock`.
     #[must_use]
     pub fn by(cancel: Cancel, clock: Clock, at: Duration) -> Self {
-        Self::made(cancel, Some(at), Some(SparseClock::new(clock)))
+        Self::made(cancel, at, Some(SparseClock::new(clock)))
     }
 
-    fn made(cancel: Cancel, at: Option<Duration>, clock: Option<SparseClock>) -> Self {
-        Self { shared: Some(Arc::new(Shared { cancel, at, told: AtomicU8::new(0) })), clock }
+    fn made(cancel: Cancel, at: Duration, clock: Option<SparseClock>) -> Self {
+        let (at, told) = (AtomicU64::new(nanoseconds(at)), AtomicU8::new(0));
+        Self { shared: Some(Arc::new(Shared { cancel, at, told })), clock }
+    }
+
+    /// Moves the deadline of all clones, if there is one: for work with pauses that do not count.
+    pub fn move_deadline(&self, at: Duration) {
+        if let Some(shared) = &self.shared {
+            shared.at.store(nanoseconds(at), Ordering::Relaxed);
+        }
     }
 
     /// Whether to end now.
@@ -204,9 +213,8 @@ impl Interrupt {
         let why = if shared.cancel.is_raised() {
             CANCELLED
         } else {
-            let now = self.clock.as_mut().and_then(SparseClock::read);
-            match (now, shared.at) {
-                (Some(now), Some(at)) if now >= at => DEADLINE,
+            match self.clock.as_mut().and_then(SparseClock::read) {
+                Some(now) if nanoseconds(now) >= shared.at.load(Ordering::Relaxed) => DEADLINE,
                 _ => return false,
             }
         };
@@ -224,6 +232,11 @@ impl Interrupt {
             _ => None,
         }
     }
+}
+
+/// As many as fit: 584 years.
+fn nanoseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }
 
 #[cfg(test)]
