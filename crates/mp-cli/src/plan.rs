@@ -2,7 +2,7 @@
 
 use crate::cli::{Drawing, Plan};
 use crate::files::{Files, numbered};
-use crate::input::{is_standard, scene};
+use crate::input::{is_standard, scene_until};
 use crate::interrupt;
 use crate::output::{Claims, note, print, print_json, write};
 use crate::picture::{Picture, Shown, Watched};
@@ -10,8 +10,8 @@ use crate::progress::Line;
 use crate::request::{request, request_for};
 use crate::text::{caption, summary, table};
 use mp_plan::{
-    Cancel, Control, Error, FilmKind, Finish, PathFileKind, PathRows, Report, Request, Runs, Scene,
-    in_parallel, make_folder,
+    Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Report, Request, Runs,
+    Scene, in_parallel, make_folder,
 };
 use mp_view::GrownTrees;
 use std::path::{Path, PathBuf};
@@ -51,7 +51,16 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
             return Err(Error::new("--out -: there is a file for each route").help("name a file"));
         }
     }
-    let scenes = named.iter().map(|given| scene(given)).collect::<Result<Vec<_>, _>>()?;
+    // Each scene may take the whole time.
+    let load = |given: &PathBuf| {
+        let (cancel, clock) = (cancel.clone(), mp_plan::Clock::default());
+        let interrupt = match request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok()) {
+            None => Interrupt::new(cancel),
+            Some(time) => Interrupt::by(cancel, clock, clock.now().saturating_add(time)),
+        };
+        scene_until(given, &interrupt)
+    };
+    let scenes = named.iter().map(load).collect::<Result<Vec<_>, _>>()?;
     let requests =
         scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
     let jobs: Vec<(usize, u64)> =

@@ -1,8 +1,8 @@
 //! How the edges of trees and roadmaps are made and checked.
 
 use crate::{
-    BoxedVerify, Direction, Extension, Goals, Interrupt, LocalPlanner, Motion, Problem, ProblemParts, Reach, Space,
-    Verify,
+    BoxedVerify, Direction, Extension, Goals, Interrupt, LocalPlanner, Motion, Problem, ProblemParts, Reach,
+    Space, Verify,
 };
 use std::fmt;
 

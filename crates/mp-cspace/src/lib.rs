@@ -96,6 +96,7 @@ pub use metric::{
     Euclidean, Manhattan, MaxDisplacement, Metric, MetricFn, ScaledEuclidean, SweptVolume, WithMetric,
 };
 pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
+pub use mp_stop::{Cancel, Clock, Interrupt, SparseClock, StopReason};
 pub use nn::{DefaultNn, Embed, Hit, KdTree, Linear, MetricTree, NearestNeighbors, NodeId};
 pub use numbers::StateVector;
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
@@ -112,7 +113,6 @@ pub use space::{
     AsVectors, Coordinates, Factored, FloatingJoints, JointRange, Joints, Product, Rn, Se2, Se2State, Se3,
     So3, Space, TrueMetric,
 };
-pub use mp_stop::{Cancel, Clock, Interrupt, SparseClock, StopReason};
 pub use stop::{Deadline, Iterations, Motions, Nodes, Or, Progress, Stop};
 pub use validity::{
     Clearance, IntervalClearance, KnownFree, MotionCheck, MotionClearance, MotionInterval, MotionValidity,

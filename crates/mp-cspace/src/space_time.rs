@@ -2,7 +2,8 @@
 
 use crate::space::lerp;
 use crate::{
-    Factored, Goal, Interrupt, KdTree, KnownFree, MotionCheck, MotionValidity, Rng, Sampler, Space, SpaceError,
+    Factored, Goal, Interrupt, KdTree, KnownFree, MotionCheck, MotionValidity, Rng, Sampler, Space,
+    SpaceError,
     error::weight,
     nn::{Embed, Layout},
 };

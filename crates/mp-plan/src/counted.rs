@@ -2,7 +2,8 @@
 
 use crate::Queries;
 use mp_cspace::{
-    Clearance, Interrupt, IntervalClearance, MotionClearance, MotionInterval, Progress, Rng, Stop, StopReason, Validity,
+    Clearance, Interrupt, IntervalClearance, MotionClearance, MotionInterval, Progress, Rng, Stop,
+    StopReason, Validity,
     obstacles::{BodyFeatures, ClearanceGradient, ObstacleGeometry, ObstacleHints, PointOf},
 };
 use nalgebra::Vector3;

@@ -3,6 +3,7 @@
 
 use crate::robot::{DrivenScene, PlanarBody, PlanarScene, RigidScene, RigidSpace, greatest_speed};
 use crate::{Error, RobotKind, Scene};
+use mp_cspace::Interrupt;
 use mp_io::{PlanarProblem, PlanarShape, RigidProblem, RigidTask, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 
@@ -74,10 +75,18 @@ impl Scene {
     /// # Errors
     /// When world, robot or bounds are not valid.
     pub fn from_world(problem: PlanarProblem) -> Result<Self, Error> {
+        Self::from_world_until(problem, &Interrupt::never())
+    }
+
+    /// As [`from_world`](Self::from_world), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`from_world`](Self::from_world), and when it was told to end.
+    pub fn from_world_until(problem: PlanarProblem, interrupt: &Interrupt) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %problem.name).entered();
         match problem.file.robot {
-            PlanarShape::Disc(_) => world(problem, disc),
-            PlanarShape::Polygon(_) => world::<PolygonRobot>(problem, plane),
+            PlanarShape::Disc(_) => world(problem, disc, interrupt),
+            PlanarShape::Polygon(_) => world::<PolygonRobot>(problem, plane, interrupt),
         }
     }
 }
@@ -110,9 +119,10 @@ fn body<M: RigidSpace>(
 fn world<B: PlanarBody>(
     problem: PlanarProblem,
     still: fn(PlanarScene<B>) -> Result<Scene, Error>,
+    interrupt: &Interrupt,
 ) -> Result<Scene, Error> {
     let (moves, driven) = (!problem.file.moving.is_empty(), problem.file.driven.clone());
-    let scene = PlanarScene::<B>::new(problem)?;
+    let scene = PlanarScene::<B>::new_until(problem, interrupt)?;
     Ok(match driven {
         Some(driven) if moves => of_kind!("driven-moving", scene.driven_among_moving(&driven)?),
         Some(driven) => of_kind!("driven", scene.driven(&driven)?),

@@ -130,6 +130,6 @@ pub use watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
 pub use mp_render::{Mode, View};
 
 pub use mp_cspace::{
-    Cancel, Clock, Progress,
+    Cancel, Clock, Interrupt, Progress, StopReason,
     registry::{Parameter, PlannerInfo},
 };

@@ -75,7 +75,9 @@ pub(crate) fn reported<K: RobotKind>(
         Outcome::Stopped(reason) => {
             let by = match reason {
                 _ if why.is_some() => StoppedBy::Unanswered,
-                StopReason::Deadline | StopReason::Cancelled if found.found_unverified => StoppedBy::Unverified,
+                StopReason::Deadline | StopReason::Cancelled if found.found_unverified => {
+                    StoppedBy::Unverified
+                }
                 reason => reason.into(),
             };
             (report.stopped_by, report.why) = (Some(by), why.or(Some(by.to_string())));

@@ -37,9 +37,8 @@ fn gradient<'k, K: RobotKind>(
     unused: &'k AtomicU64,
     interrupt: &Interrupt,
 ) -> Result<AnyGradient<'k, K::State>, Error> {
-    let knowledge = kind.obstacles(&|| {
-        Counted::new(kind.checker().clone(), unused).with_interrupt(interrupt.clone())
-    });
+    let knowledge =
+        kind.obstacles(&|| Counted::new(kind.checker().clone(), unused).with_interrupt(interrupt.clone()));
     knowledge.gradient.ok_or_else(|| {
         Error::new("this robot knows no clearance gradient, so its paths cannot be relaxed")
             .help("leave relaxing out: shortening needs none")

@@ -69,14 +69,22 @@ pub(crate) fn routes<K: RobotKind>(
         roadmap: None,
     };
     if listed.paths.is_empty() {
-        return Ok(vec![reported(kind, request, search(Outcome::Stopped(listed.ended)), None, control, None)?]);
+        return Ok(vec![reported(
+            kind,
+            request,
+            search(Outcome::Stopped(listed.ended)),
+            None,
+            control,
+            None,
+        )?]);
     }
     let mut reports: Vec<Report> = Vec::new();
     let began = control.clock.now();
     for (i, path) in listed.paths.iter().enumerate() {
         // Each path has an equal share of the time left.
         let spent = listed.time + control.clock.now().saturating_sub(began);
-        let share = prepared.time_left(control, 1.0, spent).map(|left| left / (listed.paths.len() - i) as u32);
+        let share =
+            prepared.time_left(control, 1.0, spent).map(|left| left / (listed.paths.len() - i) as u32);
         let found = || search(Outcome::Solved(path.clone()));
         let mut report = reported(kind, request, found(), None, control, share)?;
         // What shortening has brought together stays as it was found.
@@ -137,7 +145,12 @@ fn of_tree<K: RobotKind>(
     loop {
         let ended = prepared.watched(control, |stop, events| {
             loop {
-                let mut pausing = Pausing { stop: &mut *stop, pause: &mut Iterations(target), paused: false, whole: Progress::default() };
+                let mut pausing = Pausing {
+                    stop: &mut *stop,
+                    pause: &mut Iterations(target),
+                    paused: false,
+                    whole: Progress::default(),
+                };
                 match planner.solve(&mut rng, &mut pausing, events) {
                     // More steps close more cycles.
                     Outcome::Solved(_) => {}
@@ -189,7 +202,12 @@ fn of_roadmap<K: RobotKind>(
     loop {
         let (ended, paused) = with_checkpoints(&mut made, &mut file, |made, due| {
             prepared.watched(control, |stop, events| {
-                let mut pausing = Pausing { stop, pause: &mut Iterations(target), paused: false, whole: Progress::default() };
+                let mut pausing = Pausing {
+                    stop,
+                    pause: &mut Iterations(target),
+                    paused: false,
+                    whole: Progress::default(),
+                };
                 let reason = made.build(&mut rng, &mut (&mut pausing).or(due), events);
                 (reason, pausing.paused)
             })

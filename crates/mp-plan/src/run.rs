@@ -7,7 +7,7 @@ use crate::relax::relax_if_requested;
 use crate::roadmaps::{Due, GrowingFile, RoadmapPlanner, RoadmapState};
 use crate::search::Search;
 use crate::watch::Events;
-use crate::{Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
+use crate::{Control, Error, Finish, Report, Request, RobotKind, Stage, StoppedBy};
 use mp_cspace::erased::AnySpace;
 use mp_cspace::{Interrupt, Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
 use mp_tree::{TreeState, improve};
@@ -258,7 +258,8 @@ impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
             }
             None => Outcome::Stopped(ended_by.unwrap_or(StopReason::Cancelled)),
         };
-        let relaxing = control.clock.now().saturating_sub(began);
+        let relaxes = request.finish == Finish::Relax && matches!(outcome, Outcome::Solved(_));
+        let relaxing = if relaxes { control.clock.now().saturating_sub(began) } else { Duration::ZERO };
         let time = self.time + relaxing;
         let (map, roadmap) = match &mut self.made {
             None | Some(NamedPlanner::Tree(_)) => (None, None),
@@ -300,7 +301,8 @@ impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
 
     /// The counts after the last whole iteration.
     fn progress(&mut self) -> Progress {
-        self.whole.unwrap_or_else(|| self.made.as_mut().map(|made| made.planner().progress()).unwrap_or_default())
+        self.whole
+            .unwrap_or_else(|| self.made.as_mut().map(|made| made.planner().progress()).unwrap_or_default())
     }
 }
 

@@ -1,7 +1,9 @@
 //! Progress reports of a run, and how to stop it.
 
-use mp_cspace::{Cancel, Clock, Event, Interrupt, NodeId, Observer, Path, Progress, SparseClock, Stop, StopReason};
 use crate::Request;
+use mp_cspace::{
+    Cancel, Clock, Event, Interrupt, NodeId, Observer, Path, Progress, SparseClock, Stop, StopReason,
+};
 use std::time::Duration;
 
 /// The stages of a run.

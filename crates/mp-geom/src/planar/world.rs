@@ -2,8 +2,10 @@
 
 use super::cells::{CellKind, Cells};
 use super::edge::Edge;
+use super::polygon::closed;
 use super::tree::EdgeTree;
 use super::{Polygon, PolygonError};
+use mp_stop::Interrupt;
 use nalgebra::Point2;
 use thiserror::Error;
 
@@ -27,6 +29,9 @@ pub enum PlanarWorldError {
         /// How many there may be.
         max: usize,
     },
+    /// The work was told to end.
+    #[error("preparing the map was ended")]
+    Interrupted,
     /// A polygon is invalid.
     #[error(transparent)]
     Polygon(#[from] PolygonError),
@@ -89,9 +94,27 @@ impl PlanarWorld {
     /// # Errors
     /// When the walls are not finite or enclose nothing, or there are more than 2·10⁷ edges.
     pub fn new(polygons: Vec<Polygon>, walls: Option<[[f64; 2]; 2]>) -> Result<Self, PlanarWorldError> {
+        Self::new_until(polygons, walls, &Interrupt::never())
+    }
+
+    /// As [`new`](Self::new), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and [`Interrupted`](PlanarWorldError::Interrupted) when it was told to end.
+    pub fn new_until(
+        polygons: Vec<Polygon>,
+        walls: Option<[[f64; 2]; 2]>,
+        interrupt: &Interrupt,
+    ) -> Result<Self, PlanarWorldError> {
+        let mut interrupt = interrupt.clone();
         let mut edges = Vec::new();
         for (i, polygon) in polygons.iter().enumerate() {
-            edges.extend(polygon.edges().map(|e| Edge::new(e, i as u32)));
+            for ring in polygon.rings() {
+                if interrupt.ask() {
+                    return Err(PlanarWorldError::Interrupted);
+                }
+                edges.extend(closed(ring).map(|e| Edge::new(e, i as u32)));
+            }
             if edges.len() > MAX_EDGES {
                 return Err(PlanarWorldError::TooManyEdges { edges: edges.len(), max: MAX_EDGES });
             }
@@ -106,10 +129,13 @@ impl PlanarWorld {
             let [l, h] = edge.bounds();
             (low, high) = (low.inf(&l), high.sup(&h));
         }
-        let tree = EdgeTree::new(&edges);
+        let tree = EdgeTree::new(&edges, &mut interrupt);
         let positive = |v: f64| v > 0.0 && v.is_finite();
         let has_area = positive(high.x - low.x) && positive(high.y - low.y);
-        let cells = has_area.then(|| Cells::new([low, high], &edges, solid, &tree));
+        let cells = has_area.then(|| Cells::new([low, high], &edges, solid, &tree, &mut interrupt));
+        if interrupt.ask() {
+            return Err(PlanarWorldError::Interrupted);
+        }
         let mut corners: Vec<Point2<f64>> = polygons.iter().flat_map(Polygon::rings).map(|r| r[0]).collect();
         corners.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
         let walls = walls.map(|w| w.map(Point2::from));

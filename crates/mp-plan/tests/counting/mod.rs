@@ -2,8 +2,8 @@
 
 use mp_cspace::nn::Linear;
 use mp_cspace::{
-    Clearance, DefaultNn, Factored, Interrupt, JointRange, Joints, MotionCheck, MotionClearance, MotionValidity, Rng,
-    Space, Validity, nn::Layout,
+    Clearance, DefaultNn, Factored, Interrupt, JointRange, Joints, MotionCheck, MotionClearance,
+    MotionValidity, Rng, Space, Validity, nn::Layout,
 };
 use mp_plan::{Body, BodyShape, Column, Error, Measured, MetricName, Queries, RobotKind, Touch};
 use nalgebra::{DVector, Isometry3, Point2};
@@ -124,8 +124,9 @@ pub(crate) struct Steps<'c>(&'c Counting, Interrupt);
 impl MotionValidity<State> for Steps<'_> {
     fn check_motion(&mut self, a: &State, b: &State) -> MotionCheck {
         let mut least = f64::INFINITY;
-        for i in 0..=2000 {
-            let at = f64::from(i) / 2000.0;
+        let parts = if a == b { 1 } else { 200 };
+        for i in 0..=parts {
+            let at = f64::from(i) / f64::from(parts);
             if self.1.ask() {
                 return MotionCheck::Unproven { at };
             }

@@ -3,8 +3,8 @@
 use super::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
 use crate::{CheckCounters, Trajectory};
 use mp_cspace::{
-    Clearance, Interrupt, MotionCheck, MotionClearance, MotionValidity, ParameterError, Se2State, Space, Validity,
-    angle::angle_difference, space_time::SpaceTime,
+    Clearance, Interrupt, MotionCheck, MotionClearance, MotionValidity, ParameterError, Se2State, Space,
+    Validity, angle::angle_difference, space_time::SpaceTime,
 };
 use mp_geom::planar::{PlanarWorld, Polygon};
 use nalgebra::{Isometry2, Isometry3, Vector2};

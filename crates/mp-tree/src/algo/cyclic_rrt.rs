@@ -65,8 +65,8 @@ use crate::{
 };
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
-    Direction, Extension, Hit, Interrupt, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner, Progress,
-    Reach, Rng, Space, Uniform,
+    Direction, Extension, Hit, Interrupt, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
+    Progress, Reach, Rng, Space, Uniform,
 };
 use std::collections::BTreeMap;
 
@@ -308,7 +308,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
             let mut open: Vec<NodeId> = (0..tree.len() as NodeId).collect();
             while found.len() < k {
                 let via = open.iter().copied();
-                let Some(route) = shortest_via(arcs, [0, tree.len() as u32], apart, via, interrupt) else { break };
+                let Some(route) = shortest_via(arcs, [0, tree.len() as u32], apart, via, interrupt) else {
+                    break;
+                };
                 let states: Vec<&C::State> =
                     route.1[..route.1.len() - 1].iter().map(|&id| tree.state(id)).collect();
                 let between = states.windows(2).flat_map(|pair| {

@@ -64,8 +64,8 @@ use crate::{
     Problem, Purpose, SearchTree, Selector, Tree, Tuning, Workers,
 };
 use mp_cspace::{
-    DefaultNn, Direction, Event, Extension, Interrupt, LocalPlanner, NearestNeighbors, NodeId, Observer, Path,
-    Planner, ProblemParts, Progress, Reach, Rng, Space,
+    DefaultNn, Direction, Event, Extension, Interrupt, LocalPlanner, NearestNeighbors, NodeId, Observer,
+    Path, Planner, ProblemParts, Progress, Reach, Rng, Space,
 };
 use rand::RngExt;
 use std::any::Any;

@@ -155,8 +155,7 @@ where
     let spec = PlannerSpec::new(name)?;
     spec.check(settings)?;
     let (settings, workers) = (settings.clone(), workers.clone());
-    let factory =
-        Factory { make: Arc::new(make), index, settings, workers, spec, interrupt: Arc::default() };
+    let factory = Factory { make: Arc::new(make), index, settings, workers, spec, interrupt: Arc::default() };
     factory.planner(0)
 }
 
