@@ -43,15 +43,36 @@ impl Scene {
     /// # Errors
     /// When the bounds of the position are empty, or a mesh or pose is not valid.
     pub fn from_problem(problem: RigidProblem) -> Result<Self, Error> {
-        Self::of_problem(None, problem)
+        Self::from_problem_until(problem, &Interrupt::never())
+    }
+
+    /// As [`from_problem`](Self::from_problem), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`from_problem`](Self::from_problem), and when it was told to end.
+    pub fn from_problem_until(problem: RigidProblem, interrupt: &Interrupt) -> Result<Self, Error> {
+        Self::of_problem_until(None, problem, interrupt)
     }
 
     /// The scene of `problem`, which is an edited problem of the scene `before`: what did not change is shared with it.
     pub(crate) fn of_problem(before: Option<&Self>, problem: RigidProblem) -> Result<Self, Error> {
+        Self::of_problem_until(before, problem, &Interrupt::never())
+    }
+
+    fn of_problem_until(
+        before: Option<&Self>,
+        problem: RigidProblem,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %problem.name).entered();
         match problem.space {
-            SpaceKind::Se3 => space(RigidScene::after(before.and_then(Self::robot), problem)?),
-            SpaceKind::Se2 => plane(RigidScene::<Planar>::after(before.and_then(Self::robot), problem)?),
+            SpaceKind::Se3 => {
+                space(RigidScene::after_until(before.and_then(Self::robot), problem, interrupt)?)
+            }
+            SpaceKind::Se2 => {
+                let before = before.and_then(Self::robot);
+                plane(RigidScene::<Planar>::after_until(before, problem, interrupt)?)
+            }
         }
     }
 

@@ -47,7 +47,10 @@ impl Scene {
                 let mesh = |name: &str| mp_io::read_mesh_of(files, &folder.join(name));
                 Self::from_document(SceneDocument::load_from(files, file)?, &mesh).map_err(of)?
             }
-            None => Self::from_problem(RigidProblem::load_from(files, file)?).map_err(of)?,
+            None => {
+                let problem = RigidProblem::load_from(files, file)?;
+                Self::from_problem_until(problem, &files.interrupt()).map_err(of)?
+            }
         };
         tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
         let inputs = recording.read.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);

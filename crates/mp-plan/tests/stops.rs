@@ -165,3 +165,37 @@ fn an_iteration_cut_short_counts_for_nothing() {
     std::fs::remove_dir_all(&folder).unwrap();
     assert!(compared > 200 && begun > 150 && solved > 20 && maps > 10, "{compared} {begun} {solved} {maps}");
 }
+
+/// The time that this thread has worked.
+fn worked() -> Duration {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Duration::try_from(time).unwrap()
+}
+
+/// The same by the clock, on every shipped scene: `cargo test --release -p mp-plan --test stops -- --ignored --nocapture` prints how late
+/// runs of 0.3 s of processor time end, the latest first.
+#[test]
+#[ignore = "measures time, and takes minutes"]
+fn runs_end_within_50_ms_of_processor_time() {
+    let (time, mut late) = (0.3, Vec::new());
+    for name in Scene::shipped() {
+        let scene = Scene::find(name).unwrap();
+        for request in requests() {
+            let began = worked();
+            let mut control = Control { clock: Clock::new(worked), ..Control::default() };
+            let Ok(report) = scene.plan_with(&request.clone().time(time), &mut control) else { continue };
+            let by = (worked() - began).as_secs_f64() - time;
+            let ended = report.stopped_by.map_or("solved", StoppedBy::word);
+            late.push((
+                by,
+                format!("{name} {} {:?}: {ended} {:?}", request.planner, request.settings, report.stages),
+            ));
+        }
+    }
+    late.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for (by, case) in late.iter().take(40) {
+        println!("{:7.1} ms  {case}", 1e3 * by);
+    }
+    println!("{} runs", late.len());
+    assert!(late[0].0 < 0.05, "{:.1} ms late: {}", 1e3 * late[0].0, late[0].1);
+}

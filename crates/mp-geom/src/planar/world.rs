@@ -429,4 +429,41 @@ mod tests {
             assert!(PlanarWorld::new(vec![], Some([[0.0, 0.0], [1.0, bad]])).is_err());
         }
     }
+
+    /// A world of many rings is given up at any question, and is the same as ever when it is not.
+    #[test]
+    fn a_world_ends_when_told_to() {
+        use mp_stop::{Cancel, Clock, Interrupt};
+        use std::sync::atomic::{AtomicU64, Ordering};
+        use std::time::Duration;
+        static READ: AtomicU64 = AtomicU64::new(0);
+        const STEP: Duration = Duration::from_millis(2);
+        let clock = Clock::new(|| STEP * READ.fetch_add(1, Ordering::SeqCst) as u32);
+        let square = |i: usize| {
+            let (x, y) = ((i % 200) as f64, (i / 200) as f64);
+            Polygon::rectangle([x, y], [x + 0.5 + (i % 7) as f64 * 0.05, y + 0.5]).unwrap()
+        };
+        let polygons: Vec<Polygon> = (0..20_000).map(square).collect();
+        let world = |at: u64| {
+            READ.store(0, Ordering::SeqCst);
+            let interrupt = Interrupt::by(Cancel::new(), clock, STEP * at as u32);
+            PlanarWorld::new_until(polygons.clone(), None, &interrupt)
+        };
+        let whole = world(u64::from(u32::MAX)).unwrap();
+        let questions = READ.load(Ordering::SeqCst);
+        assert!(questions > 40_000, "{questions}");
+        for part in 0..10 {
+            let at = 1 + part * (questions - 2) / 9;
+            assert_eq!(world(at).err(), Some(PlanarWorldError::Interrupted), "{at} of {questions}");
+            assert_eq!(READ.load(Ordering::SeqCst), at + 1, "the clock is read after the end");
+        }
+        let brute = |p: &Point2<f64>| {
+            let each = whole.edges.iter().map(|e| e.squared(p));
+            each.fold(f64::INFINITY, f64::min).sqrt()
+        };
+        for i in 0..200 {
+            let p = Point2::new(0.97 * f64::from(i), 0.49 * f64::from(i));
+            assert_eq!(whole.nearest(&p).unwrap().distance, brute(&p), "{p}");
+        }
+    }
 }
