@@ -173,11 +173,11 @@ fn worked() -> Duration {
 }
 
 /// The same by the clock, on every shipped scene: `cargo test --release -p mp-plan --test stops -- --ignored --nocapture` prints how late
-/// runs of 0.3 s of processor time end, the latest first.
+/// runs of 0.1 s of processor time end, the latest first.
 #[test]
 #[ignore = "measures time, and takes minutes"]
 fn runs_end_within_50_ms_of_processor_time() {
-    let (time, mut late) = (0.3, Vec::new());
+    let (time, mut late) = (0.1, Vec::new());
     for name in Scene::shipped() {
         let scene = Scene::find(name).unwrap();
         for request in requests() {
@@ -186,16 +186,18 @@ fn runs_end_within_50_ms_of_processor_time() {
             let Ok(report) = scene.plan_with(&request.clone().time(time), &mut control) else { continue };
             let by = (worked() - began).as_secs_f64() - time;
             let ended = report.stopped_by.map_or("solved", StoppedBy::word);
-            late.push((
-                by,
-                format!("{name} {} {:?}: {ended} {:?}", request.planner, request.settings, report.stages),
-            ));
+            let case =
+                format!("{name} {} {:?}: {ended} {:?}", request.planner, request.settings, report.stages);
+            if by > 0.02 {
+                println!("{:7.1} ms  {case}", 1e3 * by);
+            }
+            late.push((by, case));
         }
     }
     late.sort_by(|a, b| b.0.total_cmp(&a.0));
-    for (by, case) in late.iter().take(40) {
+    println!("{} runs, the latest:", late.len());
+    for (by, case) in late.iter().take(20) {
         println!("{:7.1} ms  {case}", 1e3 * by);
     }
-    println!("{} runs", late.len());
     assert!(late[0].0 < 0.05, "{:.1} ms late: {}", 1e3 * late[0].0, late[0].1);
 }
