@@ -25,6 +25,8 @@ pub struct Layout {
     pub(crate) groups: Vec<usize>,
     pub(crate) symmetries: Vec<Symmetry>,
     pub(crate) slack: f64,
+    /// Whether the distance is hardly more than its bound, for states that are near each other.
+    pub(crate) tight: bool,
 }
 
 /// A map of the coordinates that leaves the state unchanged.
@@ -40,7 +42,7 @@ impl Layout {
     /// `n` plain coordinates: ‖Δ‖₂.
     #[must_use]
     pub fn euclidean(n: usize) -> Self {
-        Self { groups: vec![n], symmetries: Vec::new(), slack: 0.0 }
+        Self { groups: vec![n], symmetries: Vec::new(), slack: 0.0, tight: true }
     }
 
     /// `n` coordinates of the given period, embedded in \[−period/2, period/2\]: the Euclidean norm
@@ -86,6 +88,7 @@ impl Layout {
         self.groups.extend(other.groups.iter().map(|end| end + shift));
         self.symmetries.extend(other.symmetries.iter().map(|s| s.shifted(shift)));
         self.slack += other.slack;
+        self.tight &= other.tight;
         self
     }
 
@@ -95,7 +98,9 @@ impl Layout {
     #[must_use]
     pub fn beside(self, other: Self) -> Self {
         let n = self.dim() + other.dim();
-        Self { groups: vec![n], ..self.plus(other) }
+        let single = self.groups.len() <= 1 && other.groups.len() <= 1;
+        let both = self.plus(other);
+        Self { groups: vec![n], tight: both.tight && single, ..both }
     }
 
     /// Allows the computed distance to fall short of the bound by `slack`, an absolute error. A
@@ -103,6 +108,14 @@ impl Layout {
     #[must_use]
     pub fn with_slack(mut self, slack: f64) -> Self {
         self.slack = slack;
+        self
+    }
+
+    /// Says that the distance may be much greater than its bound even for states that are near each other. Answers do
+    /// not depend on it, only how soon they are found.
+    #[must_use]
+    pub fn loose(mut self) -> Self {
+        self.tight = false;
         self
     }
 

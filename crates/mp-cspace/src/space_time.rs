@@ -165,7 +165,7 @@ impl<C: Factored> Factored for SpaceTime<C> {
 
 impl<C: Embed> Embed for SpaceTime<C> {
     fn layout(&self) -> Layout {
-        self.positions.layout().beside(Layout::euclidean(1))
+        self.positions.layout().beside(Layout::euclidean(1)).loose()
     }
     #[inline]
     fn embed(&self, state: &Self::State, out: &mut [f64]) -> usize {

@@ -116,7 +116,7 @@ fn agrees_along<C: Space, N: NearestNeighbors<C>>(
         for q in queries.iter().chain(&states[n.saturating_sub(3)..]) {
             let nearest = index.nearest(space, states, q);
             assert_eq!(nearest, linear.nearest(space, states, q), "{n} states, {q:?}");
-            for k in [1, 40] {
+            for k in [7, 17, 70, 1, 40] {
                 index.k_nearest(space, states, q, k, &mut a);
                 linear.k_nearest(space, states, q, k, &mut b);
                 assert_eq!(a, b, "{k} nearest of {n} states, {q:?}");
@@ -277,6 +277,92 @@ fn kd_tree_computes_few_distances() {
             _ => 12.0,
         };
         assert!(count < limit, "{count} distances per query on {name} data");
+    }
+}
+
+/// Distances computed per query for the 10 nearest of 5000 random states by a k-d tree.
+fn distances_for_ten<C: Embed, const K: usize>(space: C) -> f64 {
+    let mut rng = Rng::seed(3);
+    let states: Vec<_> = (0..5200).map(|_| space.sample_uniform(&mut rng)).collect();
+    let (states, queries) = states.split_at(5000);
+    let space = Counting { space, calls: AtomicU64::new(0) };
+    let mut index = KdTree::<K>::new();
+    (0..states.len()).for_each(|i| index.inserted(&space, states, i as u32));
+    let mut out = Vec::new();
+    for q in queries {
+        index.k_nearest(&space, states, q, 10, &mut out);
+        assert_eq!(out.len(), 10);
+    }
+    space.calls.into_inner() as f64 / queries.len() as f64
+}
+
+#[test]
+fn k_nearest_computes_hardly_more_distances_than_it_returns() {
+    let cube = Rn::<6>::new([0.0; 6], [1.0; 6]).unwrap();
+    for (name, limit, count) in [
+        ("R^6", 10.1, distances_for_ten::<_, 6>(cube)),
+        ("T^3", 10.1, distances_for_ten::<_, 3>(circles::<3>())),
+        ("SE(3)", 13.0, distances_for_ten::<_, 7>(se3())),
+    ] {
+        assert!(count < limit, "{count} distances per query in {name}");
+    }
+}
+
+/// Distances that are up to `factor` times their bounds, infinite beyond 1.5 along the first axis, and not a number
+/// beyond 1.9, in a layout that tells none of it.
+#[derive(Clone, Debug)]
+struct Stretched {
+    space: Rn<2>,
+    factor: f64,
+}
+
+impl Space for Stretched {
+    type State = SVector<f64, 2>;
+    fn distance(&self, from: &Self::State, to: &Self::State) -> f64 {
+        let along = (from.x - to.x).abs();
+        let stretch = 1.0 + (self.factor - 1.0) * (0.5 + 0.5 * (40.0 * from.y).sin());
+        match along {
+            a if a > 1.9 => f64::NAN,
+            a if a > 1.5 => f64::INFINITY,
+            _ => stretch * self.space.distance(from, to),
+        }
+    }
+    fn dim(&self) -> usize {
+        2
+    }
+    fn extent(&self) -> f64 {
+        self.space.extent()
+    }
+    fn interpolate_into(&self, from: &Self::State, to: &Self::State, t: f64, out: &mut Self::State) {
+        self.space.interpolate_into(from, to, t, out);
+    }
+    fn unit_cube_to_state(&self, u: &[f64]) -> Self::State {
+        self.space.unit_cube_to_state(u)
+    }
+    fn sample_uniform(&self, rng: &mut Rng) -> Self::State {
+        self.space.sample_uniform(rng)
+    }
+    fn contains(&self, q: &Self::State) -> bool {
+        self.space.contains(q)
+    }
+}
+impl Embed for Stretched {
+    fn layout(&self) -> Layout {
+        self.space.layout()
+    }
+    fn embed(&self, state: &Self::State, out: &mut [f64]) -> usize {
+        self.space.embed(state, out)
+    }
+}
+
+#[test]
+fn distances_much_greater_than_their_bounds_are_ranked_right() {
+    let mut rng = Rng::seed(11);
+    let space = Rn::<2>::new([-1.0; 2], [1.0; 2]).unwrap();
+    let states: Vec<_> = (0..400).map(|_| space.sample_uniform(&mut rng)).collect();
+    let queries = [Vector2::new(-1.0, 0.2), Vector2::new(1.0, -0.9), Vector2::zeros()];
+    for factor in [1.001, 1.05, 3.0] {
+        agrees_along(&Stretched { space: space.clone(), factor }, KdTree::<2>::new(), &states, &queries);
     }
 }
 

@@ -6,6 +6,8 @@ use super::{Hit, NodeId};
 pub(super) trait Collector {
     /// Whether offering a state again is harmless.
     const MAY_REPEAT: bool;
+    /// Whether states are offered with the squares of their bounds for distances.
+    const BY_BOUND: bool = false;
     /// States farther than this are not wanted; at this distance they may be.
     fn limit(&self) -> f64;
     /// Considers one state; `false` when it was not wanted.

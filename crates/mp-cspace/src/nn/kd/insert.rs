@@ -19,6 +19,7 @@ impl<const K: usize> KdTree<K> {
         low.iter_mut().zip(&x).for_each(|(low, x)| *low = low.min(*x));
         high.iter_mut().zip(&x).for_each(|(high, x)| *high = high.max(*x));
         self.largest = x.iter().fold(self.largest, |largest, x| largest.max(x.abs()));
+        self.least_antipode = self.layout.least_antipode(&x).min(self.least_antipode);
         let root = match self.root {
             Some(root) => root,
             None => *self.root.insert(Ref::leaf(self.leaves.alloc(dim))),

@@ -20,6 +20,8 @@ pub(super) struct TreeLayout<const K: usize> {
     /// The ranges of coordinates that mean the same when negated together.
     pub(super) antipodes: Vec<(usize, usize)>,
     pub(super) slack: f64,
+    /// Whether the distance is hardly more than its bound.
+    pub(super) tight: bool,
     /// Coordinates of the first state, to which those of all others are relative, unless the
     /// coordinate takes part in a symmetry.
     origin: [f64; K],
@@ -35,6 +37,7 @@ impl<const K: usize> Default for TreeLayout<K> {
             period: [f64::INFINITY; K],
             antipodes: Vec::new(),
             slack: 0.0,
+            tight: false,
             origin: [0.0; K],
         }
     }
@@ -43,10 +46,10 @@ impl<const K: usize> Default for TreeLayout<K> {
 impl<const K: usize> TreeLayout<K> {
     /// The layout of `space`, relative to the state `first`.
     pub(super) fn new<C: Embed>(space: &C, first: &C::State) -> Self {
-        let Layout { groups, symmetries, slack } = space.layout();
+        let Layout { groups, symmetries, slack, tight } = space.layout();
         let full = groups.last().copied().unwrap_or(0);
         let dim = if K == ANY { full.min(K) } else { K };
-        let mut layout = Self { dim, full, slack, ..Self::default() };
+        let mut layout = Self { dim, full, slack, tight: tight && full == dim, ..Self::default() };
         let mut start = 0;
         for end in groups {
             let end = end.min(dim);
@@ -80,6 +83,13 @@ impl<const K: usize> TreeLayout<K> {
         }
         layout.origin = origin;
         layout
+    }
+
+    /// The least square of the norm of the coordinates that mean the same when negated, over the antipodes.
+    #[inline]
+    pub(super) fn least_antipode(&self, x: &[f64; K]) -> f64 {
+        let squares = self.antipodes.iter().map(|&(start, end)| x[start..end].iter().map(|x| x * x).sum());
+        squares.fold(f64::INFINITY, f64::min)
     }
 
     /// The coordinates of `state` that the tree uses, relative to the origin; all finite.

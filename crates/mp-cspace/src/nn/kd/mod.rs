@@ -1,12 +1,13 @@
 //! A bucketed k-d tree that grows while it is queried.
 
+mod bounded;
 mod build;
 mod insert;
 mod layout;
 mod scan;
 mod search;
 
-use super::collect::{KNearest, OneNearest, WithinRadius};
+use super::collect::{OneNearest, WithinRadius};
 use super::leaf::Leaves;
 use super::node::{Ref, Weight};
 use super::{Embed, Hit, NearestNeighbors, NodeId};
@@ -51,6 +52,8 @@ pub struct KdTree<const K: usize = 16> {
     bounds: [[f64; K]; 2],
     /// The largest absolute value of a coordinate.
     largest: f64,
+    /// The least square of the norm of coordinates that mean the same when negated.
+    least_antipode: f64,
     /// The inner nodes above the leaf found last, and which child was taken.
     path: Vec<(usize, usize)>,
 }
@@ -65,6 +68,7 @@ impl<const K: usize> Default for KdTree<K> {
             leaves: Leaves::default(),
             bounds: [[f64::INFINITY; K], [f64::NEG_INFINITY; K]],
             largest: 0.0,
+            least_antipode: f64::INFINITY,
             path: Vec::new(),
         }
     }
@@ -94,14 +98,18 @@ impl<C: Embed, const K: usize> NearestNeighbors<C> for KdTree<K> {
     }
 
     fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit> {
-        OneNearest::of(|nearest| self.search(space, points, q, nearest))
+        OneNearest::of(|nearest| {
+            self.search(space, points, q, nearest);
+        })
     }
 
     fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
-        KNearest::of(k, out, |nearest| self.search(space, points, q, nearest));
+        self.find_k_nearest(space, points, q, k, out);
     }
 
     fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
-        WithinRadius::of(radius, out, |within| self.search(space, points, q, within));
+        WithinRadius::of(radius, out, |within| {
+            self.search(space, points, q, within);
+        });
     }
 }

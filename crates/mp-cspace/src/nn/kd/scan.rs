@@ -4,6 +4,7 @@
 use super::super::collect::Collector;
 use super::super::leaf::{CAP, Coincident, WIDE};
 use super::super::{Hit, NodeId};
+use super::bounded::MOST;
 use super::search::Search;
 use crate::nn::Embed;
 
@@ -114,8 +115,16 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         if let Some(coincident) = self.tree.leaves.coincident(leaf)
             && bounds[0] <= self.lane_reach
         {
-            self.offer_all(ids[0], coincident);
+            self.offer_all(ids[0], bounds[0], coincident);
             bounds[0] = f32::NAN;
+        }
+        if L::BY_BOUND {
+            for (&bound, &id) in bounds.iter().zip(ids) {
+                if bound <= self.lane_reach && !self.is_repeated(id) {
+                    self.collector.offer(Hit { id, distance: f64::from(bound) });
+                }
+            }
+            return self.limit();
         }
         if let Some(first) = bounds.iter().position(|&b| b == least_bound) {
             self.offer(ids[first]);
@@ -131,16 +140,20 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
     }
 
     /// Offers all states that lane 0 stands for.
-    fn offer_all(&mut self, first: NodeId, coincident: &Coincident) {
-        if !coincident.same {
+    fn offer_all(&mut self, first: NodeId, bound: f32, coincident: &Coincident) {
+        if !coincident.same && !L::BY_BOUND {
             return [first].iter().chain(&coincident.ids).for_each(|&id| self.offer(id));
         }
         if self.is_repeated(first) {
             return;
         }
-        let distance = self.space.distance(&self.points[first as usize], self.query);
+        let distance = match L::BY_BOUND {
+            true => f64::from(bound),
+            false => self.space.distance(&self.points[first as usize], self.query),
+        };
         // Equal distances in the order of ids: after the first one refused all would be.
-        let mut all = [first].into_iter().chain(coincident.ids.iter().copied());
+        let most = if L::BY_BOUND && coincident.same { MOST } else { usize::MAX };
+        let mut all = [first].into_iter().chain(coincident.ids.iter().copied()).take(most);
         let _ = all.all(|id| self.collector.offer(Hit { id, distance }));
         self.limit();
     }
@@ -156,7 +169,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
     /// Whether state `id` is found by another image of the query instead.
     #[inline]
     fn is_repeated(&self, id: NodeId) -> bool {
-        if L::MAY_REPEAT || self.tree.layout.antipodes.is_empty() {
+        if L::MAY_REPEAT || self.lane_reach <= self.single {
             return false;
         }
         let x = self.tree.layout.embed(self.space, &self.points[id as usize]);

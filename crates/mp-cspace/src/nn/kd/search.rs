@@ -27,20 +27,22 @@ pub(super) struct Search<'a, C: Embed, L, const K: usize> {
     pub(super) lane_reach: f32,
     /// Bounds on the rounding of cells and of lanes.
     pads: [f64; 2],
+    /// A squared reach within which no state is found by two images of the query.
+    pub(super) single: f32,
 }
 
 impl<const K: usize> KdTree<K> {
-    /// Offers `collector` every state that it may want.
+    /// Offers `collector` every state that it may want. Returns the squared bound beyond which none is wanted.
     pub(super) fn search<C: Embed>(
         &self,
         space: &C,
         points: &[C::State],
         query: &C::State,
         collector: &mut impl Collector,
-    ) {
-        let Some(root) = self.root else { return };
+    ) -> f32 {
+        let Some(root) = self.root else { return f32::INFINITY };
         let q = self.layout.embed(space, query);
-        let largest = q.iter().fold(self.largest, |largest, x| largest.max(x.abs())) * self.dim() as f64;
+        let pads = self.pads(q.iter().fold(self.largest, |largest, x| largest.max(x.abs())));
         let [low, high] = &self.bounds;
         let mut search = Search {
             tree: self,
@@ -57,10 +59,18 @@ impl<const K: usize> KdTree<K> {
             groups: self.layout.ends.len(),
             reach: 0.0,
             lane_reach: 0.0,
-            pads: [largest * 1e-14, largest * 5e-7],
+            pads,
+            // ‖x − q‖² + ‖x + q‖² = 2 (‖x‖² + ‖q‖²).
+            single: 0.9 * (self.least_antipode + self.layout.least_antipode(&q)) as f32,
         };
         search.limit();
         search.search_images(root, 0);
+        search.lane_reach
+    }
+
+    /// Bounds on the rounding of cells and of lanes, where no coordinate is greater than `largest`.
+    pub(super) fn pads(&self, largest: f64) -> [f64; 2] {
+        [1e-14, 5e-7].map(|error| largest * self.dim() as f64 * error)
     }
 }
 
