@@ -166,6 +166,9 @@ impl<S, R: ClearanceGradient<S> + Queries> ClearanceGradient<S> for Counted<'_, 
 }
 
 impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R> {
+    fn prepare(&self, interrupt: &Interrupt) -> bool {
+        self.checker.prepare(interrupt)
+    }
     fn obstacles(&self) -> &[BodyFeatures] {
         self.checker.obstacles()
     }

@@ -12,8 +12,10 @@ use std::time::Duration;
 /// The stream of random numbers for shortening. Planning uses another one.
 const STREAM: u64 = 1;
 
-/// The part of the time left that shortening may take; the rest is for verifying.
-const SHORTENING_PART: f64 = 0.5;
+/// The parts of the time left that shortening may take, and shortening and verifying the result together. The rest is for verifying the
+/// path as found.
+const SHORTENING_PART: f64 = 0.25;
+const SHORT_PART: f64 = 0.5;
 
 /// A path that passed the verifier after it was written as text and read again.
 #[derive(Clone, Debug)]
@@ -74,11 +76,12 @@ pub(crate) fn finish<K: RobotKind>(
     control.stage(Stage::Finishing);
     let mut timed = Timed { control, stages, began: control.clock.now(), left };
     if request.finish == Finish::Shorten {
+        let rest = timed.left.map_or(Duration::ZERO, |left| left.mul_f64(1.0 - SHORT_PART));
         let interrupt = timed.interrupt(SHORTENING_PART);
         let short = shorten(kind, found, request.seed, &interrupt)?;
         timed.ends(RunStage::Shortening, &interrupt);
         if short.states != found.states {
-            let interrupt = timed.interrupt(1.0);
+            let interrupt = timed.interrupt_before(rest);
             let finished = verified_as_written(kind, &short, true, &interrupt)?;
             timed.ends(RunStage::Verifying, &interrupt);
             if let Ok(finished) = finished {
@@ -115,6 +118,14 @@ impl Timed<'_, '_> {
         match self.left {
             None => Interrupt::new(self.control.cancel.clone()),
             Some(left) => self.control.interrupt_within(left.mul_f64(part)),
+        }
+    }
+
+    /// A token for the time left but `rest`.
+    fn interrupt_before(&self, rest: Duration) -> Interrupt {
+        match self.left {
+            None => Interrupt::new(self.control.cancel.clone()),
+            Some(left) => self.control.interrupt_within(left.saturating_sub(rest)),
         }
     }
 

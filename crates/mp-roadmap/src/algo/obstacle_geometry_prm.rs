@@ -301,6 +301,9 @@ where
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
+        if !self.hints.prepare(checker.interrupt()) {
+            return;
+        }
         let q = checker.space().sample_uniform(rng);
         let obstacles = self.hints.obstacles().len() as u64;
         if attempt < self.with.far {
