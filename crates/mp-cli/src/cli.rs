@@ -61,7 +61,7 @@ pub(crate) struct Plan {
     /// The seed of all random numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Stop after this many seconds.
+    /// Stop after this many seconds, loading, shortening and verifying included. Planning may take nine tenths of them.
     #[arg(long, value_name = "S", default_value = "60", value_parser = positive_number)]
     pub(crate) time: f64,
     /// Stop after this many iterations.

@@ -1,7 +1,7 @@
 //! Scenes and paths from files and from standard input.
 
 use crate::output::note;
-use mp_plan::{Error, PathFileKind, PathRows, Scene};
+use mp_plan::{Error, Interrupt, PathFileKind, PathRows, Scene, StopReason};
 use std::path::Path;
 
 /// Whether a name stands for standard input or output.
@@ -28,9 +28,22 @@ pub(crate) fn refuse_two_standard_inputs(scene: &Path, path: Option<&Path>) -> R
 /// The scene that an argument names; `-` is standard input. What was chosen for a robot or a map alone is said to the person
 /// watching.
 pub(crate) fn scene(given: &Path) -> Result<Scene, Error> {
+    scene_until(given, &Interrupt::never())
+}
+
+/// As [`scene`], unless `interrupt` says to end.
+pub(crate) fn scene_until(given: &Path, interrupt: &Interrupt) -> Result<Scene, Error> {
     let scene = match is_standard(given) {
-        true => Scene::parse("stdin", &standard_input()?, Path::new(""))?,
-        false => Scene::find(given)?,
+        true => Scene::parse_until("stdin", &standard_input()?, Path::new(""), interrupt),
+        false => Scene::find_until(given, interrupt),
+    };
+    let scene = match (scene, interrupt.raised()) {
+        (scene, None) => scene?,
+        (_, Some(StopReason::Deadline)) => {
+            let message = format!("the time was up while {} was loaded", given.display());
+            return Err(Error::new(message).help("give more time by --time, or simplify the file"));
+        }
+        (_, Some(_)) => return Err(Error::new(format!("interrupted while {} was loaded", given.display()))),
     };
     scene.notes().iter().for_each(|line| note(&format!("note: {line}")));
     Ok(scene)

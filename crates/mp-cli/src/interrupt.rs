@@ -21,6 +21,6 @@ pub(crate) fn on_first(action: impl Fn() + Send + 'static) {
 pub(crate) fn flag() -> Cancel {
     let cancel = Cancel::new();
     let raised = cancel.clone();
-    on_first(move || raised.0.store(true, Ordering::SeqCst));
+    on_first(move || raised.cancel());
     cancel
 }

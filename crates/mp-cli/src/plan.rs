@@ -2,7 +2,7 @@
 
 use crate::cli::{Drawing, Plan};
 use crate::files::{Files, numbered};
-use crate::input::{is_standard, scene};
+use crate::input::{is_standard, scene_until};
 use crate::interrupt;
 use crate::output::{Claims, note, print, print_json, write};
 use crate::picture::{Picture, Shown, Watched};
@@ -10,17 +10,20 @@ use crate::progress::Line;
 use crate::request::{request, request_for};
 use crate::text::{caption, summary, table};
 use mp_plan::{
-    Cancel, Control, Error, FilmKind, Finish, PathFileKind, PathRows, Report, Request, Runs, Scene,
-    in_parallel, make_folder,
+    Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Report, Request, Runs,
+    Scene, in_parallel, make_folder,
 };
 use mp_view::GrownTrees;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// The default scene.
 const SAMPLE: &str = "cubicles";
 
 /// Plans on every scene with every seed. True when all runs are solved.
 pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
+    let began = mp_plan::Clock::default().now();
+    let cancel = interrupt::flag();
     let request = request(args)?;
     let named = match args.scenes.as_slice() {
         [] => vec![PathBuf::from(SAMPLE)],
@@ -48,7 +51,16 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
             return Err(Error::new("--out -: there is a file for each route").help("name a file"));
         }
     }
-    let scenes = named.iter().map(|given| scene(given)).collect::<Result<Vec<_>, _>>()?;
+    // Each scene may take the whole time.
+    let load = |given: &PathBuf| {
+        let (cancel, clock) = (cancel.clone(), mp_plan::Clock::default());
+        let interrupt = match request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok()) {
+            None => Interrupt::new(cancel),
+            Some(time) => Interrupt::by(cancel, clock, clock.now().saturating_add(time)),
+        };
+        scene_until(given, &interrupt)
+    };
+    let scenes = named.iter().map(load).collect::<Result<Vec<_>, _>>()?;
     let requests =
         scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
     let jobs: Vec<(usize, u64)> =
@@ -63,14 +75,17 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
         export(folder, &scenes)?;
     }
 
-    let cancel = interrupt::flag();
+    // Several runs have the whole time each.
+    let spent = if jobs.len() == 1 { mp_plan::Clock::default().now() - began } else { Duration::ZERO };
     if let (Some(count), [scene], [request]) = (args.routes, scenes.as_slice(), requests.as_slice()) {
-        return routes(args, scene, request, count, &cancel, &files);
+        return routes(args, scene, request, count, (&cancel, spent), &files);
     }
     let single = jobs.len() == 1;
     // Runs have a thread each when there are several.
     let threads = if single { args.threads } else { 1 };
-    let job = |(i, seed): (usize, u64)| one(&scenes[i], &requests[i], seed, &cancel, &files, single, threads);
+    let job = |(i, seed): (usize, u64)| {
+        one(&scenes[i], &requests[i], seed, (&cancel, spent), &files, single, threads)
+    };
     let reports = match jobs.as_slice() {
         [only] => vec![job(*only)?],
         _ => {
@@ -100,13 +115,13 @@ fn routes(
     scene: &Scene,
     request: &Request,
     count: u16,
-    cancel: &Cancel,
+    (cancel, spent): (&Cancel, Duration),
     files: &Files,
 ) -> Result<bool, Error> {
     let mut line = Line::new(scene.name(), request.budget.time_s, true);
     let found = {
         let mut watched = Watched { line: &mut line, grown: None };
-        let mut control = Control::new(cancel.clone(), &mut watched);
+        let mut control = Control { spent, ..Control::new(cancel.clone(), &mut watched) };
         scene.routes(request, usize::from(count), args.apart, &mut control)?
     };
     let mut reports = Vec::new();
@@ -171,7 +186,7 @@ fn one(
     scene: &Scene,
     request: &Request,
     seed: u64,
-    cancel: &Cancel,
+    (cancel, spent): (&Cancel, Duration),
     files: &Files,
     watched: bool,
     threads: u16,
@@ -185,7 +200,8 @@ fn one(
     let shows_search = picture.as_ref().is_some_and(|(picture, _)| picture.shows_search());
     let grown = shows_search.then(|| GrownTrees::new(scene, &request));
     let mut watched = Watched { line: &mut line, grown };
-    let mut report = scene.plan_with(&request, &mut Control::new(cancel.clone(), &mut watched))?;
+    let mut control = Control { spent, ..Control::new(cancel.clone(), &mut watched) };
+    let mut report = scene.plan_with(&request, &mut control)?;
     let grown = watched.grown;
     let Some(rows) = report.path.clone() else { return Ok(report) };
     let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };

@@ -1,6 +1,6 @@
 //! Summaries and tables of runs, for people.
 
-use mp_plan::{Report, StoppedBy, brief, medians};
+use mp_plan::{Report, StageTime, StoppedBy, brief, medians};
 
 /// A summary of one run, a few lines.
 pub(crate) fn summary(report: &Report) -> String {
@@ -52,6 +52,9 @@ pub(crate) fn summary(report: &Report) -> String {
         };
         row("clearance", text);
     }
+    if report.stages.iter().any(|stage| stage.ended_by.is_some()) {
+        row("stages", stages(report));
+    }
     if let (Some(file), Some(path)) = (&report.path_file, &report.path) {
         row("path", format!("{file}, {} configurations", path.len()));
     }
@@ -59,6 +62,25 @@ pub(crate) fn summary(report: &Report) -> String {
         row("picture", file.clone());
     }
     lines.join("\n")
+}
+
+/// What was done when, and what ended it.
+fn stages(report: &Report) -> String {
+    let stage = |stage: &StageTime| {
+        let ended = stage.ended_by.map(|by| format!(" until {}", until(by))).unwrap_or_default();
+        format!("{} {}{ended}", stage.stage, seconds(stage.time_s))
+    };
+    report.stages.iter().map(stage).collect::<Vec<_>>().join(", ")
+}
+
+/// What ended a stage, after the word "until".
+fn until(by: StoppedBy) -> &'static str {
+    match by {
+        StoppedBy::Time => "the time was up",
+        StoppedBy::Interrupted => "it was interrupted",
+        StoppedBy::Exhausted => "all was tried",
+        _ => "the budget was used up",
+    }
 }
 
 /// The caption of the picture.
@@ -70,7 +92,7 @@ pub(crate) fn caption(report: &Report) -> String {
 /// Why a run stopped, with the option that sets the limit.
 fn explained(reason: StoppedBy) -> String {
     let option = match reason {
-        StoppedBy::Time => " (--time)",
+        StoppedBy::Time | StoppedBy::Unverified => " (--time)",
         StoppedBy::Iterations => " (--iterations)",
         _ => "",
     };
@@ -173,6 +195,7 @@ mod tests {
             rejected: 0,
             time_s: time.unwrap_or(60.0),
             finish_s: 0.5,
+            stages: Vec::new(),
             first_s: None,
             first_length: None,
             path_length_found: time.map(|_| 20.0),

@@ -1,5 +1,7 @@
 //! The mesh with its tree, which queries compare.
 
+use mp_stop::Interrupt;
+use std::convert::Infallible;
 use std::sync::{Arc, OnceLock};
 
 use mp_geom::TriMesh;
@@ -21,18 +23,35 @@ pub struct CollisionMesh {
     pub(crate) parts: Arc<OnceLock<Vec<Point3<f64>>>>,
 }
 
+fn triangles_of(mesh: &TriMesh) -> Vec<Triangle> {
+    (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect()
+}
+
 impl CollisionMesh {
     /// Builds the tree of `mesh`: O(n log² n) for n triangles.
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
-        let triangles: Vec<Triangle> = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect();
-        Self::from_triangles(triangles)
+        Self::from_triangles(triangles_of(mesh))
+    }
+
+    /// As [`new`](Self::new); `None` when `interrupt` says to end.
+    #[must_use]
+    pub fn new_until(mesh: &TriMesh, interrupt: &Interrupt) -> Option<Self> {
+        let mut interrupt = interrupt.clone();
+        let go_on = || if interrupt.ask() { Err(()) } else { Ok(()) };
+        Self::built(&triangles_of(mesh), go_on).ok()
     }
 
     /// The mesh of `triangles`: at least one, at most `u32::MAX`.
     pub(crate) fn from_triangles(triangles: Vec<Triangle>) -> Self {
+        let Ok(made) = Self::built(&triangles, || Ok::<(), Infallible>(()));
+        made
+    }
+
+    fn built<E>(triangles: &[Triangle], go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
         let _span = tracing::debug_span!("build", triangles = triangles.len()).entered();
-        Self { tree: Arc::new(Tree::build(&triangles)), filled: false, parts: Arc::default() }
+        let tree = Arc::new(Tree::build(triangles, go_on)?);
+        Ok(Self { tree, filled: false, parts: Arc::default() })
     }
 
     /// How many triangles there are.

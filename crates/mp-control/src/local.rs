@@ -1,7 +1,7 @@
 //! The local planner that chooses among inputs.
 
 use crate::{Flow, FlowCheck, Input, InputError, InputSet, SuccessorMotion};
-use mp_cspace::{Direction, Extension, LocalPlanner, Motion, ParameterError, Reach, Rng, Space};
+use mp_cspace::{Direction, Extension, Interrupt, LocalPlanner, Motion, ParameterError, Reach, Rng, Space};
 
 /// In which order successors are tested for collision.
 ///
@@ -112,6 +112,7 @@ pub struct InputPlanner<'c, C: Space, F, U, K> {
     counters: InputCounters,
     /// The inputs tried before, and how many an extension may test.
     tried: Option<(Vec<bool>, usize)>,
+    interrupt: Interrupt,
     /// The distance to the target and the input of each successor that may be taken.
     ranked: Vec<(f64, usize)>,
     /// The successor of each input.
@@ -178,7 +179,14 @@ where
             exact: Exact::Listed(Vec::new()),
             counters: InputCounters::default(),
             tried: None,
+            interrupt: Interrupt::never(),
         })
+    }
+
+    /// The same, which has no motions once `interrupt` says to end.
+    #[must_use]
+    pub fn with_interrupt(self, interrupt: Interrupt) -> Self {
+        Self { interrupt, ..self }
     }
 
     /// The same in this order, whatever the planner's default is.
@@ -230,6 +238,10 @@ where
         self.successors.clear();
         let counters = &mut self.counters;
         for (index, input) in self.inputs.inputs().iter().enumerate() {
+            if self.interrupt.ask() {
+                self.ranked.clear();
+                return;
+            }
             if self.tried.as_ref().is_some_and(|(tried, _)| tried[index]) {
                 self.successors.push(node.clone());
                 continue;
@@ -288,6 +300,9 @@ where
             Order::TestAll if most.is_none() => {
                 let (mut least, mut best) = (within, None);
                 for i in 0..self.ranked.len() {
+                    if self.interrupt.ask() {
+                        return None;
+                    }
                     let (distance, index) = self.ranked[i];
                     if let Some(edge) = self.test(node, index, direction)
                         && distance < least
@@ -301,7 +316,7 @@ where
                 self.ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
                 for i in 0..self.ranked.len().min(most.unwrap_or(usize::MAX)) {
                     let (distance, index) = self.ranked[i];
-                    if distance >= within {
+                    if distance >= within || self.interrupt.ask() {
                         return None;
                     }
                     if let Some(edge) = self.test(node, index, direction) {

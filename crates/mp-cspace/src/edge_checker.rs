@@ -1,14 +1,17 @@
 //! How the edges of trees and roadmaps are made and checked.
 
 use crate::{
-    BoxedVerify, Direction, Extension, Goals, LocalPlanner, Motion, Problem, ProblemParts, Reach, Space,
-    Verify,
+    BoxedVerify, Direction, Extension, Goals, Interrupt, LocalPlanner, Motion, Problem, ProblemParts, Reach,
+    Space, Verify,
 };
 use std::fmt;
 
 /// The space, the local planner that makes edges, and the verifier of paths, with counts of what they were asked.
 ///
 /// After `patience` rejected paths the checker no longer trusts the local planner: then every new edge is verified too.
+///
+/// Once the [interrupt](Problem::with_interrupt) of the problem says so, nothing is computed any more: there are no motions, and
+/// nothing passes.
 pub struct EdgeChecker<'c, C: Space, L: LocalPlanner<C::State>> {
     space: &'c C,
     local: L,
@@ -17,6 +20,7 @@ pub struct EdgeChecker<'c, C: Space, L: LocalPlanner<C::State>> {
     patience: u64,
     motions: u64,
     rejected: u64,
+    interrupt: Interrupt,
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
@@ -33,12 +37,13 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
     /// The checker of a problem, with the problem's start and goals.
     #[must_use]
     pub fn of(problem: Problem<'c, C, L>, patience: u64) -> (Self, C::State, Goals<'c, C::State>) {
-        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
-        (Self::boxed(space, local, verify, patience), start, goals)
+        let ProblemParts { space, local, verify, start, goals, interrupt } = problem.into_parts();
+        (Self { interrupt, ..Self::boxed(space, local, verify, patience) }, start, goals)
     }
 
     fn boxed(space: &'c C, local: L, verifier: BoxedVerify<'c, C, L>, patience: u64) -> Self {
-        Self { space, local, verifier, step: f64::INFINITY, patience, motions: 0, rejected: 0 }
+        let (step, interrupt) = (f64::INFINITY, Interrupt::never());
+        Self { space, local, verifier, step, patience, motions: 0, rejected: 0, interrupt }
     }
 
     /// The same with another longest [step](Self::step).
@@ -73,6 +78,18 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
         self.local.vertices(edge)
     }
 
+    /// What is asked whether to end.
+    #[must_use]
+    pub fn interrupt(&self) -> &Interrupt {
+        &self.interrupt
+    }
+
+    /// Whether to end now: for loops that do much between two motions.
+    #[inline]
+    pub fn is_interrupted(&mut self) -> bool {
+        self.interrupt.ask()
+    }
+
     /// How many motions the local planner was asked for.
     #[must_use]
     pub fn motions(&self) -> u64 {
@@ -92,7 +109,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
 
     /// Whether a state may be a node: it is in the space, and the local planner lets motions begin and end there.
     pub fn admits(&mut self, q: &C::State) -> bool {
-        self.space.contains(q) && self.local.admits(q)
+        !self.interrupt.ask() && self.space.contains(q) && self.local.admits(q)
     }
 
     /// Whether a state may be an end of a path: [admitted](Self::admits) and verified.
@@ -110,6 +127,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
         reach: Reach,
     ) -> Extension<C::State, L::Edge> {
         self.motions += 1;
+        if self.interrupt.ask() {
+            return Extension::Trapped;
+        }
         self.local.extend(from, toward, direction, reach)
     }
 
@@ -150,7 +170,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
             Direction::Forward => (from, to),
             Direction::Backward => (to, from),
         };
-        self.verifier.verify_edge(start, edge, end).is_free()
+        !self.interrupt.ask() && self.verifier.verify_edge(start, edge, end).is_free()
     }
 }
 

@@ -96,6 +96,7 @@ pub use metric::{
     Euclidean, Manhattan, MaxDisplacement, Metric, MetricFn, ScaledEuclidean, SweptVolume, WithMetric,
 };
 pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
+pub use mp_stop::{Cancel, Clock, Interrupt, SparseClock, StopReason};
 pub use nn::{DefaultNn, Embed, Hit, KdTree, Linear, MetricTree, NearestNeighbors, NodeId};
 pub use numbers::StateVector;
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
@@ -112,9 +113,7 @@ pub use space::{
     AsVectors, Coordinates, Factored, FloatingJoints, JointRange, Joints, Product, Rn, Se2, Se2State, Se3,
     So3, Space, TrueMetric,
 };
-pub use stop::{
-    Cancel, Clock, Deadline, Iterations, Motions, Nodes, Or, Progress, SparseClock, Stop, StopReason,
-};
+pub use stop::{Deadline, Iterations, Motions, Nodes, Or, Progress, Stop};
 pub use validity::{
     Clearance, ClearanceSearch, IntervalClearance, KnownFree, LeastClearance, MotionCheck, MotionClearance,
     MotionInterval, MotionValidity, Validity,

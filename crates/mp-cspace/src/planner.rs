@@ -30,7 +30,8 @@ pub trait Planner<S> {
     fn routes(&mut self, _k: usize, _apart: f64) -> Option<Vec<Path<S, Self::Edge>>> {
         None
     }
-    /// Runs until solved or stopped. Call again to continue with the same trees.
+    /// Runs until solved or stopped. Call again to continue with the same trees. An iteration that was
+    /// [cut short](Stop::cut_short) ends the run, and its path does not count.
     fn solve(
         &mut self,
         rng: &mut Rng,
@@ -45,7 +46,12 @@ pub trait Planner<S> {
                 return Outcome::Stopped(reason);
             }
             observer.on(Event::Iteration(progress));
-            if let Some(path) = self.step(rng, observer) {
+            let path = self.step(rng, observer);
+            if let Some(reason) = stop.cut_short() {
+                trace::ended(&progress, Some(reason));
+                return Outcome::Stopped(reason);
+            }
+            if let Some(path) = path {
                 trace::ended(&self.progress(), None);
                 observer.on(Event::Solved);
                 return Outcome::Solved(path);

@@ -2,7 +2,8 @@
 //!
 //! Every edge these functions add, halves of old edges included, has been found free by `check`; a
 //! change with an edge that is not free is dropped. All are bounded in work and depend on their
-//! arguments only: the same seed gives the same path.
+//! arguments only: the same seed gives the same path. When `check` is [told to end](MotionValidity::interrupt_by), the path is
+//! returned as it is by then.
 //!
 //! | function | does |
 //! |---|---|
@@ -52,6 +53,10 @@ pub fn reduce<C: Space>(
     let mut first = 0;
     while first + 1 < old.len() {
         let mut last = old.len() - 1;
+        if check.is_interrupted() {
+            states.extend_from_slice(&old[first + 1..]);
+            break;
+        }
         while last > first + 1 && !is_shortcut(space, check, &old[first..=last]) {
             last = first + (last - first) / 2;
         }

@@ -1,5 +1,6 @@
 //! The shortest simple paths of a directed graph, and alternative paths through given nodes.
 
+use crate::Interrupt;
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
 
@@ -25,13 +26,23 @@ impl PartialOrd for Length {
 ///
 /// J. Y. Yen, *Finding the k shortest loopless paths in a network*, Management Science 17, 1971. One
 /// search (Dijkstra 1959) for each node of each path found.
-pub fn shortest_paths(arcs: &[Vec<(u32, f64)>], from: u32, to: u32, k: usize) -> Vec<(f64, Vec<u32>)> {
+pub fn shortest_paths(
+    arcs: &[Vec<(u32, f64)>],
+    from: u32,
+    to: u32,
+    k: usize,
+    interrupt: &Interrupt,
+) -> Vec<(f64, Vec<u32>)> {
+    let mut interrupt = interrupt.clone();
     let mut found: Vec<(Length, Vec<u32>)> = Vec::new();
     let mut candidates: BTreeSet<_> = shortest(arcs, &[from], to, &[]).into_iter().collect();
     while found.len() < k {
         let Some(next) = candidates.pop_first() else { break };
         found.push(next.clone());
         for end in 1..next.1.len() {
+            if interrupt.ask() {
+                break;
+            }
             let root = &next.1[..end];
             let taken: Vec<u32> =
                 found.iter().filter(|(_, path)| path.starts_with(root)).map(|(_, path)| path[end]).collect();
@@ -86,10 +97,10 @@ fn shortest(arcs: &[Vec<(u32, f64)>], root: &[u32], to: u32, taken: &[u32]) -> O
 /// J. of Experimental Algorithmics 18, 2013.
 pub fn shortest_via(
     arcs: &[Vec<(u32, f64)>],
-    from: u32,
-    to: u32,
+    [from, to]: [u32; 2],
     window: f64,
     via: impl Iterator<Item = u32>,
+    interrupt: &Interrupt,
 ) -> Option<(f64, Vec<u32>)> {
     let mut reversed = vec![Vec::new(); arcs.len()];
     for (node, leaving) in (0..).zip(arcs) {
@@ -100,7 +111,8 @@ pub fn shortest_via(
         via.map(|node| (Length(from_start[node as usize].0 + to_end[node as usize].0), node)).collect();
     candidates.retain(|(length, _)| length.0.is_finite());
     candidates.sort_unstable();
-    candidates.into_iter().find_map(|(length, node)| {
+    let mut interrupt = interrupt.clone();
+    candidates.into_iter().take_while(|_| !interrupt.ask()).find_map(|(length, node)| {
         let path_in = |tree: &[(f64, u32)], end| {
             let next = |at: &u32| (*at != end).then(|| tree[*at as usize].1);
             std::iter::successors(Some(node), next).collect::<Vec<u32>>()
@@ -155,7 +167,7 @@ mod tests {
         }
         arcs[2].push((5, 1.5));
         arcs[5].push((3, 1.5));
-        let via = |node, window| shortest_via(&arcs, 0, 4, window, [node].into_iter());
+        let via = |node, window| shortest_via(&arcs, [0, 4], window, [node].into_iter(), &Interrupt::never());
         assert_eq!(via(2, 1.0), Some((6.0, vec![0, 2, 3, 4])));
         assert_eq!(via(5, 0.0), Some((7.0, vec![0, 2, 5, 3, 4])));
         assert_eq!(via(5, 1.0), None);
@@ -206,23 +218,23 @@ mod tests {
             all(&arcs, n - 1, &mut vec![0], 0.0, &mut expected);
             expected.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             most = most.max(expected.len());
-            let found = shortest_paths(&arcs, 0, n - 1, usize::MAX);
+            let found = shortest_paths(&arcs, 0, n - 1, usize::MAX, &Interrupt::never());
             assert!(found.is_sorted_by(|a, b| a.0 <= b.0));
             let mut sorted = found.clone();
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             assert_eq!(sorted, expected, "{arcs:?}");
             for node in 0..n {
-                let via = shortest_via(&arcs, 0, n - 1, 0.0, [node].into_iter());
+                let via = shortest_via(&arcs, [0, n - 1], 0.0, [node].into_iter(), &Interrupt::never());
                 if let Some(path) = &via {
                     assert!(expected.contains(path) && path.1.contains(&node));
                 }
                 let best = expected.first().filter(|path| path.1.contains(&node));
                 assert!(best.is_none_or(|best| via.is_none_or(|via| via.0 == best.0)));
             }
-            let any = shortest_via(&arcs, 0, n - 1, f64::INFINITY, 0..n);
+            let any = shortest_via(&arcs, [0, n - 1], f64::INFINITY, 0..n, &Interrupt::never());
             assert_eq!(any.map(|path| path.0), expected.first().map(|path| path.0));
             for k in [0, 1, 3] {
-                let few = shortest_paths(&arcs, 0, n - 1, k);
+                let few = shortest_paths(&arcs, 0, n - 1, k, &Interrupt::never());
                 assert_eq!(few, found[..k.min(found.len())]);
             }
         }

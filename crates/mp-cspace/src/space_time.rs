@@ -2,7 +2,8 @@
 
 use crate::space::lerp;
 use crate::{
-    Factored, Goal, KdTree, KnownFree, MotionCheck, MotionValidity, Rng, Sampler, Space, SpaceError,
+    Factored, Goal, Interrupt, KdTree, KnownFree, MotionCheck, MotionValidity, Rng, Sampler, Space,
+    SpaceError,
     error::weight,
     nn::{Embed, Layout},
 };
@@ -223,5 +224,11 @@ impl<C: Space, M: MotionValidity<(C::State, f64)>> MotionValidity<(C::State, f64
         } else {
             MotionCheck::Unproven { at: 0.0 }
         }
+    }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        self.check.interrupt_by(interrupt);
+    }
+    fn is_interrupted(&mut self) -> bool {
+        self.check.is_interrupted()
     }
 }

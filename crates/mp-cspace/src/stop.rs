@@ -1,8 +1,6 @@
 //! Stops: when a planner ends without a solution.
 
-use std::fmt;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, OnceLock};
+use mp_stop::{Cancel, Clock, Interrupt, SparseClock, StopReason};
 use std::time::{Duration, Instant};
 
 /// What a planner has done so far.
@@ -29,28 +27,16 @@ impl Progress {
     }
 }
 
-/// Why a planner stopped without a solution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum StopReason {
-    /// The iteration budget is spent.
-    Iterations,
-    /// The node budget is spent.
-    Nodes,
-    /// The motion-check budget is spent.
-    Motions,
-    /// The deadline has passed.
-    Deadline,
-    /// A [`Cancel`] was raised.
-    Cancelled,
-    /// The planner has tried all it can: there is no solution at its resolution.
-    Exhausted,
-}
-
 /// When to stop. Combine with [`Stop::or`].
 pub trait Stop {
     /// `Some(reason)` to stop now. Called once per iteration, before it.
     fn check(&mut self, progress: &Progress) -> Option<StopReason>;
+    /// `Some(reason)` when the work inside the last iteration was told to end early: then the iteration counts for nothing, and
+    /// neither does a path that it returned. Called after each iteration. `None`, the default, for stops that act between
+    /// iterations only.
+    fn cut_short(&self) -> Option<StopReason> {
+        None
+    }
     /// Stops when either does; `self` is checked first.
     fn or<B: Stop>(self, other: B) -> Or<Self, B>
     where
@@ -64,16 +50,25 @@ impl<S: Stop + ?Sized> Stop for &mut S {
     fn check(&mut self, progress: &Progress) -> Option<StopReason> {
         (**self).check(progress)
     }
+    fn cut_short(&self) -> Option<StopReason> {
+        (**self).cut_short()
+    }
 }
 impl<S: Stop + ?Sized> Stop for Box<S> {
     fn check(&mut self, progress: &Progress) -> Option<StopReason> {
         (**self).check(progress)
+    }
+    fn cut_short(&self) -> Option<StopReason> {
+        (**self).cut_short()
     }
 }
 /// `None` never stops.
 impl<S: Stop> Stop for Option<S> {
     fn check(&mut self, progress: &Progress) -> Option<StopReason> {
         self.as_mut().and_then(|stop| stop.check(progress))
+    }
+    fn cut_short(&self) -> Option<StopReason> {
+        self.as_ref().and_then(Stop::cut_short)
     }
 }
 
@@ -84,6 +79,9 @@ pub struct Or<A, B>(pub A, pub B);
 impl<A: Stop, B: Stop> Stop for Or<A, B> {
     fn check(&mut self, progress: &Progress) -> Option<StopReason> {
         self.0.check(progress).or_else(|| self.1.check(progress))
+    }
+    fn cut_short(&self) -> Option<StopReason> {
+        self.0.cut_short().or_else(|| self.1.cut_short())
     }
 }
 
@@ -117,74 +115,6 @@ impl Stop for Motions {
     }
 }
 
-/// Where the time is read: by default from the monotonic clock of the system.
-///
-/// WebAssembly has no such clock, and reading it panics there. A host of that kind passes its own.
-#[derive(Clone, Copy)]
-pub struct Clock(fn() -> Duration);
-
-impl Clock {
-    /// A clock that `now` reads: the time since some fixed moment. It must never go back.
-    #[must_use]
-    pub fn new(now: fn() -> Duration) -> Self {
-        Self(now)
-    }
-
-    /// The time since a fixed moment.
-    #[must_use]
-    pub fn now(self) -> Duration {
-        (self.0)()
-    }
-}
-
-impl Default for Clock {
-    fn default() -> Self {
-        Self(|| {
-            // A fixed moment, from which all times of this program are counted.
-            static ORIGIN: OnceLock<Instant> = OnceLock::new();
-            ORIGIN.get_or_init(Instant::now).elapsed()
-        })
-    }
-}
-
-impl fmt::Debug for Clock {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Clock")
-    }
-}
-
-/// Reads a clock as seldom as short iterations allow: not at each, but at least at every 64th; after two readings more than
-/// a millisecond apart, at the next.
-#[derive(Clone, Copy, Debug)]
-pub struct SparseClock {
-    clock: Clock,
-    last_read: Duration,
-    /// Iterations without reading the clock: between two readings, and still to go.
-    skips: u32,
-    skips_left: u32,
-}
-
-impl SparseClock {
-    /// Reads `clock`, now and later.
-    #[must_use]
-    pub fn new(clock: Clock) -> Self {
-        Self { clock, last_read: clock.now(), skips: 0, skips_left: 0 }
-    }
-
-    /// The time, if it is read at this iteration.
-    pub fn read(&mut self) -> Option<Duration> {
-        if self.skips_left > 0 {
-            self.skips_left -= 1;
-            return None;
-        }
-        let now = self.clock.now();
-        let slow = now.saturating_sub(self.last_read) > Duration::from_millis(1);
-        self.skips = if slow { 0 } else { (2 * self.skips + 1).min(63) };
-        (self.last_read, self.skips_left) = (now, self.skips);
-        Some(now)
-    }
-}
-
 /// Stops at a time of the clock. The clock changes when a run ends, not what is computed before: for
 /// reproducible runs use the counting stops.
 ///
@@ -212,7 +142,7 @@ impl Deadline {
     #[must_use]
     pub fn by(clock: Clock, time: Duration) -> Self {
         let clock = SparseClock::new(clock);
-        Self { clock, at: clock.last_read.checked_add(time) }
+        Self { clock, at: clock.last_read().checked_add(time) }
     }
 }
 
@@ -223,42 +153,26 @@ impl Stop for Deadline {
     }
 }
 
-/// Stops when its flag is raised, from another thread or a signal handler.
-///
-/// ```
-/// use mp_cspace::{Cancel, Iterations, Progress, Stop, StopReason};
-/// let cancel = Cancel::new();
-/// let handle = cancel.clone();
-/// let mut stop = Iterations(1000).or(cancel);
-/// assert_eq!(stop.check(&Progress::default()), None);
-/// handle.cancel();
-/// assert_eq!(stop.check(&Progress::default()), Some(StopReason::Cancelled));
-/// ```
-#[derive(Clone, Debug, Default)]
-pub struct Cancel(pub Arc<AtomicBool>);
-
-impl Cancel {
-    /// A flag that is not raised; clones share it.
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// Raises the flag.
-    pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
+impl Stop for Cancel {
+    fn check(&mut self, _: &Progress) -> Option<StopReason> {
+        self.is_raised().then_some(StopReason::Cancelled)
     }
 }
 
-impl Stop for Cancel {
+/// Stops before an iteration as an [`Interrupt`] does inside one, and says when it has cut an iteration short.
+impl Stop for Interrupt {
     fn check(&mut self, _: &Progress) -> Option<StopReason> {
-        self.0.load(Ordering::Relaxed).then_some(StopReason::Cancelled)
+        if self.ask() { self.raised() } else { None }
+    }
+    fn cut_short(&self) -> Option<StopReason> {
+        self.raised()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::Ordering;
 
     #[test]
     fn budgets_and_their_combination() {

@@ -1,5 +1,7 @@
 //! Tests of states and of motions: whether they are free, and their clearance.
 
+use crate::Interrupt;
+
 /// Whether a state is free.
 ///
 /// Scratch memory and counters are plain fields of the implementor: clone it per thread.
@@ -265,6 +267,15 @@ pub trait MotionValidity<S> {
     fn check_extension(&mut self, from: &S, to: &S, _known: KnownFree) -> MotionCheck {
         self.check_motion(from, to)
     }
+
+    /// From now on asks `interrupt` whether to end, also within a check. A check that was told to end finds no motion free. Checks
+    /// that take little time need not implement this.
+    fn interrupt_by(&mut self, _interrupt: &Interrupt) {}
+
+    /// Whether the check was told to end: then its answers mean nothing, and whoever asks should end too.
+    fn is_interrupted(&mut self) -> bool {
+        false
+    }
 }
 
 impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for &mut V {
@@ -274,6 +285,12 @@ impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for &mut V {
     fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
         (**self).check_extension(from, to, known)
     }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        (**self).interrupt_by(interrupt);
+    }
+    fn is_interrupted(&mut self) -> bool {
+        (**self).is_interrupted()
+    }
 }
 impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for Box<V> {
     fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
@@ -281,5 +298,11 @@ impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for Box<V> {
     }
     fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
         (**self).check_extension(from, to, known)
+    }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        (**self).interrupt_by(interrupt);
+    }
+    fn is_interrupted(&mut self) -> bool {
+        (**self).is_interrupted()
     }
 }

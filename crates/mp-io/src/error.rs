@@ -23,6 +23,8 @@ pub enum ErrorKind {
     Content,
     /// Larger than this crate reads.
     TooLarge,
+    /// The reader was told to end: see [`Until`](crate::Until).
+    Interrupted,
 }
 
 /// A bad file: what is wrong, in which file, line and column, what was expected, and a remedy.
@@ -71,6 +73,16 @@ impl Error {
             excerpt: None,
             cited_at: None,
         }))
+    }
+
+    /// The error of a reader that was told to end.
+    pub(crate) fn interrupted(file: impl Display) -> Self {
+        Self::new(
+            ErrorKind::Interrupted,
+            file,
+            "the time was up, or the work interrupted, while this file was read",
+        )
+        .help("give more time, or simplify the file")
     }
 
     /// An error in a line, counted from 1, of `text`, the content of `file`: for texts that other crates read.

@@ -1,6 +1,7 @@
 //! Files: where readers find them, and their bytes as text.
 
 use crate::error::{Error, ErrorKind};
+use mp_stop::Interrupt;
 use std::fmt::{self, Debug};
 use std::path::{Path, PathBuf};
 
@@ -16,6 +17,11 @@ pub trait Files: Debug + Send + Sync {
     /// # Errors
     /// [`Error`] of kind [`ErrorKind::Io`] when there is no such file, of kind [`ErrorKind::TooLarge`] when it is larger.
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Error>;
+
+    /// What readers ask whether to end; by default nothing ends them.
+    fn interrupt(&self) -> Interrupt {
+        Interrupt::never()
+    }
 
     /// Whether there is a file at `path`.
     fn holds(&self, path: &Path) -> bool {
@@ -45,6 +51,33 @@ impl Files for Disk {
     fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
         // A bare file name has the empty folder, which is the current one.
         std::fs::canonicalize(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
+    }
+}
+
+/// Other files, whose readers end when an [`Interrupt`] says so, with an error of kind [`ErrorKind::Interrupted`].
+#[derive(Clone, Debug)]
+pub struct Until<'f> {
+    /// The files.
+    pub files: &'f dyn Files,
+    /// What readers ask.
+    pub interrupt: Interrupt,
+}
+
+impl Files for Until<'_> {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
+        if self.interrupt.clone().ask() {
+            return Err(Error::interrupted(path.display()));
+        }
+        self.files.read(path, limit)
+    }
+    fn interrupt(&self) -> Interrupt {
+        self.interrupt.clone()
+    }
+    fn holds(&self, path: &Path) -> bool {
+        self.files.holds(path)
+    }
+    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
+        self.files.absolute(folder)
     }
 }
 

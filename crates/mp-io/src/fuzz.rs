@@ -124,7 +124,7 @@ pub fn ros_map(bytes: &[u8]) -> bool {
 /// Images, and the outline of their dark pixels.
 pub fn map_image(bytes: &[u8]) -> bool {
     let Some(grid) = valid(GridMap::parse("f.png", bytes)) else { return false };
-    grid.outline(0.5, [0.0; 2], |brightness| brightness < 128.0).is_ok()
+    grid.outline(0.5, [0.0; 2], |brightness| brightness < 128.0, &mp_stop::Interrupt::never()).is_ok()
 }
 
 /// Scenes of the editor.

@@ -4,10 +4,11 @@ use crate::collada::parse_collada;
 use crate::error::{Error, ErrorKind};
 use crate::files::{Disk, Files, MAX_MESH_BYTES};
 use crate::gempa::parse_gempa_mesh;
-use crate::obj::parse_obj;
+use crate::obj::parse_obj_until;
 use crate::off::OffDocument;
-use crate::stl::parse_stl;
+use crate::stl::parse_stl_until;
 use mp_geom::{MeshError, TriMesh};
+use mp_stop::Interrupt;
 use nalgebra::Point3;
 use std::path::Path;
 
@@ -31,15 +32,20 @@ pub fn read_mesh(path: impl AsRef<Path>) -> Result<TriMesh, Error> {
 /// # Errors
 /// As [`read_mesh`].
 pub fn read_mesh_of(files: &dyn Files, path: &Path) -> Result<TriMesh, Error> {
-    let bytes = files.read(path, MAX_MESH_BYTES)?;
+    let (bytes, interrupt) = (files.read(path, MAX_MESH_BYTES)?, files.interrupt());
     let file = path.display().to_string();
-    match MeshFormat::of(path, &bytes) {
-        Some(MeshFormat::Off) => OffDocument::parse(&file, &bytes)?.to_mesh(&file),
-        Some(MeshFormat::Gempa) => parse_gempa_mesh(&file, &bytes),
-        Some(MeshFormat::Stl) => parse_stl(&file, &bytes),
-        Some(MeshFormat::Obj) => parse_obj(&file, &bytes),
-        Some(MeshFormat::Collada) => parse_collada(&file, &bytes),
-        None => Err(Error::new(ErrorKind::Unsupported, &file, "this is not a mesh format that is read here")
+    read_until(path, &file, &bytes, &interrupt)
+}
+
+/// The mesh in `bytes`, the content of the file at `path`.
+fn read_until(path: &Path, file: &str, bytes: &[u8], interrupt: &Interrupt) -> Result<TriMesh, Error> {
+    match MeshFormat::of(path, bytes) {
+        Some(MeshFormat::Off) => OffDocument::parse_until(file, bytes, interrupt)?.to_mesh(file),
+        Some(MeshFormat::Gempa) => parse_gempa_mesh(file, bytes),
+        Some(MeshFormat::Stl) => parse_stl_until(file, bytes, interrupt),
+        Some(MeshFormat::Obj) => parse_obj_until(file, bytes, interrupt),
+        Some(MeshFormat::Collada) => parse_collada(file, bytes),
+        None => Err(Error::new(ErrorKind::Unsupported, file, "this is not a mesh format that is read here")
             .expected("a file .off, .txt (GEMPA), .stl, .obj or .dae")
             .help("convert the mesh to one of these")),
     }

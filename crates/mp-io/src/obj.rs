@@ -4,6 +4,7 @@ use crate::error::{Error, ErrorKind};
 use crate::mesh::build;
 use crate::text::{Text, Token, clipped};
 use mp_geom::TriMesh;
+use mp_stop::Interrupt;
 use nalgebra::Point3;
 
 /// Statements that are skipped: they describe no surface, or only its appearance.
@@ -41,15 +42,23 @@ const CURVED: [&str; 13] =
 /// # Errors
 /// [`Error`] when it is not OBJ or has curved surfaces, with the line and column.
 pub fn parse_obj(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
+    parse_obj_until(file, bytes, &Interrupt::never())
+}
+
+pub(crate) fn parse_obj_until(file: &str, bytes: &[u8], interrupt: &Interrupt) -> Result<TriMesh, Error> {
+    let mut interrupt = interrupt.clone();
     let text = Text::new(file, bytes, "meshes.md")?;
     // Faces may name vertices of later lines.
-    let total = vertices_of(&text);
+    let total = vertices_of(&text, &mut interrupt);
     let mut vertices = Vec::with_capacity(total);
     let mut corners: Vec<u32> = Vec::new();
     let mut ends = Vec::new();
     let mut lines = text.lines();
     let mut words = Vec::new();
     while let Some(line) = lines.next() {
+        if interrupt.ask() {
+            return Err(Error::interrupted(file));
+        }
         statement(line, &mut lines, &mut words);
         let Some(&keyword) = words.first() else { continue };
         let values = &words[1..];
@@ -82,10 +91,10 @@ pub fn parse_obj(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
     build(file, vertices, faces)
 }
 
-/// How many vertices the file has.
-fn vertices_of(text: &Text<'_>) -> usize {
+/// How many vertices the file has; any number when `interrupt` says to end.
+fn vertices_of(text: &Text<'_>, interrupt: &mut Interrupt) -> usize {
     let (mut lines, mut words, mut count) = (text.lines(), Vec::new(), 0);
-    while let Some(line) = lines.next() {
+    while let Some(line) = lines.next().filter(|_| !interrupt.ask()) {
         statement(line, &mut lines, &mut words);
         count += usize::from(words.first().is_some_and(|word| word.text == "v"));
     }

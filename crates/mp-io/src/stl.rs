@@ -5,6 +5,7 @@ use crate::mesh::mesh_error;
 use crate::number::Row;
 use crate::text::{Lexer, Text, Token, clipped};
 use mp_geom::TriMesh;
+use mp_stop::Interrupt;
 use nalgebra::Point3;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -19,12 +20,20 @@ const TRIANGLE: usize = 50;
 /// # Errors
 /// [`Error`] when it is not STL: for text with line and column, for binary with the triangle.
 pub fn parse_stl(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
+    parse_stl_until(file, bytes, &Interrupt::never())
+}
+
+pub(crate) fn parse_stl_until(file: &str, bytes: &[u8], interrupt: &Interrupt) -> Result<TriMesh, Error> {
+    let mut interrupt = interrupt.clone();
     // Binary files may begin with "solid" too, so their size decides.
     let soup = if binary_size(bytes) == Some(bytes.len() as u64) || !begins_with_solid(bytes) {
-        binary(file, bytes)?
+        binary(file, bytes, &mut interrupt)?
     } else {
-        text(&Text::new(file, bytes, "meshes.md")?)?
+        text(&Text::new(file, bytes, "meshes.md")?, (file, &mut interrupt))?
     };
+    if interrupt.ask() {
+        return Err(Error::interrupted(file));
+    }
     TriMesh::from_soup(&soup).map_err(|e| mesh_error(file, &e))
 }
 
@@ -42,7 +51,7 @@ fn binary_size(bytes: &[u8]) -> Option<u64> {
 type Soup = Vec<[Point3<f64>; 3]>;
 
 /// The triangles of a binary file.
-fn binary(file: &str, bytes: &[u8]) -> Result<Soup, Error> {
+fn binary(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Result<Soup, Error> {
     let bad = |message: String| Error::new(ErrorKind::Format, file, message);
     let Some(size) = binary_size(bytes) else {
         return Err(bad(format!("the file has {} bytes and does not begin with `solid`", bytes.len()))
@@ -59,6 +68,9 @@ fn binary(file: &str, bytes: &[u8]) -> Result<Soup, Error> {
     }
     let mut soup = Vec::with_capacity((bytes.len() - HEAD) / TRIANGLE);
     for (i, record) in bytes[HEAD..].chunks_exact(TRIANGLE).enumerate() {
+        if i % 1024 == 0 && interrupt.ask() {
+            return Err(Error::interrupted(file));
+        }
         let mut triangle = [Point3::origin(); 3];
         // 12 bytes of normal, then nine numbers, then two bytes that mean nothing.
         for (k, number) in record[12..48].chunks_exact(4).enumerate() {
@@ -76,13 +88,16 @@ fn binary(file: &str, bytes: &[u8]) -> Result<Soup, Error> {
 }
 
 /// The triangles of a text file.
-fn text(text: &Text<'_>) -> Result<Soup, Error> {
+fn text(text: &Text<'_>, (file, interrupt): (&str, &mut Interrupt)) -> Result<Soup, Error> {
     let mut lexer = Lexer::new(text);
     let mut soup = Vec::new();
     while let Some(word) = lexer.next() {
         expect(text, Some(word), "solid")?;
         lexer.next_line(); // the rest of the line is a name
         loop {
+            if interrupt.ask() {
+                return Err(Error::interrupted(file));
+            }
             let word = lexer.next();
             if word.is_some_and(|w| w.text.eq_ignore_ascii_case("endsolid")) {
                 lexer.next_line();

@@ -94,7 +94,8 @@ fn map(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     mp_io::GridMap::parse(&image.display().to_string(), &files.read(&image, mp_io::MAX_MESH_BYTES)?)?;
     let mut problem = PlanarProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?;
     let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
-    let world = mp_geom::planar::PlanarWorld::new(polygons, None).map_err(|e| Error::new(e.to_string()))?;
+    let world = mp_geom::planar::PlanarWorld::new_until(polygons, None, &files.interrupt())
+        .map_err(|e| Error::new(e.to_string()))?;
     let grid = Grid::new(&world, problem.bounds);
     let widest = grid.clearances.iter().copied().fold(0.0, f64::max);
     let radius = RADIUS.min(0.5 * widest);
@@ -115,7 +116,7 @@ fn map(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
          docs/formats/planar-world.md"
             .to_owned(),
     ];
-    Ok(Scene::from_world(problem)?.with_notes(notes))
+    Ok(Scene::from_world_until(problem, &files.interrupt())?.with_notes(notes))
 }
 
 #[cfg(not(feature = "planar"))]

@@ -1,5 +1,6 @@
 //! Verifies a path, with code that shares nothing with the planner's checks.
 
+use crate::counted::Counted;
 use crate::explain::list;
 use crate::goals::next_to;
 use crate::numbers::brief;
@@ -7,11 +8,12 @@ use crate::path::states;
 use crate::{Error, PathRows, RobotKind};
 use mp_cspace::erased::AnyCheck;
 use mp_cspace::{
-    MotionCheck, Path, Space, least_clearance,
+    Interrupt, MotionCheck, Path, Space, least_clearance,
     path::{PathFault, PathReport},
     verify_path,
 };
 use serde::{Deserialize, Serialize};
+use std::sync::atomic::AtomicU64;
 
 /// The result of checking a path. `mp check --json` prints its JSON form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,16 +55,28 @@ impl Verdict {
     }
 }
 
-/// Verifies a path edge by edge.
-pub(crate) fn verified<K: RobotKind>(kind: &K, path: &Path<K::State>) -> Result<PathReport, Error> {
+/// Verifies a path edge by edge. Where `interrupt` says to end, the path has a fault.
+pub(crate) fn verified<K: RobotKind>(
+    kind: &K,
+    path: &Path<K::State>,
+    interrupt: &Interrupt,
+) -> Result<PathReport, Error> {
     let mut verifier: AnyCheck<'_, K::State> = Box::new(kind.verifier()?);
+    verifier.interrupt_by(interrupt);
     Ok(verify_path(kind.space(), path, &mut verifier))
 }
 
-/// A lower bound on the clearance (m) along a free path, to within `accuracy` (m).
-pub(crate) fn clearance<K: RobotKind>(kind: &K, path: &Path<K::State>, accuracy: f64) -> Option<f64> {
-    let mut checker = kind.checker().clone();
-    least_clearance(kind.space(), &mut checker, path, accuracy).map(|tightest| tightest.clearance)
+/// A lower bound on the clearance (m) along a free path, to within `accuracy` (m); `None` where `interrupt` says to end.
+pub(crate) fn clearance<K: RobotKind>(
+    kind: &K,
+    path: &Path<K::State>,
+    accuracy: f64,
+    interrupt: &Interrupt,
+) -> Option<f64> {
+    let unused = AtomicU64::new(0);
+    let mut checker = Counted::new(kind.checker().clone(), &unused).with_interrupt(interrupt.clone());
+    let tightest = least_clearance(kind.space(), &mut checker, path, accuracy)?;
+    interrupt.raised().is_none().then_some(tightest.clearance)
 }
 
 /// Checks that a path is free and leads from the start to a goal.
@@ -87,11 +101,11 @@ pub(crate) fn check<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Verdict, 
         faults.push(format!("does not end at {which}: {}{} off", brief(goal.off), goal.unit));
     }
     faults.extend(kind.odd_rows(&path.rows));
-    let report = verified(kind, &states)?;
+    let report = verified(kind, &states, &Interrupt::never())?;
     faults.extend(report.fault.map(|fault| fault_text(kind, &states, fault)));
     let clearance = match faults.is_empty() {
         true => {
-            let found = clearance(kind, &states, 0.1 * kind.accuracy());
+            let found = clearance(kind, &states, 0.1 * kind.accuracy(), &Interrupt::never());
             found.map_or(report.clearance, |c| c.max(report.clearance))
         }
         false => 0.0,

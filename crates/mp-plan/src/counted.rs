@@ -2,8 +2,8 @@
 
 use crate::Queries;
 use mp_cspace::{
-    Clearance, ClearanceSearch, IntervalClearance, LeastClearance, MotionClearance, MotionInterval, Progress,
-    Rng, Stop, StopReason, Validity,
+    Clearance, ClearanceSearch, Interrupt, IntervalClearance, LeastClearance, MotionClearance,
+    MotionInterval, Progress, Rng, Stop, StopReason, Validity,
     obstacles::{BodyFeatures, ClearanceGradient, ObstacleGeometry, ObstacleHints, PointOf},
 };
 use nalgebra::Vector3;
@@ -25,19 +25,29 @@ pub(crate) fn queries_of_thread() -> u64 {
     OF_THREAD.get()
 }
 
-/// A checker whose queries are added to a common count: now and then, and when it is dropped.
+/// A checker whose queries are added to a common count: now and then, and when it is dropped. Once it is told to end, it queries
+/// nothing any more: everything is in contact.
 pub struct Counted<'a, R: Queries> {
     checker: R,
     /// How many of the checker's queries are in the common count.
     reported: u64,
     most_unreported: u64,
     queries: &'a AtomicU64,
+    interrupt: Interrupt,
 }
 
 impl<'a, R: Queries> Counted<'a, R> {
     /// Adds the queries that `checker` answers from now on to `queries`.
     pub fn new(checker: R, queries: &'a AtomicU64) -> Self {
-        Self { reported: checker.queries(), most_unreported: MAX_UNREPORTED, checker, queries }
+        let (reported, interrupt) = (checker.queries(), Interrupt::never());
+        Self { reported, most_unreported: MAX_UNREPORTED, checker, queries, interrupt }
+    }
+
+    /// The same, which ends when `interrupt` says so.
+    #[must_use]
+    pub fn with_interrupt(mut self, interrupt: Interrupt) -> Self {
+        self.interrupt = interrupt;
+        self
     }
 
     /// Adds each query at once, so that the common count is always exact.
@@ -54,8 +64,12 @@ impl<'a, R: Queries> Counted<'a, R> {
         self.reported = now;
     }
 
-    /// The answer of the checker to a query.
-    fn query<T>(&mut self, query: impl FnOnce(&mut R) -> T) -> T {
+    /// The answer of the checker to a query; `ended` once it is told to end.
+    #[inline]
+    fn query<T>(&mut self, ended: T, query: impl FnOnce(&mut R) -> T) -> T {
+        if self.interrupt.ask() {
+            return ended;
+        }
         let answer = query(&mut self.checker);
         if self.checker.queries() - self.reported >= self.most_unreported {
             self.report();
@@ -81,6 +95,7 @@ impl<R: Queries + Clone> Clone for Counted<'_, R> {
     fn clone(&self) -> Self {
         let mut clone = Self::new(self.checker.clone(), self.queries);
         clone.most_unreported = self.most_unreported;
+        clone.interrupt = self.interrupt.clone();
         clone
     }
 }
@@ -99,10 +114,10 @@ impl<R: Queries + fmt::Debug> fmt::Debug for Counted<'_, R> {
 
 impl<S, R: Validity<S> + Queries> Validity<S> for Counted<'_, R> {
     fn is_valid(&mut self, q: &S) -> bool {
-        self.query(|checker| checker.is_valid(q))
+        self.query(false, |checker| checker.is_valid(q))
     }
     fn first_invalid(&mut self, states: &[S]) -> Option<usize> {
-        self.query(|checker| checker.first_invalid(states))
+        self.query(Some(0), |checker| checker.first_invalid(states))
     }
     fn batch_size(&self) -> usize {
         self.checker.batch_size()
@@ -111,10 +126,10 @@ impl<S, R: Validity<S> + Queries> Validity<S> for Counted<'_, R> {
 
 impl<S, R: Clearance<S> + Queries> Clearance<S> for Counted<'_, R> {
     fn clearance(&mut self, q: &S, enough: f64) -> f64 {
-        self.query(|checker| checker.clearance(q, enough))
+        self.query(0.0, |checker| checker.clearance(q, enough))
     }
     fn in_contact(&mut self, q: &S) -> bool {
-        self.query(|checker| checker.in_contact(q))
+        self.query(true, |checker| checker.in_contact(q))
     }
 }
 
@@ -123,10 +138,12 @@ impl<S, R: MotionClearance<S> + Queries> MotionClearance<S> for Counted<'_, R> {
         self.checker.motion_bound(from, to)
     }
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
-        self.query(|checker| checker.interval_clearance(interval))
+        let ended = IntervalClearance::Collision { at: 0.0 };
+        self.query(ended, |checker| checker.interval_clearance(interval))
     }
     fn least_along(&mut self, search: &ClearanceSearch<'_, S>) -> LeastClearance {
-        self.query(|checker| checker.least_along(search))
+        let ended = LeastClearance { bound: 0.0, found: search.known, at: None };
+        self.query(ended, |checker| checker.least_along(search))
     }
     fn contact_first(&self) -> bool {
         self.checker.contact_first()
@@ -135,10 +152,10 @@ impl<S, R: MotionClearance<S> + Queries> MotionClearance<S> for Counted<'_, R> {
 
 impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
     fn touches(&mut self, q: &S) -> bool {
-        self.query(|checker| checker.touches(q))
+        self.query(true, |checker| checker.touches(q))
     }
     fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        self.query(|checker| checker.slide_along(from, toward, hit, rng))
+        self.query(None, |checker| checker.slide_along(from, toward, hit, rng))
     }
     fn moved_by(&self, q: &S, from: &S, to: &S) -> S {
         self.checker.moved_by(q, from, to)
@@ -147,11 +164,15 @@ impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
 
 impl<S, R: ClearanceGradient<S> + Queries> ClearanceGradient<S> for Counted<'_, R> {
     fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64 {
-        self.query(|checker| checker.clearance_gradient(q, reach, gradient))
+        gradient.fill(0.0);
+        self.query(0.0, |checker| checker.clearance_gradient(q, reach, gradient))
     }
 }
 
 impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R> {
+    fn prepare(&self, interrupt: &Interrupt) -> bool {
+        self.checker.prepare(interrupt)
+    }
     fn obstacles(&self) -> &[BodyFeatures] {
         self.checker.obstacles()
     }
@@ -159,7 +180,7 @@ impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R>
         self.checker.robot()
     }
     fn touched_obstacle(&mut self, q: &S) -> Option<usize> {
-        self.query(|checker| checker.touched_obstacle(q))
+        self.query(None, |checker| checker.touched_obstacle(q))
     }
     fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
         self.checker.obstacle_point(obstacle, of, rng)

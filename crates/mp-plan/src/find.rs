@@ -1,6 +1,8 @@
 //! Finding scenes: by file, or by the name of a shipped scene.
 
 use crate::{Error, Scene};
+use mp_cspace::Interrupt;
+use mp_io::{Disk, Until};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
@@ -14,11 +16,20 @@ impl Scene {
     /// # Errors
     /// When there is no such scene (the error suggests the most similar name), or as [`load`](Self::load).
     pub fn find(given: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::find_until(given, &Interrupt::never())
+    }
+
+    /// As [`find`](Self::find), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`find`](Self::find), and when it was told to end.
+    pub fn find_until(given: impl AsRef<Path>, interrupt: &Interrupt) -> Result<Self, Error> {
+        let until = |files| Until { files, interrupt: interrupt.clone() };
         match locate(given.as_ref())? {
-            Location::Disk(file) => Self::load(file),
+            Location::Disk(file) => Self::load_from(&until(&Disk), &file),
             #[cfg(feature = "scenes")]
             Location::Memory(file) => {
-                let mut scene = Self::load_from(&shipped_files(), Path::new(file))?;
+                let mut scene = Self::load_from(&until(&shipped_files()), Path::new(file))?;
                 scene.shipped = true;
                 Ok(scene)
             }

@@ -2,14 +2,20 @@
 
 use crate::check::{clearance, verified};
 use crate::prepared::Possible;
-use crate::{Control, Error, Finish, PathRows, Request, RobotKind, Stage};
+use crate::report::{RunStage, StageTime};
+use crate::{Control, Error, Finish, PathRows, Request, RobotKind, Stage, StoppedBy};
 use mp_cspace::erased::AnyCheck;
 use mp_cspace::shorten::{Effort, simplify};
-use mp_cspace::{Cancel, Certified, Factored, KnownFree, MotionCheck, MotionValidity, Path, Rng};
-use std::sync::atomic::Ordering;
+use mp_cspace::{Certified, Factored, Interrupt, Path, Rng};
+use std::time::Duration;
 
 /// The stream of random numbers for shortening. Planning uses another one.
 const STREAM: u64 = 1;
+
+/// The parts of the time left that shortening may take, and shortening and verifying the result together. The rest is for verifying the
+/// path as found.
+const SHORTENING_PART: f64 = 0.25;
+const SHORT_PART: f64 = 0.5;
 
 /// A path that passed the verifier after it was written as text and read again.
 #[derive(Clone, Debug)]
@@ -17,28 +23,14 @@ pub(crate) struct Finished {
     pub(crate) path: PathRows,
     /// Its length, in the metric of the space.
     pub(crate) length: f64,
-    /// A lower bound (m) on the clearance along it.
-    pub(crate) clearance: f64,
+    /// A lower bound (m) on the clearance along it; `None` where there was no time to compute one.
+    pub(crate) clearance: Option<f64>,
     pub(crate) shortened: bool,
 }
 
-/// A check that finds no motion free once the flag is raised, so that shortening comes to an end.
-struct Cancellable<'a, S>(AnyCheck<'a, S>, &'a Cancel);
-
-impl<S> MotionValidity<S> for Cancellable<'_, S> {
-    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
-        self.check_extension(from, to, KnownFree::Neither)
-    }
-    fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
-        if self.1.0.load(Ordering::Relaxed) {
-            return MotionCheck::Unproven { at: 0.0 };
-        }
-        self.0.check_extension(from, to, known)
-    }
-}
-
 /// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](RobotKind::shortcut_clearance) or is an
-/// edge of the given path. The same seed gives the same path. Raising `cancel` ends it early.
+/// edge of the given path. The same seed gives the same path, unless `interrupt` ends it early: then the path is what it is after the
+/// last change.
 ///
 /// # Errors
 /// When the tolerance of the robot is not valid.
@@ -46,14 +38,12 @@ pub fn shorten<K: RobotKind>(
     kind: &K,
     path: &Path<K::State>,
     seed: u64,
-    cancel: &Cancel,
+    interrupt: &Interrupt,
 ) -> Result<Path<K::State>, Error> {
     let _span = tracing::info_span!("shorten").entered();
-    let certified: AnyCheck<'_, K::State> = Box::new(Possible {
-        kind,
-        check: Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())?,
-    });
-    let (mut check, mut rng) = (Cancellable(certified, cancel), Rng::stream(seed, STREAM));
+    let check = Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())?;
+    let mut check: AnyCheck<'_, K::State> = Box::new(Possible { kind, check, interrupt: interrupt.clone() });
+    let mut rng = Rng::stream(seed, STREAM);
     Ok(match kind.shortened(path, &mut check, Effort::default(), &mut rng) {
         Some(short) => short,
         None => shorten_by(kind.space(), check, path, rng),
@@ -63,48 +53,131 @@ pub fn shorten<K: RobotKind>(
 /// [`shorten`] with a check behind a pointer: compiled for each space instead of each robot.
 fn shorten_by<C: Factored>(
     space: &C,
-    mut check: Cancellable<'_, C::State>,
+    mut check: AnyCheck<'_, C::State>,
     path: &Path<C::State>,
     mut rng: Rng,
 ) -> Path<C::State> {
     simplify(space, &mut check, path, Effort::default(), &mut rng)
 }
 
-/// Shortens `found` if the request says so, and verifies what will be written. If the shortened path does not pass, `found`
-/// itself is used; `None` if that, written and read again, does not pass either.
+/// Shortens `found` if the request says so, and verifies what will be written, within the time `left`. If the shortened path does
+/// not pass, or not in time, `found` itself is used. `stages` gets what was done.
+///
+/// # Errors
+/// Inside: why there is no path. `found`, written and read again, does not pass either, or not in time.
 pub(crate) fn finish<K: RobotKind>(
     kind: &K,
     found: &Path<K::State>,
     request: &Request,
     control: &mut Control<'_>,
-) -> Result<Option<Finished>, Error> {
+    left: Option<Duration>,
+    stages: &mut Vec<StageTime>,
+) -> Result<Result<Finished, StoppedBy>, Error> {
     control.stage(Stage::Finishing);
+    let mut timed = Timed { control, stages, began: control.clock.now(), left };
     if request.finish == Finish::Shorten {
-        let short = shorten(kind, found, request.seed, &control.cancel)?;
-        if let Some(finished) = verified_as_written(kind, &short, true)? {
-            return Ok(Some(finished));
+        let rest = timed.left.map_or(Duration::ZERO, |left| left.mul_f64(1.0 - SHORT_PART));
+        let interrupt = timed.interrupt(SHORTENING_PART);
+        let short = shorten(kind, found, request.seed, &interrupt)?;
+        timed.ends(RunStage::Shortening, &interrupt);
+        if short.states != found.states {
+            let interrupt = timed.interrupt_before(rest);
+            let finished = verified_as_written(kind, &short, true, &interrupt)?;
+            timed.ends(RunStage::Verifying, &interrupt);
+            if let Ok(finished) = finished {
+                return Ok(Ok(finished));
+            }
+            tracing::info!("the shortened path does not pass the verifier: the path as found is written");
         }
-        tracing::info!("the shortened path does not pass the verifier: the path as found is written");
     }
-    verified_as_written(kind, found, false)
+    let interrupt = timed.interrupt(1.0);
+    let mut finished = verified_as_written(kind, found, false, &interrupt)?;
+    timed.ends(RunStage::Verifying, &interrupt);
+    // A cancelled run keeps its path, even if this takes as long as the verification.
+    if matches!(finished, Err(StoppedBy::Interrupted)) {
+        let interrupt = timed.interrupt_by_deadline();
+        finished = verified_as_written(kind, found, false, &interrupt)?;
+        timed.ends(RunStage::Verifying, &interrupt);
+    }
+    Ok(finished.map_err(|by| if by == StoppedBy::Time { StoppedBy::Unverified } else { by }))
+}
+
+/// What is timed: the stages of finishing a path.
+struct Timed<'t, 'c> {
+    control: &'t Control<'c>,
+    stages: &'t mut Vec<StageTime>,
+    /// When the present stage began.
+    began: Duration,
+    /// The time left by then.
+    left: Option<Duration>,
+}
+
+impl Timed<'_, '_> {
+    /// A token for the part `part` of the time left.
+    fn interrupt(&self, part: f64) -> Interrupt {
+        match self.left {
+            None => Interrupt::new(self.control.cancel.clone()),
+            Some(left) => self.control.interrupt_within(left.mul_f64(part)),
+        }
+    }
+
+    /// A token for the time left but `rest`.
+    fn interrupt_before(&self, rest: Duration) -> Interrupt {
+        match self.left {
+            None => Interrupt::new(self.control.cancel.clone()),
+            Some(left) => self.control.interrupt_within(left.saturating_sub(rest)),
+        }
+    }
+
+    /// A token for the time left, which a cancel does not end.
+    fn interrupt_by_deadline(&self) -> Interrupt {
+        let at = |left| self.control.clock.now().saturating_add(left);
+        self.left.map_or_else(Interrupt::never, |left| {
+            Interrupt::by(mp_cspace::Cancel::new(), self.control.clock, at(left))
+        })
+    }
+
+    /// Notes a stage that has just ended.
+    fn ends(&mut self, stage: RunStage, interrupt: &Interrupt) {
+        let now = self.control.clock.now();
+        let time = now.saturating_sub(self.began);
+        self.began = now;
+        self.left = self.left.map(|left| left.saturating_sub(time));
+        self.stages.push(StageTime::new(stage, time, interrupt.raised()));
+    }
 }
 
 /// `path` written as text and read again, if the verifier passes the result.
+///
+/// # Errors
+/// Inside: whether it does not pass, or was not verified because `interrupt` said to end.
 fn verified_as_written<K: RobotKind>(
     kind: &K,
     path: &Path<K::State>,
     shortened: bool,
-) -> Result<Option<Finished>, Error> {
+    interrupt: &Interrupt,
+) -> Result<Result<Finished, StoppedBy>, Error> {
     let _span = tracing::info_span!("verify").entered();
     let rows = PathRows { format: kind.path_format(), columns: kind.columns(), rows: kind.rows(path) };
     let rows = rows.read_back()?;
     let read = Path::straight(rows.rows.iter().map(|row| kind.state(row)).collect());
-    let report = verified(kind, &read)?;
+    let report = verified(kind, &read, interrupt)?;
+    let (length, cut) = (path.length(kind.space()), interrupt.raised());
     if let Some(fault) = report.fault {
-        tracing::info!("{fault}");
-        return Ok(None);
+        // The planner has verified each edge of the path as found. Where writing and reading change nothing, that holds for what is
+        // written.
+        return Ok(match cut {
+            Some(_) if !shortened && read.states == path.states => {
+                Ok(Finished { path: rows, length, clearance: None, shortened })
+            }
+            Some(reason) => Err(reason.into()),
+            None => {
+                tracing::info!("{fault}");
+                Err(StoppedBy::Verification)
+            }
+        });
     }
-    let clearance =
-        clearance(kind, &read, kind.accuracy()).map_or(report.clearance, |c| c.max(report.clearance));
-    Ok(Some(Finished { path: rows, length: path.length(kind.space()), clearance, shortened }))
+    let clearance = clearance(kind, &read, kind.accuracy(), interrupt)
+        .map_or(report.clearance, |c| c.max(report.clearance));
+    Ok(Ok(Finished { path: rows, length, clearance: Some(clearance), shortened }))
 }

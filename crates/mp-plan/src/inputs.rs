@@ -21,6 +21,9 @@ impl Files for Recording<'_> {
         }
         self.files.read(path, limit)
     }
+    fn interrupt(&self) -> mp_cspace::Interrupt {
+        self.files.interrupt()
+    }
     fn holds(&self, path: &Path) -> bool {
         self.files.holds(path)
     }

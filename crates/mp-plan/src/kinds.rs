@@ -3,6 +3,7 @@
 
 use crate::robot::{DrivenScene, PlanarBody, PlanarScene, RigidScene, RigidSpace, greatest_speed};
 use crate::{Error, RobotKind, Scene};
+use mp_cspace::Interrupt;
 use mp_io::{PlanarProblem, PlanarShape, RigidProblem, RigidTask, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 
@@ -42,15 +43,36 @@ impl Scene {
     /// # Errors
     /// When the bounds of the position are empty, or a mesh or pose is not valid.
     pub fn from_problem(problem: RigidProblem) -> Result<Self, Error> {
-        Self::of_problem(None, problem)
+        Self::from_problem_until(problem, &Interrupt::never())
+    }
+
+    /// As [`from_problem`](Self::from_problem), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`from_problem`](Self::from_problem), and when it was told to end.
+    pub fn from_problem_until(problem: RigidProblem, interrupt: &Interrupt) -> Result<Self, Error> {
+        Self::of_problem_until(None, problem, interrupt)
     }
 
     /// The scene of `problem`, which is an edited problem of the scene `before`: what did not change is shared with it.
     pub(crate) fn of_problem(before: Option<&Self>, problem: RigidProblem) -> Result<Self, Error> {
+        Self::of_problem_until(before, problem, &Interrupt::never())
+    }
+
+    fn of_problem_until(
+        before: Option<&Self>,
+        problem: RigidProblem,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %problem.name).entered();
         match problem.space {
-            SpaceKind::Se3 => space(RigidScene::after(before.and_then(Self::robot), problem)?),
-            SpaceKind::Se2 => plane(RigidScene::<Planar>::after(before.and_then(Self::robot), problem)?),
+            SpaceKind::Se3 => {
+                space(RigidScene::after_until(before.and_then(Self::robot), problem, interrupt)?)
+            }
+            SpaceKind::Se2 => {
+                let before = before.and_then(Self::robot);
+                plane(RigidScene::<Planar>::after_until(before, problem, interrupt)?)
+            }
         }
     }
 
@@ -74,10 +96,18 @@ impl Scene {
     /// # Errors
     /// When world, robot or bounds are not valid.
     pub fn from_world(problem: PlanarProblem) -> Result<Self, Error> {
+        Self::from_world_until(problem, &Interrupt::never())
+    }
+
+    /// As [`from_world`](Self::from_world), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`from_world`](Self::from_world), and when it was told to end.
+    pub fn from_world_until(problem: PlanarProblem, interrupt: &Interrupt) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %problem.name).entered();
         match problem.file.robot {
-            PlanarShape::Disc(_) => world(problem, disc),
-            PlanarShape::Polygon(_) => world::<PolygonRobot>(problem, plane),
+            PlanarShape::Disc(_) => world(problem, disc, interrupt),
+            PlanarShape::Polygon(_) => world::<PolygonRobot>(problem, plane, interrupt),
         }
     }
 }
@@ -110,9 +140,10 @@ fn body<M: RigidSpace>(
 fn world<B: PlanarBody>(
     problem: PlanarProblem,
     still: fn(PlanarScene<B>) -> Result<Scene, Error>,
+    interrupt: &Interrupt,
 ) -> Result<Scene, Error> {
     let (moves, driven) = (!problem.file.moving.is_empty(), problem.file.driven.clone());
-    let scene = PlanarScene::<B>::new(problem)?;
+    let scene = PlanarScene::<B>::new_until(problem, interrupt)?;
     Ok(match driven {
         Some(driven) if moves => of_kind!("driven-moving", scene.driven_among_moving(&driven)?),
         Some(driven) => of_kind!("driven", scene.driven(&driven)?),

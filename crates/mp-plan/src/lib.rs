@@ -109,7 +109,7 @@ pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
 pub use planners::{meta_planners, planners, roadmap_planners};
-pub use report::{REPORT_VERSION, Report, StoppedBy};
+pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, RelaxField, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
@@ -130,6 +130,6 @@ pub use watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
 pub use mp_render::{Mode, View};
 
 pub use mp_cspace::{
-    Cancel, Progress,
+    Cancel, Clock, Interrupt, Progress, StopReason,
     registry::{Parameter, PlannerInfo},
 };

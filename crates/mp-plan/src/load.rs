@@ -19,7 +19,8 @@ impl Scene {
         Self::load_from(&Disk, file.as_ref())
     }
 
-    /// As [`load`](Self::load), from other files than those on the disk, such as files in memory.
+    /// As [`load`](Self::load), from other files than those on the disk, such as files in memory. With [`mp_io::Until`] loading ends
+    /// when a token says so.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -46,7 +47,10 @@ impl Scene {
                 let mesh = |name: &str| mp_io::read_mesh_of(files, &folder.join(name));
                 Self::from_document(SceneDocument::load_from(files, file)?, &mesh).map_err(of)?
             }
-            None => Self::from_problem(RigidProblem::load_from(files, file)?).map_err(of)?,
+            None => {
+                let problem = RigidProblem::load_from(files, file)?;
+                Self::from_problem_until(problem, &files.interrupt()).map_err(of)?
+            }
         };
         tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
         let inputs = recording.read.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -61,6 +65,19 @@ impl Scene {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn parse(name: &str, text: &str, folder: &Path) -> Result<Self, Error> {
+        Self::parse_until(name, text, folder, &mp_cspace::Interrupt::never())
+    }
+
+    /// As [`parse`](Self::parse), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse), and when it was told to end.
+    pub fn parse_until(
+        name: &str,
+        text: &str,
+        folder: &Path,
+        interrupt: &mp_cspace::Interrupt,
+    ) -> Result<Self, Error> {
         let begins = |what: &str| text.lines().any(|line| line.trim_start().starts_with(what));
         let first = text.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default();
         let ending = match first {
@@ -73,14 +90,15 @@ impl Scene {
             _ => "env",
         };
         let file = folder.join(format!("{name}.{ending}"));
-        Self::load_from(&OneText { file: &file, text, files: &Disk }, &file)
+        let files = mp_io::Until { files: &Disk, interrupt: interrupt.clone() };
+        Self::load_from(&OneText { file: &file, text, files: &files }, &file)
     }
 }
 
 /// The scene of a world in the plane.
 #[cfg(feature = "planar")]
 fn planar(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
-    Scene::from_world(PlanarProblem::load_from(files, file)?)
+    Scene::from_world_until(PlanarProblem::load_from(files, file)?, &files.interrupt())
 }
 
 /// The scene of an arm, whose base stands still or floats.
@@ -119,6 +137,9 @@ pub(crate) struct OneText<'a> {
 impl Files for OneText<'_> {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
         if path == self.file { Ok(self.text.as_bytes().to_vec()) } else { self.files.read(path, limit) }
+    }
+    fn interrupt(&self) -> mp_cspace::Interrupt {
+        self.files.interrupt()
     }
     fn holds(&self, path: &Path) -> bool {
         path == self.file || self.files.holds(path)

@@ -23,7 +23,7 @@ pub fn in_parallel<T: Send>(
     let work = || {
         loop {
             let i = next.fetch_add(1, Ordering::Relaxed);
-            if i >= count || cancel.0.load(Ordering::Relaxed) {
+            if i >= count || cancel.is_raised() {
                 break;
             }
             let result = job(i);

@@ -1,9 +1,12 @@
 //! Planning: runs a request, finishes the path and makes the report.
 
 use crate::finish::finish;
-use crate::search::{Search, search};
+use crate::report::{RunStage, StageTime};
+use crate::run::PLANNING_PART;
+use crate::search::{Search, search_within};
 use crate::{Control, Error, REPORT_VERSION, Report, Request, RobotKind, StoppedBy};
-use mp_cspace::Outcome;
+use mp_cspace::{Outcome, StopReason};
+use std::time::Duration;
 
 /// Plans, finishes the path, and makes the report.
 pub(crate) fn plan<K: RobotKind>(
@@ -11,18 +14,26 @@ pub(crate) fn plan<K: RobotKind>(
     request: &Request,
     control: &mut Control<'_>,
 ) -> Result<Report, Error> {
-    let found = search(kind, request, control)?;
-    reported(kind, request, found, None, control)
+    let found = search_within(kind, request, control, PLANNING_PART)?;
+    let left = left(request, control, &found);
+    reported(kind, request, found, None, control, left)
+}
+
+/// What is left of the budget of time after a search.
+pub(crate) fn left<S>(request: &Request, control: &Control<'_>, found: &Search<S>) -> Option<Duration> {
+    let time = Duration::try_from_secs_f64(request.budget.time_s?).ok()?;
+    Some(time.saturating_sub(control.spent).saturating_sub(found.time))
 }
 
 /// Finishes the path of a search, if there is one, and makes the report. `why` is a better reason than the outcome gives
-/// why there is no path.
+/// why there is no path. Finishing may take the time `left`.
 pub(crate) fn reported<K: RobotKind>(
     kind: &K,
     request: &Request,
     found: Search<K::State>,
     why: Option<String>,
     control: &mut Control<'_>,
+    left: Option<Duration>,
 ) -> Result<Report, Error> {
     let mut report = Report {
         version: REPORT_VERSION,
@@ -46,6 +57,7 @@ pub(crate) fn reported<K: RobotKind>(
         rejected: found.progress.rejected,
         time_s: found.time.as_secs_f64(),
         finish_s: 0.0,
+        stages: stages(&found, control),
         first_s: found.first.as_ref().map(|(time, ..)| time.as_secs_f64()),
         first_length: found.first.as_ref().map(|(_, length, _)| *length),
         first_path: found.first.as_ref().map(|(.., path)| kind.rows(path)),
@@ -61,7 +73,13 @@ pub(crate) fn reported<K: RobotKind>(
     };
     let path = match found.outcome {
         Outcome::Stopped(reason) => {
-            let by = if why.is_some() { StoppedBy::Unanswered } else { reason.into() };
+            let by = match reason {
+                _ if why.is_some() => StoppedBy::Unanswered,
+                StopReason::Deadline | StopReason::Cancelled if found.found_unverified => {
+                    StoppedBy::Unverified
+                }
+                reason => reason.into(),
+            };
             (report.stopped_by, report.why) = (Some(by), why.or(Some(by.to_string())));
             return Ok(report);
         }
@@ -69,18 +87,33 @@ pub(crate) fn reported<K: RobotKind>(
     };
     report.path_length_found = Some(path.length(kind.space()));
     let began = control.clock.now();
-    let finished = finish(kind, &path, request, control)?;
+    let finished = finish(kind, &path, request, control, left, &mut report.stages)?;
     report.finish_s = control.clock.now().saturating_sub(began).as_secs_f64();
-    let Some(finished) = finished else {
-        let by = StoppedBy::Verification;
-        (report.stopped_by, report.why) = (Some(by), Some(by.to_string()));
-        return Ok(report);
+    let finished = match finished {
+        Ok(finished) => finished,
+        Err(by) => {
+            (report.stopped_by, report.why) = (Some(by), Some(by.to_string()));
+            return Ok(report);
+        }
     };
     (report.solved, report.verified, report.shortened) = (true, true, finished.shortened);
     report.path_length = Some(finished.length);
-    report.clearance = Some(finished.clearance);
+    report.clearance = finished.clearance;
     let numbers = finished.path.rows.iter().flatten().copied();
     report.fingerprint = Some(format!("{:016x}", crate::numbers::fingerprint(numbers)));
     report.path = Some(finished.path.rows);
     Ok(report)
+}
+
+/// The stages up to the path found.
+fn stages<S>(found: &Search<S>, control: &Control<'_>) -> Vec<StageTime> {
+    let planning = found.time.saturating_sub(found.relaxing);
+    let mut stages = vec![StageTime::new(RunStage::Planning, planning, found.ended_by)];
+    if !control.spent.is_zero() {
+        stages.insert(0, StageTime::new(RunStage::Loading, control.spent, None));
+    }
+    if !found.relaxing.is_zero() {
+        stages.push(StageTime::new(RunStage::Relaxing, found.relaxing, None));
+    }
+    stages
 }

@@ -8,13 +8,13 @@ use crate::watch::{Events, WatchAdapter};
 use crate::{Control, Error, Length, Measured, MotionValidator, Request, RobotKind};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
-    AnyProblem, BuildError, Cancel, Certified, Clock, Deadline, Discrete, Iterations, KnownFree, MotionCheck,
+    AnyProblem, BuildError, Certified, Discrete, Interrupt, Iterations, KnownFree, MotionCheck,
     MotionValidity, Nodes, ParameterError, Problem, Resolution, Stop, Straight, Workers,
     registry::PlannerInfo,
 };
 use mp_tree::TreeState;
-use std::sync::Arc;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// What the problems and planners of one request are made from.
@@ -30,6 +30,10 @@ pub(crate) struct Prepared<'k, K: RobotKind> {
     pub(crate) queries: AtomicU64,
     /// Planners of roadmaps tell on several threads which queries are not to be counted: see `QueryMeter` of mp-roadmap.
     counts_exactly: bool,
+    /// What the run asks whether to end.
+    interrupt: Mutex<Interrupt>,
+    /// Whether the verification of a path was told to end.
+    unverified: AtomicBool,
 }
 
 impl<'k, K: RobotKind> Prepared<'k, K> {
@@ -40,14 +44,30 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         let Measured { space, index } = kind.measured(request.metric)?;
         let (verifier, queries) = (kind.verifier()?, AtomicU64::new(0));
         let counts_exactly = matches!(planner, PlannerKind::Roadmap(_));
-        Ok(Self { kind, request, space, index, verifier, queries, counts_exactly })
+        let (interrupt, unverified) = (Mutex::default(), AtomicBool::new(false));
+        Ok(Self { kind, request, space, index, verifier, queries, counts_exactly, interrupt, unverified })
+    }
+
+    /// What the run asks whether to end. Problems made from now on do.
+    pub(crate) fn interrupt_by(&self, interrupt: Interrupt) {
+        *self.interrupt.lock().unwrap_or_else(PoisonError::into_inner) = interrupt;
+    }
+
+    pub(crate) fn interrupt(&self) -> Interrupt {
+        self.interrupt.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Whether the run ended while a path that was found was verified.
+    pub(crate) fn found_unverified(&self) -> bool {
+        self.unverified.load(Ordering::Relaxed)
     }
 
     /// The problem of the scene. Each thread makes its own.
     pub(crate) fn problem(&self) -> Result<AnyProblem<'_, K::State>, BuildError> {
-        let kind = self.kind;
+        let (kind, interrupt) = (self.kind, self.interrupt());
         let counted = || {
             let counted = Counted::new(kind.checker().clone(), &self.queries);
+            let counted = counted.with_interrupt(interrupt.clone());
             if self.counts_exactly { counted.exactly() } else { counted }
         };
         let check: AnyCheck<'_, K::State> = match self.request.motion {
@@ -58,11 +78,13 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
                 Box::new(build_error(Discrete::new(&self.space, counted(), resolution(length)))?)
             }
         };
-        let check: AnyCheck<'_, K::State> = Box::new(Possible { kind, check });
+        let check: AnyCheck<'_, K::State> = Box::new(Possible { kind, check, interrupt: interrupt.clone() });
         let local = Straight::new(&self.space, check);
-        let verifier: AnyCheck<'_, K::State> = Box::new(self.verifier.clone());
+        let mut verifier: AnyCheck<'_, K::State> = Box::new(self.verifier.clone());
+        verifier.interrupt_by(&interrupt);
+        let verifier = Verifying { verifier, interrupt: interrupt.clone(), unverified: &self.unverified };
         let problem = Problem::new(&self.space, local, verifier, kind.start().clone(), goals::of_kind(kind))?;
-        let problem = problem.with_obstacles(kind.obstacles(&counted));
+        let problem = problem.with_obstacles(kind.obstacles(&counted)).with_interrupt(interrupt);
         Ok(match kind.input_system() {
             Some(system) => problem.with_inputs(system),
             None => problem,
@@ -97,38 +119,68 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         RoadmapPlanner::new(info, parts, file)
     }
 
-    /// Calls `run` with the stop and the observer of a run that has taken the time `spent`. It is stopped by the budget of
-    /// the request and by the flag of `control`, and reported to the watch of `control`.
+    /// A token for a run that takes the part `part` of the time of the request and ends when `control` is cancelled. What was spent
+    /// before, by `control`, counts.
+    pub(crate) fn interrupt_of(&self, control: &Control<'_>, part: f64) -> Interrupt {
+        match self.time_left(control, part, Duration::ZERO) {
+            None => Interrupt::new(control.cancel.clone()),
+            Some(left) => control.interrupt_within(left),
+        }
+    }
+
+    /// What is left of the part `part` of the time of the request after the time `spent`, if it has a budget of time.
+    pub(crate) fn time_left(&self, control: &Control<'_>, part: f64, spent: Duration) -> Option<Duration> {
+        let time = Duration::try_from_secs_f64(part * self.request.budget.time_s?).ok()?;
+        Some(time.saturating_sub(control.spent).saturating_sub(spent))
+    }
+
+    /// Calls `run` with the stop and the observer of a run. It is stopped by the budget of the request, by its token and by the flag
+    /// of `control`, and reported to the watch of `control`.
     pub(crate) fn watched<T>(
         &self,
         control: &mut Control<'_>,
-        spent: Duration,
         run: impl FnOnce(&mut dyn Stop, &mut Events<'_, '_, '_, K::State>) -> T,
     ) -> T {
         let wanted = control.watch.as_ref().is_some_and(|watch| watch.wants_events());
         let adapter = WatchAdapter::new(control.watch.as_deref_mut(), control.clock);
-        let stop = self.stop(spent, control.clock, control.cancel.clone());
-        let mut stop = stop.or(control.stop.as_deref_mut()).or(&adapter);
+        let mut stop = control.cancel.clone().or(self.stop()).or(control.stop.as_deref_mut()).or(&adapter);
         let (row, rows) = (&|q: &_| self.kind.row(q), &|path: &_| self.kind.rows(path));
         run(&mut stop, &mut Events { row, rows, adapter: &adapter, wanted })
     }
 
-    /// When a run that has taken the time `spent` stops: by `cancel`, or by the budget of the request.
-    fn stop(&self, spent: Duration, clock: Clock, cancel: Cancel) -> impl Stop {
+    /// When a run stops: by its token, or by the budget of the request.
+    fn stop(&self) -> impl Stop {
         let budget = &self.request.budget;
-        let time = budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
-        cancel
+        self.interrupt()
             .or(budget.iterations.map(Iterations))
             .or(budget.nodes.map(Nodes))
-            .or(time.map(|time| Deadline::by(clock, time.saturating_sub(spent))))
             .or(budget.queries.map(|most| QueryBudget { queries: &self.queries, most }))
     }
 }
 
-/// A check that finds no motion free that the robot cannot make.
+/// The verifier of paths, which notes when it was told to end.
+struct Verifying<'a, S> {
+    verifier: AnyCheck<'a, S>,
+    interrupt: Interrupt,
+    unverified: &'a AtomicBool,
+}
+
+impl<S: PartialEq> MotionValidity<S> for Verifying<'_, S> {
+    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
+        let check = self.verifier.check_motion(from, to);
+        // A single state is a start or a goal, not a path.
+        if !check.is_free() && from != to && self.interrupt.raised().is_some() {
+            self.unverified.store(true, Ordering::Relaxed);
+        }
+        check
+    }
+}
+
+/// A check that finds no motion free that the robot cannot make, and none at all once it is told to end.
 pub(crate) struct Possible<'k, K, M> {
     pub(crate) kind: &'k K,
     pub(crate) check: M,
+    pub(crate) interrupt: Interrupt,
 }
 
 impl<K: RobotKind, M: MotionValidity<K::State>> MotionValidity<K::State> for Possible<'_, K, M> {
@@ -136,10 +188,16 @@ impl<K: RobotKind, M: MotionValidity<K::State>> MotionValidity<K::State> for Pos
         self.check_extension(from, to, KnownFree::Neither)
     }
     fn check_extension(&mut self, from: &K::State, to: &K::State, known: KnownFree) -> MotionCheck {
-        match self.kind.can_move(from, to) {
+        match !self.interrupt.ask() && self.kind.can_move(from, to) {
             true => self.check.check_extension(from, to, known),
             false => MotionCheck::Unproven { at: 0.0 },
         }
+    }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        self.interrupt = interrupt.clone();
+    }
+    fn is_interrupted(&mut self) -> bool {
+        self.interrupt.ask()
     }
 }
 

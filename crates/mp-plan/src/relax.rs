@@ -6,10 +6,11 @@ use crate::prepared::Possible;
 use crate::{Control, Error, Finish, RelaxField, Request, RobotKind, Stage};
 use mp_cspace::erased::{AnyCheck, AnyGradient, AnySpace};
 use mp_cspace::shorten::reduce;
-use mp_cspace::{Certified, Demand, Path, Space, verify_path};
+use mp_cspace::{Certified, Demand, Interrupt, Path, Space, verify_path};
 use mp_snake::{Params, relax};
 use mp_tree::TreeState;
 use std::sync::atomic::AtomicU64;
+use std::time::Duration;
 
 /// The range of the repulsion of obstacles, as a part of the extent of the space.
 const RELAX_RANGE: f64 = 0.03;
@@ -26,7 +27,7 @@ pub(crate) fn check<K: RobotKind>(kind: &K, request: &Request) -> Result<(), Err
             .help("leave relaxing out: shortening chooses other inputs"));
     }
     let unused = AtomicU64::new(0);
-    drop(gradient(kind, &unused)?);
+    drop(gradient(kind, &unused, &Interrupt::never())?);
     field::check(kind, &request.field)
 }
 
@@ -34,26 +35,36 @@ pub(crate) fn check<K: RobotKind>(kind: &K, request: &Request) -> Result<(), Err
 fn gradient<'k, K: RobotKind>(
     kind: &'k K,
     unused: &'k AtomicU64,
+    interrupt: &Interrupt,
 ) -> Result<AnyGradient<'k, K::State>, Error> {
-    let knowledge = kind.obstacles(&|| Counted::new(kind.checker().clone(), unused));
+    let knowledge =
+        kind.obstacles(&|| Counted::new(kind.checker().clone(), unused).with_interrupt(interrupt.clone()));
     knowledge.gradient.ok_or_else(|| {
         Error::new("this robot knows no clearance gradient, so its paths cannot be relaxed")
             .help("leave relaxing out: shortening needs none")
     })
 }
 
-/// The path, [relaxed] if the request says so.
+/// The part of the time left that relaxing may take; the rest is for verifying.
+const RELAXING_PART: f64 = 0.5;
+
+/// The path, [relaxed] if the request says so, within the time `left`.
 pub(crate) fn relax_if_requested<K: RobotKind>(
     kind: &K,
     request: &Request,
     path: Path<K::State>,
     control: &mut Control<'_>,
+    left: Option<Duration>,
 ) -> Result<Path<K::State>, Error> {
     if request.finish != Finish::Relax {
         return Ok(path);
     }
     control.stage(Stage::Relaxing);
-    relaxed(kind, &request.field, path)
+    let interrupt = match left {
+        None => Interrupt::new(control.cancel.clone()),
+        Some(left) => control.interrupt_within(left.mul_f64(RELAXING_PART)),
+    };
+    relaxed(kind, &request.field, path, &interrupt)
 }
 
 /// The path without the states that it does not need, relaxed by a snake; the path itself if the result does not pass the
@@ -62,17 +73,20 @@ fn relaxed<K: RobotKind>(
     kind: &K,
     field: &RelaxField,
     path: Path<K::State>,
+    interrupt: &Interrupt,
 ) -> Result<Path<K::State>, Error> {
     let _span = tracing::info_span!("relax", %field).entered();
     let unused = AtomicU64::new(0);
-    let gradient = gradient(kind, &unused)?;
+    let gradient = gradient(kind, &unused, interrupt)?;
     let check = Certified::new(kind.space(), kind.checker().clone(), kind.tolerance())?;
-    let mut check: AnyCheck<'_, K::State> = Box::new(Possible { kind, check });
+    let mut check: AnyCheck<'_, K::State> = Box::new(Possible { kind, check, interrupt: interrupt.clone() });
     let space = AnySpace::new(kind.space());
     let short = reduce(&space, &mut check, &path);
     let range = RELAX_RANGE * space.extent();
     let field = field::make(kind, field, range, Some(&short), gradient)?;
-    relaxed_by(&space, check, Box::new(kind.verifier()?), field, range, short, path)
+    let mut verifier: AnyCheck<'_, K::State> = Box::new(kind.verifier()?);
+    verifier.interrupt_by(interrupt);
+    relaxed_by(&space, check, verifier, field, range, short, path)
 }
 
 /// [`relaxed`] behind pointers: compiled for each kind of state instead of each kind of robot.

@@ -3,6 +3,7 @@
 use crate::{Column, Error};
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::time::Duration;
 
 /// The version of the JSON form of a [`Report`]. It grows when a member changes its meaning or is removed. New members do
 /// not change it.
@@ -55,6 +56,9 @@ pub struct Report {
     pub time_s: f64,
     /// The time of shortening and verifying.
     pub finish_s: f64,
+    /// What was done when, in order. Empty in reports of earlier versions of this program.
+    #[serde(default)]
+    pub stages: Vec<StageTime>,
     /// When an anytime planner found its first path.
     pub first_s: Option<f64>,
     /// The length of the first path.
@@ -65,7 +69,7 @@ pub struct Report {
     pub path_length_found: Option<f64>,
     /// The length of `path`.
     pub path_length: Option<f64>,
-    /// A lower bound on the clearance along `path`.
+    /// A lower bound on the clearance along `path`; `None` where there was no time left to compute one.
     pub clearance: Option<f64>,
     /// Whether `path` was shortened.
     pub shortened: bool,
@@ -81,6 +85,51 @@ pub struct Report {
     pub path: Option<Vec<Vec<f64>>>,
 }
 
+/// A stage of a run, and how long it took.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StageTime {
+    /// Which stage.
+    pub stage: RunStage,
+    /// How long it took.
+    pub time_s: f64,
+    /// What ended it before it was done, also where there is a path.
+    pub ended_by: Option<StoppedBy>,
+}
+
+impl StageTime {
+    pub(crate) fn new(stage: RunStage, time: Duration, ended_by: Option<mp_cspace::StopReason>) -> Self {
+        Self { stage, time_s: time.as_secs_f64(), ended_by: ended_by.map(StoppedBy::from) }
+    }
+}
+
+/// The stages of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RunStage {
+    /// Reading the scene and checking its start and goals.
+    Loading,
+    /// Searching for a path.
+    Planning,
+    /// Relaxing the path found with a snake.
+    Relaxing,
+    /// Shortening the path.
+    Shortening,
+    /// Verifying what will be written.
+    Verifying,
+}
+
+impl fmt::Display for RunStage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Loading => "loading",
+            Self::Planning => "planning",
+            Self::Relaxing => "relaxing",
+            Self::Shortening => "shortening",
+            Self::Verifying => "verifying",
+        })
+    }
+}
+
 /// What ended a run without a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -89,6 +138,10 @@ pub enum StoppedBy {
     Time,
     /// The budget of iterations.
     Iterations,
+    /// The budget of nodes.
+    Nodes,
+    /// The budget of collision queries.
+    Queries,
     /// Another budget.
     Budget,
     /// It was cancelled from outside.
@@ -97,6 +150,8 @@ pub enum StoppedBy {
     Exhausted,
     /// The path found, written as text and read again, did not pass the verifier.
     Verification,
+    /// A path was found, but there was no time left to verify it.
+    Unverified,
     /// The roadmap has no path between the given configurations.
     Unanswered,
 }
@@ -108,10 +163,13 @@ impl StoppedBy {
         match self {
             Self::Time => "time",
             Self::Iterations => "iterations",
+            Self::Nodes => "nodes",
+            Self::Queries => "queries",
             Self::Budget => "budget",
             Self::Interrupted => "interrupted",
             Self::Exhausted => "exhausted",
             Self::Verification => "verification",
+            Self::Unverified => "unverified",
             Self::Unanswered => "unanswered",
         }
     }
@@ -123,10 +181,13 @@ impl fmt::Display for StoppedBy {
         f.write_str(match self {
             Self::Time => "the time is up",
             Self::Iterations => "the iterations are used up",
+            Self::Nodes => "the nodes are used up",
+            Self::Queries => "the collision queries are used up",
             Self::Budget => "the budget is used up",
             Self::Interrupted => "interrupted",
             Self::Exhausted => "the planner has tried all it can by its own rule",
             Self::Verification => "the path found touches something when written down: try another seed",
+            Self::Unverified => "a path was found, but not verified in time: give more time",
             Self::Unanswered => "the roadmap has no such path",
         })
     }
@@ -140,6 +201,8 @@ impl From<mp_cspace::StopReason> for StoppedBy {
             Why::Deadline => Self::Time,
             Why::Cancelled => Self::Interrupted,
             Why::Exhausted => Self::Exhausted,
+            Why::Nodes => Self::Nodes,
+            Why::Motions => Self::Queries,
             _ => Self::Budget,
         }
     }

@@ -54,7 +54,8 @@ pub struct Request {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Budget {
-    /// Seconds of wall-clock time; `None` for no limit.
+    /// Seconds of wall-clock time for all of a run, shortening and verifying included; planning has nine tenths of them. `None` for no
+    /// limit.
     pub time_s: Option<f64>,
     /// Iterations of the planner's loop.
     pub iterations: Option<u64>,

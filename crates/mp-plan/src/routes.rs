@@ -4,7 +4,7 @@ use crate::path::states;
 use crate::plan::reported;
 use crate::planners::PlannerKind;
 use crate::prepared::Prepared;
-use crate::run::Pausing;
+use crate::run::{PLANNING_PART, Pausing};
 use crate::search::Search;
 use crate::{Control, Error, Finish, Length, PathRows, Report, Request, RobotKind, Stage, planners};
 #[cfg(feature = "roadmaps")]
@@ -36,7 +36,10 @@ pub(crate) fn routes<K: RobotKind>(
     let _span = tracing::info_span!("routes", scene = kind.name(), planner = %request.planner).entered();
     request.check()?;
     let planner = PlannerKind::new(&request.planner)?;
+    let spent = control.time_if_limited(request);
     let prepared = Prepared::new(kind, request)?;
+    control.spend_since(spent);
+    prepared.interrupt_by(prepared.interrupt_of(control, PLANNING_PART));
     let apart = match apart {
         Length::Absolute(length) => length,
         Length::Fraction(part) => part * kind.space().extent(),
@@ -58,21 +61,36 @@ pub(crate) fn routes<K: RobotKind>(
         progress: listed.progress,
         queries,
         time: listed.time,
+        relaxing: Duration::ZERO,
+        ended_by: Some(listed.ended),
+        found_unverified: false,
         first: None,
         map: listed.map,
         roadmap: None,
     };
     if listed.paths.is_empty() {
-        return Ok(vec![reported(kind, request, search(Outcome::Stopped(listed.ended)), None, control)?]);
+        return Ok(vec![reported(
+            kind,
+            request,
+            search(Outcome::Stopped(listed.ended)),
+            None,
+            control,
+            None,
+        )?]);
     }
     let mut reports: Vec<Report> = Vec::new();
-    for path in &listed.paths {
+    let began = control.clock.now();
+    for (i, path) in listed.paths.iter().enumerate() {
+        // Each path has an equal share of the time left.
+        let spent = listed.time + control.clock.now().saturating_sub(began);
+        let share =
+            prepared.time_left(control, 1.0, spent).map(|left| left / (listed.paths.len() - i) as u32);
         let found = || search(Outcome::Solved(path.clone()));
-        let mut report = reported(kind, request, found(), None, control)?;
+        let mut report = reported(kind, request, found(), None, control, share)?;
         // What shortening has brought together stays as it was found.
         if report.solved && !is_far(kind, &report, &reports, apart)? && report.shortened {
             let as_found = Request { finish: Finish::AsFound, ..request.clone() };
-            report = reported(kind, &as_found, found(), None, control)?;
+            report = reported(kind, &as_found, found(), None, control, share)?;
         }
         reports.push(report);
     }
@@ -125,10 +143,14 @@ fn of_tree<K: RobotKind>(
     let mut planner = prepared.tree_planner(name, &workers)?;
     let (mut rng, mut target) = (Rng::seed(prepared.request.seed), FIRST);
     loop {
-        let spent = clock.now().saturating_sub(began);
-        let ended = prepared.watched(control, spent, |stop, events| {
+        let ended = prepared.watched(control, |stop, events| {
             loop {
-                let mut pausing = Pausing { stop: &mut *stop, pause: &mut Iterations(target), paused: false };
+                let mut pausing = Pausing {
+                    stop: &mut *stop,
+                    pause: &mut Iterations(target),
+                    paused: false,
+                    whole: Progress::default(),
+                };
                 match planner.solve(&mut rng, &mut pausing, events) {
                     // More steps close more cycles.
                     Outcome::Solved(_) => {}
@@ -179,9 +201,13 @@ fn of_roadmap<K: RobotKind>(
     let (mut rng, mut target) = (Rng::seed(request.seed), FIRST);
     loop {
         let (ended, paused) = with_checkpoints(&mut made, &mut file, |made, due| {
-            let spent = clock.now().saturating_sub(began);
-            prepared.watched(control, spent, |stop, events| {
-                let mut pausing = Pausing { stop, pause: &mut Iterations(target), paused: false };
+            prepared.watched(control, |stop, events| {
+                let mut pausing = Pausing {
+                    stop,
+                    pause: &mut Iterations(target),
+                    paused: false,
+                    whole: Progress::default(),
+                };
                 let reason = made.build(&mut rng, &mut (&mut pausing).or(due), events);
                 (reason, pausing.paused)
             })

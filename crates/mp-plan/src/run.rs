@@ -1,15 +1,15 @@
 //! A run in pieces: for programs with an event loop, which plan a little between two events.
 
-use crate::plan::reported;
+use crate::plan::{left, reported};
 use crate::planners::PlannerKind;
 use crate::prepared::Prepared;
 use crate::relax::relax_if_requested;
 use crate::roadmaps::{Due, GrowingFile, RoadmapPlanner, RoadmapState};
 use crate::search::Search;
 use crate::watch::Events;
-use crate::{Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
+use crate::{Control, Error, Finish, Report, Request, RobotKind, Stage, StoppedBy};
 use mp_cspace::erased::AnySpace;
-use mp_cspace::{Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
+use mp_cspace::{Interrupt, Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
 use mp_tree::{TreeState, improve};
 use std::fmt;
 use std::sync::atomic::Ordering;
@@ -23,7 +23,8 @@ pub struct PreparedRun<'s> {
 }
 
 impl PreparedRun<'_> {
-    /// Makes the planner, which then has done nothing yet.
+    /// Makes the planner, which then has done nothing yet. Give the same `cancel` with `control` to [`Run::advance`]: the one given here
+    /// ends the run within an iteration.
     ///
     /// # Errors
     /// When the request is not valid for the robot, or a roadmap cannot be read.
@@ -117,7 +118,7 @@ pub(crate) fn prepare<'s, K: RobotKind>(
 
 impl<K: RobotKind> AnyPrepared for Prepared<'_, K> {
     fn begin(&self, control: &mut Control<'_>) -> Result<Box<dyn AnyRun + '_>, Error> {
-        Ok(Box::new(RobotRun::new(self, control)?))
+        Ok(Box::new(RobotRun::new(self, control, PLANNING_PART)?))
     }
 }
 
@@ -139,13 +140,22 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> NamedPlanner<'p, S>
 /// A run for one kind of robot.
 pub(crate) struct RobotRun<'p, 'k, K: RobotKind> {
     prepared: &'p Prepared<'k, K>,
-    made: NamedPlanner<'p, K::State>,
+    /// None where the run ended before its planner was made.
+    made: Option<NamedPlanner<'p, K::State>>,
     rng: Rng,
     file: Option<GrowingFile<'k>>,
+    /// The part of the budget of time that is for planning.
+    part: f64,
     /// The time taken so far.
     time: Duration,
+    interrupt: Interrupt,
+    /// The counts after the last whole iteration, where another one was cut short.
+    whole: Option<Progress>,
     found: Found<K::State>,
 }
+
+/// The part of the budget of time that planning may take; the rest is for shortening and verifying.
+pub(crate) const PLANNING_PART: f64 = 0.9;
 
 /// What a run has found.
 struct Found<S> {
@@ -158,25 +168,41 @@ struct Found<S> {
 }
 
 impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
-    /// Makes the planner of the request.
-    pub(crate) fn new(prepared: &'p Prepared<'k, K>, control: &mut Control<'_>) -> Result<Self, Error> {
+    /// Makes the planner of the request, which has the part `part` of the budget of time.
+    pub(crate) fn new(
+        prepared: &'p Prepared<'k, K>,
+        control: &mut Control<'_>,
+        part: f64,
+    ) -> Result<Self, Error> {
         let (kind, request) = (prepared.kind, prepared.request);
         let planner = PlannerKind::new(&request.planner)?;
         let workers = Workers::new(request.threads)?;
         let file = GrowingFile::of_request(kind, request, control.clock)?;
         let began = control.clock.now();
         control.stage(Stage::Planning);
+        let interrupt = prepared.interrupt_of(control, part);
+        prepared.interrupt_by(interrupt.clone());
         let made = match &planner {
             PlannerKind::Tree(spec) => {
-                NamedPlanner::Tree(prepared.tree_planner(&spec.to_string(), &workers)?)
+                prepared.tree_planner(&spec.to_string(), &workers).map(NamedPlanner::Tree)
             }
             PlannerKind::Roadmap(info) => {
-                NamedPlanner::Roadmap(prepared.roadmap_planner(info, workers, file.as_ref())?)
+                prepared.roadmap_planner(info, workers, file.as_ref()).map(NamedPlanner::Roadmap)
             }
         };
+        let mut found = Found { best: None, first: None, over: None };
+        let made = match (made, interrupt.raised()) {
+            (Ok(made), _) => Some(made),
+            // What was told to end is no error.
+            (Err(_), Some(reason)) => {
+                found.over = Some(Some(reason));
+                None
+            }
+            (Err(e), None) => return Err(e),
+        };
         let time = control.clock.now().saturating_sub(began);
-        let found = Found { best: None, first: None, over: None };
-        Ok(Self { prepared, made, rng: Rng::seed(request.seed), file, time, found })
+        let rng = Rng::seed(request.seed);
+        Ok(Self { prepared, made, rng, file, part, time, interrupt, whole: None, found })
     }
 
     /// Plans on until `pause` stops it or the run is over. Returns whether it is over. On the way it writes checkpoints of the
@@ -188,23 +214,28 @@ impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
             if over || !due.is_some_and(|due: Due| due.reached) {
                 return over;
             }
-            if let (NamedPlanner::Roadmap(made), Some(file)) = (&self.made, &mut self.file) {
+            if let (Some(NamedPlanner::Roadmap(made)), Some(file)) = (&self.made, &mut self.file) {
                 file.checkpoint(made);
             }
         }
     }
 
     fn advance_without_checkpoint(&mut self, pause: &mut dyn Stop, control: &mut Control<'_>) -> bool {
-        if self.found.over.is_none() {
+        if let (None, Some(made)) = (self.found.over, &mut self.made) {
             let (clock, spent) = (control.clock, self.time);
             let began = clock.now();
-            let (made, rng, found) = (&mut self.made, &mut self.rng, &mut self.found);
+            let (rng, found, whole) = (&mut self.rng, &mut self.found, &mut self.whole);
             let (prepared, first_only) = (self.prepared, self.prepared.request.first_only);
-            prepared.watched(control, spent, |stop, events| {
-                let mut stop = Pausing { stop, pause, paused: false };
+            // Time between two calls does not count.
+            if let Some(left) = prepared.time_left(control, self.part, spent) {
+                self.interrupt.move_deadline(began.saturating_add(left));
+            }
+            prepared.watched(control, |stop, events| {
+                let mut stop = Pausing { stop, pause, paused: false, whole: Progress::default() };
                 let time = || spent + clock.now().saturating_sub(began);
                 search_on(made.planner(), found, first_only, &prepared.space, rng, &mut stop, events, &time);
-                if stop.paused {
+                *whole = stop.cut_short().map(|_| stop.whole);
+                if stop.paused && whole.is_none() {
                     found.over = None;
                 }
             });
@@ -215,18 +246,24 @@ impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
 
     /// Relaxes the path found if the request says so, and says what was done.
     pub(crate) fn into_search(mut self, control: &mut Control<'_>) -> Result<Search<K::State>, Error> {
+        let progress = self.progress();
         let (prepared, Found { best, first, over }) = (self.prepared, self.found);
         let (kind, request) = (prepared.kind, prepared.request);
         let began = control.clock.now();
+        let ended_by = over.unwrap_or(Some(StopReason::Cancelled));
         let outcome = match best {
-            Some(path) => Outcome::Solved(relax_if_requested(kind, request, path, control)?),
-            None => Outcome::Stopped(over.flatten().unwrap_or(StopReason::Cancelled)),
+            Some(path) => {
+                let left = prepared.time_left(control, 1.0, self.time);
+                Outcome::Solved(relax_if_requested(kind, request, path, control, left)?)
+            }
+            None => Outcome::Stopped(ended_by.unwrap_or(StopReason::Cancelled)),
         };
-        let time = self.time + control.clock.now().saturating_sub(began);
-        let progress = self.made.planner().progress();
+        let relaxes = request.finish == Finish::Relax && matches!(outcome, Outcome::Solved(_));
+        let relaxing = if relaxes { control.clock.now().saturating_sub(began) } else { Duration::ZERO };
+        let time = self.time + relaxing;
         let (map, roadmap) = match &mut self.made {
-            NamedPlanner::Tree(_) => (None, None),
-            NamedPlanner::Roadmap(made) => {
+            None | Some(NamedPlanner::Tree(_)) => (None, None),
+            Some(NamedPlanner::Roadmap(made)) => {
                 let (map, roadmap) = made.keep(self.file.as_ref(), control.keep_roadmap)?;
                 if let Some(watch) = control.watch.as_mut().filter(|watch| watch.wants_roadmap()) {
                     watch.roadmap(made.grown(&|q| kind.row(q)));
@@ -247,7 +284,25 @@ impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
             "planned"
         );
         let queries = prepared.queries.load(Ordering::Relaxed);
-        Ok(Search { outcome, progress, queries, time, first, map, roadmap })
+        let found_unverified = ended_by.is_some() && prepared.found_unverified();
+        Ok(Search {
+            outcome,
+            progress,
+            queries,
+            time,
+            relaxing,
+            ended_by,
+            found_unverified,
+            first,
+            map,
+            roadmap,
+        })
+    }
+
+    /// The counts after the last whole iteration.
+    fn progress(&mut self) -> Progress {
+        self.whole
+            .unwrap_or_else(|| self.made.as_mut().map(|made| made.planner().progress()).unwrap_or_default())
     }
 }
 
@@ -256,12 +311,13 @@ impl<K: RobotKind> AnyRun for RobotRun<'_, '_, K> {
         RobotRun::advance(self, pause, control)
     }
     fn progress(&mut self) -> Progress {
-        self.made.planner().progress()
+        RobotRun::progress(self)
     }
     fn finish(self: Box<Self>, control: &mut Control<'_>) -> Result<Report, Error> {
         let (kind, request) = (self.prepared.kind, self.prepared.request);
         let found = self.into_search(control)?;
-        reported(kind, request, found, None, control)
+        let left = left(request, control, &found);
+        reported(kind, request, found, None, control, left)
     }
 }
 
@@ -270,10 +326,13 @@ pub(crate) struct Pausing<'a> {
     pub(crate) stop: &'a mut dyn Stop,
     pub(crate) pause: &'a mut dyn Stop,
     pub(crate) paused: bool,
+    /// The counts before the last iteration.
+    pub(crate) whole: Progress,
 }
 
 impl Stop for Pausing<'_> {
     fn check(&mut self, progress: &Progress) -> Option<StopReason> {
+        self.whole = *progress;
         let reason = self.stop.check(progress);
         if reason.is_some() {
             return reason;
@@ -281,6 +340,9 @@ impl Stop for Pausing<'_> {
         let reason = self.pause.check(progress);
         self.paused = reason.is_some();
         reason
+    }
+    fn cut_short(&self) -> Option<StopReason> {
+        self.stop.cut_short()
     }
 }
 

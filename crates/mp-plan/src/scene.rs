@@ -266,7 +266,9 @@ impl Scene {
     /// # Errors
     /// As [`plan`](Self::plan).
     pub fn plan_with(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
+        let began = control.time_if_limited(request);
         self.check_ends()?;
+        control.spend_since(began);
         let mut report = self.robot.plan(request, control)?;
         report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(report)
@@ -288,7 +290,9 @@ impl Scene {
         apart: Length,
         control: &mut Control<'_>,
     ) -> Result<Vec<Report>, Error> {
+        let began = control.time_if_limited(request);
         self.check_ends()?;
+        control.spend_since(began);
         let mut reports = self.robot.routes(request, count.max(1), apart, control)?;
         for report in &mut reports {
             report.scene_file = self.file.as_ref().map(|file| file.display().to_string());

@@ -9,7 +9,7 @@ use crate::relax::relax_if_requested;
 use crate::roadmaps::{GrowingFile, Roadmap, RoadmapFile, with_checkpoints};
 use crate::search::Search;
 use crate::{Budget, Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
-use mp_cspace::{Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
+use mp_cspace::{Interrupt, Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
 use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, PATIENCE, RoadmapState};
 use std::fmt;
 use std::path::Path;
@@ -49,7 +49,7 @@ impl SceneRoadmap {
         self.query_with(start, goal, &mut Control::default())
     }
 
-    /// As [`query`](Self::query), with progress reports and a stop. The stop ends what is done to the path found.
+    /// As [`query`](Self::query), with progress reports and a stop. The stop ends the search, and what is done to the path found.
     ///
     /// # Errors
     /// As [`query`](Self::query).
@@ -159,6 +159,7 @@ fn grown<K: RobotKind>(
     let workers = Workers::new(request.threads)?;
     let mut file = GrowingFile::of_request(kind, request, control.clock)?;
     let prepared = Prepared::new(kind, request)?;
+    prepared.interrupt_by(prepared.interrupt_of(control, 1.0));
     control.stage(Stage::Planning);
     let mut made = prepared.roadmap_planner(info, workers, file.as_ref())?;
     if let Some(map) = map {
@@ -169,13 +170,8 @@ fn grown<K: RobotKind>(
         0 => Rng::seed(request.seed),
         nodes => Rng::stream(request.seed, nodes as u64),
     };
-    let (clock, mut spent) = (control.clock, Duration::ZERO);
     let reason = with_checkpoints(&mut made, &mut file, |made, due| {
-        let began = clock.now();
-        let reason =
-            prepared.watched(control, spent, |stop, events| made.build(&mut rng, &mut stop.or(due), events));
-        spent += clock.now().saturating_sub(began);
-        reason
+        prepared.watched(control, |stop, events| made.build(&mut rng, &mut stop.or(due), events))
     });
     let ([edges, components], map) = made.keep(file.as_ref(), true)?;
     drop(made);
@@ -195,6 +191,8 @@ impl<K: RobotKind> AnySceneRoadmap for RobotRoadmap<K> {
             }
         }
         let prepared = Prepared::new(kind, request)?;
+        let interrupt = Interrupt::new(control.cancel.clone());
+        prepared.interrupt_by(interrupt.clone());
         control.stage(Stage::Planning);
         let began = control.clock.now();
         let (mut checker, ..) = AnyEdgeChecker::of(prepared.problem()?, PATIENCE);
@@ -207,11 +205,24 @@ impl<K: RobotKind> AnySceneRoadmap for RobotRoadmap<K> {
         let queries = prepared.queries.load(Ordering::Relaxed);
         let map = Some([self.roadmap.map().edges(), self.roadmap.map_mut().components()]);
         let (outcome, why) = match answer {
-            Ok(path) => (Outcome::Solved(relax_if_requested(kind, request, path, control)?), None),
+            Ok(path) => (Outcome::Solved(relax_if_requested(kind, request, path, control, None)?), None),
+            // What the query says about the roadmap means nothing when it was told to end.
+            Err(_) if interrupt.raised().is_some() => (Outcome::Stopped(StopReason::Cancelled), None),
             Err(why) => (Outcome::Stopped(StopReason::Exhausted), Some(why.to_string())),
         };
-        let found = Search { outcome, progress, queries, time, first: None, map, roadmap: None };
-        reported(kind, request, found, why, control)
+        let found = Search {
+            outcome,
+            progress,
+            queries,
+            time,
+            relaxing: Duration::ZERO,
+            ended_by: interrupt.raised(),
+            found_unverified: false,
+            first: None,
+            map,
+            roadmap: None,
+        };
+        reported(kind, request, found, why, control, None)
     }
 
     fn grow(&mut self, budget: Budget, control: &mut Control<'_>) -> Result<(), Error> {

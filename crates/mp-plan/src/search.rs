@@ -19,6 +19,12 @@ pub struct Search<S> {
     pub queries: u64,
     /// How long it took.
     pub time: Duration,
+    /// How much of this went into relaxing the path.
+    pub relaxing: Duration,
+    /// What ended the search, also where it has found a path; `None` where the planner ended with its path.
+    pub ended_by: Option<StopReason>,
+    /// Whether a path was found that could not be verified by then.
+    pub found_unverified: bool,
     /// For an anytime planner: when it found its first path, the length of that path in the metric, and the path.
     pub first: Option<(Duration, f64, Path<S>)>,
     /// For a planner that builds a roadmap: the numbers of edges and of connected components.
@@ -40,10 +46,22 @@ pub fn search<K: RobotKind>(
     let _span =
         tracing::info_span!("plan", scene = kind.name(), planner = %request.planner, seed = request.seed)
             .entered();
+    search_within(kind, request, control, 1.0)
+}
+
+/// [`search`] within the part `part` of the budget of time.
+pub(crate) fn search_within<K: RobotKind>(
+    kind: &K,
+    request: &Request,
+    control: &mut Control<'_>,
+    part: f64,
+) -> Result<Search<K::State>, Error> {
+    let began = control.time_if_limited(request);
     request.check()?;
     PlannerKind::new(&request.planner)?;
     let prepared = Prepared::new(kind, request)?;
-    let mut run = RobotRun::new(&prepared, control)?;
+    control.spend_since(began);
+    let mut run = RobotRun::new(&prepared, control, part)?;
     run.advance(&mut Never, control);
     run.into_search(control)
 }

@@ -1,6 +1,9 @@
 //! Progress reports of a run, and how to stop it.
 
-use mp_cspace::{Cancel, Clock, Event, NodeId, Observer, Path, Progress, SparseClock, Stop, StopReason};
+use crate::Request;
+use mp_cspace::{
+    Cancel, Clock, Event, Interrupt, NodeId, Observer, Path, Progress, SparseClock, Stop, StopReason,
+};
 use std::time::Duration;
 
 /// The stages of a run.
@@ -132,7 +135,7 @@ pub enum SearchEvent<'a> {
 
 /// How a run is watched and stopped. By default nothing watches it, and only the budget of the request stops it.
 ///
-/// A clone of `cancel` stops it from another thread. What was found until then is kept.
+/// A clone of `cancel` stops it from another thread, within some milliseconds. What was found until then is kept.
 #[derive(Default)]
 pub struct Control<'a> {
     /// Stops the run when it is raised.
@@ -143,6 +146,8 @@ pub struct Control<'a> {
     pub stop: Option<&'a mut dyn Stop>,
     /// Whether [`search`](crate::search) returns the roadmap.
     pub keep_roadmap: bool,
+    /// How much of the budget of time was spent before the run, for instance by loading the scene.
+    pub spent: Duration,
     /// The clock of time budgets, of the times in reports and of progress reports: by default that of the system.
     pub clock: Clock,
 }
@@ -157,6 +162,21 @@ impl<'a> Control<'a> {
     /// Watched by `watch`, stopped by `cancel`.
     pub fn new(cancel: Cancel, watch: &'a mut dyn Watch) -> Self {
         Self { cancel, watch: Some(watch), ..Self::default() }
+    }
+
+    /// The time now, if the request has a budget of time.
+    pub(crate) fn time_if_limited(&self, request: &Request) -> Option<Duration> {
+        request.budget.time_s.map(|_| self.clock.now())
+    }
+
+    /// Counts the time since `began` as spent before the run.
+    pub(crate) fn spend_since(&mut self, began: Option<Duration>) {
+        self.spent += began.map_or(Duration::ZERO, |began| self.clock.now().saturating_sub(began));
+    }
+
+    /// A token that ends work after the time `left`, or when the run is cancelled.
+    pub(crate) fn interrupt_within(&self, left: Duration) -> Interrupt {
+        Interrupt::by(self.cancel.clone(), self.clock, self.clock.now().saturating_add(left))
     }
 
     pub(crate) fn stage(&mut self, stage: Stage) {

@@ -3,12 +3,13 @@
 use crate::rigid::Shared;
 use crate::{Placement, RigidBody};
 use mp_cspace::{
-    Rng,
+    Interrupt, Rng,
     obstacles::{BodyFeatures, ObstacleGeometry, PointOf},
 };
 use mp_geom::{Features, NO_COMPONENT, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
+use std::convert::Infallible;
 
 /// The features and surfaces of a robot and of the connected parts of its obstacles.
 #[derive(Debug)]
@@ -69,7 +70,9 @@ impl SurfaceSampler {
 }
 
 impl SceneFeatures {
-    fn new(shared: &Shared) -> Self {
+    /// # Errors
+    /// That of `go_on`, which is called for each part.
+    fn new<E>(shared: &Shared, mut go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
         let robot = &shared.robot_mesh;
         let mut features = Self {
             robot: (body_features(&robot.features()), SurfaceSampler::new(robot.clone())),
@@ -78,21 +81,26 @@ impl SceneFeatures {
             of_triangle: Vec::new(),
         };
         for (_, mesh) in &shared.obstacles.placed {
+            go_on()?;
             let topology = mesh.topology();
             let first = features.parts.len();
             features.of_triangle.push((first, topology.component));
             for part in mesh.parts() {
+                go_on()?;
                 features.parts.push(body_features(&part.features()));
                 features.surfaces.push(SurfaceSampler::new(part));
             }
         }
-        features
+        Ok(features)
     }
 }
 
 impl<P: Placement> RigidBody<P> {
     fn features(&self) -> &SceneFeatures {
-        self.shared.features.get_or_init(|| SceneFeatures::new(&self.shared))
+        self.shared.features.get_or_init(|| {
+            let Ok(features) = SceneFeatures::new(&self.shared, || Ok::<(), Infallible>(()));
+            features
+        })
     }
 }
 
@@ -108,6 +116,18 @@ fn turn_to(from: &Vector3<f64>, to: &Vector3<f64>) -> UnitQuaternion<f64> {
 /// From the meshes: each connected part of an obstacle's mesh is an obstacle here, and points are drawn from these parts.
 /// The features are computed at the first call, in O(n log n) of the triangles, and shared by clones.
 impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
+    fn prepare(&self, interrupt: &Interrupt) -> bool {
+        let known = &self.shared.features;
+        let mut interrupt = interrupt.clone();
+        let go_on = || if interrupt.ask() { Err(()) } else { Ok(()) };
+        if known.get().is_none()
+            && let Ok(features) = SceneFeatures::new(&self.shared, go_on)
+        {
+            // Another thread may have been first, with the same features.
+            let _ = known.set(features);
+        }
+        known.get().is_some()
+    }
     fn obstacles(&self) -> &[BodyFeatures] {
         &self.features().parts
     }

@@ -38,13 +38,14 @@ impl Obstacles {
     /// world. The trees of meshes that `known` has are taken from there, and all of `known` if nothing differs.
     ///
     /// # Errors
-    /// `too_many`, of the number of triangles, when there are more than [`MAX_TRIANGLES`]; or when an obstacle cannot be
+    /// That of `build`, which builds the tree of a mesh. `too_many`, of the number of triangles, when there are more than [`MAX_TRIANGLES`]; or when an obstacle cannot be
     /// placed.
     pub(crate) fn new<E: From<SceneError>>(
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
         triangles: usize,
         too_many: impl Fn(usize) -> E,
         known: Option<&Arc<Self>>,
+        build: impl Fn(&TriMesh) -> Result<CollisionMesh, E>,
     ) -> Result<Arc<Self>, E> {
         let (mut scene, mut placed, mut own, mut count) = (Scene::new(), Vec::new(), Vec::new(), triangles);
         let mut unchanged = true;
@@ -56,7 +57,7 @@ impl Obstacles {
             let same = known.and_then(|known| known.find(i, &mesh));
             let (tree, solid) = match same {
                 Some((body, _, solid)) => (body.mesh().clone(), Arc::clone(solid)),
-                None => (CollisionMesh::new(&mesh), Arc::default()),
+                None => (build(&mesh)?, Arc::default()),
             };
             let in_world = match same {
                 Some((body, in_world, _)) if *body.pose() == pose => Arc::clone(in_world),
@@ -133,7 +134,8 @@ mod tests {
 
     fn made(obstacles: &[Named], known: Option<&Arc<Obstacles>>) -> Arc<Obstacles> {
         let too_many = |_| SceneError::Full;
-        Obstacles::new(obstacles.iter().cloned(), 0, too_many, known).unwrap()
+        Obstacles::new(obstacles.iter().cloned(), 0, too_many, known, |mesh| Ok(CollisionMesh::new(mesh)))
+            .unwrap()
     }
 
     /// What did not change is taken from the obstacles before; what changed is as if made anew.

@@ -6,7 +6,7 @@ use crate::solid_obstacle::SolidObstacle;
 use crate::{BodyRadii, CheckCounters, Placement, Planar, Point, Spatial};
 use mp_collide::reference::RefMesh;
 use mp_collide::{BodyId, CollisionMesh, IntervalCheck, Query, RigidMotion, Scene, SceneError};
-use mp_cspace::{Clearance, IntervalClearance, MotionClearance, MotionInterval, Validity};
+use mp_cspace::{Clearance, Interrupt, IntervalClearance, MotionClearance, MotionInterval, Validity};
 use mp_geom::{Aabb, MeshError, TriMesh};
 use nalgebra::{Isometry3, Point3};
 use std::marker::PhantomData;
@@ -31,6 +31,9 @@ pub enum RobotError {
         /// How many there may be.
         max: usize,
     },
+    /// The work was told to end.
+    #[error("preparing the meshes was ended")]
+    Interrupted,
     /// The robot is too large to compute with.
     #[error("the robot is too large: {radius:e} m from its origin; at most {max:e} m can be handled")]
     TooLarge {
@@ -159,6 +162,19 @@ impl<P: Placement> RigidBody<P> {
         robot: &TriMesh,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
     ) -> Result<Self, RobotError> {
+        Self::among_until(before, robot, obstacles, &Interrupt::never())
+    }
+
+    /// As [`among_after`](Self::among_after), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`among`](Self::among), and [`Interrupted`](RobotError::Interrupted) when it was told to end.
+    pub fn among_until(
+        before: Option<&Self>,
+        robot: &TriMesh,
+        obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
+        interrupt: &Interrupt,
+    ) -> Result<Self, RobotError> {
         let before = before.map(|before| &*before.shared);
         let same = before.filter(|before| before.robot_mesh == *robot);
         let radii = same.map_or_else(|| BodyRadii::of(robot), |same| same.radii.clone());
@@ -167,10 +183,11 @@ impl<P: Placement> RigidBody<P> {
         }
         let too_many = |count| RobotError::TooManyTriangles { count, max: MAX_TRIANGLES };
         let known = before.map(|before| &before.obstacles);
-        let obstacles = Obstacles::new(obstacles, robot.triangles().len(), too_many, known)?;
+        let tree = |mesh: &TriMesh| CollisionMesh::new_until(mesh, interrupt).ok_or(RobotError::Interrupted);
+        let obstacles = Obstacles::new(obstacles, robot.triangles().len(), too_many, known, tree)?;
         let shared = Shared {
             robot_mesh: robot.clone(),
-            robot: same.map_or_else(|| CollisionMesh::new(robot), |same| same.robot.clone()),
+            robot: same.map_or_else(|| tree(robot), |same| Ok(same.robot.clone()))?,
             radii,
             obstacles,
             reference: same.map(|same| Arc::clone(&same.reference)).unwrap_or_default(),

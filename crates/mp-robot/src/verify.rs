@@ -3,7 +3,7 @@
 use crate::solid_obstacle::SolidObstacle;
 use crate::{Placement, RigidBody};
 use mp_collide::reference::{RefMesh, Sweep, SweepCheck};
-use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space};
+use mp_cspace::{Interrupt, MotionCheck, MotionValidity, ParameterError, Space};
 use nalgebra::{Isometry3, Point3};
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -32,6 +32,7 @@ pub struct Verifier<'c, C, P> {
     radius: f64,
     tolerance: f64,
     sweep: Sweep,
+    interrupt: Interrupt,
     placement: PhantomData<P>,
 }
 
@@ -71,6 +72,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
             radius: shared.robot_mesh.vertices().iter().map(from_origin).fold(0.0, f64::max),
             tolerance,
             sweep: Sweep::default(),
+            interrupt: Interrupt::never(),
             placement: PhantomData,
         })
     }
@@ -138,12 +140,26 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<P::State> for Veri
         }
         let Some(world) = &self.world else { return MotionCheck::Free { clearance: f64::INFINITY } };
         let pose_at = |t: f64| P::pose(&self.space.interpolate(from, to, t));
+        if self.interrupt.ask() {
+            return MotionCheck::Unproven { at: 0.0 };
+        }
         match self.sweep.sweep(&self.robot, pose_at, world, self.tolerance) {
-            SweepCheck::Free { clearance } => MotionCheck::Free { clearance },
+            SweepCheck::Free { clearance } if self.interrupt.raised().is_none() => {
+                MotionCheck::Free { clearance }
+            }
+            _ if self.interrupt.raised().is_some() => MotionCheck::Unproven { at: 0.0 },
             _ if self.touches(&ends[0]) => MotionCheck::Collision { at: 0.0 },
             _ if self.touches(&ends[1]) => MotionCheck::Collision { at: 1.0 },
             SweepCheck::Collision { at } => MotionCheck::Collision { at },
             SweepCheck::TooClose { at } => MotionCheck::Unproven { at },
+            SweepCheck::Free { .. } => MotionCheck::Unproven { at: 0.0 },
         }
+    }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        self.interrupt = interrupt.clone();
+        self.sweep.interrupt_by(interrupt);
+    }
+    fn is_interrupted(&mut self) -> bool {
+        self.interrupt.ask()
     }
 }

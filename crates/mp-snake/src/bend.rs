@@ -195,7 +195,7 @@ fn relaxed<C: Space>(
             best = (steps, moment.clearance);
         }
         free = steps > 0 && moment.clearance >= wanted && all_free(check, moment.curve);
-        free || (moment.clearance <= 0.0 && steps >= best.0 + PATIENCE)
+        free || (moment.clearance <= 0.0 && steps >= best.0 + PATIENCE) || check.is_interrupted()
     });
     (free || rest != Rest::Stopped && all_free(check, curve), steps)
 }

@@ -37,7 +37,8 @@ impl<S> Relaxed<S> {
 /// pace, since a field that changes over short distances needs short steps; the pace grows again while steps succeed. It ends
 /// when a step at a thousandth of the pace gains nothing. A path that needs more than ten thousand nodes is returned
 /// unchanged. Use a `check` you trust, as nothing else is checked. Each step costs one check per piece that moved, and three
-/// evaluations of the field per node.
+/// evaluations of the field per node. When `check` is [told to end](MotionValidity::interrupt_by), the path of the last whole step
+/// is returned.
 ///
 /// # Errors
 /// When a parameter is out of range, or the space knows no velocities.
@@ -71,6 +72,9 @@ pub fn relax<C: Space>(
         snake.deform(&mut next, field, |_| false);
         go_back_where_blocked(check, &curve, &mut next);
         let gained = energy - snake.energy(&next, field).total();
+        if check.is_interrupted() {
+            break;
+        }
         // A shorter step gains less.
         if gained.is_nan() || gained <= LEAST_GAIN * energy * (pace / params.pace) {
             if pace <= LEAST_PACE * params.pace {

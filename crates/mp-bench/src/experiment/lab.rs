@@ -78,7 +78,7 @@ impl Lab {
     }
 
     fn interrupted(&self) -> bool {
-        self.cancel.0.load(Ordering::Relaxed)
+        self.cancel.is_raised()
     }
 
     /// Does all jobs; returns their results in the same order. `None` when a job was interrupted or not started:

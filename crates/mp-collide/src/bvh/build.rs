@@ -13,7 +13,10 @@ use crate::triangle::Triangle;
 
 impl Tree {
     /// The tree of `triangles`, which are at least one and at most `u32::MAX`, as [`mp_geom::TriMesh`] ensures.
-    pub(crate) fn build(triangles: &[Triangle]) -> Self {
+    ///
+    /// # Errors
+    /// That of `go_on`, which is called often.
+    pub(crate) fn build<E>(triangles: &[Triangle], go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
         let corners = || triangles.iter().flatten();
         let (mut lo, mut hi) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
         for p in corners() {
@@ -40,7 +43,7 @@ impl Tree {
                 id: i as u32,
             })
             .collect();
-        let binary = split_all(&mut items);
+        let binary = split_all(&mut items, go_on)?;
         let choices = choose(&binary);
         let leaves = binary.iter().filter(|b| b.children == 0).count();
         let mut tree = Self {
@@ -60,7 +63,7 @@ impl Tree {
         tree.root = tree.emit(&items, &binary, &choices, 0, obb);
         tree.nodes.shrink_to_fit();
         tree.node_boxes.shrink_to_fit();
-        tree
+        Ok(tree)
     }
 
     /// Adds binary node `n`, whose box is `obb`, and all below; returns the reference to it.
@@ -163,7 +166,7 @@ mod tests {
                     let place = |p: Point3<f64>| (turn * p * scale) + Vector3::repeat(far * scale);
                     let triangles: Vec<Triangle> =
                         (0..mesh.triangles().len()).map(|i| mesh.triangle(i).map(place)).collect();
-                    let tree = Tree::build(&triangles);
+                    let Ok(tree) = Tree::build(&triangles, || Ok::<(), std::convert::Infallible>(()));
                     assert_eq!(below(&tree, tree.root).len(), triangles.len());
                 }
             }

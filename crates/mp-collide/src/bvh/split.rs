@@ -77,13 +77,20 @@ impl BinaryNode {
 }
 
 /// The binary tree, parents before children, its leaves of at most [`WIDTH`] items.
-pub(crate) fn split_all(items: &mut [BuildTriangle]) -> Vec<BinaryNode> {
+///
+/// # Errors
+/// That of `go_on`, which is called for each node.
+pub(crate) fn split_all<E>(
+    items: &mut [BuildTriangle],
+    mut go_on: impl FnMut() -> Result<(), E>,
+) -> Result<Vec<BinaryNode>, E> {
     let mut own = Vec::with_capacity(items.len());
     let mut aside = items.to_vec();
     let mut binary = Vec::with_capacity(items.len() / 2 + 1);
     binary.push(BinaryNode::new(0..items.len()));
     let mut todo = vec![0];
     while let Some(n) = todo.pop() {
+        go_on()?;
         let range = binary[n].range.clone();
         let items = &mut items[range.clone()];
         let frame = fit::frame(items);
@@ -101,7 +108,7 @@ pub(crate) fn split_all(items: &mut [BuildTriangle]) -> Vec<BinaryNode> {
             todo.extend([children, children + 1]);
         }
     }
-    binary
+    Ok(binary)
 }
 
 /// Extents along the axes of the mesh, then along those of a box.

@@ -3,6 +3,7 @@
 use super::swept_triangle::SweptTriangle;
 use super::triangle::{Triangle, triangle_gap};
 use super::{Ball, Content, RefMesh, TOUCHING, is_usable};
+use mp_stop::Interrupt;
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
 /// What a [`Sweep`] found.
@@ -49,6 +50,7 @@ pub struct Sweep {
     near: Vec<Near>,
     todo: Vec<Near>,
     compared: u64,
+    interrupt: Interrupt,
 }
 
 /// A moving ball during a part of the motion.
@@ -140,6 +142,11 @@ impl Sweep {
         self.compared
     }
 
+    /// Gives searches up once `interrupt` says to end.
+    pub fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        self.interrupt = interrupt.clone();
+    }
+
     /// Whether `moving` keeps at least `margin` (metres, positive) from `standing`, both in the world, over a
     /// motion that takes its frame to `pose_at` of the fractions 0 to 1.
     ///
@@ -183,7 +190,7 @@ impl Sweep {
             let swath = self.swath(ball, open.part);
             let first = open.near[1];
             self.list(&task, &open, &swath, &mut least);
-            if self.compared > limit {
+            if self.compared > limit || self.interrupt.ask() {
                 return SweepCheck::TooClose { at: self.middle(open.part) };
             }
             let triangle = match ball.content {
@@ -238,6 +245,10 @@ impl Sweep {
             self.todo.push(self.near[i]);
             while let Some(near) = self.todo.pop() {
                 self.compared += 1;
+                if self.compared.is_multiple_of(64) && self.interrupt.ask() {
+                    self.todo.clear();
+                    return;
+                }
                 let ball = &task.standing.balls[near.ball];
                 match (swath.apart(ball, task.margin + task.touching), ball.content) {
                     (Some(apart), _) => *least = least.min(apart - task.touching),

@@ -1,7 +1,7 @@
 //! The geometry of obstacles behind a pointer.
 
 use crate::{
-    Rng,
+    Interrupt, Rng,
     obstacles::{BodyFeatures, ObstacleGeometry, ObstacleHints, PointOf},
 };
 use nalgebra::Vector3;
@@ -53,6 +53,9 @@ impl<S> ObstacleHints<S> for AnyGeometry<'_, S> {
 }
 
 impl<S> ObstacleGeometry<S> for AnyGeometry<'_, S> {
+    fn prepare(&self, interrupt: &Interrupt) -> bool {
+        self.0.prepare(interrupt)
+    }
     fn obstacles(&self) -> &[BodyFeatures] {
         self.0.obstacles()
     }

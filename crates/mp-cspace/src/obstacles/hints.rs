@@ -1,6 +1,6 @@
 //! Hints by obstacles: states along them, and robot states placed at them.
 
-use crate::Rng;
+use crate::{Interrupt, Rng};
 use nalgebra::Vector3;
 
 /// Suggests states along obstacles, for planners that grow along them, such as obstacle-based RRT.
@@ -63,6 +63,11 @@ pub enum PointOf {
 /// Here an obstacle is a connected *part*, however many bodies the scene is made of. As with hints, the states
 /// returned need be neither free nor within the space.
 pub trait ObstacleGeometry<S>: ObstacleHints<S> {
+    /// Computes what the other methods need, where that takes long. Returns `false` when `interrupt` said to end before that was done.
+    fn prepare(&self, _interrupt: &Interrupt) -> bool {
+        true
+    }
+
     /// The obstacles, in the world.
     fn obstacles(&self) -> &[BodyFeatures];
 
@@ -100,6 +105,9 @@ pub trait ObstacleGeometry<S>: ObstacleHints<S> {
 }
 
 impl<S, H: ObstacleGeometry<S> + ?Sized> ObstacleGeometry<S> for &mut H {
+    fn prepare(&self, interrupt: &Interrupt) -> bool {
+        (**self).prepare(interrupt)
+    }
     fn obstacles(&self) -> &[BodyFeatures] {
         (**self).obstacles()
     }

@@ -13,7 +13,7 @@ pub use verify::Verify;
 pub use workers::Workers;
 
 use crate::erased::{AnyGeometry, AnyGradient, AnySpace, AnyStraight};
-use crate::{LocalPlanner, Space, obstacles::ObstacleHints};
+use crate::{Interrupt, LocalPlanner, Space, obstacles::ObstacleHints};
 use std::fmt;
 use std::sync::Arc;
 
@@ -27,6 +27,7 @@ pub struct Problem<'c, C: Space, L: LocalPlanner<C::State>> {
     goals: Goals<'c, C::State>,
     obstacles: ObstacleKnowledge<'c, C::State>,
     inputs: Option<InputSystem<'c, C::State>>,
+    interrupt: Interrupt,
 }
 
 /// How an input, applied for a while (s), moves a state, behind a pointer: for planners by name.
@@ -101,6 +102,8 @@ pub struct ProblemParts<'c, C: Space, L: LocalPlanner<C::State>> {
     pub start: C::State,
     /// Where they end.
     pub goals: Goals<'c, C::State>,
+    /// What the planner asks whether to end within an iteration.
+    pub interrupt: Interrupt,
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
@@ -161,6 +164,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
                 goals,
                 obstacles: ObstacleKnowledge::default(),
                 inputs: None,
+                interrupt: Interrupt::never(),
             }),
         }
     }
@@ -199,8 +203,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
     /// The parts of the problem, for planners; drops the obstacle knowledge.
     #[must_use]
     pub fn into_parts(self) -> ProblemParts<'c, C, L> {
-        let Self { space, local, verify, start, goals, .. } = self;
-        ProblemParts { space, local, verify, start, goals }
+        let Self { space, local, verify, start, goals, interrupt, .. } = self;
+        ProblemParts { space, local, verify, start, goals, interrupt }
     }
 
     /// The same problem with obstacle hints, for planners by name that grow along obstacles.
@@ -220,6 +224,22 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
     #[must_use]
     pub fn with_inputs(self, inputs: InputSystem<'c, C::State>) -> Self {
         Self { inputs: Some(inputs), ..self }
+    }
+
+    /// The same problem, whose planner asks `interrupt` whether to end also within an iteration.
+    ///
+    /// A planner that was told to end has done part of an iteration. So the iteration counts for nothing, and the planner is of no
+    /// further use: a path found before is what there is. [`Planner::solve`](crate::Planner::solve) keeps to this when its stop
+    /// contains a clone of `interrupt`.
+    #[must_use]
+    pub fn with_interrupt(self, interrupt: Interrupt) -> Self {
+        Self { interrupt, ..self }
+    }
+
+    /// What the planner asks whether to end within an iteration; by default it never does.
+    #[must_use]
+    pub fn interrupt(&self) -> &Interrupt {
+        &self.interrupt
     }
 
     /// How the robot moves by inputs, if it can move in no other way.
@@ -249,8 +269,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         self,
         make: impl FnOnce(L) -> Result<M, E>,
     ) -> Result<Problem<'c, C, M>, E> {
-        let Self { space, local, verify, start, goals, obstacles, inputs } = self;
-        Ok(Problem { space, local: make(local)?, verify, start, goals, obstacles, inputs })
+        let Self { space, local, verify, start, goals, obstacles, inputs, interrupt } = self;
+        Ok(Problem { space, local: make(local)?, verify, start, goals, obstacles, inputs, interrupt })
     }
 }
 

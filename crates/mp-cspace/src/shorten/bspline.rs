@@ -39,6 +39,9 @@ fn round<C: Space>(
     // The new states of each inner state that moves: its own, between the middles of its two edges.
     let mut moved: Vec<Option<[C::State; 3]>> = vec![None; states.len()];
     for (i, w) in states.windows(3).enumerate() {
+        if check.is_interrupted() {
+            return None;
+        }
         let (before, after) = (middle(&w[0], &w[1]), middle(&w[1], &w[2]));
         let new = middle(&middle(&w[1], &before), &middle(&w[1], &after));
         if space.distance(&w[1], &new) > least {

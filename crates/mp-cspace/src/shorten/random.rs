@@ -64,7 +64,7 @@ fn improve<C: Space>(
     let mut s = arc_lengths(space, &states);
     let mut failures = 0;
     for _ in 0..effort.attempts {
-        if failures >= effort.patience || states.len() < 3 {
+        if failures >= effort.patience || states.len() < 3 || check.is_interrupted() {
             break;
         }
         failures += 1;

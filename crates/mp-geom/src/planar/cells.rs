@@ -3,6 +3,7 @@
 use super::edge::Edge;
 use super::polygon::crosses_ray;
 use super::tree::EdgeTree;
+use mp_stop::Interrupt;
 use nalgebra::{Point2, Vector2};
 
 /// The number of cells per edge, and the least and the greatest number of cells.
@@ -53,8 +54,14 @@ pub(super) struct Cells {
 
 impl Cells {
     /// A grid over the box from `low` to `high`, in which all edges are; the first `solid` of them bound obstacles,
-    /// the rest the outside.
-    pub(super) fn new([low, high]: [Point2<f64>; 2], edges: &[Edge], solid: usize, tree: &EdgeTree) -> Self {
+    /// the rest the outside. Not to be used when `interrupt` has said to end.
+    pub(super) fn new(
+        [low, high]: [Point2<f64>; 2],
+        edges: &[Edge],
+        solid: usize,
+        tree: &EdgeTree,
+        interrupt: &mut Interrupt,
+    ) -> Self {
         let extent = high - low;
         let wanted = (CELLS_PER_EDGE * edges.len() as f64).clamp(FEWEST, MOST);
         // Long and thin worlds get one row.
@@ -75,9 +82,12 @@ impl Cells {
             slack,
             half_diagonal: 0.5 * size.norm() * (1.0 + 1e-9) + slack,
         };
-        cells.fill_rows(&edges[..solid]);
+        cells.fill_rows(&edges[..solid], interrupt);
         for row in 0..counts[1] {
             for column in 0..counts[0] {
+                if interrupt.ask() {
+                    break;
+                }
                 cells.fill(column, row, edges, tree);
             }
         }
@@ -86,9 +96,12 @@ impl Cells {
         cells
     }
 
-    fn fill_rows(&mut self, edges: &[Edge]) {
+    fn fill_rows(&mut self, edges: &[Edge], interrupt: &mut Interrupt) {
         let mut rows = vec![Vec::new(); self.counts[1]];
         for (i, edge) in edges.iter().enumerate() {
+            if i % 1024 == 0 && interrupt.ask() {
+                break;
+            }
             let [low, high] = edge.bounds();
             for row in &mut rows[self.index(low.y, 1)..=self.index(high.y, 1)] {
                 row.push(i as u32);

@@ -1,6 +1,7 @@
 //! The outline of the occupied squares of a grid map.
 
 use super::{Polygon, PolygonError};
+use mp_stop::Interrupt;
 use nalgebra::Point2;
 
 /// The polygon of the occupied squares of a map of `width` × `height` squares with sides of `size` metres, whose
@@ -10,13 +11,15 @@ use nalgebra::Point2;
 /// only, rings touch. O(width · height).
 ///
 /// # Errors
-/// When a coordinate is not finite or beyond 10⁶⁰.
+/// When a coordinate is not finite or beyond 10⁶⁰, or `interrupt` says to end.
 pub fn outline(
     [width, height]: [usize; 2],
     size: f64,
     origin: [f64; 2],
     occupied: impl Fn(usize, usize) -> bool,
+    interrupt: &Interrupt,
 ) -> Result<Option<Polygon>, PolygonError> {
+    let mut interrupt = interrupt.clone();
     // Lines between squares: east[y·(width+1) + x] is the side from corner (x, y) to (x+1, y), when the squares below
     // and above it differ; `north` likewise for sides from (x, y) to (x, y+1).
     let at = |x: usize, y: usize| y * (width + 1) + x;
@@ -24,6 +27,9 @@ pub fn outline(
     let mut east = vec![false; (width + 1) * (height + 1)];
     let mut north = east.clone();
     for y in 0..=height {
+        if interrupt.ask() {
+            return Err(PolygonError::Interrupted);
+        }
         for x in 0..=width {
             let here = inside(x, y);
             // Squares outside of the map are free, as are indices that wrap below zero.
@@ -34,6 +40,9 @@ pub fn outline(
     let corner = |x: usize, y: usize| Point2::new(origin[0] + size * x as f64, origin[1] + size * y as f64);
     let mut rings = Vec::new();
     for y in 0..=height {
+        if interrupt.ask() {
+            return Err(PolygonError::Interrupted);
+        }
         for x in 0..=width {
             if !east[at(x, y)] {
                 continue;
@@ -92,7 +101,7 @@ mod tests {
         #[test]
         fn holds_the_occupied_squares(map in prop::collection::vec(prop::collection::vec(any::<bool>(), 7), 1..9)) {
             let size = [7, map.len()];
-            let polygon = outline(size, 0.5, [-1.0, 2.0], |x, y| map[y][x]).unwrap();
+            let polygon = outline(size, 0.5, [-1.0, 2.0], |x, y| map[y][x], &Interrupt::never()).unwrap();
             let count = map.iter().flatten().filter(|o| **o).count();
             prop_assert_eq!(polygon.is_some(), count > 0);
             if let Some(polygon) = polygon {
@@ -108,10 +117,11 @@ mod tests {
 
     #[test]
     fn straight_stretches_are_one_edge() {
-        let bar = outline([9, 3], 1.0, [0.0, 0.0], |_, y| y == 1).unwrap().unwrap();
+        let bar = outline([9, 3], 1.0, [0.0, 0.0], |_, y| y == 1, &Interrupt::never()).unwrap().unwrap();
         assert_eq!(bar.edges().count(), 4);
         assert_eq!(bar.area(), 9.0);
-        let ring = outline([5, 5], 1.0, [0.0, 0.0], |x, y| x != 2 || y != 2).unwrap().unwrap();
+        let ring =
+            outline([5, 5], 1.0, [0.0, 0.0], |x, y| x != 2 || y != 2, &Interrupt::never()).unwrap().unwrap();
         assert_eq!((ring.rings().len(), ring.area()), (2, 24.0));
     }
 }

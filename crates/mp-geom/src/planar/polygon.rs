@@ -29,6 +29,9 @@ pub enum PolygonError {
         /// Its y.
         y: f64,
     },
+    /// The work was told to end.
+    #[error("reading the map was ended")]
+    Interrupted,
     /// A size that is not positive, or corners of which the second is not above the first.
     #[error("{what} must be positive and finite, found {value}")]
     Size {
@@ -207,7 +210,7 @@ fn positive(what: &'static str, value: f64) -> Result<(), PolygonError> {
 }
 
 /// The edges of a ring.
-fn closed(ring: &[Point2<f64>]) -> impl Iterator<Item = [Point2<f64>; 2]> + '_ {
+pub(super) fn closed(ring: &[Point2<f64>]) -> impl Iterator<Item = [Point2<f64>; 2]> + '_ {
     ring.iter().zip(ring.iter().skip(1).chain(ring.first())).map(|(a, b)| [*a, *b])
 }
 

@@ -2,8 +2,10 @@
 
 use super::cells::{CellKind, Cells};
 use super::edge::Edge;
+use super::polygon::closed;
 use super::tree::EdgeTree;
 use super::{Polygon, PolygonError};
+use mp_stop::Interrupt;
 use nalgebra::Point2;
 use thiserror::Error;
 
@@ -27,6 +29,9 @@ pub enum PlanarWorldError {
         /// How many there may be.
         max: usize,
     },
+    /// The work was told to end.
+    #[error("preparing the map was ended")]
+    Interrupted,
     /// A polygon is invalid.
     #[error(transparent)]
     Polygon(#[from] PolygonError),
@@ -89,9 +94,27 @@ impl PlanarWorld {
     /// # Errors
     /// When the walls are not finite or enclose nothing, or there are more than 2·10⁷ edges.
     pub fn new(polygons: Vec<Polygon>, walls: Option<[[f64; 2]; 2]>) -> Result<Self, PlanarWorldError> {
+        Self::new_until(polygons, walls, &Interrupt::never())
+    }
+
+    /// As [`new`](Self::new), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and [`Interrupted`](PlanarWorldError::Interrupted) when it was told to end.
+    pub fn new_until(
+        polygons: Vec<Polygon>,
+        walls: Option<[[f64; 2]; 2]>,
+        interrupt: &Interrupt,
+    ) -> Result<Self, PlanarWorldError> {
+        let mut interrupt = interrupt.clone();
         let mut edges = Vec::new();
         for (i, polygon) in polygons.iter().enumerate() {
-            edges.extend(polygon.edges().map(|e| Edge::new(e, i as u32)));
+            for ring in polygon.rings() {
+                if interrupt.ask() {
+                    return Err(PlanarWorldError::Interrupted);
+                }
+                edges.extend(closed(ring).map(|e| Edge::new(e, i as u32)));
+            }
             if edges.len() > MAX_EDGES {
                 return Err(PlanarWorldError::TooManyEdges { edges: edges.len(), max: MAX_EDGES });
             }
@@ -106,10 +129,13 @@ impl PlanarWorld {
             let [l, h] = edge.bounds();
             (low, high) = (low.inf(&l), high.sup(&h));
         }
-        let tree = EdgeTree::new(&edges);
+        let tree = EdgeTree::new(&edges, &mut interrupt);
         let positive = |v: f64| v > 0.0 && v.is_finite();
         let has_area = positive(high.x - low.x) && positive(high.y - low.y);
-        let cells = has_area.then(|| Cells::new([low, high], &edges, solid, &tree));
+        let cells = has_area.then(|| Cells::new([low, high], &edges, solid, &tree, &mut interrupt));
+        if interrupt.ask() {
+            return Err(PlanarWorldError::Interrupted);
+        }
         let mut corners: Vec<Point2<f64>> = polygons.iter().flat_map(Polygon::rings).map(|r| r[0]).collect();
         corners.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
         let walls = walls.map(|w| w.map(Point2::from));
@@ -401,6 +427,43 @@ mod tests {
         assert_eq!(world.nearest_to_segment(&p, &far, 5.0).unwrap().distance, 0.0);
         for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
             assert!(PlanarWorld::new(vec![], Some([[0.0, 0.0], [1.0, bad]])).is_err());
+        }
+    }
+
+    /// A world of many rings is given up at any question, and is the same as ever when it is not.
+    #[test]
+    fn a_world_ends_when_told_to() {
+        use mp_stop::{Cancel, Clock, Interrupt};
+        use std::sync::atomic::{AtomicU64, Ordering};
+        use std::time::Duration;
+        static READ: AtomicU64 = AtomicU64::new(0);
+        const STEP: Duration = Duration::from_millis(2);
+        let clock = Clock::new(|| STEP * READ.fetch_add(1, Ordering::SeqCst) as u32);
+        let square = |i: usize| {
+            let (x, y) = ((i % 200) as f64, (i / 200) as f64);
+            Polygon::rectangle([x, y], [x + 0.5 + (i % 7) as f64 * 0.05, y + 0.5]).unwrap()
+        };
+        let polygons: Vec<Polygon> = (0..20_000).map(square).collect();
+        let world = |at: u64| {
+            READ.store(0, Ordering::SeqCst);
+            let interrupt = Interrupt::by(Cancel::new(), clock, STEP * at as u32);
+            PlanarWorld::new_until(polygons.clone(), None, &interrupt)
+        };
+        let whole = world(u64::from(u32::MAX)).unwrap();
+        let questions = READ.load(Ordering::SeqCst);
+        assert!(questions > 40_000, "{questions}");
+        for part in 0..10 {
+            let at = 1 + part * (questions - 2) / 9;
+            assert_eq!(world(at).err(), Some(PlanarWorldError::Interrupted), "{at} of {questions}");
+            assert_eq!(READ.load(Ordering::SeqCst), at + 1, "the clock is read after the end");
+        }
+        let brute = |p: &Point2<f64>| {
+            let each = whole.edges.iter().map(|e| e.squared(p));
+            each.fold(f64::INFINITY, f64::min).sqrt()
+        };
+        for i in 0..200 {
+            let p = Point2::new(0.97 * f64::from(i), 0.49 * f64::from(i));
+            assert_eq!(whole.nearest(&p).unwrap().distance, brute(&p), "{p}");
         }
     }
 }

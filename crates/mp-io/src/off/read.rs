@@ -6,6 +6,7 @@ use crate::files::{MAX_MESH_BYTES, read_file};
 use crate::mesh;
 use crate::text::{Lexer, Text, Token, clipped};
 use mp_geom::TriMesh;
+use mp_stop::Interrupt;
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
 
@@ -32,9 +33,13 @@ impl OffDocument {
     /// # Errors
     /// [`Error`] when it is not OFF, with the line and column.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
+        Self::parse_until(file, bytes, &Interrupt::never())
+    }
+
+    pub(crate) fn parse_until(file: &str, bytes: &[u8], interrupt: &Interrupt) -> Result<Self, Error> {
         refuse_binary(file, bytes)?;
         let text = Text::new(file, bytes, "off.md")?;
-        Reader { text, lexer: Lexer::new(&text) }.document()
+        Reader { text, lexer: Lexer::new(&text), interrupt: interrupt.clone() }.document()
     }
 
     /// The triangle mesh: faces are cut into triangles, points and segments are left out.
@@ -61,6 +66,7 @@ fn refuse_binary(file: &str, bytes: &[u8]) -> Result<(), Error> {
 struct Reader<'a> {
     text: Text<'a>,
     lexer: Lexer<'a>,
+    interrupt: Interrupt,
 }
 
 impl<'a> Reader<'a> {
@@ -147,7 +153,11 @@ impl<'a> Reader<'a> {
         // Several vertices on a line are allowed: line breaks mean nothing. But there is a fault if all lines have the same
         // number of words and there is one line for each vertex and face.
         let mut count = self.lexer.clone();
+        let mut interrupt = self.interrupt.clone();
         for line in 0..nv.saturating_add(nf) {
+            if interrupt.ask() {
+                return Ok(());
+            }
             if count.next().is_none() || (line < nv && count.left_on_line() + 1 != columns) {
                 return Ok(());
             }
@@ -162,8 +172,15 @@ impl<'a> Reader<'a> {
             .help("begin the file with COFF if the others are colours, NOFF if they are normals"))
     }
 
+    /// # Errors
+    /// When the reader is told to end.
+    fn go_on(&mut self) -> Result<(), Error> {
+        if self.interrupt.ask() { Err(Error::interrupted(self.text.file)) } else { Ok(()) }
+    }
+
     fn vertices(&mut self, nv: usize, header: Header, doc: &mut OffDocument) -> Result<(), Error> {
         for i in 0..nv {
+            self.go_on()?;
             let what = || format!("x y z of vertex {i} of {nv}");
             let p = self.three(&what)?;
             doc.vertices.push(Point3::from(p));
@@ -196,6 +213,7 @@ impl<'a> Reader<'a> {
 
     fn faces(&mut self, nf: usize, nv: usize, doc: &mut OffDocument) -> Result<(), Error> {
         for i in 0..nf {
+            self.go_on()?;
             let what = || format!("face {i} of {nf}: a number of corners, then as many vertices");
             let token = self.word_or(&what)?;
             let n = self.text.count(token, &what())?;

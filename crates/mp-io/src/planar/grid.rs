@@ -3,6 +3,7 @@
 use super::pnm;
 use crate::error::{Error, ErrorKind};
 use mp_geom::planar::{Polygon, PolygonError, outline};
+use mp_stop::Interrupt;
 use std::io::Cursor;
 
 /// The widest and highest image, pixels.
@@ -36,18 +37,18 @@ impl GridMap {
     /// left corner of the image at `origin`; `None` when there is none.
     ///
     /// # Errors
-    /// When coordinates are not finite or beyond 10⁶⁰.
+    /// When coordinates are not finite or beyond 10⁶⁰, or `interrupt` says to end.
     pub fn outline(
         &self,
         scale: f64,
         origin: [f64; 2],
         occupied: impl Fn(f32) -> bool,
+        interrupt: &Interrupt,
     ) -> Result<Option<Polygon>, PolygonError> {
         let [width, height] = self.size;
         // The first row of an image is its highest.
-        outline([width, height], scale, origin, |x, y| {
-            occupied(self.brightness[(height - 1 - y) * width + x])
-        })
+        let occupied = |x, y| occupied(self.brightness[(height - 1 - y) * width + x]);
+        outline([width, height], scale, origin, occupied, interrupt)
     }
 }
 

@@ -4,7 +4,7 @@ use super::{GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, RosMap};
 use crate::error::Error;
 use crate::files::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES, stem};
 use crate::problem::MAX_COORDINATE;
-use mp_geom::planar::Polygon;
+use mp_geom::planar::{Polygon, PolygonError};
 use nalgebra::Isometry2;
 use std::path::Path;
 
@@ -112,7 +112,7 @@ fn read_map(
         PlanarMap::Image { file, scale, origin: [x, y], threshold } => {
             let grid = grid(&folder.join(file))?;
             let dark = |brightness: f32| f64::from(brightness) < 255.0 * threshold;
-            let polygon = grid.outline(*scale, [*x, *y], dark);
+            let polygon = grid.outline(*scale, [*x, *y], dark, &files.interrupt());
             (grid, *scale, [*x, *y, 0.0], polygon)
         }
         PlanarMap::Ros(name) => {
@@ -120,7 +120,7 @@ fn read_map(
             let map = RosMap::parse(&place.display().to_string(), &files.read(&place, MAX_TEXT_BYTES)?)?;
             let image = place.parent().unwrap_or(Path::new("")).join(&map.image);
             let grid = grid(&image)?;
-            let polygon = map.outline(&grid, unknown_is_free);
+            let polygon = map.outline(&grid, unknown_is_free, &files.interrupt());
             (grid, map.resolution, map.origin, polygon)
         }
     };
@@ -134,5 +134,9 @@ fn read_map(
     if low.coords.amax().max(high.coords.amax()) > MAX_COORDINATE {
         return Err(Fault::Size(format!("the map reaches beyond {MAX_COORDINATE:e} m")));
     }
-    Ok((polygon.map_err(|e| Fault::Size(e.to_string()))?, [low.into(), high.into()]))
+    let polygon = polygon.map_err(|e| match e {
+        PolygonError::Interrupted => Fault::File(Error::interrupted(folder.display())),
+        e => Fault::Size(e.to_string()),
+    });
+    Ok((polygon?, [low.into(), high.into()]))
 }

@@ -134,11 +134,12 @@ impl RosMap {
     /// The obstacles of the map whose image is `grid`, unknown pixels included unless they are free; `None` when there are none.
     ///
     /// # Errors
-    /// When coordinates are not finite or beyond 10⁶⁰.
+    /// When coordinates are not finite or beyond 10⁶⁰, or `interrupt` says to end.
     pub fn outline(
         &self,
         grid: &GridMap,
         unknown_is_free: bool,
+        interrupt: &mp_stop::Interrupt,
     ) -> Result<Option<Polygon>, mp_geom::planar::PolygonError> {
         let occupied = |brightness: f32| {
             let v = f64::from(brightness) / 255.0;
@@ -151,7 +152,7 @@ impl RosMap {
             }
         };
         let [x, y, yaw] = self.origin;
-        let polygon = grid.outline(self.resolution, [0.0; 2], occupied)?;
+        let polygon = grid.outline(self.resolution, [0.0; 2], occupied, interrupt)?;
         Ok(polygon.map(|p| p.transformed(&Isometry2::new([x, y].into(), yaw))))
     }
 }

@@ -10,7 +10,7 @@ use crate::{Error, MetricName};
 use mp_cspace::erased::CompiledIndex;
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
-    Embed, Factored, MotionValidity, ObstacleKnowledge, Rn, Se2, Se2State, Space, StateVector,
+    Embed, Factored, Interrupt, MotionValidity, ObstacleKnowledge, Rn, Se2, Se2State, Space, StateVector,
     obstacles::{ClearanceGradient, ObstacleHints},
 };
 use mp_geom::Aabb;
@@ -261,8 +261,17 @@ impl<B: PlanarBody> PlanarScene<B> {
     /// # Errors
     /// When the robot is of the other kind, or world, robot or bounds are not valid.
     pub fn new(problem: PlanarProblem) -> Result<Self, Error> {
+        Self::new_until(problem, &Interrupt::never())
+    }
+
+    /// As [`new`](Self::new), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and when it was told to end.
+    pub fn new_until(problem: PlanarProblem, interrupt: &Interrupt) -> Result<Self, Error> {
         let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
-        let world = PlanarWorld::new(polygons, problem.file.walls).map_err(|e| Error::new(e.to_string()))?;
+        let world = PlanarWorld::new_until(polygons, problem.file.walls, interrupt)
+            .map_err(|e| Error::new(e.to_string()))?;
         let robot = B::among(Arc::new(world), &problem.file.robot)?;
         let space = B::space(problem.bounds)?;
         let numbers = B::COLUMNS.len();

@@ -12,9 +12,9 @@ use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
-    DefaultNn, Embed, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric, MotionCheck,
-    ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetric,
-    WithMetric,
+    DefaultNn, Embed, Euclidean, Factored, Interrupt, Linear, Manhattan, MaxDisplacement, Metric,
+    MotionCheck, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume,
+    TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{RigidMoving, RigidProblem, SpaceKind, Timing};
@@ -142,10 +142,22 @@ impl<M: RigidSpace> RigidScene<M> {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn after(before: Option<&Self>, problem: RigidProblem) -> Result<Self, Error> {
+        Self::after_until(before, problem, &Interrupt::never())
+    }
+
+    /// As [`after`](Self::after), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and when it was told to end.
+    pub fn after_until(
+        before: Option<&Self>,
+        problem: RigidProblem,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Error> {
         let space = M::space(&problem.position_bounds())?;
         let obstacles = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
-        let robot =
-            RigidBody::among_after(before.map(|before| &before.robot), &problem.robot.mesh, obstacles)?;
+        let before = before.map(|before| &before.robot);
+        let robot = RigidBody::among_until(before, &problem.robot.mesh, obstacles, interrupt)?;
         let (start, goal) = (M::configuration(&problem.start), M::configuration(&problem.goal));
         let radius = if robot.radius() > 0.0 { robot.radius() } else { 1e-3 * space.extent() };
         Ok(Self { problem, space, robot, start, goals: vec![goal], goal_parts: None, radius })

@@ -1,7 +1,9 @@
 //! Checks of states that are written as vectors of numbers, so that the planners compiled for vectors serve more robots.
 
 use super::Queries;
-use mp_cspace::{Clearance, KnownFree, MotionCheck, MotionClearance, MotionValidity, StateVector, Validity};
+use mp_cspace::{
+    Clearance, Interrupt, KnownFree, MotionCheck, MotionClearance, MotionValidity, StateVector, Validity,
+};
 use nalgebra::DVector;
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -73,6 +75,12 @@ impl<A: MotionValidity<S>, S: StateVector> MotionValidity<DVector<f64>> for OnVe
             [Some(from), Some(to)] => self.check.check_extension(&from, &to, known),
             _ => MotionCheck::Unproven { at: 0.0 },
         }
+    }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        self.check.interrupt_by(interrupt);
+    }
+    fn is_interrupted(&mut self) -> bool {
+        self.check.is_interrupted()
     }
 }
 

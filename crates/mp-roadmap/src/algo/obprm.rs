@@ -328,6 +328,9 @@ where
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
+        if !self.hints.prepare(checker.interrupt()) {
+            return;
+        }
         let obstacles = self.hints.obstacles().len() as u64;
         let OnSurfaces { strategy, directions, shells, uniform, .. } = self.with;
         if drew_uniform(if obstacles == 0 { 1.0 } else { uniform }, checker, rng, out) {

@@ -267,7 +267,8 @@ impl<H> AroundObstacles<H> {
         let along = [body.axis, random_unit(Some(&body.axis), rng)];
         for direction in along {
             let first = TAU * rng.random::<f64>();
-            let found = (0..=self.with.bands).find_map(|k| {
+            let mut interrupt = checker.interrupt().clone();
+            let found = (0..=self.with.bands).take_while(|_| !interrupt.ask()).find_map(|k| {
                 let part = match self.with.bands {
                     0 => rng.random::<f64>(),
                     steps => k as f64 / steps as f64,
@@ -300,6 +301,9 @@ where
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
+        if !self.hints.prepare(checker.interrupt()) {
+            return;
+        }
         let q = checker.space().sample_uniform(rng);
         let obstacles = self.hints.obstacles().len() as u64;
         if attempt < self.with.far {

@@ -246,6 +246,9 @@ where
         let first = sums.partition_point(|sum| *sum <= at).min(sums.len() - 1) as NodeId;
         let (space, mut here) = (checker.space(), map.state(first).clone());
         for bounce in 0..self.learning.bounces {
+            if checker.is_interrupted() {
+                return;
+            }
             let toward = space.sample_uniform(rng);
             let mut length = self.walk * rng.random::<f64>();
             for _ in 0..=4 {

@@ -94,6 +94,9 @@ where
             growing.near(&q, neighbours.saturating_add(1), f64::INFINITY, &mut near);
             // One edge per node is enough to join all components that can be joined.
             for hit in near.iter().filter(|hit| hit.id != id) {
+                if growing.checker().is_interrupted() {
+                    break;
+                }
                 if !growing.map.connected(hit.id, id) && growing.try_link(hit.id, id) {
                     break;
                 }
@@ -221,7 +224,8 @@ where
         connector.adopt(candidate, &mut growing)
     }
 
-    /// Builds until stopped. Call again to go on.
+    /// Builds until stopped. Call again to go on. An attempt that was [cut short](Stop::cut_short) leaves the roadmap as it was
+    /// before.
     pub fn build(
         &mut self,
         rng: &mut Rng,
@@ -236,7 +240,13 @@ where
                 return reason;
             }
             observer.on(Event::Iteration(progress));
+            self.map.mark();
             self.step(rng, observer);
+            if let Some(reason) = stop.cut_short() {
+                self.map.roll_back();
+                built(&progress, self.map.edges(), reason);
+                return reason;
+            }
         }
     }
 

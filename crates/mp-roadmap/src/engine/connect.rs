@@ -101,6 +101,9 @@ where
     /// then, unless there is an edge already.
     pub(crate) fn link_near(&mut self, near: &[Hit], to: NodeId, cycles: bool) {
         for hit in near {
+            if self.checker.is_interrupted() {
+                return;
+            }
             if !self.map.connected(hit.id, to) || (cycles && !self.map.has_link(hit.id, to)) {
                 self.try_link(hit.id, to);
             }
@@ -233,6 +236,9 @@ where
             return id;
         }
         for hit in &self.near {
+            if growing.checker().is_interrupted() {
+                break;
+            }
             if !growing.map().has_link(hit.id, id) {
                 growing.guess(hit.id, id, hit.distance);
             }

@@ -173,8 +173,39 @@ where
                 self.best = path.length;
                 return map.path(&path);
             }
+            if checker.is_interrupted() {
+                return None;
+            }
             observer.on(Event::Rejected);
         }
+    }
+
+    /// One iteration, which may have been cut short.
+    fn iterate(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        self.iterations += 1;
+        if self.ends.is_none() {
+            self.begin(observer);
+            if let Some(path) = self.answer(observer) {
+                return Some(path);
+            }
+        }
+        let new = match self.trees.is_next() {
+            true => self.trees.grow(&mut self.builder, rng, observer),
+            false => self.builder.step(rng, observer),
+        };
+        if self.goals.has_region() {
+            let arrived: Vec<_> =
+                new.filter(|&id| self.goals.reached(self.builder.map().state(id))).collect();
+            self.add_goals(&arrived);
+        }
+        if self.goals.has_sampler() && self.iterations % GOAL_EVERY == 1 {
+            self.draw_goal(rng, observer);
+        }
+        if self.due() { self.answer(observer) } else { None }
     }
 
     /// Whether it is time to search for a path. A better path is searched for whenever there are a tenth more nodes.
@@ -185,8 +216,8 @@ where
     }
 }
 
-/// Verifies the edges of a path that have not passed yet, in the direction of the path. Blocks the first that fails.
-/// Returns whether none did.
+/// Verifies the edges of a path that have not passed yet, in the direction of the path. Blocks the first that fails, unless
+/// the checker was told to end. Returns whether none did.
 pub(crate) fn verify<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,
@@ -204,6 +235,9 @@ where
         let passes = map.motion(edge, ends[0]).is_some_and(|motion| {
             checker.passes(map.state(ends[0]), &motion.edge, &motion.end, Direction::Forward)
         });
+        if !passes && checker.interrupt().raised().is_some() {
+            return false;
+        }
         if !passes {
             map.block(edge);
             checker.count_rejected();
@@ -275,31 +309,19 @@ where
 {
     type Edge = L::Edge;
 
+    /// An iteration that was cut short leaves the roadmap as it was before.
     fn step(
         &mut self,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        self.iterations += 1;
-        if self.ends.is_none() {
-            self.begin(observer);
-            if let Some(path) = self.answer(observer) {
-                return Some(path);
-            }
+        self.builder.map.mark();
+        let path = self.iterate(rng, observer);
+        if self.builder.checker.interrupt().raised().is_some() {
+            self.builder.map.roll_back();
+            return None;
         }
-        let new = match self.trees.is_next() {
-            true => self.trees.grow(&mut self.builder, rng, observer),
-            false => self.builder.step(rng, observer),
-        };
-        if self.goals.has_region() {
-            let arrived: Vec<_> =
-                new.filter(|&id| self.goals.reached(self.builder.map().state(id))).collect();
-            self.add_goals(&arrived);
-        }
-        if self.goals.has_sampler() && self.iterations % GOAL_EVERY == 1 {
-            self.draw_goal(rng, observer);
-        }
-        if self.due() { self.answer(observer) } else { None }
+        path
     }
 
     fn progress(&self) -> Progress {

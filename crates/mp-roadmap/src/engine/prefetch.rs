@@ -107,6 +107,9 @@ where
     pub(crate) fn reach_nearest(&mut self, within: &Reachable) {
         let mut joined = Vec::new();
         for hit in self.near(within.neighbours, within.radius) {
+            if self.checker.is_interrupted() {
+                return;
+            }
             let component = self.component(hit.id);
             if (within.cycles || !joined.contains(&component)) && self.reach(hit.id) {
                 joined.push(component);
@@ -231,6 +234,9 @@ where
     fn work<K: Connector<C, L>, N: NearestNeighbors<C>>(&mut self, job: &PrefetchJob<'_, 'c, C, L, G, K, N>) {
         let Some(generator) = &mut self.generator else { return };
         for attempt in self.attempts.clone() {
+            if self.checker.is_interrupted() {
+                return;
+            }
             let mut rng = Rng::stream(job.seed, attempt);
             let mut candidates = Vec::new();
             let (checker, meter) = (&mut self.checker, job.meter);

@@ -197,7 +197,7 @@ where
     }
 
     /// Verifies all edges now, in both directions, so that no query waits for it. Edges that were only guessed are
-    /// checked first; edges that fail are blocked. Returns how many were blocked.
+    /// checked first; edges that fail are blocked. Returns how many were blocked. Ends early when the checker is told to.
     ///
     /// Pays off for thousands of queries, where each edge is on many paths; for a single path verify only that path.
     /// Takes time by the number of edges not verified yet.
@@ -209,6 +209,9 @@ where
         let before = self.map.blocked();
         let edges: Vec<EdgeId> = self.map.all_edges().map(|(edge, ..)| edge).collect();
         for edge in edges {
+            if checker.is_interrupted() {
+                break;
+            }
             if self.map.edge(edge).state == LinkState::Blocked {
                 continue;
             }
@@ -430,7 +433,7 @@ where
     /// The shortest paths between two nodes, all of whose edges are verified; `None` when an edge had to be blocked.
     fn shortest_paths(&mut self, [from, to]: [NodeId; 2], k: usize) -> Option<Vec<GraphPath>> {
         let arcs = self.arcs(from);
-        let found = shortest_paths(&arcs, from, to, k);
+        let found = shortest_paths(&arcs, from, to, k, self.checker.interrupt());
         found.into_iter().map(|(length, nodes)| self.checked(length, nodes)).collect()
     }
 
@@ -468,7 +471,8 @@ where
         let mut paths = Vec::new();
         while paths.len() < k {
             let via = open.iter().copied();
-            let Some((length, nodes)) = shortest_via(&arcs, from, to, apart, via) else { break };
+            let interrupt = self.checker.interrupt();
+            let Some((length, nodes)) = shortest_via(&arcs, [from, to], apart, via, interrupt) else { break };
             let path = self.checked(length, nodes)?;
             let (map, space) = (&self.roadmap.map, self.checker.space());
             let on = path.nodes.windows(2).flat_map(|pair| {

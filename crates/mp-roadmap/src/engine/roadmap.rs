@@ -125,12 +125,36 @@ pub struct Roadmap<S, E = ()> {
     /// In the order in which they were blocked.
     blocked: Vec<EdgeId>,
     stale: bool,
+    /// What undoes the changes since a mark, if one is set.
+    mark: Option<Mark>,
+}
+
+/// A roadmap at some moment: how many nodes, edges and blocked edges it had, and what else changed since, in order.
+#[derive(Clone, Debug)]
+struct Mark {
+    nodes: usize,
+    edges: usize,
+    blocked: usize,
+    changes: Vec<Change>,
+}
+
+/// A change of a node or an edge, with what it was before.
+#[derive(Clone, Copy, Debug)]
+enum Change {
+    /// The tag of a node.
+    Tag(NodeId, Tag),
+    /// An edge was blocked.
+    Blocked(EdgeId, LinkState),
+    /// An edge without a motion, of this length, got one.
+    Motion(EdgeId, f64),
+    /// An edge passed the verifier in this direction.
+    Passed(EdgeId, usize),
 }
 
 impl<S, E> Default for Roadmap<S, E> {
     fn default() -> Self {
         let (graph, sets) = (UnGraph::default(), UnionFind::new_empty());
-        Self { states: Vec::new(), graph, sets, components: 0, blocked: Vec::new(), stale: false }
+        Self { states: Vec::new(), graph, sets, components: 0, blocked: Vec::new(), stale: false, mark: None }
     }
 }
 
@@ -270,9 +294,10 @@ impl<S, E> Roadmap<S, E> {
     pub fn block(&mut self, edge: EdgeId) {
         let link = &mut self.graph[edge.inner()];
         if link.state != LinkState::Blocked {
-            link.state = LinkState::Blocked;
+            let before = std::mem::replace(&mut link.state, LinkState::Blocked);
             self.stale = true;
             self.blocked.push(edge);
+            self.note(Change::Blocked(edge, before));
         }
     }
 
@@ -280,19 +305,66 @@ impl<S, E> Roadmap<S, E> {
     pub fn set_motion(&mut self, edge: EdgeId, motion: E, length: f64) {
         let link = &mut self.graph[edge.inner()];
         if link.state == LinkState::Unchecked {
+            let before = link.length;
             (link.edge, link.length, link.state) = (Some(motion), length, LinkState::Free);
+            self.note(Change::Motion(edge, before));
         }
     }
 
     pub(crate) fn passed(&mut self, edge: EdgeId, backward: bool) {
-        self.graph[edge.inner()].verified[usize::from(backward)] = true;
+        let way = usize::from(backward);
+        if !std::mem::replace(&mut self.graph[edge.inner()].verified[way], true) {
+            self.note(Change::Passed(edge, way));
+        }
     }
 
     /// Counts an attempt to connect two nodes, or one node to something not in the roadmap.
     pub(crate) fn tried(&mut self, id: NodeId, failed: bool) {
         let tag = &mut self.graph[NodeIndex::from(id)];
+        let before = *tag;
         tag.tried = tag.tried.saturating_add(1);
         tag.failed = tag.failed.saturating_add(u32::from(failed));
+        self.note(Change::Tag(id, before));
+    }
+
+    fn note(&mut self, change: Change) {
+        if let Some(mark) = &mut self.mark {
+            mark.changes.push(change);
+        }
+    }
+
+    /// Sets a mark, to which [`roll_back`](Self::roll_back) returns, in place of one set before.
+    pub(crate) fn mark(&mut self) {
+        let mut changes = self.mark.take().map(|mark| mark.changes).unwrap_or_default();
+        changes.clear();
+        let (nodes, edges, blocked) = (self.states.len(), self.graph.edge_count(), self.blocked.len());
+        self.mark = Some(Mark { nodes, edges, blocked, changes });
+    }
+
+    /// Undoes all changes since the mark.
+    pub(crate) fn roll_back(&mut self) {
+        let Some(Mark { nodes, edges, blocked, changes }) = self.mark.take() else { return };
+        for change in changes.into_iter().rev() {
+            match change {
+                Change::Tag(id, tag) => self.graph[NodeIndex::from(id)] = tag,
+                Change::Blocked(edge, state) => self.graph[edge.inner()].state = state,
+                Change::Motion(edge, length) => {
+                    let link = &mut self.graph[edge.inner()];
+                    (link.edge, link.length, link.state) = (None, length, LinkState::Unchecked);
+                }
+                Change::Passed(edge, way) => self.graph[edge.inner()].verified[way] = false,
+            }
+        }
+        // The last edge or node can be removed without another being renumbered.
+        for edge in (edges..self.graph.edge_count()).rev() {
+            self.graph.remove_edge(EdgeIndex::new(edge));
+        }
+        for node in (nodes..self.states.len()).rev() {
+            self.graph.remove_node(NodeIndex::new(node));
+        }
+        self.states.truncate(nodes);
+        self.blocked.truncate(blocked);
+        self.stale = true;
     }
 
     /// Recomputes the components, if an edge was blocked.

@@ -1,7 +1,7 @@
 //! Shortest paths in a roadmap.
 
 use super::{EdgeChecker, EdgeId, GraphPath, LinkState, Roadmap};
-use mp_cspace::{Direction, LocalPlanner, NodeId, Reversible, Space};
+use mp_cspace::{Direction, Interrupt, LocalPlanner, NodeId, Reversible, Space};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -64,6 +64,7 @@ pub struct AStar {
     marks: Vec<Mark>,
     open: BinaryHeap<Open>,
     search: u32,
+    interrupt: Interrupt,
 }
 
 /// With more ends than this the heuristic costs more than it saves.
@@ -106,6 +107,9 @@ impl AStar {
         while let Some(Open { estimate: total, length, node }) = self.open.pop() {
             if best.is_some_and(|(least, _)| total >= least) {
                 break;
+            }
+            if self.interrupt.ask() {
+                return None;
             }
             if length > self.marks[node as usize].length {
                 continue;
@@ -161,10 +165,14 @@ where
         from: &[Entry],
         to: &[Entry],
     ) -> Option<GraphPath> {
+        self.interrupt = checker.interrupt().clone();
         loop {
             let path = self.shortest(map, checker.space(), from, to)?;
             if check(map, checker, &path) {
                 return Some(path);
+            }
+            if checker.is_interrupted() {
+                return None;
             }
         }
     }
@@ -175,7 +183,7 @@ fn inward(n: usize) -> impl Iterator<Item = usize> {
     (0..n).map(move |i| if i % 2 == 0 { i / 2 } else { n - 1 - i / 2 })
 }
 
-/// Checks the unchecked edges of a path. Blocks those that fail. Returns whether none did.
+/// Checks the unchecked edges of a path. Blocks those that fail, unless the checker was told to end. Returns whether none did.
 pub(crate) fn check<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,
@@ -193,6 +201,9 @@ where
         let [a, b] = map.ends(edge);
         let motion = checker.reach(map.state(a), map.state(b), Direction::Forward);
         let failed = motion.is_none();
+        if failed && checker.interrupt().raised().is_some() {
+            return false;
+        }
         map.tried(a, failed);
         map.tried(b, failed);
         match motion {

@@ -261,6 +261,9 @@ where
         };
         for round in 0..rounds {
             for hit in &self.near {
+                if growing.checker().is_interrupted() {
+                    return id;
+                }
                 if growing.map().connected(hit.id, id) {
                     continue;
                 }

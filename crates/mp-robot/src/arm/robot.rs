@@ -111,7 +111,7 @@ impl SharedArm {
     ) -> Result<Arc<Obstacles>, ArmError> {
         let triangles = self.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
         let too_many = |count| ArmError::TooManyTriangles { count, max: MAX_TRIANGLES };
-        Obstacles::new(obstacles, triangles, too_many, None)
+        Obstacles::new(obstacles, triangles, too_many, None, |mesh| Ok(CollisionMesh::new(mesh)))
     }
 
     /// The links that can collide with obstacles: those that move. The last ones move most, so they come first.

@@ -2,7 +2,7 @@
 
 use super::{Arm, ArmModel, JointKind};
 use mp_collide::reference::RefMesh;
-use mp_cspace::{Coordinates, MotionCheck, MotionValidity, ParameterError, Space};
+use mp_cspace::{Coordinates, Interrupt, MotionCheck, MotionValidity, ParameterError, Space};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Matrix3, Matrix4, Rotation3, Translation3, UnitQuaternion, Vector3};
 use std::collections::VecDeque;
@@ -268,6 +268,7 @@ pub struct ArmVerifier<'c, C> {
     pairs: Vec<CheckedPair>,
     tolerance: f64,
     parts: u64,
+    interrupt: Interrupt,
 }
 
 /// Motions of a coordinate longer than this (rad or m) are refused.
@@ -315,7 +316,7 @@ where
                 pairs.push(CheckedPair { link, other: Some(other), meet });
             }
         }
-        Ok(Self { space, tree, world, pairs, tolerance, parts: 0 })
+        Ok(Self { space, tree, world, pairs, tolerance, parts: 0, interrupt: Interrupt::never() })
     }
 
     /// The clearance (m) that motions found free keep between links and everything else.
@@ -387,6 +388,9 @@ where
             for i in pairs {
                 let pair = &self.pairs[i];
                 let approach = self.approach(pair, &travels, &poses);
+                if self.interrupt.ask() {
+                    return MotionCheck::Unproven { at };
+                }
                 match self.distance(pair, &poses, approach + self.tolerance) {
                     Ok(distance) => least = least.min(distance - approach),
                     // The first distance found need not be the least.
@@ -443,9 +447,16 @@ where
         }
         match self.prove(from, to) {
             MotionCheck::Free { clearance } => MotionCheck::Free { clearance },
+            other if self.interrupt.raised().is_some() => other,
             _ if self.touches(from) => MotionCheck::Collision { at: 0.0 },
             _ if self.touches(to) => MotionCheck::Collision { at: 1.0 },
             other => other,
         }
+    }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        self.interrupt = interrupt.clone();
+    }
+    fn is_interrupted(&mut self) -> bool {
+        self.interrupt.ask()
     }
 }

@@ -3,7 +3,7 @@
 use super::{AmongMoving, MovingObstacle};
 use crate::{Placement, Verifier};
 use mp_collide::reference::RefMesh;
-use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space, space_time::SpaceTime};
+use mp_cspace::{Interrupt, MotionCheck, MotionValidity, ParameterError, Space, space_time::SpaceTime};
 use nalgebra::Isometry3;
 use std::sync::Arc;
 
@@ -19,6 +19,7 @@ use std::sync::Arc;
 pub struct MovingVerifier<'c, C, P> {
     space: &'c SpaceTime<C>,
     standing: Verifier<'c, C, P>,
+    interrupt: Interrupt,
     robot: Arc<RefMesh>,
     radius: f64,
     moving: Arc<[MovingObstacle]>,
@@ -41,6 +42,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
             space,
             tolerance: standing.tolerance(),
             standing,
+            interrupt: Interrupt::never(),
             robot: Arc::new(RefMesh::new(mesh)),
             radius,
             moving: Arc::clone(robot.moving()),
@@ -80,8 +82,12 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
     ) -> Result<f64, MotionCheck> {
         let mut least = f64::INFINITY;
         let mut open = vec![(0.0_f64, 1.0_f64)];
+        let mut interrupt = self.interrupt.clone();
         while let Some((a, b)) = open.pop() {
             let (at, half) = (0.5 * (a + b), 0.5 * (b - a));
+            if interrupt.ask() {
+                return Err(MotionCheck::Unproven { at });
+            }
             let (q, time) = self.space.interpolate(from, to, at);
             let when = |t: f64| from.1 + (to.1 - from.1) * t;
             let approach = half
@@ -119,5 +125,12 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<(P::State, f64)> f
             }
         }
         MotionCheck::Free { clearance: least }
+    }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        self.interrupt = interrupt.clone();
+        self.standing.interrupt_by(interrupt);
+    }
+    fn is_interrupted(&mut self) -> bool {
+        self.interrupt.ask()
     }
 }

@@ -3,8 +3,8 @@
 use super::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
 use crate::{CheckCounters, Trajectory};
 use mp_cspace::{
-    Clearance, MotionCheck, MotionClearance, MotionValidity, ParameterError, Se2State, Space, Validity,
-    angle::angle_difference, space_time::SpaceTime,
+    Clearance, Interrupt, MotionCheck, MotionClearance, MotionValidity, ParameterError, Se2State, Space,
+    Validity, angle::angle_difference, space_time::SpaceTime,
 };
 use mp_geom::planar::{PlanarWorld, Polygon};
 use nalgebra::{Isometry2, Isometry3, Vector2};
@@ -345,6 +345,13 @@ where
             }
         }
         MotionCheck::Free { clearance: least }
+    }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        self.standing.interrupt_by(interrupt);
+        self.seen.iter_mut().for_each(|verifier| verifier.interrupt_by(interrupt));
+    }
+    fn is_interrupted(&mut self) -> bool {
+        self.standing.is_interrupted()
     }
 }
 

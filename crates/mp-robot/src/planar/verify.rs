@@ -2,7 +2,7 @@
 
 use super::edge_list::{EdgeList, box_distance, inside_rings, rings, segment_distance, sides};
 use crate::{DiscRobot, PolygonRobot};
-use mp_cspace::{MotionCheck, MotionValidity, Se2State, Space};
+use mp_cspace::{Interrupt, MotionCheck, MotionValidity, Se2State, Space};
 use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
 
@@ -16,6 +16,7 @@ pub struct DiscVerifier {
     obstacles: Arc<EdgeList>,
     radius: f64,
     tolerance: f64,
+    interrupt: Interrupt,
 }
 
 impl DiscVerifier {
@@ -23,7 +24,8 @@ impl DiscVerifier {
     #[must_use]
     pub fn new(robot: &DiscRobot) -> Self {
         let obstacles = Arc::new(EdgeList::new(robot.world()));
-        Self { obstacles, radius: robot.radius(), tolerance: 0.1 * robot.tolerance() }
+        let interrupt = Interrupt::never();
+        Self { obstacles, radius: robot.radius(), tolerance: 0.1 * robot.tolerance(), interrupt }
     }
 
     /// The clearance (m) that motions found free keep from every obstacle.
@@ -44,12 +46,21 @@ impl MotionValidity<Vector2<f64>> for DiscVerifier {
         if self.obstacles.inside(&segment[0]) {
             return MotionCheck::Collision { at: 0.0 };
         }
+        if self.interrupt.ask() {
+            return MotionCheck::Unproven { at: 0.0 };
+        }
         let clearance = self.obstacles.nearest(&segment) - self.radius;
         if clearance >= self.tolerance {
             return MotionCheck::Free { clearance };
         }
         let at = self.nearest_fraction(&segment);
         if clearance <= 0.0 { MotionCheck::Collision { at } } else { MotionCheck::Unproven { at } }
+    }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        self.interrupt = interrupt.clone();
+    }
+    fn is_interrupted(&mut self) -> bool {
+        self.interrupt.ask()
     }
 }
 
@@ -60,7 +71,9 @@ impl DiscVerifier {
             let p = segment[0] + (segment[1] - segment[0]) * t;
             self.obstacles.edges.iter().map(|e| segment_distance(e, &[p, p])).fold(f64::INFINITY, f64::min)
         };
-        let tried = (0..=64).map(|i| f64::from(i) / 64.0).map(|t| (t, clearance(t)));
+        let mut interrupt = self.interrupt.clone();
+        let places = (0..=64).map(|i| f64::from(i) / 64.0).take_while(|_| !interrupt.ask());
+        let tried = places.map(|t| (t, clearance(t)));
         tried.fold((0.0, f64::INFINITY), |best, now| if now.1 < best.1 { now } else { best }).0
     }
 }
@@ -81,6 +94,7 @@ pub struct PolygonVerifier<'c, C> {
     body: Arc<Vec<Vec<Point2<f64>>>>,
     radius: f64,
     tolerance: f64,
+    interrupt: Interrupt,
 }
 
 impl<'c, C: Space<State = Se2State>> PolygonVerifier<'c, C> {
@@ -90,7 +104,8 @@ impl<'c, C: Space<State = Se2State>> PolygonVerifier<'c, C> {
         let obstacles = Arc::new(EdgeList::new(robot.world()));
         let body = rings(robot.body());
         let radius = body.iter().flatten().map(|p| p.coords.norm()).fold(0.0, f64::max);
-        Self { space, obstacles, body: Arc::new(body), radius, tolerance: 0.1 * robot.tolerance() }
+        let (tolerance, interrupt) = (0.1 * robot.tolerance(), Interrupt::never());
+        Self { space, obstacles, body: Arc::new(body), radius, tolerance, interrupt }
     }
 
     /// The clearance (m) that motions found free keep from every obstacle.
@@ -106,7 +121,11 @@ impl<'c, C: Space<State = Se2State>> PolygonVerifier<'c, C> {
     /// The distance at `q` from `edges`.
     fn distance(&self, q: &Se2State, edges: &[[Point2<f64>; 2]]) -> f64 {
         let mut least = f64::INFINITY;
+        let mut interrupt = self.interrupt.clone();
         for side in self.placed(q).iter().flat_map(|ring| sides(ring)) {
+            if interrupt.ask() {
+                return 0.0;
+            }
             for edge in edges {
                 if box_distance(&side, edge) < least {
                     least = least.min(segment_distance(&side, edge));
@@ -149,6 +168,9 @@ impl<C: Space<State = Se2State>> MotionValidity<Se2State> for PolygonVerifier<'_
             let at = 0.5 * (a + b);
             let travel = 0.5 * (b - a) * (length + self.radius * turn);
             let distance = self.distance(&self.space.interpolate(from, to, at), &near);
+            if self.interrupt.ask() {
+                return MotionCheck::Unproven { at };
+            }
             if distance <= 0.0 {
                 return MotionCheck::Collision { at };
             }
@@ -161,5 +183,11 @@ impl<C: Space<State = Se2State>> MotionValidity<Se2State> for PolygonVerifier<'_
             }
         }
         MotionCheck::Free { clearance: least }
+    }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        self.interrupt = interrupt.clone();
+    }
+    fn is_interrupted(&mut self) -> bool {
+        self.interrupt.ask()
     }
 }

@@ -65,8 +65,8 @@ use crate::{
 };
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
-    Direction, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner, Progress,
-    Reach, Rng, Space, Uniform,
+    Direction, Extension, Hit, Interrupt, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
+    Progress, Reach, Rng, Space, Uniform,
 };
 use std::collections::BTreeMap;
 
@@ -286,7 +286,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
     /// Each edge has passed the verifier; edges that fail are left out from then on. The local planner makes the motions
     /// back. Both answers are cached. Costs a search of the graph for each node of each path.
     pub fn alternatives(&mut self, k: usize) -> Listed<C::State, L::Edge> {
-        self.list(|_, tree, arcs| shortest_paths(arcs, 0, tree.len() as u32, k))
+        self.list(|_, tree, arcs, interrupt| shortest_paths(arcs, 0, tree.len() as u32, k, interrupt))
     }
 
     /// At most `k` paths that are far apart. The first is the cheapest path. Each other one is the cheapest path via a
@@ -303,12 +303,14 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
             return Err(BuildError::OutOfRange { name: "apart", value: apart, range });
         }
         let step = self.inner.parts().1.step();
-        Ok(self.list(|space, tree, arcs| {
+        Ok(self.list(|space, tree, arcs, interrupt| {
             let mut found: Vec<(f64, Vec<u32>)> = Vec::new();
             let mut open: Vec<NodeId> = (0..tree.len() as NodeId).collect();
             while found.len() < k {
                 let via = open.iter().copied();
-                let Some(route) = shortest_via(arcs, 0, tree.len() as u32, apart, via) else { break };
+                let Some(route) = shortest_via(arcs, [0, tree.len() as u32], apart, via, interrupt) else {
+                    break;
+                };
                 let states: Vec<&C::State> =
                     route.1[..route.1.len() - 1].iter().map(|&id| tree.state(id)).collect();
                 let between = states.windows(2).flat_map(|pair| {
@@ -328,7 +330,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
     /// Lists the paths that `choose` finds between node 0 and the last, once all their edges are verified.
     fn list(
         &mut self,
-        choose: impl Fn(&C, &Tree<C::State, L::Edge>, &[Vec<(u32, f64)>]) -> Vec<(f64, Vec<u32>)>,
+        choose: impl Fn(&C, &Tree<C::State, L::Edge>, &[Vec<(u32, f64)>], &Interrupt) -> Vec<(f64, Vec<u32>)>,
     ) -> Listed<C::State, L::Edge> {
         let (tree, checker, cyclic) = self.inner.parts();
         let is_goal = |id: &NodeId| self.arrived.contains(tree.state(*id));
@@ -337,8 +339,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
             return Vec::new();
         }
         loop {
-            let mut found = choose(checker.space(), tree, &cyclic.arcs(tree, &goals));
+            let arcs = cyclic.arcs(tree, &goals);
+            let mut found = choose(checker.space(), tree, &arcs, checker.interrupt());
             let mut changed = false;
+            if checker.is_interrupted() {
+                return Vec::new();
+            }
             for (_, nodes) in &mut found {
                 nodes.pop();
                 for pair in nodes.windows(2) {

@@ -222,6 +222,7 @@ constructors! {
     "Dynamic-domain RRT" DdRrt<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning, domain: Domain| {
         let target_sampler = Acceptable::new(Samples(Uniform(problem.space())));
+        let target_sampler = target_sampler.with_interrupt(problem.interrupt().clone());
         let name = if domain.adapt > 0.0 { super::add_rrt::INFO.name } else { INFO.name };
         let selector = DynamicDomain::new(index, domain, tuning.step.length_in(problem.space())?)?;
         let extender = (Extend, Connect::default());

@@ -55,7 +55,7 @@ use crate::{
     Append, BuildError, Connect, Extend, NearestSelector, Parameter, PlannerInfo, Purpose, Selector,
     TargetSampler, TreePlannerParts, Tuning, TwoTrees,
 };
-use mp_cspace::{Hit, NodeId, Rng, Space};
+use mp_cspace::{Hit, Interrupt, NodeId, Rng, Space};
 
 /// How many samples are compared.
 pub(crate) const SAMPLES: Parameter = Parameter {
@@ -86,6 +86,7 @@ pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<
 pub struct VoronoiBias {
     samples: u64,
     hits: Vec<Hit>,
+    interrupt: Interrupt,
 }
 
 impl<C: Space> TargetSampler<C> for VoronoiBias {
@@ -100,6 +101,9 @@ impl<C: Space> TargetSampler<C> for VoronoiBias {
         let mut regions: Vec<(NodeId, u32, C::State)> = Vec::new();
         let mut best = 0;
         for _ in 0..self.samples {
+            if self.interrupt.ask() {
+                break;
+            }
             let q = space.sample_uniform(rng);
             selector.select(space, points, &q, Purpose::Explore, rng, &mut self.hits);
             let Some(hit) = self.hits.first() else { continue };
@@ -128,7 +132,7 @@ constructors! {
     "Multi-sample RRT" MvbRrt<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning, samples: u64| {
         let samples = BuildError::count_within(SAMPLES.name, samples, 1, 100_000)?;
-        let target_sampler = VoronoiBias { samples, hits: Vec::new() };
+        let target_sampler = VoronoiBias { samples, hits: Vec::new(), interrupt: problem.interrupt().clone() };
         let extender = (Extend, Connect::default());
         let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter: Append, tuning };
         Self::assemble(INFO.name, problem, parts)

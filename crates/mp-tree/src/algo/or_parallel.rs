@@ -19,7 +19,7 @@
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `runs`: how many independent runs, for any number of threads | 1, 2, … 1024 | 8 |
-//! | `slice`: iterations of each run per round; budgets are kept to within one slice | 1, 2, … 10⁶ | 32 |
+//! | `slice`: iterations of each run per round; budgets of iterations, nodes and motions are kept to within one slice | 1, 2, … 10⁶ | 32 |
 //!
 //! and those of the planner that is run. By name it is `or-` and the name of that, as in
 //! `or-rrt-connect`; [`build_from`](crate::build_from) makes it.
@@ -54,7 +54,7 @@
 //! ```
 
 use crate::{BuildError, Parameter, Workers};
-use mp_cspace::{Observer, Path, Planner, Progress, Rng};
+use mp_cspace::{Interrupt, Observer, Path, Planner, Progress, Rng};
 use rand::RngExt;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -93,6 +93,7 @@ pub struct OrParallel<S, P: Planner<S>> {
     begun: bool,
     winner: Option<usize>,
     panics: u64,
+    interrupt: Interrupt,
 }
 
 impl<S, P: Planner<S>> OrParallel<S, P> {
@@ -118,7 +119,15 @@ impl<S, P: Planner<S>> OrParallel<S, P> {
         let planners = (0..runs).map(make).collect::<Result<Vec<P>, BuildError>>()?;
         let run = |planner| Run { planner, rng: Rng::seed(0), found: None, panicked: None };
         let runs = planners.into_iter().map(run).collect();
-        Ok(Self { runs, slice, workers, begun: false, winner: None, panics: 0 })
+        let interrupt = Interrupt::never();
+        Ok(Self { runs, slice, workers, begun: false, winner: None, panics: 0, interrupt })
+    }
+
+    /// Ends a round early when `interrupt` says so. The problems of the planners have clones of it:
+    /// [`Problem::with_interrupt`](crate::Problem::with_interrupt).
+    #[must_use]
+    pub fn with_interrupt(self, interrupt: Interrupt) -> Self {
+        Self { interrupt, ..self }
     }
 
     /// The run that found the path returned last.
@@ -150,9 +159,13 @@ impl<S: Send, P: Planner<S, Edge: Send> + Send> Planner<S> for OrParallel<S, P> 
             }
             self.begun = true;
         }
-        let slice = self.slice;
+        let (slice, interrupt) = (self.slice, &self.interrupt);
         self.workers.each(&mut self.runs, |run| {
+            let mut interrupt = interrupt.clone();
             for _ in 0..slice {
+                if interrupt.ask() {
+                    return;
+                }
                 let step = catch_unwind(AssertUnwindSafe(|| run.planner.step(&mut run.rng, &mut ())));
                 match step {
                     Ok(None) => {}

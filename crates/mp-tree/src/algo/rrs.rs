@@ -152,7 +152,8 @@ where
     let local: SnakePlanner<'_, C, M, _> =
         SnakePlanner::with_bend(space, parts.local.check, repulsion, params, bend)
             .map_err(|e| unmade(e.to_string()))?;
-    Problem::new(space, local, Boxed(parts.verify), parts.start, parts.goals)
+    let problem = Problem::new(space, local, Boxed(parts.verify), parts.start, parts.goals)?;
+    Ok(problem.with_interrupt(parts.interrupt))
 }
 
 /// A verifier behind a pointer.

@@ -64,8 +64,8 @@ use crate::{
     Problem, Purpose, SearchTree, Selector, Tree, Tuning, Workers,
 };
 use mp_cspace::{
-    DefaultNn, Direction, Event, Extension, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
-    Progress, Reach, Rng, Space,
+    DefaultNn, Direction, Event, Extension, Interrupt, LocalPlanner, NearestNeighbors, NodeId, Observer,
+    Path, Planner, ProblemParts, Progress, Reach, Rng, Space,
 };
 use rand::RngExt;
 use std::any::Any;
@@ -83,6 +83,7 @@ pub const BATCH: Parameter = Parameter {
 /// One sample of a batch, and the extension toward it.
 struct BatchSample<S, L: LocalPlanner<S>> {
     local: L,
+    interrupt: Interrupt,
     rng: Rng,
     target: Option<S>,
     purpose: Purpose,
@@ -97,6 +98,9 @@ impl<S: Clone + PartialEq, L: LocalPlanner<S>> BatchSample<S, L> {
         points: &[S],
         index: &N,
     ) {
+        if self.interrupt.ask() {
+            return;
+        }
         let target = self.target.get_or_insert_with(|| space.sample_uniform(&mut self.rng));
         let Some(hit) = index.nearest(space, points, target) else { return };
         let from = &points[hit.id as usize];
@@ -172,9 +176,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         }
         let core = Core::new(make(0)?, &tuning)?;
         let sample = |i| {
-            let local = make(i)?.into_parts().local;
-            let purpose = Purpose::Explore;
-            Ok(BatchSample { local, rng: Rng::seed(0), target: None, purpose, found: None, panicked: None })
+            let ProblemParts { local, interrupt, .. } = make(i)?.into_parts();
+            let (rng, purpose) = (Rng::seed(0), Purpose::Explore);
+            Ok(BatchSample { local, interrupt, rng, target: None, purpose, found: None, panicked: None })
         };
         let samples = (1..=batch).map(sample).collect::<Result<Vec<_>, BuildError>>()?;
         Ok(Self {

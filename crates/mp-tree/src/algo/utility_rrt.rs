@@ -156,6 +156,9 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for UtilityGuided<C::St
         let first = (growing.target().clone(), false);
         let mut best = self.judge(tree, space, step, (from, growing.tree().state(from)), first);
         for _ in 1..self.candidates {
+            if growing.checker().is_interrupted() {
+                return Grown::Trapped;
+            }
             let node = growing.rng().random_range(0..nodes) as NodeId;
             let toward = (space.sample_uniform(growing.rng()), true);
             let other = self.judge(tree, space, step, (node, growing.tree().state(node)), toward);

@@ -108,11 +108,14 @@ pub(crate) fn moved_by_inputs<'c, C: Space, L: LocalPlanner<C::State>>(
     let directions = settings.count(INPUTS.name)?.unwrap_or(0);
     let directions = in_range(INPUTS.name, directions, 0, 1 << 20)?;
     let levels = in_range(LEVELS.name, settings.count(LEVELS.name)?.unwrap_or(3), 1, 20)?;
+    in_range("inputs times levels", u64::from(directions) * u64::from(levels), 0, 1 << 20)?;
+    let interrupt = problem.interrupt().clone();
     if let Some(system) = problem.inputs().cloned() {
         let inputs = InputSet::new((system.inputs)(directions as usize, levels))?;
         let flow = NamedFlow::Own(system.flow);
         return problem.try_map_local(|local| {
-            Ok(InputPlanner::new(space, flow, inputs, system.duration, LocalFlowCheck(local))?)
+            let planner = InputPlanner::new(space, flow, inputs, system.duration, LocalFlowCheck(local))?;
+            Ok(planner.with_interrupt(interrupt))
         });
     }
     let inputs = InputSet::uniform(space, reach, directions as usize, levels)?;
@@ -120,6 +123,7 @@ pub(crate) fn moved_by_inputs<'c, C: Space, L: LocalPlanner<C::State>>(
     let (goals, sampled) = (problem.goals().listed().to_vec(), problem.goals().has_sampler());
     problem.try_map_local(|local| {
         let planner = InputPlanner::new(space, flow, inputs, 1.0, LocalFlowCheck(local))?;
+        let planner = planner.with_interrupt(interrupt);
         Ok(if sampled { planner.reaching_all() } else { planner.reaching(goals) })
     })
 }

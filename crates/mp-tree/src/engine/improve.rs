@@ -123,6 +123,9 @@ where
                 self.target_sampler.improved(cost);
                 return Some(path);
             }
+            if self.core.checker.is_interrupted() {
+                return None;
+            }
         }
     }
 }

@@ -129,7 +129,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
     }
 
     /// Verifies the path between a root and `id`, edge by edge from the root; each edge is verified once. `false` when an
-    /// edge fails: the subtree below it is pruned, and `pruned` is called with the former ids of the remaining nodes,
+    /// edge fails: the subtree below it is pruned (unless the checker was told to end), and `pruned` is called with the former ids of the remaining nodes,
     /// before observers are.
     pub fn verify(
         &mut self,
@@ -144,6 +144,9 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
             if self.passes(node, checker) {
                 self.tree.set_verified(node);
                 continue;
+            }
+            if checker.interrupt().raised().is_some() {
+                return false;
             }
             checker.count_rejected();
             let survivors = self.tree.prune(node);

@@ -1,7 +1,7 @@
 //! Slot: what to grow toward next.
 
 use super::{Purpose, Selector};
-use mp_cspace::{Hit, Rng, Sampler, Space};
+use mp_cspace::{Hit, Interrupt, Rng, Sampler, Space};
 
 /// Slot: samples the next target of exploration, given the tree that is about to grow.
 pub trait TargetSampler<C: Space> {
@@ -34,12 +34,19 @@ impl<C: Space, Sa: Sampler<C::State>> TargetSampler<C> for Samples<Sa> {
 pub struct Acceptable<P> {
     inner: P,
     hits: Vec<Hit>,
+    interrupt: Interrupt,
 }
 
 impl<P> Acceptable<P> {
     /// The targets of `inner` that are accepted.
     pub fn new(inner: P) -> Self {
-        Self { inner, hits: Vec::new() }
+        Self { inner, hits: Vec::new(), interrupt: Interrupt::never() }
+    }
+
+    /// The same, which takes any target once `interrupt` says to end.
+    #[must_use]
+    pub fn with_interrupt(self, interrupt: Interrupt) -> Self {
+        Self { interrupt, ..self }
     }
 }
 
@@ -54,7 +61,7 @@ impl<C: Space, P: TargetSampler<C>> TargetSampler<C> for Acceptable<P> {
         let mut target = self.inner.next_target(rng, space, points, selector);
         for _ in 0..10_000 {
             selector.select(space, points, &target, Purpose::Explore, rng, &mut self.hits);
-            if points.is_empty() || !self.hits.is_empty() {
+            if points.is_empty() || !self.hits.is_empty() || self.interrupt.ask() {
                 break;
             }
             target = self.inner.next_target(rng, space, points, selector);

@@ -9,9 +9,9 @@ use crate::{
     AnyPlanner, BuildError, OrParallel, Parameter, PlannerInfo, Problem, Restarts, Schedule, Settings,
     SharedTree, Tuning, Workers, build_with, planner,
 };
-use mp_cspace::{MotionValidity, NearestNeighbors, Space, Straight};
+use mp_cspace::{Interrupt, MotionValidity, NearestNeighbors, Space, Straight};
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A way to run another planner; its name is a prefix of the name of that planner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,8 +154,8 @@ where
 {
     let spec = PlannerSpec::new(name)?;
     spec.check(settings)?;
-    let factory =
-        Factory { make: Arc::new(make), index, settings: settings.clone(), workers: workers.clone(), spec };
+    let (settings, workers) = (settings.clone(), workers.clone());
+    let factory = Factory { make: Arc::new(make), index, settings, workers, spec, interrupt: Arc::default() };
     factory.planner(0)
 }
 
@@ -168,17 +168,20 @@ struct Factory<'c, C: Space, M: MotionValidity<C::State>, N> {
     settings: Settings,
     workers: Workers,
     spec: PlannerSpec,
+    /// The interrupt of the problems, once one was made.
+    interrupt: Arc<OnceLock<Interrupt>>,
 }
 
 impl<'c, C: Space, M: MotionValidity<C::State>, N: Clone> Clone for Factory<'c, C, M, N> {
     fn clone(&self) -> Self {
-        let Self { make, index, settings, workers, spec } = self;
+        let Self { make, index, settings, workers, spec, interrupt } = self;
         Self {
             make: Arc::clone(make),
             index: index.clone(),
             settings: settings.clone(),
             workers: workers.clone(),
             spec: spec.clone(),
+            interrupt: Arc::clone(interrupt),
         }
     }
 }
@@ -189,29 +192,35 @@ where
     M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
+    fn problem(&self) -> Result<Problem<'c, C, Straight<'c, C, M>>, BuildError> {
+        let problem = (self.make)()?;
+        self.interrupt.get_or_init(|| problem.interrupt().clone());
+        Ok(problem)
+    }
+
     /// The planner inside the first `depth` meta-planners.
     fn planner(&self, depth: usize) -> Result<AnyPlanner<'c, C::State, ()>, BuildError> {
         let count = |parameter: Parameter| self.settings.count_of(&parameter);
         match self.spec.meta_planners.get(depth) {
             None => {
                 let settings = self.spec.planner_settings(&self.settings);
-                build_with(self.spec.planner.name, (self.make)()?, self.index.clone(), &settings)
+                build_with(self.spec.planner.name, self.problem()?, self.index.clone(), &settings)
             }
             Some(meta) if **meta == OR => {
                 let workers = self.workers.clone();
-                Ok(Box::new(OrParallel::new(count(RUNS)?, count(SLICE)?, workers, |_| {
-                    self.planner(depth + 1)
-                })?))
+                let run = |_| self.planner(depth + 1);
+                let planner = OrParallel::new(count(RUNS)?, count(SLICE)?, workers, run)?;
+                Ok(Box::new(planner.with_interrupt(self.interrupt.get().cloned().unwrap_or_default())))
             }
             Some(meta) if **meta == SHARED => {
                 let (info, settings) = (self.spec.planner, self.spec.planner_settings(&self.settings));
                 let tuning = Tuning::read(&settings, info)?;
                 let (batch, workers, index) = (count(BATCH)?, self.workers.clone(), self.index.clone());
                 Ok(if info.name == rrs::INFO.name {
-                    let make = |_| with_bending_edges(info.name, (self.make)()?, &settings);
+                    let make = |_| with_bending_edges(info.name, self.problem()?, &settings);
                     Box::new(Flattened(SharedTree::with_index(batch, workers, index, tuning, make)?))
                 } else {
-                    Box::new(SharedTree::with_index(batch, workers, index, tuning, |_| (self.make)())?)
+                    Box::new(SharedTree::with_index(batch, workers, index, tuning, |_| self.problem())?)
                 })
             }
             Some(_) => {

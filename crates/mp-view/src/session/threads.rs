@@ -69,7 +69,7 @@ impl Orders {
     }
 
     fn is_cancelled(&self) -> bool {
-        self.cancel.0.load(Ordering::Relaxed)
+        self.cancel.is_raised()
     }
 
     /// Whether the next order is to pause.
@@ -213,7 +213,7 @@ fn drive(
 ) -> Result<(), Error> {
     let clock = Clock::default();
     let prepared = scene.prepare(request)?;
-    let run = prepared.begin(&mut Control { clock, ..Control::default() })?;
+    let run = prepared.begin(&mut Control { clock, cancel: orders.cancel.clone(), ..Control::default() })?;
     let mut driver = Driver::new(scene, run, Arc::clone(outbox), orders.cancel.clone(), clock);
     loop {
         if orders.is_pause() {

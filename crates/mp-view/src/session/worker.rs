@@ -70,8 +70,9 @@ impl Worker {
                 // A run borrows these, and outlives this call.
                 let (scene, request) = (&*Box::leak(Box::new(scene)), &*Box::leak(request));
                 let prepared = &*Box::leak(Box::new(scene.prepare(request)?));
-                let run = prepared.begin(&mut Control { clock: self.clock, ..Control::default() })?;
                 let cancel = Cancel::new();
+                let mut control = Control { clock: self.clock, cancel: cancel.clone(), ..Control::default() };
+                let run = prepared.begin(&mut control)?;
                 let driver =
                     Driver::new(scene, run, SharedOutbox::clone(&outbox), cancel.clone(), self.clock);
                 self.run = Some(Planning { number, driver, order: first_order(paused), cancel, over: false });

@@ -3,7 +3,7 @@
 use super::space::DrivenSpace;
 use super::{DrivenScene, ROUND_UP, ROUNDING, SpeedBound};
 use crate::robot::Queries;
-use mp_cspace::{Clearance, MotionCheck, MotionClearance, MotionValidity, Space, Validity};
+use mp_cspace::{Clearance, Interrupt, MotionCheck, MotionClearance, MotionValidity, Space, Validity};
 use nalgebra::DVector;
 use std::sync::Arc;
 
@@ -95,6 +95,9 @@ impl<K: SpeedBound> MotionValidity<DVector<f64>> for DrivenVerifier<'_, K> {
         let mut open = vec![(0.0_f64, 1.0_f64)];
         while let Some((begin, end)) = open.pop() {
             let (at, half) = (0.5 * (begin + end), 0.5 * (end - begin));
+            if self.verifier.is_interrupted() {
+                return MotionCheck::Unproven { at };
+            }
             let now = space.system.flow(&space.positions, &a, &b.input, at * b.duration);
             let near = half * travel;
             let needed = (near + tolerance) * ROUND_UP;
@@ -116,5 +119,11 @@ impl<K: SpeedBound> MotionValidity<DVector<f64>> for DrivenVerifier<'_, K> {
             MotionCheck::Collision { .. } => MotionCheck::Collision { at: 1.0 },
             MotionCheck::Unproven { .. } => MotionCheck::Unproven { at: 1.0 },
         }
+    }
+    fn interrupt_by(&mut self, interrupt: &Interrupt) {
+        self.verifier.interrupt_by(interrupt);
+    }
+    fn is_interrupted(&mut self) -> bool {
+        self.verifier.is_interrupted()
     }
 }

@@ -189,7 +189,7 @@ impl<K: SpeedBound> DrivenScene<K> {
         };
         let mut failures = 0;
         for attempt in 0..effort.attempts {
-            if failures >= effort.patience || states.len() < 3 {
+            if failures >= effort.patience || states.len() < 3 || check.is_interrupted() {
                 break;
             }
             failures += 1;

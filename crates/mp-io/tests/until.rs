@@ -1,0 +1,92 @@
+//! Readers end when they are told to, wherever they are in a file.
+
+use mp_io::{ErrorKind, InMemory, PlanarProblem, Until, read_mesh_of};
+use mp_stop::{Cancel, Clock, Interrupt};
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+/// Readings of the clock: one for each question, as the steps between them are long.
+static READ: AtomicU64 = AtomicU64::new(0);
+const STEP: Duration = Duration::from_millis(2);
+
+/// A token that says to end at question `n`.
+fn at(n: u64) -> Interrupt {
+    READ.store(0, Ordering::SeqCst);
+    let clock = Clock::new(|| STEP * u32::try_from(READ.fetch_add(1, Ordering::SeqCst)).unwrap());
+    Interrupt::by(Cancel::new(), clock, STEP * u32::try_from(n).unwrap())
+}
+
+/// Reads to the end, which takes at least a question for 1024 `rows`; then is told to end at some of the questions.
+fn ends<T>(what: &str, rows: u64, read: impl Fn(Interrupt) -> Result<T, mp_io::Error>) {
+    assert!(read(at(u64::from(u32::MAX))).is_ok(), "{what}");
+    let questions = READ.load(Ordering::SeqCst);
+    assert!(questions * 1024 >= rows, "{what}: {questions} questions for {rows} rows");
+    for part in [0.0, 0.1, 0.35, 0.6, 0.9, 0.99] {
+        let n = 1 + (part * (questions - 1) as f64) as u64;
+        let error =
+            read(at(n)).err().unwrap_or_else(|| panic!("{what}: goes on after question {n} of {questions}"));
+        assert_eq!(error.kind(), ErrorKind::Interrupted, "{what}: {error}");
+        assert_eq!(READ.load(Ordering::SeqCst), n + 1, "{what}: the clock is read after the end");
+    }
+}
+
+#[test]
+fn meshes_and_maps() {
+    let side = 120;
+    let corner = |i: usize, j: usize| format!("{i} {j} {}", (i * j) % 7);
+    let vertices: Vec<String> = (0..side).flat_map(|i| (0..side).map(move |j| corner(i, j))).collect();
+    let squares: Vec<[usize; 3]> = (0..side - 1)
+        .flat_map(|i| {
+            (0..side - 1).flat_map(move |j| {
+                let k = i * side + j;
+                [[k, k + 1, k + side], [k + 1, k + side + 1, k + side]]
+            })
+        })
+        .collect();
+    let faces = |first: usize, head: &str| -> String {
+        squares.iter().map(|[a, b, c]| format!("{head}{} {} {}\n", a + first, b + first, c + first)).collect()
+    };
+    let obj = format!("v {}\n{}", vertices.join("\nv "), faces(1, "f "));
+    let off =
+        format!("OFF\n{} {} 0\n{}\n{}", vertices.len(), squares.len(), vertices.join("\n"), faces(0, "3 "));
+    let facet = |t: &[usize; 3]| {
+        let corners: String = t.iter().map(|&k| format!("vertex {}\n", vertices[k])).collect();
+        format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
+    };
+    let stl = format!("solid a\n{}endsolid a\n", squares.iter().map(facet).collect::<String>());
+    let mut binary = vec![0_u8; 80];
+    binary.extend((squares.len() as u32).to_le_bytes());
+    for t in &squares {
+        binary.extend([0; 12]);
+        for &k in t {
+            let numbers = vertices[k].split(' ').map(|v| v.parse::<f32>().unwrap());
+            numbers.for_each(|v| binary.extend(v.to_le_bytes()));
+        }
+        binary.extend([0; 2]);
+    }
+    let rows = squares.len() as u64;
+    for (name, bytes) in [
+        ("a.obj", obj.into_bytes()),
+        ("a.off", off.into_bytes()),
+        ("a.stl", stl.into_bytes()),
+        ("b.stl", binary),
+    ] {
+        let files = InMemory(|path: &str| (path == name).then_some(&bytes));
+        ends(name, rows, |interrupt| read_mesh_of(&Until { files: &files, interrupt }, Path::new(name)));
+    }
+
+    let pixels: Vec<u8> = (0..200 * 300_usize).map(|i| if i * i % 11 < 5 { 0 } else { 255 }).collect();
+    let image = [b"P5 200 300 255\n".as_slice(), &pixels].concat();
+    let yaml = b"image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n";
+    let toml = b"[world]\nmap = \"m.yaml\"\n[robot]\ndisc = 0.01\n[motion]\nstart = [1, 1]\ngoal = [2, 2]\n";
+    let files = InMemory(|path: &str| match path {
+        "m.pgm" => Some(image.clone()),
+        "m.yaml" => Some(yaml.to_vec()),
+        "m.toml" => Some(toml.to_vec()),
+        _ => None,
+    });
+    ends("a map", 600, |interrupt| {
+        PlanarProblem::load_from(&Until { files: &files, interrupt }, Path::new("m.toml"))
+    });
+}

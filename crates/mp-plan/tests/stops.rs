@@ -1,0 +1,203 @@
+//! A run that is told to end does little more, and comes to what a run comes to that stopped after its last whole iteration.
+//!
+//! Time is counted by a clock of the tests, which goes on by a step whenever it is read. So a budget of time ends a run at a
+//! question that the test chooses, on every machine at the same one.
+
+mod counting;
+
+use counting::{Counting, WORK};
+use mp_plan::{Clock, Control, Report, Request, Scene, StoppedBy};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// Readings of the clock so far.
+static READ: AtomicU64 = AtomicU64::new(0);
+/// The reading at which the time is up.
+static LAST: AtomicU64 = AtomicU64::new(u64::MAX);
+/// How much work was done by then.
+static DONE: AtomicU64 = AtomicU64::new(u64::MAX);
+
+/// The time between two readings: so long that no question is answered without the clock.
+const STEP: Duration = Duration::from_millis(2);
+
+fn now() -> Duration {
+    let read = READ.fetch_add(1, Ordering::SeqCst);
+    if read == LAST.load(Ordering::SeqCst) {
+        DONE.store(WORK.load(Ordering::SeqCst), Ordering::SeqCst);
+    }
+    STEP * u32::try_from(read).unwrap()
+}
+
+/// The clock is one for all tests.
+fn alone() -> MutexGuard<'static, ()> {
+    static LOCK: Mutex<()> = Mutex::new(());
+    LOCK.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Plans until the clock was read `readings` times by the planner.
+fn until(scene: &Scene, request: &Request, readings: u64) -> Result<Report, mp_plan::Error> {
+    READ.store(0, Ordering::SeqCst);
+    LAST.store(readings, Ordering::SeqCst);
+    DONE.store(u64::MAX, Ordering::SeqCst);
+    WORK.store(0, Ordering::SeqCst);
+    let mut request = request.clone();
+    // Planning may take nine tenths of it.
+    request.budget.time_s = Some((STEP * u32::try_from(readings).unwrap()).as_secs_f64() / 0.9);
+    let mut control = Control { clock: Clock::new(now), ..Control::default() };
+    scene.plan_with(&request, &mut control)
+}
+
+/// A few numbers that look random.
+fn drawn(seed: u64, count: usize, below: u64) -> impl Iterator<Item = u64> {
+    let mut x = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    (0..count).map(move |_| {
+        x ^= x << 13;
+        x ^= x >> 7;
+        x ^= x << 17;
+        3 + x % below
+    })
+}
+
+/// Planners by name and with meta-planners, and settings that make an iteration long.
+fn requests() -> Vec<Request> {
+    let mut all: Vec<Request> = mp_plan::planners().map(|planner| Request::new(planner.name)).collect();
+    for name in ["or-rrt", "or-rrt-connect", "restart-or-rrt", "or-restart-rrt-connect", "or-or-rrt"] {
+        all.push(Request::new(name).set("slice", 1_000_000));
+    }
+    all.push(Request::new("or-rrt-connect").set("step", 1e-9));
+    all.push(Request::new("restart-rrt-connect").set("unit", 3));
+    all.push(Request::new("shared-rrt").set("batch", 1024));
+    all.push(Request::new("or-shared-rrt").set("batch", 64));
+    for name in ["rrt-connect", "rrt-con-con", "rrt-con-ext", "rrt", "aorrtc"] {
+        all.push(Request::new(name).set("step", 1e-9));
+    }
+    all.push(Request::new("mvb-rrt").set("samples", 100_000));
+    all.push(Request::new("utility-rrt").set("candidates", 100_000));
+    all.push(Request::new("rrt-star").set("near", 1000));
+    for name in ["prm", "lazy-prm"] {
+        all.push(Request::new(name).set("neighbours", 1_000_000).set("cycles", "yes"));
+    }
+    for name in ["rrt-inputs", "rsrt"] {
+        all.push(Request::new(name).set("inputs", 50_000));
+    }
+    all.push(Request::new("obstacle-geometry-prm").set("bands", 1_000_000));
+    all.push(Request::new("obprm").set("directions", 1000));
+    all.push(Request::new("rrs").set("snake-steps", 1_000_000));
+    let motion = "discrete:0.0000001%".parse().unwrap();
+    all.push(Request::new("rrt").motion(motion));
+    all
+}
+
+/// After the time is up, a run samples, measures, checks and verifies a bounded number of times, whatever the planner and its settings.
+#[test]
+fn little_is_done_after_the_time_is_up() {
+    let _alone = alone();
+    let scene = Scene::new(Counting::new());
+    let (mut ended, mut late) = (0, Vec::new());
+    for (i, request) in requests().into_iter().enumerate() {
+        for readings in drawn(i as u64 + 1, 4, 2000) {
+            let Ok(report) = until(&scene, &request, readings) else { continue };
+            let (done, all) = (DONE.load(Ordering::SeqCst), WORK.load(Ordering::SeqCst));
+            if report.stopped_by != Some(StoppedBy::Time) {
+                continue;
+            }
+            ended += usize::from(report.motion_checks > 0);
+            let (more, most) = (all - done, 200 + 40 * report.nodes as u64);
+            if std::env::var_os("MP_SHOW").is_some() {
+                println!(
+                    "{} {:?} {readings}: {more} of {all}, nodes {}",
+                    request.planner, request.settings, report.nodes
+                );
+            }
+            if more > most {
+                late.push(format!(
+                    "{} {:?} at {readings}: {more} more, {} nodes",
+                    request.planner, request.settings, report.nodes
+                ));
+            }
+        }
+    }
+    assert!(late.is_empty(), "{}", late.join("\n"));
+    assert!(ended > 60, "{ended} runs were ended by the time");
+}
+
+/// What a run comes to that is ended within an iteration is what it comes to without that iteration: path, counts and roadmap.
+#[test]
+fn an_iteration_cut_short_counts_for_nothing() {
+    let _alone = alone();
+    let folder = std::env::temp_dir().join(format!("mp-stops-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let roadmaps: Vec<&str> = mp_plan::roadmap_planners().iter().map(|planner| planner.name).collect();
+    let (mut compared, mut begun, mut solved, mut maps) = (0, 0, 0, 0);
+    for name in ["easy", "rrs-low", "arm"] {
+        let scene = Scene::find(name).unwrap();
+        for (i, mut request) in requests().into_iter().enumerate() {
+            let file =
+                (name == "easy" && roadmaps.contains(&request.planner.as_str())).then(|| folder.join("map"));
+            request.roadmap.clone_from(&file);
+            let written = || file.as_ref().and_then(|file| std::fs::read(file).ok());
+            for readings in drawn(100 + i as u64, 2, 1500) {
+                file.iter().for_each(|file| drop(std::fs::remove_file(file)));
+                let Ok(cut) = until(&scene, &request, readings) else { continue };
+                let map = written();
+                file.iter().for_each(|file| drop(std::fs::remove_file(file)));
+                let mut whole = request.clone().iterations(cut.iterations);
+                whole.budget.time_s = None;
+                let whole = scene.plan(&whole).unwrap();
+                let case = format!("{name} {} {:?} at {readings}", request.planner, request.settings);
+                let counts =
+                    |r: &Report| (r.iterations, r.nodes, r.edges, r.components, r.motion_checks, r.rejected);
+                assert_eq!(counts(&cut), counts(&whole), "{case}");
+                let found = |r: &Report| [r.path_length_found, r.first_length].map(|l| l.map(f64::to_bits));
+                assert_eq!(found(&cut), found(&whole), "{case}");
+                assert_eq!(map, written(), "{case}");
+                compared += 1;
+                begun += usize::from(cut.iterations > 0);
+                solved += usize::from(cut.solved);
+                maps += usize::from(map.is_some());
+                if cut.stages.iter().all(|stage| stage.ended_by.is_none()) {
+                    assert_eq!(cut.fingerprint, whole.fingerprint, "{case}");
+                }
+            }
+        }
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(compared > 200 && begun > 150 && solved > 20 && maps > 10, "{compared} {begun} {solved} {maps}");
+}
+
+/// The time that this thread has worked.
+fn worked() -> Duration {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Duration::try_from(time).unwrap()
+}
+
+/// The same by the clock, on every shipped scene: `cargo test --release -p mp-plan --test stops -- --ignored --nocapture` prints how late
+/// runs of 0.1 s of processor time end, the latest first.
+#[test]
+#[ignore = "measures time, and takes minutes"]
+fn runs_end_within_50_ms_of_processor_time() {
+    let (time, mut late) = (0.1, Vec::new());
+    for name in Scene::shipped() {
+        let scene = Scene::find(name).unwrap();
+        for request in requests() {
+            let began = worked();
+            let mut control = Control { clock: Clock::new(worked), ..Control::default() };
+            let Ok(report) = scene.plan_with(&request.clone().time(time), &mut control) else { continue };
+            let by = (worked() - began).as_secs_f64() - time;
+            let ended = report.stopped_by.map_or("solved", StoppedBy::word);
+            let case =
+                format!("{name} {} {:?}: {ended} {:?}", request.planner, request.settings, report.stages);
+            if by > 0.02 {
+                println!("{:7.1} ms  {case}", 1e3 * by);
+            }
+            late.push((by, case));
+        }
+    }
+    late.sort_by(|a, b| b.0.total_cmp(&a.0));
+    println!("{} runs, the latest:", late.len());
+    for (by, case) in late.iter().take(20) {
+        println!("{:7.1} ms  {case}", 1e3 * by);
+    }
+    assert!(late[0].0 < 0.05, "{:.1} ms late: {}", 1e3 * late[0].0, late[0].1);
+}
