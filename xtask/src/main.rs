@@ -5,6 +5,7 @@
 
 mod ci;
 mod golden;
+mod memcheck;
 mod wasm;
 
 use std::ffi::OsString;
@@ -20,6 +21,7 @@ Builds and starts the programs of the workspace:
   cargo xtask wasm [KIND…]      builds the planners inside pages, for `render … --with-planner`
   cargo xtask assets [--check]  generates the shipped scenes, or checks that they are up to date
   cargo xtask golden [--required] [--built] [WAY…]   the same bits on other processors: native, no-fma, nehalem, aarch64, wasm32
+  cargo xtask memcheck [TEST…]  tests of the kernels and of arms under valgrind
   cargo xtask ci [--no-tests]   formatting, lints, tests, documentation and tidiness
 
 Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.";
@@ -34,6 +36,7 @@ fn main() -> ExitCode {
         "bench" => start("mp-bench", "mp-bench", &arguments[1..]),
         "wasm" => wasm::run(&arguments[1..]),
         "golden" => golden::run(&arguments[1..]),
+        "memcheck" => memcheck::run(&arguments[1..]),
         "assets" => start("mp-bench", "mp-bench", &arguments),
         "ci" => match arguments[1..].iter().map(|a| a.to_string_lossy()).collect::<Vec<_>>().as_slice() {
             [] => ci::run(true),

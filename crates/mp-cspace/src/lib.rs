@@ -116,6 +116,6 @@ pub use stop::{
     Cancel, Clock, Deadline, Iterations, Motions, Nodes, Or, Progress, SparseClock, Stop, StopReason,
 };
 pub use validity::{
-    Clearance, IntervalClearance, KnownFree, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
-    Validity,
+    Clearance, ClearanceSearch, IntervalClearance, KnownFree, LeastClearance, MotionCheck, MotionClearance,
+    MotionInterval, MotionValidity, Validity,
 };

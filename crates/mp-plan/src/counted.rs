@@ -2,7 +2,8 @@
 
 use crate::Queries;
 use mp_cspace::{
-    Clearance, IntervalClearance, MotionClearance, MotionInterval, Progress, Rng, Stop, StopReason, Validity,
+    Clearance, ClearanceSearch, IntervalClearance, LeastClearance, MotionClearance, MotionInterval, Progress,
+    Rng, Stop, StopReason, Validity,
     obstacles::{BodyFeatures, ClearanceGradient, ObstacleGeometry, ObstacleHints, PointOf},
 };
 use nalgebra::Vector3;
@@ -123,6 +124,9 @@ impl<S, R: MotionClearance<S> + Queries> MotionClearance<S> for Counted<'_, R> {
     }
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
         self.query(|checker| checker.interval_clearance(interval))
+    }
+    fn least_along(&mut self, search: &ClearanceSearch<'_, S>) -> LeastClearance {
+        self.query(|checker| checker.least_along(search))
     }
     fn contact_first(&self) -> bool {
         self.checker.contact_first()
