@@ -173,9 +173,15 @@ impl Way {
 
     fn run(&self, built: bool) -> Result<(), String> {
         for tests in if built && self.target.is_none() { BUILT } else { self.tests } {
-            for program in self.build(tests)? {
-                self.start(&program)?;
-            }
+            // At the same time: an emulated program is slow, and some have one thread.
+            let programs = self.build(tests)?;
+            std::thread::scope(|scope| {
+                let start = |program: &PathBuf| self.start(program);
+                let running: Vec<_> = programs.iter().map(|p| scope.spawn(move || start(p))).collect();
+                running.into_iter().try_for_each(|program| {
+                    program.join().unwrap_or_else(|_| Err("a program could not be watched".to_owned()))
+                })
+            })?;
         }
         Ok(())
     }

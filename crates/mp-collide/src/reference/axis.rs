@@ -125,8 +125,12 @@ mod tests {
         for (k, (a, b)) in bodies.iter().flat_map(|a| bodies.iter().map(move |b| (a, b))).enumerate() {
             for i in 0..60 {
                 let t = f64::from(i) + 60.0 * k as f64;
-                let turn = if i % 3 == 0 { 0.0 } else { 1.7 * (0.3 * t).sin() };
-                let at = Vector3::new(1.6 * (0.9 * t).sin(), 1.5 * (0.7 * t).cos(), 1.4 * (1.1 * t).sin());
+                let turn = if i % 3 == 0 { 0.0 } else { 1.7 * mp_math::sin(0.3 * t) };
+                let at = Vector3::new(
+                    1.6 * mp_math::sin(0.9 * t),
+                    1.5 * mp_math::cos(0.7 * t),
+                    1.4 * mp_math::sin(1.1 * t),
+                );
                 let pose = Isometry3::new(at, Vector3::new(turn, -0.4 * turn, 0.8 * turn));
                 let (mesh_a, mesh_b) = (RefMesh::new(a), RefMesh::new(b));
                 let distance = mesh_a.clearance(&Isometry3::identity(), &mesh_b, &pose, f64::INFINITY);
