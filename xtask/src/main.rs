@@ -4,6 +4,7 @@
 //! It has no dependencies and does no work itself, so that it compiles in a second.
 
 mod ci;
+mod memcheck;
 mod wasm;
 
 use std::ffi::OsString;
@@ -18,6 +19,7 @@ Builds and starts the programs of the workspace:
   cargo xtask bench SUITE …     measurements, the program `mp-bench`: see `cargo xtask bench --help`
   cargo xtask wasm [KIND…]      builds the planners inside pages, for `render … --with-planner`
   cargo xtask assets [--check]  generates the shipped scenes, or checks that they are up to date
+  cargo xtask memcheck [TEST…]  tests of the kernels and of arms under valgrind
   cargo xtask ci [--no-tests]   formatting, lints, tests, documentation and tidiness
 
 Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.";
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
         }
         "bench" => start("mp-bench", "mp-bench", &arguments[1..]),
         "wasm" => wasm::run(&arguments[1..]),
+        "memcheck" => memcheck::run(&arguments[1..]),
         "assets" => start("mp-bench", "mp-bench", &arguments),
         "ci" => match arguments[1..].iter().map(|a| a.to_string_lossy()).collect::<Vec<_>>().as_slice() {
             [] => ci::run(true),

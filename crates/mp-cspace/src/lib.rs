@@ -115,6 +115,6 @@ pub use space::{
 };
 pub use stop::{Deadline, Iterations, Motions, Nodes, Or, Progress, Stop};
 pub use validity::{
-    Clearance, IntervalClearance, KnownFree, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
-    Validity,
+    Clearance, ClearanceSearch, IntervalClearance, KnownFree, LeastClearance, MotionCheck, MotionClearance,
+    MotionInterval, MotionValidity, Validity,
 };

@@ -1,6 +1,6 @@
 //! Paths, and their independent verification.
 
-mod clearance;
+pub(crate) mod clearance;
 mod verify;
 
 pub use clearance::{Tightest, least_clearance};

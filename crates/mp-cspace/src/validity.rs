@@ -62,6 +62,36 @@ pub struct MotionInterval<'a, S> {
     pub margin: f64,
 }
 
+/// A search for the [least clearance](MotionClearance::least_along) along a motion.
+#[allow(missing_debug_implementations, reason = "functions have none")]
+pub struct ClearanceSearch<'a, S> {
+    /// Where the motion starts.
+    pub from: &'a S,
+    /// Where it ends.
+    pub to: &'a S,
+    /// The clearance (m) at both ends, or less.
+    pub ends: [f64; 2],
+    /// The state at each fraction of the motion.
+    pub at: &'a dyn Fn(f64) -> S,
+    /// A clearance (m) known from elsewhere: of parts that keep more, no more is wanted than that.
+    pub known: f64,
+    /// How far (m) the bound may be below the least clearance found.
+    pub accuracy: f64,
+    /// The most states to look at. When there are more, the bound known by then is the answer.
+    pub states: usize,
+}
+
+/// The answer to a [`ClearanceSearch`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeastClearance {
+    /// A lower bound (m) on the clearance all along the motion.
+    pub bound: f64,
+    /// The least clearance (m) found at a state; the one known, when none is less.
+    pub found: f64,
+    /// The fraction of the motion at which it was found; `None` for the one known.
+    pub at: Option<f64>,
+}
+
 /// The clearance over a [`MotionInterval`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntervalClearance {
@@ -138,6 +168,14 @@ pub trait MotionClearance<S>: Clearance<S> {
         IntervalClearance::of(self.clearance(interval.middle, enough), interval.margin)
     }
 
+    /// The least clearance along a motion: what [`least_clearance`](crate::least_clearance) asks for each edge.
+    ///
+    /// The default assumes that some point travels as far as the [bound](Self::motion_bound), in every direction. Override it
+    /// where parts of the robot move less than others.
+    fn least_along(&mut self, search: &ClearanceSearch<'_, S>) -> LeastClearance {
+        crate::path::clearance::by_motion_bound(self, search)
+    }
+
     /// Whether [`in_contact`](Clearance::in_contact) costs so much less than
     /// [`interval_clearance`](Self::interval_clearance) that [`Certified`](crate::Certified) first tests for contact at
     /// states two strides apart along the whole motion.
@@ -152,6 +190,9 @@ impl<S, V: MotionClearance<S> + ?Sized> MotionClearance<S> for &mut V {
     }
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
         (**self).interval_clearance(interval)
+    }
+    fn least_along(&mut self, search: &ClearanceSearch<'_, S>) -> LeastClearance {
+        (**self).least_along(search)
     }
     fn contact_first(&self) -> bool {
         (**self).contact_first()

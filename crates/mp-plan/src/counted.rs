@@ -2,8 +2,8 @@
 
 use crate::Queries;
 use mp_cspace::{
-    Clearance, Interrupt, IntervalClearance, MotionClearance, MotionInterval, Progress, Rng, Stop,
-    StopReason, Validity,
+    Clearance, ClearanceSearch, Interrupt, IntervalClearance, LeastClearance, MotionClearance,
+    MotionInterval, Progress, Rng, Stop, StopReason, Validity,
     obstacles::{BodyFeatures, ClearanceGradient, ObstacleGeometry, ObstacleHints, PointOf},
 };
 use nalgebra::Vector3;
@@ -140,6 +140,10 @@ impl<S, R: MotionClearance<S> + Queries> MotionClearance<S> for Counted<'_, R> {
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
         let ended = IntervalClearance::Collision { at: 0.0 };
         self.query(ended, |checker| checker.interval_clearance(interval))
+    }
+    fn least_along(&mut self, search: &ClearanceSearch<'_, S>) -> LeastClearance {
+        let ended = LeastClearance { bound: 0.0, found: search.known, at: None };
+        self.query(ended, |checker| checker.least_along(search))
     }
     fn contact_first(&self) -> bool {
         self.checker.contact_first()

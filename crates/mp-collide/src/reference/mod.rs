@@ -4,6 +4,7 @@
 //!
 //! It is not exact at contact: whatever is nearer than about 1e-13 of the coordinates counts as touching.
 
+mod axis;
 pub mod exact;
 mod pairs;
 mod sweep;
@@ -12,6 +13,7 @@ mod triangle;
 
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, IsometryMatrix3, Point3, Vector3};
+use std::cmp::Ordering;
 
 pub use sweep::{Sweep, SweepCheck};
 pub use triangle::triangle_distance;
@@ -48,6 +50,8 @@ pub struct RefMesh {
     triangles: Vec<Triangle>,
     /// The largest absolute coordinate.
     size: f64,
+    /// Its corners, each once; none when there are too many to look for an axis.
+    corners: Vec<Point3<f64>>,
 }
 
 impl RefMesh {
@@ -59,7 +63,14 @@ impl RefMesh {
         let mut order: Vec<usize> = (0..triangles.len()).collect();
         let mut balls = Vec::with_capacity(2 * triangles.len());
         build(&triangles, &mut order, &mut balls);
-        Self { balls, triangles, size }
+        let mut corners: Vec<Point3<f64>> = triangles.iter().flatten().copied().collect();
+        corners
+            .sort_by(|p, q| p.iter().zip(q.iter()).fold(Ordering::Equal, |o, (x, y)| o.then(x.total_cmp(y))));
+        corners.dedup();
+        if corners.len() > axis::MOST_CORNERS {
+            corners.clear();
+        }
+        Self { balls, triangles, size, corners }
     }
 
     /// Whether the distance from this mesh at `pose_wa` to `other` at `pose_wb` is at least `enough` (metres):
@@ -142,6 +153,13 @@ impl Search<'_> {
         let bound = self.bound(root_a, root_b);
         if bound >= self.best {
             return bound;
+        }
+        if self.any {
+            let (a, b) = (&self.a.corners, &self.b.corners);
+            let bound = axis::separation(a, b, &self.pose_ab, self.best + self.touching) - self.touching;
+            if bound >= self.best {
+                return bound;
+            }
         }
         self.visit(root_a, root_b);
         if self.best <= self.touching { 0.0 } else { self.best }

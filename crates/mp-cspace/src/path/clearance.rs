@@ -1,7 +1,7 @@
 //! The least clearance along a path, to a given accuracy.
 
 use super::Path;
-use crate::{MotionClearance, Space};
+use crate::{ClearanceSearch, LeastClearance, MotionClearance, Space};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -18,29 +18,27 @@ pub struct Tightest {
     pub at: f64,
 }
 
-/// A part of an edge: its ends `a` and `b`, each a fraction of the edge with a lower bound on the
-/// clearance there, and a lower bound on the clearance between.
+/// A part of a motion: its ends `a` and `b`, each a fraction of it with a lower bound on the clearance there, and a lower
+/// bound on the clearance between.
 struct Part {
     bound: f64,
-    edge: usize,
     a: (f64, f64),
     b: (f64, f64),
 }
 
 impl Part {
-    /// The part between two places whose clearance is known, `travel` being the motion bound of the edge.
+    /// The part between two places whose clearance is known, `travel` being the motion bound.
     /// From either end the clearance falls at most by the travel: the two descents meet at the bound.
-    fn new(edge: usize, travel: f64, a: (f64, f64), b: (f64, f64)) -> Self {
+    fn new(travel: f64, a: (f64, f64), b: (f64, f64)) -> Self {
         let bound = 0.5 * (a.1 + b.1 - travel * (b.0 - a.0));
-        Self { bound, edge, a, b }
+        Self { bound, a, b }
     }
 }
 
 /// The greatest part in a heap is the one of least bound, ties by place.
 impl Ord for Part {
     fn cmp(&self, other: &Self) -> Ordering {
-        let place = other.edge.cmp(&self.edge).then(other.a.0.total_cmp(&self.a.0));
-        other.bound.total_cmp(&self.bound).then(place)
+        other.bound.total_cmp(&self.bound).then(other.a.0.total_cmp(&self.a.0))
     }
 }
 impl PartialOrd for Part {
@@ -55,15 +53,15 @@ impl PartialEq for Part {
 }
 impl Eq for Part {}
 
-/// The most clearance queries of one search.
-const MAX_QUERIES: usize = 1_000_000;
+/// The most states looked at in one search.
+const MAX_STATES: usize = 1_000_000;
 
 /// The least clearance along `path`, its bounds at most `accuracy` metres apart; `None` for the
 /// empty path.
 ///
-/// Branch and bound on the motion bound (Piyavskii 1972, Shubert 1972): the part of least bound is
-/// halved first. A path in contact gives zero. With an accuracy that is not positive, or takes over a
-/// million queries, the bounds known by then are returned: still valid.
+/// First the states of the path, then edge by edge, by [`MotionClearance::least_along`]. A path in contact gives zero. With an
+/// accuracy that is not positive, or takes over a million states, the bounds known by then are returned: still
+/// valid.
 pub fn least_clearance<C, V>(
     space: &C,
     valid: &mut V,
@@ -75,7 +73,6 @@ where
     V: MotionClearance<C::State>,
 {
     let edges = path.states.len().checked_sub(1)?;
-    // First the states themselves: the search starts from the one of least clearance.
     let mut at_states = Vec::with_capacity(edges + 1);
     let mut tightest = Tightest { clearance: 0.0, found: f64::INFINITY, edge: 0, at: 0.0 };
     for (i, q) in path.states.iter().enumerate() {
@@ -87,30 +84,52 @@ where
             tightest = Tightest { found: clearance, edge, at: (i - edge) as f64, ..tightest };
         }
     }
-    let travels: Vec<f64> = path.states.windows(2).map(|w| valid.motion_bound(&w[0], &w[1])).collect();
-    let mut parts: BinaryHeap<Part> =
-        (0..edges).map(|i| Part::new(i, travels[i], (0.0, at_states[i]), (1.0, at_states[i + 1]))).collect();
-    for _ in 0..MAX_QUERIES {
-        let settled = parts.peek().is_none_or(|p| p.bound >= tightest.found - accuracy);
-        if settled || tightest.found <= 0.0 {
+    let mut bound = tightest.found;
+    for edge in 0..edges {
+        if tightest.found <= 0.0 {
             break;
         }
-        let Some(Part { edge, a, b, .. }) = parts.pop() else { break };
-        let at = 0.5 * (a.0 + b.0);
-        let q = space.interpolate(&path.states[edge], &path.states[edge + 1], at);
-        // A clearance that would settle both halves.
-        let enough = 2.0 * tightest.found - a.1.min(b.1) + (at - a.0) * travels[edge];
-        let clearance = valid.clearance(&q, enough.max(tightest.found)).max(0.0);
-        if clearance < tightest.found {
-            tightest = Tightest { found: clearance, edge, at, ..tightest };
+        let (from, to) = (&path.states[edge], &path.states[edge + 1]);
+        let at = |t: f64| space.interpolate(from, to, t);
+        let (ends, known) = ([at_states[edge], at_states[edge + 1]], tightest.found);
+        let search = ClearanceSearch { from, to, ends, at: &at, known, accuracy, states: MAX_STATES };
+        let least = valid.least_along(&search);
+        bound = bound.min(least.bound);
+        if let Some(at) = least.at {
+            tightest = Tightest { found: least.found, edge, at, ..tightest };
         }
-        let middle = (at, clearance);
-        parts.push(Part::new(edge, travels[edge], a, middle));
-        parts.push(Part::new(edge, travels[edge], middle, b));
     }
-    let bound = parts.peek().map_or(tightest.found, |p| p.bound);
     tightest.clearance = bound.min(tightest.found).max(0.0);
     Some(tightest)
+}
+
+/// Branch and bound on the motion bound (Piyavskii 1972, Shubert 1972): the part of least bound is halved first.
+pub(crate) fn by_motion_bound<S, V>(valid: &mut V, search: &ClearanceSearch<'_, S>) -> LeastClearance
+where
+    V: MotionClearance<S> + ?Sized,
+{
+    let travel = valid.motion_bound(search.from, search.to);
+    let [start, end] = search.ends;
+    let mut least = LeastClearance { bound: 0.0, found: search.known, at: None };
+    let mut parts = BinaryHeap::from([Part::new(travel, (0.0, start), (1.0, end))]);
+    for _ in 0..search.states {
+        let settled = parts.peek().is_none_or(|p| p.bound >= least.found - search.accuracy);
+        if settled || least.found <= 0.0 {
+            break;
+        }
+        let Some(Part { a, b, .. }) = parts.pop() else { break };
+        let at = 0.5 * (a.0 + b.0);
+        // A clearance that would settle both halves.
+        let enough = 2.0 * least.found - a.1.min(b.1) + (at - a.0) * travel;
+        let clearance = valid.clearance(&(search.at)(at), enough.max(least.found)).max(0.0);
+        if clearance < least.found {
+            (least.found, least.at) = (clearance, Some(at));
+        }
+        let middle = (at, clearance);
+        parts.extend([Part::new(travel, a, middle), Part::new(travel, middle, b)]);
+    }
+    least.bound = parts.peek().map_or(least.found, |p| p.bound);
+    least
 }
 
 #[cfg(test)]

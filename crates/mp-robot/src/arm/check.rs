@@ -2,12 +2,11 @@
 
 use super::Arm;
 use super::robot::LinkBody;
-use super::travel::axes_into;
 use mp_cspace::{
-    Clearance, Coordinates, IntervalClearance, MotionClearance, MotionInterval, Rng, Validity,
-    obstacles::ObstacleHints,
+    Clearance, ClearanceSearch, Coordinates, IntervalClearance, LeastClearance, MotionClearance,
+    MotionInterval, Rng, Validity, obstacles::ObstacleHints,
 };
-use nalgebra::Point3;
+use std::collections::VecDeque;
 
 impl Arm {
     /// Whether `q`, a configuration, is in collision.
@@ -78,6 +77,9 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
         self.collides(q.as_slice())
     }
 }
+
+/// A clearance that is less than the least one found, but not less than this much of it, is not looked for.
+const LESS: f64 = 1.0 - 1e-6;
 
 /// The part of a motion interval that is shown free so far.
 struct ProvenPart {
@@ -157,28 +159,16 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         if ![from, to, middle].into_iter().all(|q| kinematics.is_configuration(q)) {
             return IntervalClearance::Collision { at: 0.0 };
         }
-        kinematics.frames_into(middle, &mut scratch.frames);
-        axes_into(kinematics, &scratch.frames, &mut scratch.axes);
-        scratch.balls.clear();
-        scratch.far.clear();
-        scratch.near.clear();
         let travels = |i: usize| kinematics.travel(i, from, to);
         let base = kinematics.base_travel(from, to);
-        for body in &robot.bodies {
-            let ball = body.ball_at(&scratch.frames);
-            body.chain.far(travels, &mut scratch.far);
-            body.chain.near(|i| travels(i) * interval.half, &ball, &scratch.axes, &mut scratch.near);
-            scratch.balls.push(ball);
-        }
+        robot.place_over(middle, |i| travels(i) * interval.half, scratch);
+        scratch.far.clear();
+        robot.bodies.iter().for_each(|body| body.chain.far(travels, &mut scratch.far));
         let frames = &scratch.frames;
         let mut proven = ProvenPart { margin: interval.margin, half: interval.half, part: f64::INFINITY };
-        let origin = Point3::from(frames[0].translation.vector);
         for body in robot.moving() {
-            let last = body.first + body.chain.steps.len();
-            let (by_joints, reach) = (scratch.near[last], body.chain.from_base);
-            let ball = body.ball_at(frames);
-            let near = by_joints + base.near(interval.half, reach, &ball, &origin, by_joints);
-            let far = scratch.far[last] + base.far(reach);
+            let near = body.near(&base, interval.half, scratch);
+            let far = scratch.far[body.last()] + base.far(body.chain.from_base);
             let clearance =
                 |limit| obstacles.scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
             if let Some(answer) = proven.add(near, far, f64::NEG_INFINITY, clearance) {
@@ -187,9 +177,8 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         }
         for pair in &robot.pairs {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
-            let [ball_a, ball_b] = pair.bodies.map(|i| &scratch.balls[i]);
+            let apart = scratch.apart(pair);
             let sum = |of: &[f64]| of[a.first + pair.steps[0]] + of[b.first + pair.steps[1]];
-            let apart = (ball_a.center - ball_b.center).norm() - ball_a.radius - ball_b.radius;
             let clearance =
                 |limit| query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], limit);
             if let Some(answer) = proven.add(sum(&scratch.near), sum(&scratch.far), apart, clearance) {
@@ -197,6 +186,80 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
             }
         }
         IntervalClearance::FreeOver { part: proven.part }
+    }
+    /// Link by link and pair by pair, as [`interval_clearance`](Self::interval_clearance): what keeps enough clearance over a
+    /// part of the motion is not looked at again in its halves.
+    fn least_along(&mut self, search: &ClearanceSearch<'_, Q>) -> LeastClearance {
+        let Self { robot, obstacles, query, scratch, counters } = self;
+        let kinematics = &robot.kinematics;
+        let ends = [search.from, search.to].map(Q::as_slice);
+        if !ends.into_iter().all(|q| kinematics.is_configuration(q)) {
+            return LeastClearance { bound: 0.0, found: 0.0, at: Some(0.0) };
+        }
+        let base = kinematics.base_travel(ends[0], ends[1]);
+        let mut least = LeastClearance { bound: search.known, found: search.known, at: None };
+        let moving: Vec<&LinkBody> = robot.moving().collect();
+        let all: Vec<usize> = (0..moving.len() + robot.pairs.len()).collect();
+        let mut open = VecDeque::from([(0.0, 1.0, f64::NEG_INFINITY, all)]);
+        let mut states = 0;
+        while let Some((start, end, known, parts)) = open.pop_front() {
+            if least.found <= 0.0 || states >= search.states {
+                least.bound = open.iter().map(|open| open.2).fold(least.bound.min(known), f64::min);
+                break;
+            }
+            states += 1;
+            counters.clearance_checks += 1;
+            let (at, half) = (0.5 * (start + end), 0.5 * (end - start));
+            let travels = |i: usize| half * kinematics.travel(i, ends[0], ends[1]);
+            robot.place_over((search.at)(at).as_slice(), travels, scratch);
+            let frames = &scratch.frames;
+            let (mut left, mut worst) = (Vec::new(), f64::INFINITY);
+            for part in parts {
+                let wanted = least.found - search.accuracy;
+                let (near, clearance) = match part.checked_sub(moving.len()) {
+                    None => {
+                        let body = moving[part];
+                        let near = body.near(&base, half, scratch);
+                        let scene = &obstacles.scene;
+                        (near, scene.clearance(query, &body.tree, &frames[body.frame], wanted + near).0)
+                    }
+                    Some(pair) => {
+                        let pair = &robot.pairs[pair];
+                        let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
+                        let near =
+                            scratch.near[a.first + pair.steps[0]] + scratch.near[b.first + pair.steps[1]];
+                        let (apart, enough) = (scratch.apart(pair), wanted + near);
+                        let (pose_a, pose_b) = (&frames[a.frame], &frames[b.frame]);
+                        let clearance = match apart >= enough {
+                            true => apart,
+                            // Links that keep the least clearance all along, like one that turns beside another, have
+                            // many triangles at that distance: exact only if it is less.
+                            false => query.clearance(&a.tree, pose_a, &b.tree, pose_b, least.found * LESS),
+                        };
+                        let settles = clearance >= enough
+                            || (clearance >= least.found * LESS
+                                && !query.within(&a.tree, pose_a, &b.tree, pose_b, enough));
+                        (near, if settles { clearance.max(enough) } else { clearance })
+                    }
+                };
+                // Less than what would have been enough: the distance itself.
+                if clearance < least.found * LESS && clearance < wanted + near {
+                    (least.found, least.at) = (clearance.max(0.0), Some(at));
+                }
+                let bound = clearance - near;
+                if bound >= least.found - search.accuracy {
+                    least.bound = least.bound.min(bound);
+                } else {
+                    worst = worst.min(bound);
+                    left.push(part);
+                }
+            }
+            if !left.is_empty() {
+                open.push_back((start, at, worst, left.clone()));
+                open.push_back((at, end, worst, left));
+            }
+        }
+        least
     }
 }
 

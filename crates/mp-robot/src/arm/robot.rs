@@ -1,8 +1,8 @@
 //! An arm among obstacles that stand still.
 
-use super::kinematics::{Coordinate, Kinematics};
+use super::kinematics::{BaseTravel, Coordinate, Kinematics};
 use super::pairs::{LinkPair, pairs};
-use super::travel::Chain;
+use super::travel::{Chain, axes_into};
 use super::verify::ReferenceArm;
 use super::{ArmError, ArmModel};
 use crate::CheckCounters;
@@ -37,6 +37,21 @@ impl LinkBody {
     #[inline]
     pub(super) fn ball_at(&self, frames: &[Isometry3<f64>]) -> Sphere {
         Sphere { center: frames[self.frame] * self.ball.center, radius: self.ball.radius }
+    }
+
+    /// The index of its last entry in [`Scratch::far`] and [`Scratch::near`].
+    #[inline]
+    pub(super) fn last(&self) -> usize {
+        self.first + self.chain.steps.len()
+    }
+
+    /// A bound (m) on how far its points move, over the part `half` of a motion to either side of a configuration for which
+    /// `scratch` is [filled](SharedArm::place_over).
+    #[inline]
+    pub(super) fn near(&self, base: &BaseTravel, half: f64, scratch: &Scratch) -> f64 {
+        let by_joints = scratch.near[self.last()];
+        let origin = Point3::from(scratch.frames[0].translation.vector);
+        by_joints + base.near(half, self.chain.from_base, &self.ball_at(&scratch.frames), &origin, by_joints)
     }
 }
 
@@ -106,6 +121,20 @@ impl SharedArm {
         self.bodies.iter().rev().filter(move |body| floats || body.frame > 0)
     }
 
+    /// Places all links at the configuration `q`, and bounds how far joints that go as far as `travels` says move them.
+    pub(super) fn place_over(&self, q: &[f64], travels: impl Fn(usize) -> f64, scratch: &mut Scratch) {
+        let Scratch { frames, axes, balls, near, .. } = scratch;
+        self.kinematics.frames_into(q, frames);
+        axes_into(&self.kinematics, frames, axes);
+        balls.clear();
+        near.clear();
+        for body in &self.bodies {
+            let ball = body.ball_at(frames);
+            body.chain.near(&travels, &ball, axes, near);
+            balls.push(ball);
+        }
+    }
+
     pub(super) fn name(&self, body: usize) -> &str {
         &self.kinematics.attached[self.bodies[body].link].name
     }
@@ -134,6 +163,15 @@ pub(super) struct Scratch {
     pub(super) balls: Vec<Sphere>,
     pub(super) far: Vec<f64>,
     pub(super) near: Vec<f64>,
+}
+
+impl Scratch {
+    /// A lower bound (m) on the distance of a pair of links, by the balls around them.
+    #[inline]
+    pub(super) fn apart(&self, pair: &LinkPair) -> f64 {
+        let [a, b] = pair.bodies.map(|i| &self.balls[i]);
+        (a.center - b.center).norm() - a.radius - b.radius
+    }
 }
 
 /// An arm, or any tree of links, among named obstacles that stand still.

@@ -1,6 +1,7 @@
 //! Robots whose base floats.
 
 use crate::common::{clutter, random_tree, six};
+use crate::motions::least_clearances_agree;
 use crate::verifier::agree;
 use mp_cspace::obstacles::{ClearanceGradient, ObstacleHints};
 use mp_cspace::{Clearance, FloatingJoints, MotionClearance, Rng, Space, Validity};
@@ -32,6 +33,13 @@ fn certified_motions_are_verified_and_free_when_sampled() {
         sum = [sum[0] + counts[0], sum[1] + counts[1]];
     }
     assert!(sum.into_iter().all(|n| n > 10), "{sum:?}");
+}
+
+#[test]
+fn the_least_clearance_link_by_link_is_that_of_the_whole() {
+    let arm = Arm::new(&flying(), clutter()).unwrap();
+    let counts = least_clearances_agree(&arm, &arm.floating_space().unwrap(), 60);
+    assert!(counts.into_iter().all(|n| n > 10), "{counts:?}");
 }
 
 /// With its base held at a pose, a robot that floats is the arm that stands there, except that its base can collide.

@@ -3,10 +3,14 @@
 use crate::common::{Six, across, clutter, obstacle, random_tree, six};
 use mp_collide::reference::RefMesh;
 use mp_cspace::{
-    Certified, Clearance, Joints, MotionCheck, MotionClearance, MotionValidity, Rng, Space, Validity,
+    Certified, Clearance, Coordinates, Joints, MotionCheck, MotionClearance, MotionValidity, Path, Rng,
+    Space, Validity, least_clearance,
 };
-use mp_geom::{TriMesh, primitives::cuboid};
-use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};
+use mp_geom::{
+    TriMesh,
+    primitives::{cuboid, cylinder},
+};
+use mp_robot::{Arm, ArmModel, ArmVerifier, Joint, JointKind, Link};
 use nalgebra::{DVector, Isometry3, SVector, Vector3};
 
 fn arm() -> (Arm, Joints<Six>) {
@@ -147,6 +151,72 @@ fn certified_motions_are_free() {
     assert!(counts.into_iter().all(|n| n > 40), "{counts:?}");
 }
 
+/// The arm with the search for the least clearance that all robots have.
+struct AsOneBody(Arm);
+impl<Q: Coordinates> Clearance<Q> for AsOneBody {
+    fn clearance(&mut self, q: &Q, enough: f64) -> f64 {
+        self.0.clearance(q, enough)
+    }
+}
+impl<Q: Coordinates> MotionClearance<Q> for AsOneBody {
+    fn motion_bound(&self, from: &Q, to: &Q) -> f64 {
+        self.0.motion_bound(from, to)
+    }
+}
+
+/// The least clearance link by link and pair by pair is that of the arm as one body, found with fewer looks.
+pub(crate) fn least_clearances_agree<C>(arm: &Arm, space: &C, motions: usize) -> [usize; 2]
+where
+    C: Space<State: Coordinates>,
+{
+    let mut rng = Rng::seed(3);
+    let (mut parts, mut whole) = (arm.clone(), AsOneBody(arm.clone()));
+    let (mut counts, mut looks) = ([0, 0], [0, 0]);
+    for i in 0..motions {
+        let a = space.sample_uniform(&mut rng);
+        let b = space.interpolate(&a, &space.sample_uniform(&mut rng), [0.3, 0.05, 1.0][i % 3]);
+        let c = space.sample_uniform(&mut rng);
+        let path = Path::straight(vec![a, b, c]);
+        for accuracy in [1e-2, 3e-3] {
+            let [x, y] = [
+                least_clearance(space, &mut parts, &path, accuracy).unwrap(),
+                least_clearance(space, &mut whole, &path, accuracy).unwrap(),
+            ];
+            for t in [x, y] {
+                let q = space.interpolate(&path.states[t.edge], &path.states[t.edge + 1], t.at);
+                let there = arm.clone().clearance(&q, f64::INFINITY);
+                assert!((there - t.found).abs() <= 2e-6 * t.found, "{there} {t:?}");
+                assert!(t.found - t.clearance <= accuracy * 1.001, "{t:?}");
+            }
+            assert!(x.clearance <= y.found && y.clearance <= x.found * 1.000002, "{x:?} {y:?}");
+            counts[usize::from(x.found > 0.0)] += 1;
+            if x.found > 0.0 {
+                looks[0] += parts.take_counters().clearance_checks;
+                looks[1] += whole.0.take_counters().clearance_checks;
+            }
+            (_, _) = (parts.take_counters(), whole.0.take_counters());
+        }
+    }
+    assert!(2 * looks[0] < looks[1], "{looks:?}");
+    counts
+}
+
+#[test]
+fn least_clearances_of_parts_are_those_of_the_whole() {
+    let alone = arm().0.among([]).unwrap();
+    let counts = least_clearances_agree(&alone, &arm().1, 60);
+    assert!(counts.into_iter().all(|n| n > 4), "{counts:?}");
+    let mut far =
+        Arm::new(&six(), [obstacle("ball", cuboid(0.3, 0.3, 0.3).unwrap(), [1.4, 0.2, 0.9, 0.0, 0.0, 0.0])])
+            .unwrap();
+    let counts = least_clearances_agree(&far, &arm().1, 60);
+    assert!(counts.into_iter().all(|n| n > 4), "{counts:?}");
+    // A configuration that is none.
+    let nan = Six::repeat(f64::NAN);
+    let least = least_clearance(&arm().1, &mut far, &Path::straight(vec![nan, nan]), 0.1).unwrap();
+    assert_eq!((least.clearance, least.found), (0.0, 0.0));
+}
+
 /// A sheet of 1e-4 m and thinner in the way of the tool is never passed.
 #[test]
 fn a_thin_wall_is_never_crossed() {
@@ -205,6 +275,37 @@ fn links_do_not_pass_through_each_other() {
         free += usize::from(check.is_free());
     }
     assert!(free > 100 && arm.is_valid(&SVector::from([1.0, 0.0])));
+}
+
+/// Two wheels side by side on an axle, as in the legs of walking robots: all their facets are equally near, all along.
+#[test]
+fn a_wheel_that_turns_beside_another_costs_little() {
+    let wheel = cylinder(0.046, 0.04, 64).unwrap();
+    let turn = JointKind::Revolute { low: -3.0, high: 3.0 };
+    let beside = Isometry3::translation(0.0, 0.0, 0.04235);
+    let model = ArmModel {
+        links: vec![
+            Link::new("hip").with(&wheel, &Isometry3::identity()),
+            Link::new("axle"),
+            Link::new("rotor").with(&wheel, &Isometry3::identity()),
+        ],
+        joints: vec![
+            Joint::new("a", "hip", "axle", turn).axis(Vector3::z()),
+            Joint::new("b", "axle", "rotor", turn).axis(Vector3::z()).at(beside),
+        ],
+        ..ArmModel::default()
+    };
+    let mut arm = Arm::new(&model, []).unwrap();
+    let space: Joints<SVector<f64, 2>> = arm.space().unwrap();
+    let path = Path::straight(vec![SVector::from([-1.0, 0.0]), SVector::from([1.0, 1.5])]);
+    let least = least_clearance(&space, &mut arm, &path, 1e-5).unwrap();
+    assert!((0.00234..=0.00235).contains(&least.clearance), "{least:?}");
+    let work = arm.take_counters();
+    // Almost all by their boxes: hardly a state of the motion needs triangles, of which there are 128 × 128 pairs.
+    assert!(work.work.triangle_tests < work.clearance_checks, "{work:?}");
+    let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
+    assert!(verifier.check_motion(&path.states[0], &path.states[1]).is_free());
+    assert!(verifier.parts() < 500, "{}", verifier.parts());
 }
 
 /// The bound of the whole motion holds for every vertex; it is that of the link that moves most.
