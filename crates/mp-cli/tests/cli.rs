@@ -6,7 +6,7 @@ use common::{Dir, mp};
 use serde_json::Value;
 
 /// Every field of the JSON of one run, and whether it may be null.
-const FIELDS: [(&str, bool); 33] = [
+const FIELDS: [(&str, bool); 34] = [
     ("version", false),
     ("scene", false),
     ("scene_file", false),
@@ -28,6 +28,7 @@ const FIELDS: [(&str, bool); 33] = [
     ("rejected", false),
     ("time_s", false),
     ("finish_s", false),
+    ("stages", false),
     ("first_s", true),
     ("first_length", true),
     ("first_path", true),
