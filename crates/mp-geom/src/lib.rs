@@ -32,7 +32,7 @@ pub use mesh::{MeshError, TriMesh};
 pub use obb::Obb;
 pub use pose::{
     PoseError, ROTATION_TOLERANCE, matrix_from_pose, pose_from_matrix, pose_from_quaternion, pose_from_six,
-    rotation_from_matrix, six_from_pose,
+    rotation_from_matrix, short_six_from_pose, six_from_pose,
 };
 pub use primitives::PrimitiveError;
 pub use sphere::{Sphere, minimal_sphere};

@@ -82,6 +82,20 @@ pub fn six_from_pose(pose: &Isometry3<f64>) -> [f64; 6] {
     [t.x, t.y, t.z, alpha, beta, gamma]
 }
 
+/// As [`six_from_pose`], for files that people read: an angle is rounded to twelve decimals if the pose stays the same to the last
+/// bits, so that 0.5 is not written as 0.5000000000000001. No number is −0.
+#[must_use]
+pub fn short_six_from_pose(pose: &Isometry3<f64>) -> [f64; 6] {
+    let six = six_from_pose(pose);
+    let mut short = six;
+    for angle in &mut short[3..] {
+        *angle = (*angle * 1e12).round() / 1e12;
+    }
+    let [a, b] = [pose.rotation, pose_from_six(short).rotation].map(UnitQuaternion::into_inner);
+    let is_same = (a.coords - b.coords).amax().min((a.coords + b.coords).amax()) <= 4.0 * f64::EPSILON;
+    if is_same { short } else { six }.map(|v| v + 0.0)
+}
+
 /// The pose at `position` turned by the quaternion `w + xi + yj + zk`, which need not be of unit length.
 ///
 /// # Errors
@@ -243,6 +257,19 @@ mod tests {
         assert!((turned([0.0, 0.0, 0.0, FRAC_PI_2, 0.0, 0.0], Vector3::x()) - Vector3::y()).norm() < 1e-15);
         assert!((turned([0.0, 0.0, 0.0, 0.0, FRAC_PI_2, 0.0], Vector3::z()) - Vector3::x()).norm() < 1e-15);
         assert!((turned([0.0, 0.0, 0.0, 0.0, 0.0, FRAC_PI_2], Vector3::y()) - Vector3::z()).norm() < 1e-15);
+    }
+
+    #[test]
+    fn angles_that_people_wrote_are_written_as_they_were() {
+        for i in -300..300 {
+            let six = [1.0, -2.0, 0.0, 0.01 * f64::from(i), 0.005 * f64::from(i), -0.01 * f64::from(i)];
+            let six = six.map(|v| (v * 1e3).round() / 1e3 + 0.0);
+            assert_eq!(short_six_from_pose(&pose_from_six(six)), six);
+        }
+        // Any others, to the last bit.
+        let six = [0.0, 0.0, 0.0, 0.123_456_789_012_345_6, -0.4, 1.1];
+        let pose = pose_from_six(six);
+        assert_eq!(short_six_from_pose(&pose), six_from_pose(&pose));
     }
 
     #[test]

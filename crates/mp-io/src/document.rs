@@ -6,7 +6,7 @@ use crate::gempa::{Environment, Obstacle, gempa_mesh_text};
 use crate::mesh::{mesh_error, read_mesh_of};
 use crate::off::{OffDocument, off_text};
 use crate::problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind, vertex_beyond};
-use mp_geom::{Aabb, TriMesh, pose_from_six, primitives, six_from_pose};
+use mp_geom::{Aabb, TriMesh, pose_from_six, primitives, short_six_from_pose};
 use nalgebra::{Isometry3, Point3};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -157,7 +157,7 @@ impl SceneDocument {
                 off: None,
             },
             scale: None,
-            pose: pose.map(|pose| six_from_pose(pose).map(|v| v + 0.0)),
+            pose: pose.map(|pose| short_six_from_pose(pose)),
         };
         Self {
             version: VERSION,
@@ -165,8 +165,8 @@ impl SceneDocument {
             space: problem.space,
             bounds: problem.bounds.map(|b| [b.min.coords.into(), b.max.coords.into()]),
             robot: body(&problem.robot.name, &problem.robot.file, None),
-            start: six_from_pose(&problem.start).map(|v| v + 0.0),
-            goal: six_from_pose(&problem.goal).map(|v| v + 0.0),
+            start: short_six_from_pose(&problem.start),
+            goal: short_six_from_pose(&problem.goal),
             obstacles: problem.obstacles.iter().map(|o| body(&o.name, &o.file, Some(&o.pose))).collect(),
         }
     }

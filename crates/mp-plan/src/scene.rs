@@ -8,7 +8,7 @@ use crate::{
     Request, RobotKind, Sweep, Track, Verdict,
 };
 use mp_cspace::registry::PlannerInfo;
-use mp_geom::{Aabb, TriMesh, six_from_pose};
+use mp_geom::{Aabb, TriMesh, short_six_from_pose};
 use mp_io::{DocumentShape, SceneDocument};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
@@ -122,7 +122,8 @@ impl Scene {
             }
         };
         let document = &mut edited.document;
-        (document.start, document.goal) = (six_from_pose(&problem.start), six_from_pose(&problem.goal));
+        (document.start, document.goal) =
+            (short_six_from_pose(&problem.start), short_six_from_pose(&problem.goal));
         Some(edited)
     }
 

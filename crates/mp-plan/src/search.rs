@@ -43,9 +43,6 @@ pub fn search<K: RobotKind>(
     request: &Request,
     control: &mut Control<'_>,
 ) -> Result<Search<K::State>, Error> {
-    let _span =
-        tracing::info_span!("plan", scene = kind.name(), planner = %request.planner, seed = request.seed)
-            .entered();
     search_within(kind, request, control, 1.0)
 }
 
@@ -56,6 +53,9 @@ pub(crate) fn search_within<K: RobotKind>(
     control: &mut Control<'_>,
     part: f64,
 ) -> Result<Search<K::State>, Error> {
+    let _span =
+        tracing::info_span!("plan", scene = kind.name(), planner = %request.planner, seed = request.seed)
+            .entered();
     let began = control.time_if_limited(request);
     request.check()?;
     PlannerKind::new(&request.planner)?;
