@@ -157,7 +157,7 @@ impl SceneDocument {
                 off: None,
             },
             scale: None,
-            pose: pose.map(|pose| short_six_from_pose(pose)),
+            pose: pose.map(short_six_from_pose),
         };
         Self {
             version: VERSION,
