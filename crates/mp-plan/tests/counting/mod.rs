@@ -114,7 +114,7 @@ impl Queries for Discs {
 }
 
 fn clearance(discs: &[([f64; 2], f64)], q: &State) -> f64 {
-    discs.iter().map(|([x, y], r)| (q[0] - x).hypot(q[1] - y) - r).fold(f64::INFINITY, f64::min)
+    discs.iter().map(|([x, y], r)| mp_math::hypot(q[0] - x, q[1] - y) - r).fold(f64::INFINITY, f64::min)
 }
 
 /// The verifier: fine steps.
