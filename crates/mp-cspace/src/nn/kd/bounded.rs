@@ -1,7 +1,7 @@
 //! The k nearest by the bounds of their lanes alone: the metric is evaluated for the answers, and for few others.
 
 use super::super::Hit;
-use super::super::collect::{Collector, KNearest};
+use super::super::collect::Collector;
 use super::KdTree;
 use crate::nn::Embed;
 
@@ -9,7 +9,7 @@ use crate::nn::Embed;
 pub(super) const MOST: usize = 64;
 
 /// How much farther than its bound a state of a [tight](crate::nn::Layout) layout may be, for the search to succeed
-/// at once: without rotations and with them. The bound of an angle θ is 4 sin(θ/4), which is within 2% up to θ = 80°.
+/// at once: without rotations and with them. The bound of an angle θ is 4 sin(θ/4), which is within 2% up to θ = 78°.
 const STRETCH: [f64; 2] = [1.00001, 1.02];
 
 /// Collects all states within a limit, which falls as states come: to a little more than the `k`-th least bound.
@@ -63,27 +63,9 @@ impl Collector for Bounded<'_> {
 }
 
 impl<const K: usize> KdTree<K> {
-    /// The `k` nearest states in order, into `out`.
-    pub(super) fn find_k_nearest<C: Embed>(
-        &self,
-        space: &C,
-        points: &[C::State],
-        query: &C::State,
-        k: usize,
-        out: &mut Vec<Hit>,
-    ) {
-        if !(2..=MOST).contains(&k)
-            || !self.layout.tight
-            || !self.find_by_bounds(space, points, query, k, out)
-        {
-            KNearest::of(k, out, |nearest| {
-                self.search(space, points, query, nearest);
-            });
-        }
-    }
-
-    /// As [`find_k_nearest`](Self::find_k_nearest), by bounds; `false` when they do not suffice.
-    fn find_by_bounds<C: Embed>(
+    /// Writes the `k` nearest states in order to `out`. Returns `false` where bounds do not suffice to tell which they are; then
+    /// `out` has something else.
+    pub(super) fn k_nearest_by_bounds<C: Embed>(
         &self,
         space: &C,
         points: &[C::State],
@@ -91,6 +73,9 @@ impl<const K: usize> KdTree<K> {
         k: usize,
         out: &mut Vec<Hit>,
     ) -> bool {
+        if !(2..=MOST).contains(&k) || !self.layout.tight {
+            return false;
+        }
         out.clear();
         let mut least = [f32::INFINITY; MOST + 1];
         least[0] = f32::NEG_INFINITY;

@@ -7,7 +7,7 @@ mod layout;
 mod scan;
 mod search;
 
-use super::collect::{OneNearest, WithinRadius};
+use super::collect::{KNearest, OneNearest, WithinRadius};
 use super::leaf::Leaves;
 use super::node::{Ref, Weight};
 use super::{Embed, Hit, NearestNeighbors, NodeId};
@@ -104,7 +104,11 @@ impl<C: Embed, const K: usize> NearestNeighbors<C> for KdTree<K> {
     }
 
     fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
-        self.find_k_nearest(space, points, q, k, out);
+        if !self.k_nearest_by_bounds(space, points, q, k, out) {
+            KNearest::of(k, out, |nearest| {
+                self.search(space, points, q, nearest);
+            });
+        }
     }
 
     fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
