@@ -2,8 +2,9 @@
 
 use crate::cli::Check;
 use crate::input::{path, refuse_two_standard_inputs, scene};
-use crate::output::{print, print_json};
-use mp_plan::{Error, Scene, brief};
+use crate::interrupt;
+use crate::output::{Claims, print, print_json, write};
+use mp_plan::{Error, Interrupt, Scene, brief};
 use std::path::Path;
 
 /// Verifies a path, or explains a configuration. True when the path or configuration is free.
@@ -14,7 +15,18 @@ pub(crate) fn run(args: &Check) -> Result<bool, Error> {
         return explain(&scene, numbers, args.json);
     }
     let Some(file) = &args.path else { return Err(Error::new("name a path")) };
-    let mut verdict = scene.check(&path(&scene, file)?)?;
+    if let Some(certificate) = &args.certificate {
+        let mut claims = Claims::default();
+        scene.inputs_on_disk().iter().for_each(|file| claims.input(file));
+        claims.input(file);
+        claims.output("--certificate", certificate)?;
+    }
+    let rows = path(&scene, file)?;
+    let mut verdict = scene.check(&rows)?;
+    if let (Some(file), true) = (&args.certificate, verdict.free) {
+        let certificate = scene.certificate(&rows, verdict.clearance, &Interrupt::new(interrupt::flag()))?;
+        write(file, certificate.to_json().as_bytes())?;
+    }
     (verdict.scene, verdict.path) = (shown(&scene, &args.scene), file.display().to_string());
     match args.json {
         true => print_json(&verdict)?,

@@ -34,7 +34,10 @@ pub(crate) enum Command {
     Scenes,
     /// Run benchmarks, with the program `mp-bench`.
     #[command(disable_help_flag = true)]
-    Bench(Bench),
+    Bench(Passed),
+    /// Replay a certificate, with the program `mp-verify-certificate`: exit 0 only if it proves its path free.
+    #[command(disable_help_flag = true)]
+    VerifyCertificate(Passed),
     /// Print completions for a shell.
     Completions {
         /// Which shell.
@@ -94,7 +97,7 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
     /// A request in JSON, as a file or `-`: planner, settings, budgets and everything else. Other options are
-    /// ignored, except --out, --picture, --json, --runs and --threads.
+    /// ignored, except --out, --picture, --certificate, --json, --runs and --threads.
     #[arg(long, value_name = "FILE")]
     pub(crate) request: Option<PathBuf>,
     /// The file of a roadmap: it is loaded when it exists, and the grown roadmap is saved there. For planners that
@@ -111,6 +114,10 @@ pub(crate) struct Plan {
     /// replaced by scene and seed. `mp render` has more choices.
     #[arg(long, value_name = "FILE")]
     pub(crate) picture: Option<PathBuf>,
+    /// The file for the certificate: a proof that the path is free, which `mp verify-certificate` replays with code of its own.
+    /// `{scene}` and `{seed}` are replaced by scene and seed.
+    #[arg(long, value_name = "FILE", conflicts_with = "routes")]
+    pub(crate) certificate: Option<PathBuf>,
     /// Print one JSON object on standard output, and write only the files asked for.
     #[arg(long)]
     pub(crate) json: bool,
@@ -138,6 +145,9 @@ pub(crate) struct Check {
     /// Explain this configuration instead: numbers separated by blanks or commas.
     #[arg(long, value_name = "NUMBERS", conflicts_with = "path", allow_hyphen_values = true)]
     pub(crate) at: Option<String>,
+    /// The file for the certificate: a proof that the path is free, which `mp verify-certificate` replays with code of its own.
+    #[arg(long, value_name = "FILE", conflicts_with = "at")]
+    pub(crate) certificate: Option<PathBuf>,
     /// Print one JSON object on standard output.
     #[arg(long)]
     pub(crate) json: bool,
@@ -243,9 +253,10 @@ pub(crate) struct View {
     pub(crate) folder: Option<PathBuf>,
 }
 
+/// Arguments for another program.
 #[derive(Clone, Debug, Args)]
-pub(crate) struct Bench {
-    /// The arguments of `mp-bench`.
+pub(crate) struct Passed {
+    /// The arguments of that program.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENTS")]
     pub(crate) arguments: Vec<std::ffi::OsString>,
 }

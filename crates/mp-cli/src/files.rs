@@ -13,6 +13,7 @@ pub(crate) struct Files {
     out: Option<PathBuf>,
     picture: Option<PathBuf>,
     roadmap: Option<PathBuf>,
+    certificate: Option<PathBuf>,
 }
 
 /// The folder of files that the user did not name.
@@ -24,7 +25,7 @@ impl Files {
     pub(crate) fn new(
         out: Option<&Path>,
         picture: Option<&Path>,
-        roadmap: Option<&Path>,
+        [roadmap, certificate]: [Option<&Path>; 2],
         json: bool,
         scenes: usize,
         runs: u32,
@@ -38,6 +39,7 @@ impl Files {
             out: by_default(out, "{scene}.path.txt"),
             picture: by_default(picture, "{scene}.png"),
             roadmap: roadmap.map(Path::to_owned),
+            certificate: certificate.map(Path::to_owned),
         };
         if let Some(out) = &files.out
             && is_standard(out)
@@ -45,7 +47,9 @@ impl Files {
         {
             return Err(Error::new("--out -: standard output has other content").help("name a file"));
         }
-        for (option, path) in [("--out", &files.out), ("--picture", &files.picture)] {
+        let named =
+            [("--out", &files.out), ("--picture", &files.picture), ("--certificate", &files.certificate)];
+        for (option, path) in named {
             let Some(path) = path else { continue };
             let text = path.to_string_lossy();
             for (many, mark) in [(scenes > 1, "{scene}"), (runs > 1, "{seed}")] {
@@ -61,11 +65,21 @@ impl Files {
 
     /// The files of the path and the picture of one run.
     pub(crate) fn of(&self, scene: &str, seed: u64) -> (Option<PathBuf>, Option<PathBuf>) {
-        let fill = |path: &PathBuf| match path.to_str() {
-            Some(text) => PathBuf::from(text.replace("{scene}", scene).replace("{seed}", &seed.to_string())),
-            None => path.clone(),
-        };
+        let fill = |path: &PathBuf| Self::filled(path, scene, seed);
         (self.out.as_ref().map(fill), self.picture.as_ref().map(fill))
+    }
+
+    /// The file of the certificate of one run.
+    pub(crate) fn certificate(&self, scene: &str, seed: u64) -> Option<PathBuf> {
+        self.certificate.as_ref().map(|path| Self::filled(path, scene, seed))
+    }
+
+    /// The name of a file of one run.
+    fn filled(path: &Path, scene: &str, seed: u64) -> PathBuf {
+        match path.to_str() {
+            Some(text) => PathBuf::from(text.replace("{scene}", scene).replace("{seed}", &seed.to_string())),
+            None => path.to_owned(),
+        }
     }
 
     /// Refuses files that cannot be written, have no known format, or are claimed already, before any work is done. With
@@ -78,7 +92,8 @@ impl Files {
         routes: Option<u16>,
     ) -> Result<(), Error> {
         let (out, picture) = self.of(scene.name(), seed);
-        for (option, file) in [("--out", &out), ("--picture", &picture)] {
+        let certificate = self.certificate(scene.name(), seed);
+        for (option, file) in [("--out", &out), ("--picture", &picture), ("--certificate", &certificate)] {
             match (file, routes) {
                 (None, _) => {}
                 (Some(file), None) => claims.output(option, file)?,
@@ -118,7 +133,7 @@ mod tests {
         scenes: usize,
         runs: u32,
     ) -> Result<Files, Error> {
-        Files::new(out.map(Path::new), picture.map(Path::new), None, json, scenes, runs)
+        Files::new(out.map(Path::new), picture.map(Path::new), [None; 2], json, scenes, runs)
     }
 
     #[test]

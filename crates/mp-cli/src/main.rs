@@ -3,7 +3,6 @@
 //! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input, 141 when the reader of standard output has
 //! gone.
 
-mod bench;
 mod browser;
 mod check;
 mod cli;
@@ -16,6 +15,7 @@ mod output;
 mod page_planner;
 mod picture;
 mod plan;
+mod programs;
 mod progress;
 mod render;
 mod request;
@@ -37,7 +37,8 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(args),
         Command::View(args) => view::run(args),
         Command::Scenes => scenes(),
-        Command::Bench(args) => bench::run(args),
+        Command::Bench(args) => programs::run(programs::BENCH, args),
+        Command::VerifyCertificate(args) => programs::run(programs::VERIFY_CERTIFICATE, args),
         Command::Completions { shell } => completions(*shell),
         Command::Man => man(),
     };

@@ -32,7 +32,7 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let files = Files::new(
         args.out.as_deref(),
         args.picture.as_deref(),
-        request.roadmap.as_deref(),
+        [request.roadmap.as_deref(), args.certificate.as_deref()],
         args.json,
         named.len(),
         args.runs,
@@ -191,6 +191,7 @@ fn one(
     watched: bool,
     threads: u16,
 ) -> Result<Report, Error> {
+    let began = mp_plan::Clock::default().now();
     let request = Request { seed, ..request.clone() };
     let mut line = Line::new(scene.name(), request.budget.time_s, watched);
     let (out, file) = files.of(scene.name(), seed);
@@ -210,6 +211,18 @@ fn one(
         let kind = if is_standard(&file) { PathFileKind::Text } else { PathFileKind::of(&file)? };
         write(&file, path.to_file(kind).as_bytes())?;
         report.path_file = Some(file.display().to_string());
+    }
+    if let Some(file) = files.certificate(scene.name(), seed) {
+        line.say("writing the certificate");
+        let left = request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
+        let clock = mp_plan::Clock::default();
+        let interrupt = match left {
+            Some(left) => Interrupt::by(cancel.clone(), clock, (began + left).saturating_sub(spent)),
+            None => Interrupt::new(cancel.clone()),
+        };
+        let certificate = scene.certificate(&path, report.clearance.unwrap_or(0.0), &interrupt)?;
+        write(&file, certificate.to_json().as_bytes())?;
+        report.certificate_file = Some(file.display().to_string());
     }
     if let Some((picture, file)) = picture {
         line.say("drawing the picture");

@@ -61,6 +61,9 @@ pub(crate) fn summary(report: &Report) -> String {
     if let Some(file) = &report.picture_file {
         row("picture", file.clone());
     }
+    if let Some(file) = &report.certificate_file {
+        row("proof", file.clone());
+    }
     lines.join("\n")
 }
 
@@ -204,6 +207,7 @@ mod tests {
             shortened: true,
             path_file: None,
             picture_file: None,
+            certificate_file: None,
             path: time.map(|_| vec![vec![0.0; 6]]),
         }
     }

@@ -40,6 +40,7 @@ const FIELDS: [(&str, bool); 34] = [
     ("shortened", false),
     ("path_file", true),
     ("picture_file", true),
+    ("certificate_file", true),
     ("path", true),
 ];
 

@@ -1,5 +1,6 @@
 //! Robots of all kinds behind one pointer.
 
+use crate::certificate::{Certificate, certificate};
 use crate::check::check;
 use crate::explain::{check_ends, explain, lint};
 use crate::path::state;
@@ -12,7 +13,7 @@ use crate::{
     Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, Report, Request, RobotKind,
     Sweep, Track, Verdict,
 };
-use mp_cspace::{Demand, Rng, Space, Validity};
+use mp_cspace::{Demand, Interrupt, Rng, Space, Validity};
 use mp_geom::Aabb;
 use mp_io::RigidProblem;
 use nalgebra::{Isometry3, Point3};
@@ -52,6 +53,12 @@ pub(crate) trait AnyRobot: Send + Sync {
         control: &mut Control<'_>,
     ) -> Result<Box<dyn AnySceneRoadmap>, Error>;
     fn check(&self, path: &PathRows) -> Result<Verdict, Error>;
+    fn certificate(
+        &self,
+        path: &PathRows,
+        clearance: f64,
+        interrupt: &Interrupt,
+    ) -> Result<Certificate, Error>;
     fn explain(&self, row: &[f64]) -> Result<Explanation, Error>;
     fn check_ends(&self) -> Result<Vec<String>, Error>;
     fn lint(&self) -> Vec<String>;
@@ -150,6 +157,14 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     }
     fn check(&self, path: &PathRows) -> Result<Verdict, Error> {
         check(self, path)
+    }
+    fn certificate(
+        &self,
+        path: &PathRows,
+        clearance: f64,
+        interrupt: &Interrupt,
+    ) -> Result<Certificate, Error> {
+        certificate(self, path, clearance, interrupt)
     }
     fn explain(&self, row: &[f64]) -> Result<Explanation, Error> {
         Ok(explain(self, &state(self, row)?))

@@ -41,6 +41,7 @@
 //! | build a roadmap once for many queries | [`Scene::roadmap`], [`SceneRoadmap`] |
 //! | read the result | [`Report`], with a documented JSON form |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
+//! | give others the means to prove it again | [`Scene::certificate`], [`Certificate`] |
 //! | find out why a configuration is not free | [`Scene::explain`] |
 //! | find out what is odd about a scene | [`Scene::lint`] |
 //! | find out what is in a file | [`info::Info`] |
@@ -53,6 +54,7 @@
 
 mod alone;
 mod any_robot;
+mod certificate;
 mod check;
 mod counted;
 mod error;
@@ -93,6 +95,7 @@ mod search;
 mod sweep;
 mod watch;
 
+pub use certificate::{Certificate, Drive, DriveModel, ModelBody, ModelFrame, ModelPair, MotionModel, Step};
 pub use check::Verdict;
 pub use error::Error;
 pub use explain::Explanation;

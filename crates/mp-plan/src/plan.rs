@@ -68,6 +68,7 @@ pub(crate) fn reported<K: RobotKind>(
         fingerprint: None,
         path_file: None,
         picture_file: None,
+        certificate_file: None,
         columns: RobotKind::columns(kind),
         path: None,
     };

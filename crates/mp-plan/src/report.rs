@@ -79,6 +79,9 @@ pub struct Report {
     pub path_file: Option<String>,
     /// The file to which a front end wrote a picture.
     pub picture_file: Option<String>,
+    /// The file to which a front end wrote the certificate of the path.
+    #[serde(default)]
+    pub certificate_file: Option<String>,
     /// The meaning of each number of a configuration, in order.
     pub columns: Vec<Column>,
     /// The path, one configuration in each row, start first.

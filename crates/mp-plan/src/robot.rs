@@ -15,6 +15,7 @@ pub use moving::{MovingScene, WithMoving};
 pub use planar::{PlanarBody, PlanarScene};
 pub use rigid::{RigidScene, RigidSpace};
 
+use crate::certificate::MotionModel;
 use crate::numbers::plain;
 use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};
@@ -329,6 +330,14 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     fn export(&self, _folder: &Path) -> Result<PathBuf, Error> {
         Err(Error::new(format!("{} is no rigid body among meshes: only those are exported", self.name()))
             .help("its files are text already"))
+    }
+    /// Everything that decides whether a path is free, as numbers, for certificates: see docs/formats/certificate.md.
+    ///
+    /// # Errors
+    /// When there is no model of such robots. By default there is none.
+    fn motion_model(&self) -> Result<MotionModel, Error> {
+        Err(Error::new("there are no certificates for this kind of robot")
+            .help("implement `RobotKind::motion_model` for it"))
     }
     /// What is wrong with rows from a file apart from their length, such as leaving the plane.
     fn odd_rows(&self, _rows: &[Vec<f64>]) -> Option<String> {

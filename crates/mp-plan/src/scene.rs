@@ -4,9 +4,10 @@ use crate::any_robot::AnyRobot;
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
-    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, PreparedRun, RelaxField, Report,
-    Request, RobotKind, Sweep, Track, Verdict,
+    Body, Certificate, Column, Control, Error, Explanation, Length, PathFormat, PathRows, PreparedRun,
+    RelaxField, Report, Request, RobotKind, Sweep, Track, Verdict,
 };
+use mp_cspace::Interrupt;
 use mp_cspace::registry::PlannerInfo;
 use mp_geom::{Aabb, TriMesh, short_six_from_pose};
 use mp_io::{DocumentShape, SceneDocument};
@@ -350,6 +351,31 @@ impl Scene {
     /// When the path is of another robot. A path that is not free is not an error: see [`Verdict::free`].
     pub fn check(&self, path: &PathRows) -> Result<Verdict, Error> {
         self.robot.check(path)
+    }
+
+    /// The certificate of a path: a file with which another program proves again that it is free. `clearance` (m) is that of the path, 0 if
+    /// it is not known; the certificate proves half of it.
+    ///
+    /// ```
+    /// use mp_plan::{Interrupt, PathRows, Request, Scene};
+    /// let scene = Scene::find("easy")?;
+    /// let report = scene.plan(&Request::new("rrt-connect"))?;
+    /// let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows: report.path.unwrap_or_default() };
+    /// let certificate = scene.certificate(&path, report.clearance.unwrap_or(0.0), &Interrupt::never())?;
+    /// assert!(certificate.clearance() > Some(0.0) && certificate.intervals() >= certificate.edges());
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the path is of another robot, is not free, or turns exactly half way round in one edge; when the kind of robot is your own and
+    /// has no model; and when `interrupt` says to end.
+    pub fn certificate(
+        &self,
+        path: &PathRows,
+        clearance: f64,
+        interrupt: &Interrupt,
+    ) -> Result<Certificate, Error> {
+        self.robot.certificate(path, clearance, interrupt)
     }
 
     /// Explains a configuration: whether it is free, how near to contact, what touches, and where it would be free.

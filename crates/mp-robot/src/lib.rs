@@ -57,8 +57,8 @@ mod solid_obstacle;
 mod verify;
 
 pub use arm::{
-    Arm, ArmContact, ArmError, ArmModel, ArmVerifier, Coordinate, Joint, JointKind, Kinematics, Link, Mimic,
-    UrdfError,
+    Arm, ArmContact, ArmError, ArmModel, ArmVerifier, AttachedLink, Coordinate, Joint, JointFrame, JointKind,
+    Kinematics, Link, Mimic, UrdfError,
 };
 pub use counters::CheckCounters;
 pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};
@@ -68,4 +68,5 @@ pub use planar::{
     PolygonRobot, PolygonVerifier,
 };
 pub use rigid::{FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};
+pub use solid_obstacle::is_solid;
 pub use verify::Verifier;

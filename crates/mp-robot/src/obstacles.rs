@@ -1,6 +1,6 @@
 //! Meshes that stand still, as checkers and verifiers need them.
 
-use crate::solid_obstacle::SolidObstacle;
+use crate::solid_obstacle::{SolidObstacle, is_solid};
 use mp_collide::reference::RefMesh;
 use mp_collide::{Body, BodyId, CollisionMesh, Scene, SceneError};
 use mp_geom::{Aabb, TriMesh};
@@ -99,7 +99,7 @@ impl Obstacles {
             let named = self.placed.iter().zip(&self.own).filter_map(|((id, mesh), (_, solid))| {
                 let name = self.scene.body(*id)?.name();
                 // Whether it is a solid does not depend on its pose.
-                let solid = *solid.get_or_init(|| SolidObstacle::is_solid(mesh));
+                let solid = *solid.get_or_init(|| is_solid(mesh));
                 solid.then(|| (*id, SolidObstacle::new(name, mesh)))
             });
             named.collect()

@@ -13,14 +13,15 @@ pub(crate) struct SolidObstacle {
     bounds: Aabb,
 }
 
-impl SolidObstacle {
-    /// Whether a mesh is a solid: closed, consistently oriented, triangles facing outward.
-    pub(crate) fn is_solid(mesh: &TriMesh) -> bool {
-        let topology = mesh.topology();
-        topology.closed && topology.oriented && mesh.signed_volume() > 0.0
-    }
+/// Whether a mesh is a solid: closed, consistently oriented, triangles facing outward. A point robot inside of a solid touches it.
+#[must_use]
+pub fn is_solid(mesh: &TriMesh) -> bool {
+    let topology = mesh.topology();
+    topology.closed && topology.oriented && mesh.signed_volume() > 0.0
+}
 
-    /// `mesh`, in the world, which is a [solid](Self::is_solid).
+impl SolidObstacle {
+    /// `mesh`, in the world, which is a [solid](is_solid).
     pub(crate) fn new(name: &str, mesh: &Arc<TriMesh>) -> Self {
         Self { name: name.to_owned(), mesh: Arc::clone(mesh), bounds: mesh.aabb() }
     }
@@ -53,7 +54,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn solid(mesh: TriMesh) -> Option<SolidObstacle> {
-        SolidObstacle::is_solid(&mesh).then(|| SolidObstacle::new("it", &Arc::new(mesh)))
+        is_solid(&mesh).then(|| SolidObstacle::new("it", &Arc::new(mesh)))
     }
 
     proptest! {

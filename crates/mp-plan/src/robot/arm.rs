@@ -4,6 +4,7 @@ use super::{
     Body, BodyShape, Column, Counted, DrivenScene, End, Measured, Queries, RobotKind, SpeedBound, Touch,
     hints_and_gradient, no_metric,
 };
+use crate::certificate::{ModelBody, ModelFrame, ModelPair, MotionModel, Step, seven};
 use crate::goals::{GoalPart, examples, rows};
 use crate::{Error, MetricName, brief};
 use mp_cspace::{
@@ -626,6 +627,56 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     }
     fn state(&self, row: &[f64]) -> Configuration {
         self.space.state(row)
+    }
+
+    fn motion_model(&self) -> Result<MotionModel, Error> {
+        let kinematics = self.arm.kinematics();
+        let base = C::BASE.len();
+        let turns = |c: &Coordinate| c.range == JointRange::Circle;
+        let joints = kinematics.coordinates().iter().enumerate();
+        let joints =
+            joints.map(|(i, c)| if turns(c) { Step::Circle(base + i) } else { Step::Line(base + i) });
+        let mut model = MotionModel {
+            steps: (base > 0).then_some(Step::Pose(0)).into_iter().chain(joints).collect(),
+            ..MotionModel::default()
+        };
+        match base {
+            0 => drop(model.still_frame(&self.arm.model().base)),
+            _ => model.frames.push(ModelFrame::Pose { first: 0 }),
+        }
+        model.frames.extend(kinematics.joint_frames().iter().map(|joint| ModelFrame::Joint {
+            parent: joint.parent,
+            origin: seven(&joint.origin),
+            axis: [joint.axis.x, joint.axis.y, joint.axis.z],
+            slides: joint.slides,
+            column: Some(base + joint.coordinate),
+            factor: joint.scale,
+            offset: joint.offset,
+        }));
+        let (mut moved, mut body_of) = (Vec::new(), Vec::new());
+        for (i, mesh) in self.solid_links() {
+            let link = &kinematics.attached()[i];
+            model.frames.push(ModelFrame::Fixed { parent: Some(link.frame), pose: seven(&link.pose) });
+            if base > 0 || link.frame > 0 {
+                moved.push(model.bodies.len());
+            }
+            body_of.push(link.name.as_str());
+            model.bodies.push(ModelBody::mesh(&link.name, model.frames.len() - 1, &mesh).robot());
+        }
+        let find = |name: &str| body_of.iter().position(|link| *link == name);
+        for [a, b] in self.arm.checked_pairs() {
+            let (Some(body), Some(other)) = (find(a), find(b)) else {
+                return Err(Error::new(format!("{a} and {b} have no shape, and must not touch")));
+            };
+            model.pairs.push(ModelPair { body, others: vec![other] });
+        }
+        let obstacles = self.obstacles.iter().map(|o| {
+            let frame = model.still_frame(&o.pose);
+            ModelBody::mesh(&o.name, frame, &o.mesh)
+        });
+        let obstacles = obstacles.collect();
+        model.add_obstacles(obstacles, moved);
+        Ok(model)
     }
 
     fn bodies(&self) -> Vec<Body> {

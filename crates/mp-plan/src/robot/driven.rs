@@ -6,6 +6,7 @@ mod steer;
 mod system;
 
 use super::{Body, Column, End, Measured, RobotKind, Touch, no_metric};
+use crate::certificate::{self, DriveModel, MotionModel};
 use crate::goals::{GoalPart, examples};
 use crate::{Error, MetricName};
 use check::{DrivenChecker, DrivenVerifier};
@@ -351,6 +352,19 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
                 crate::brief(system.duration)
             ),
         })
+    }
+
+    fn motion_model(&self) -> Result<MotionModel, Error> {
+        let (system, own) = (&self.space.system, self.robot.columns().len());
+        let by = match system.drive {
+            mp_io::Drive::Car { wheelbase, .. } => DriveModel::Car { wheelbase },
+            mp_io::Drive::Unicycle { .. } => DriveModel::Unicycle,
+            mp_io::Drive::Velocities { .. } => DriveModel::Velocities,
+            mp_io::Drive::Accelerations { .. } => DriveModel::Accelerations,
+        };
+        let inputs = own + system.velocities;
+        let drive = certificate::Drive { by, velocities: own, inputs, duration: inputs + system.inputs };
+        Ok(MotionModel { drive: Some(drive), ..self.robot.motion_model()? })
     }
 
     fn bodies(&self) -> Vec<Body> {

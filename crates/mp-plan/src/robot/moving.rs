@@ -2,14 +2,17 @@
 
 use super::vectors::OnVectors;
 use super::{
-    Body, Checker, Column, DrivenScene, End, Measured, Mismatch, RobotKind, SpeedBound, Touch, no_metric,
+    Body, BodyShape, Checker, Column, DrivenScene, End, Measured, Mismatch, RobotKind, SpeedBound, Touch,
+    no_metric,
 };
+use crate::certificate::{ModelBody, MotionModel};
 use crate::goals::{GoalPart, examples};
 use crate::{Error, MetricName};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{AsVectors, Clearance, Demand, Embed, MotionCheck, MotionValidity, Space, StateVector};
 use mp_geom::Aabb;
 use mp_io::{Driven, Timing};
+use mp_robot::Trajectory;
 use nalgebra::{DVector, Isometry3, Point3};
 use std::fmt::Debug;
 
@@ -47,6 +50,8 @@ pub trait WithMoving: RobotKind<Space: Embed + 'static, State: StateVector> + Cl
     }
     /// The speed (m/s) that no point of a moving obstacle ever exceeds.
     fn obstacle_speed(among: &Self::Among) -> f64;
+    /// The trajectories of the moving obstacles.
+    fn trajectories(among: &Self::Among) -> Vec<&Trajectory>;
     /// The poses of the moving obstacles at a time.
     fn obstacle_poses(among: &Self::Among, time: f64) -> Vec<Isometry3<f64>>;
     /// The indices of the moving obstacles that the robot touches.
@@ -262,6 +267,22 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
     }
     fn fault(&self, end: End, message: String, help: String) -> Error {
         self.still.fault(end, message, help)
+    }
+
+    fn motion_model(&self) -> Result<MotionModel, Error> {
+        let mut model = self.still.motion_model()?;
+        let (time, robot) = (self.still.columns().len(), model.of_robot());
+        model.time = Some(time);
+        for (body, trajectory) in self.obstacles.iter().zip(K::trajectories(self.among.inner())) {
+            let frame = model.track_frame(time, trajectory);
+            let body = match &body.shape {
+                BodyShape::Mesh(mesh) => ModelBody::mesh(&body.name, frame, mesh),
+                BodyShape::Area(rings) => ModelBody::rings(&body.name, frame, true, rings),
+                BodyShape::Lines(lines) => ModelBody::rings(&body.name, frame, false, lines),
+            };
+            model.add_obstacles(vec![body], robot.clone());
+        }
+        Ok(model)
     }
 
     fn columns(&self) -> Vec<Column> {

@@ -4,6 +4,7 @@ use super::{
     Body, BodyShape, Checker, Column, Counted, DrivenScene, End, Measured, MovingScene, Queries, RobotKind,
     SpeedBound, Touch, WithMoving, greatest_speed, hints_and_gradient, no_metric,
 };
+use crate::certificate::{ModelBody, ModelFrame, MotionModel, Step};
 use crate::goals::{GoalPart, examples, rows};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};
@@ -110,6 +111,9 @@ impl<B: PlanarBody> WithMoving for PlanarScene<B> {
     }
     fn obstacle_speed(among: &AmongMovingAreas<B>) -> f64 {
         among.greatest_speed()
+    }
+    fn trajectories(among: &AmongMovingAreas<B>) -> Vec<&Trajectory> {
+        among.trajectories().collect()
     }
     fn obstacle_poses(among: &AmongMovingAreas<B>, time: f64) -> Vec<Isometry3<f64>> {
         among.poses(time).collect()
@@ -481,6 +485,28 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         };
         Error::from(self.problem.file.fault(part, &message, &help))
             .context(format!("cannot plan in {}", self.problem.name))
+    }
+
+    fn motion_model(&self) -> Result<MotionModel, Error> {
+        let yaw = (B::COLUMNS.len() > 2).then_some(2);
+        let robot = match &self.problem.file.robot {
+            PlanarShape::Disc(radius) => ModelBody::disc("robot", 0, *radius),
+            PlanarShape::Polygon(polygon) => ModelBody::rings("robot", 0, true, polygon.rings()),
+        };
+        let mut model = MotionModel {
+            steps: [Step::Line(0), Step::Line(1)].into_iter().chain(yaw.map(Step::Circle)).collect(),
+            frames: vec![ModelFrame::Plane { first: 0, yaw }],
+            bodies: vec![robot.robot()],
+            ..MotionModel::default()
+        };
+        let world = model.still_frame(&Isometry3::identity());
+        let area = |o: &mp_io::PlanarObstacle| ModelBody::rings(&o.name, world, true, o.polygon.rings());
+        let walls = self.robot.world().walls().map(|[l, h]| {
+            let ring = vec![l, Point2::new(h.x, l.y), h, Point2::new(l.x, h.y)];
+            ModelBody::rings("the walls", world, false, [&ring])
+        });
+        model.add_obstacles(self.problem.obstacles.iter().map(area).chain(walls).collect(), [0]);
+        Ok(model)
     }
 
     fn columns(&self) -> Vec<Column> {

@@ -4,6 +4,7 @@ use super::{
     Body, BodyShape, Column, Counted, End, Measured, Mismatch, MovingScene, PathFormat, Queries, RobotKind,
     SpeedBound, Touch, WithMoving, hints_and_gradient, tuples,
 };
+use crate::certificate::{ModelBody, ModelFrame, MotionModel, Step};
 use crate::goals::{GoalPart, examples, rows};
 use crate::numbers::{fingerprint, plain};
 use crate::roadmaps::RoadmapState;
@@ -18,7 +19,9 @@ use mp_cspace::{
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{RigidMoving, RigidProblem, SpaceKind, Timing};
-use mp_robot::{AmongMoving, MovingVerifier, Placement, Planar, RigidBody, Spatial, Trajectory, Verifier};
+use mp_robot::{
+    AmongMoving, MovingVerifier, Placement, Planar, RigidBody, Spatial, Trajectory, Verifier, is_solid,
+};
 use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use std::fmt::Debug;
@@ -250,6 +253,9 @@ impl<M: RigidSpace> WithMoving for RigidScene<M> {
     fn obstacle_speed(among: &AmongMoving<M>) -> f64 {
         among.greatest_speed()
     }
+    fn trajectories(among: &AmongMoving<M>) -> Vec<&Trajectory> {
+        among.trajectories().collect()
+    }
     fn obstacle_poses(among: &AmongMoving<M>, time: f64) -> Vec<Isometry3<f64>> {
         among.poses(time).collect()
     }
@@ -447,6 +453,23 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
     }
     fn export(&self, folder: &std::path::Path) -> Result<std::path::PathBuf, Error> {
         Ok(mp_io::export_ompl(&self.problem, folder, &self.problem.name, &mp_io::OmplExport::default())?)
+    }
+    fn motion_model(&self) -> Result<MotionModel, Error> {
+        let robot = &self.problem.robot;
+        let mut model = MotionModel {
+            steps: vec![Step::Pose(0)],
+            frames: vec![ModelFrame::Pose { first: 0 }],
+            bodies: vec![ModelBody::mesh(&robot.name, 0, &robot.mesh).robot()],
+            ..MotionModel::default()
+        };
+        let is_point = self.robot.radius() == 0.0;
+        let obstacles = self.problem.obstacles.iter().map(|o| {
+            let frame = model.still_frame(&o.pose);
+            ModelBody::mesh(&o.name, frame, &o.mesh).solid(is_point && is_solid(&o.mesh))
+        });
+        let obstacles = obstacles.collect();
+        model.add_obstacles(obstacles, [0]);
+        Ok(model)
     }
     fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
         if self.problem.space != SpaceKind::Se2 {

@@ -1,6 +1,6 @@
 //! Compiles a model, whose links and joints refer to each other by name, to a checked kinematic tree.
 
-use super::kinematics::{AttachedLink, BASE_NUMBERS, Coordinate, Frame, Kinematics, is_pose, range};
+use super::kinematics::{AttachedLink, BASE_NUMBERS, Coordinate, JointFrame, Kinematics, is_pose, range};
 use super::{ArmError, ArmModel, Joint, JointKind};
 use mp_cspace::{JointRange, Se3};
 use mp_geom::Aabb;
@@ -313,7 +313,7 @@ fn frame_of(
     origin: Isometry3<f64>,
     source: Source,
     coordinates: &[Coordinate],
-) -> Frame {
+) -> JointFrame {
     let Source { coordinate, scale, offset } = source;
     let slides = matches!(joint.kind, JointKind::Prismatic { .. });
     let slide = match coordinates[coordinate].range {
@@ -323,5 +323,5 @@ fn frame_of(
         _ => 0.0,
     };
     let axis = Unit::new_normalize(joint.axis);
-    Frame { parent, origin, axis, slides, coordinate, scale, offset, slide }
+    JointFrame { parent, origin, axis, slides, coordinate, scale, offset, slide }
 }

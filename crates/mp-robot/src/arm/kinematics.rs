@@ -12,19 +12,23 @@ pub(crate) const BASE_NUMBERS: [&str; 6] = ["x", "y", "z", "alpha", "beta", "gam
 
 /// A joint that moves, and the frame behind it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Frame {
-    /// The frame above it.
-    pub(crate) parent: usize,
+pub struct JointFrame {
+    /// The frame above it: 0 is the base, `i + 1` the frame of the joint `i`.
+    pub parent: usize,
     /// Its pose in that frame at value zero.
-    pub(crate) origin: Isometry3<f64>,
-    pub(crate) axis: Unit<Vector3<f64>>,
-    pub(crate) slides: bool,
+    pub origin: Isometry3<f64>,
+    /// The axis, in its own frame.
+    pub axis: Unit<Vector3<f64>>,
+    /// Whether it slides along the axis; otherwise it turns about it.
+    pub slides: bool,
     /// The value of the joint is this coordinate times `scale` plus `offset`.
-    pub(crate) coordinate: usize,
-    pub(crate) scale: f64,
-    pub(crate) offset: f64,
+    pub coordinate: usize,
+    /// The factor.
+    pub scale: f64,
+    /// The offset (rad or m).
+    pub offset: f64,
     /// The largest absolute value (m) of a prismatic joint; zero for others.
-    pub(crate) slide: f64,
+    pub slide: f64,
 }
 
 /// A coordinate of the arm: a joint that moves and mimics no other.
@@ -38,11 +42,13 @@ pub struct Coordinate {
 
 /// A link, and where it is fixed.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct AttachedLink {
-    pub(crate) name: String,
+pub struct AttachedLink {
+    /// Its name.
+    pub name: String,
     /// The frame it is fixed to: 0 is the base, `i + 1` the frame of the joint `i`.
-    pub(crate) frame: usize,
-    pub(crate) pose: Isometry3<f64>,
+    pub frame: usize,
+    /// Its pose there.
+    pub pose: Isometry3<f64>,
 }
 
 /// The checked kinematic tree of an arm. Parents come before children.
@@ -54,7 +60,7 @@ pub struct Kinematics {
     pub(crate) base: Isometry3<f64>,
     /// The space of the base, if it floats.
     pub(crate) floating: Option<Se3>,
-    pub(crate) frames: Vec<Frame>,
+    pub(crate) frames: Vec<JointFrame>,
     pub(crate) coordinates: Vec<Coordinate>,
     /// In the order of the model.
     pub(crate) attached: Vec<AttachedLink>,
@@ -93,6 +99,18 @@ impl Kinematics {
     #[inline]
     pub(crate) fn first(&self) -> usize {
         if self.floats() { FloatingJoints::POSE } else { 0 }
+    }
+
+    /// The joints that move, parents before children.
+    #[must_use]
+    pub fn joint_frames(&self) -> &[JointFrame] {
+        &self.frames
+    }
+
+    /// Where each link is fixed, in the order of the model.
+    #[must_use]
+    pub fn attached(&self) -> &[AttachedLink] {
+        &self.attached
     }
 
     /// The names of the links, in the order of the model.

@@ -17,7 +17,7 @@ mod xml;
 
 pub use error::{ArmError, UrdfError};
 pub use explain::ArmContact;
-pub use kinematics::{Coordinate, Kinematics};
+pub use kinematics::{AttachedLink, Coordinate, JointFrame, Kinematics};
 pub use model::{ArmModel, Joint, JointKind, Link, Mimic};
 pub use robot::Arm;
 pub use verify::ArmVerifier;

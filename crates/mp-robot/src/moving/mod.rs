@@ -83,6 +83,11 @@ impl<P: Placement> AmongMoving<P> {
         counters
     }
 
+    /// The trajectories of the moving obstacles, in the order in which they were given.
+    pub fn trajectories(&self) -> impl Iterator<Item = &Trajectory> {
+        self.moving.iter().map(|obstacle| &obstacle.trajectory)
+    }
+
     /// The poses of the moving obstacles at a time, in the order in which they were given.
     pub fn poses(&self, time: f64) -> impl Iterator<Item = Isometry3<f64>> + '_ {
         self.moving.iter().map(move |obstacle| obstacle.trajectory.pose(time))

@@ -59,6 +59,11 @@ impl Trajectory {
         Ok(Self { times, poses })
     }
 
+    /// The poses that it was made of, with their times (s).
+    pub fn timed_poses(&self) -> impl Iterator<Item = (f64, &Isometry3<f64>)> {
+        self.times.iter().copied().zip(&self.poses)
+    }
+
     /// The pose in the world at `time` (s).
     #[must_use]
     pub fn pose(&self, time: f64) -> Isometry3<f64> {

@@ -156,6 +156,11 @@ impl<R: PlanarRobot> AmongMovingAreas<R> {
         counters
     }
 
+    /// The trajectories of the moving areas, in the order in which they were given.
+    pub fn trajectories(&self) -> impl Iterator<Item = &Trajectory> {
+        self.moving.iter().map(|area| &area.trajectory)
+    }
+
     /// The poses of the moving areas at a time, in the order in which they were given.
     pub fn poses(&self, time: f64) -> impl Iterator<Item = Isometry3<f64>> + '_ {
         self.moving.iter().map(move |area| area.trajectory.pose(time))

@@ -1,0 +1,146 @@
+//! Certificates: a path, the robot and its obstacles as numbers, and for each part of each edge a clearance that proves it free.
+//!
+//! docs/formats/certificate.md describes the file, and what a program must do to replay one. `mp-verify-certificate` is such a
+//! program; it shares no code with this crate. The proof is that of Schwarzer, Saha and Latombe, *Adaptive dynamic collision
+//! checking* (2005): what is farther apart than it can move stays apart.
+
+mod model;
+mod motion;
+mod prove;
+
+pub(crate) use model::seven;
+pub use model::{Drive, DriveModel, ModelBody, ModelFrame, ModelPair, MotionModel, Step};
+
+use crate::path::states;
+use crate::{Error, PathRows, RobotKind, brief};
+use mp_cspace::Interrupt;
+use nalgebra::Isometry3;
+use prove::Prover;
+use serde::Serialize;
+use xxhash_rust::xxh3::xxh3_128;
+
+/// The version of the file.
+const VERSION: u32 = 1;
+
+/// The member that ends a certificate: a hash of all bytes before it.
+const CHECKSUM: &str = ",\n\"checksum\":";
+
+/// How far a pose of the model may be from that of the robot: rounding, as a fraction of the coordinates.
+const ROUNDING: f64 = 1e-9;
+
+/// A path with the proof that it is free: see docs/formats/certificate.md.
+#[derive(Clone, Debug)]
+pub struct Certificate {
+    text: String,
+    edges: usize,
+    intervals: usize,
+    clearance: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct File<'a> {
+    certificate: u32,
+    scene: &'a str,
+    columns: Vec<String>,
+    model: &'a MotionModel,
+    path: &'a [Vec<f64>],
+    clearance: Option<f64>,
+    edges: &'a [Vec<Vec<[f64; 2]>>],
+}
+
+impl Certificate {
+    /// The file: JSON.
+    #[must_use]
+    pub fn to_json(&self) -> &str {
+        &self.text
+    }
+
+    /// How many edges the path has.
+    #[must_use]
+    pub fn edges(&self) -> usize {
+        self.edges
+    }
+
+    /// Into how many parts its edges are divided, over all pairs of bodies.
+    #[must_use]
+    pub fn intervals(&self) -> usize {
+        self.intervals
+    }
+
+    /// The clearance (m) that it proves all along the path; `None` where there is nothing to hit.
+    #[must_use]
+    pub fn clearance(&self) -> Option<f64> {
+        self.clearance
+    }
+}
+
+/// The certificate of a path. `clearance` (m) is a lower bound on the clearance along it, 0 if none is known: the certificate proves
+/// half of it, or a twentieth of the tolerance of the robot where that is more.
+///
+/// # Errors
+/// When the path is of another robot, is not free, turns exactly half way round in one edge, or the kind of robot is your own and
+/// has no model; and when `interrupt` says to end.
+pub(crate) fn certificate<K: RobotKind>(
+    kind: &K,
+    path: &PathRows,
+    clearance: f64,
+    interrupt: &Interrupt,
+) -> Result<Certificate, Error> {
+    let _span = tracing::info_span!("certificate", scene = kind.name()).entered();
+    let what = || format!("cannot certify this path in {}", kind.name());
+    let states = states(kind, path)?;
+    let model = kind.motion_model().map_err(|e| e.context(what()))?;
+    for (row, q) in path.rows.iter().zip(&states) {
+        agrees(&model, row, &kind.poses(q)).map_err(|e| e.context(what()))?;
+    }
+    let clearance = if clearance.is_finite() { clearance } else { 0.0 };
+    let margin = (0.5 * clearance).max(0.05 * kind.tolerance());
+    let mut prover = Prover::new(&model, margin, interrupt).map_err(|e| Error::new(e).context(what()))?;
+    // A path of one configuration is an edge from there to itself.
+    let ends = path.rows.iter().zip(path.rows.iter().skip(1).chain(path.rows.last()));
+    let edges = ends.take((path.rows.len() - 1).max(1)).enumerate();
+    let edges = edges.map(|(i, (from, to))| {
+        let fault = |why| Error::new(format!("between configurations {} and {}: {why}", i + 1, i + 2));
+        prover.edge(from, to).map_err(|why| fault(why).help("check the path with `mp check`"))
+    });
+    let edges: Vec<_> = edges.collect::<Result<_, _>>().map_err(|e| e.context(what()))?;
+    let columns = kind.columns().iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect();
+    let proved = (!model.pairs.is_empty()).then_some(margin);
+    let file = File {
+        certificate: VERSION,
+        scene: kind.name(),
+        columns,
+        model: &model,
+        path: &path.rows,
+        clearance: proved,
+        edges: &edges,
+    };
+    let text = serde_json::to_string(&file).map_err(|e| Error::new(e.to_string()).context(what()))?;
+    let mut text = text.strip_suffix('}').map_or_else(String::new, str::to_owned);
+    text += &format!("{CHECKSUM}\"{:032x}\"}}\n", xxh3_128(text.as_bytes()));
+    let intervals = edges.iter().flatten().map(Vec::len).sum();
+    tracing::info!(edges = edges.len(), intervals, "certified");
+    Ok(Certificate { text, edges: edges.len(), intervals, clearance: proved })
+}
+
+/// The model must place the bodies of the robot where the robot has them.
+fn agrees(model: &MotionModel, row: &[f64], poses: &[Isometry3<f64>]) -> Result<(), Error> {
+    let placed = motion::Motion::new(model, row, row)
+        .map_err(Error::new)?
+        .poses(0.0)
+        .ok_or_else(|| Error::new("the model of the robot has no pose here"))?;
+    let robots = model.bodies.iter().zip(placed).filter(|(body, _)| body.of_robot);
+    for ((body, at), pose) in robots.zip(poses) {
+        let off = body.vertices.iter().map(|v| {
+            let v = nalgebra::Point3::from(*v);
+            let (p, q) = (at * v, pose * v);
+            (p - q).norm() / (1.0 + q.coords.norm())
+        });
+        let off = off.fold(0.0, f64::max);
+        if off > ROUNDING {
+            let message = format!("the model of {} is {} off", body.name, brief(off));
+            return Err(Error::new(message).help("this is a fault of the program: please report it"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,136 @@
+//! Divides edges into parts of which each is proved free by one distance.
+
+use super::model::{ModelBody, ModelFrame, MotionModel};
+use super::motion::Motion;
+use mp_collide::reference::RefMesh;
+use mp_cspace::Interrupt;
+use mp_geom::TriMesh;
+use nalgebra::{Isometry3, Point3};
+use std::rc::Rc;
+
+/// Parts shorter than this are not divided.
+const SHORTEST: f64 = 1e-9;
+
+/// What is proved free of what.
+struct Shapes {
+    body: Rc<RefMesh>,
+    /// The others: at once, in the world, if they stand still there.
+    others: Rc<RefMesh>,
+    /// The frame of the other, if it moves.
+    frame: Option<usize>,
+    /// The sum of the radii of both.
+    radius: f64,
+}
+
+/// Proves the edges of a path, each pair of bodies by itself.
+pub(super) struct Prover<'m> {
+    model: &'m MotionModel,
+    shapes: Vec<Shapes>,
+    /// The clearance (m) to prove.
+    margin: f64,
+    interrupt: Interrupt,
+}
+
+impl<'m> Prover<'m> {
+    /// # Errors
+    /// When the bodies are too large to compute with.
+    pub(super) fn new(model: &'m MotionModel, margin: f64, interrupt: &Interrupt) -> Result<Self, String> {
+        let mut meshes: Vec<(Vec<usize>, Rc<RefMesh>)> = Vec::new();
+        let mut mesh = |bodies: &[usize], in_world: bool| {
+            if let Some((_, mesh)) = meshes.iter().find(|(of, _)| of == bodies) {
+                return Ok::<_, String>(Rc::clone(mesh));
+            }
+            let of = bodies.iter().map(|i| &model.bodies[*i]);
+            let mesh = Rc::new(merged(model, of, in_world)?);
+            meshes.push((bodies.to_vec(), Rc::clone(&mesh)));
+            Ok(mesh)
+        };
+        let radius = |i: &usize| model.bodies[*i].radius;
+        let shapes = model.pairs.iter().map(|pair| {
+            let frame = pair.others.first().map(|i| model.bodies[*i].frame);
+            let frame = frame.filter(|frame| still(model, *frame).is_none());
+            Ok(Shapes {
+                body: mesh(&[pair.body], false)?,
+                others: mesh(&pair.others, frame.is_none())?,
+                frame,
+                radius: radius(&pair.body) + pair.others.iter().map(radius).fold(0.0, f64::max),
+            })
+        });
+        let shapes = shapes.collect::<Result<_, String>>()?;
+        Ok(Self { model, shapes, margin, interrupt: interrupt.clone() })
+    }
+
+    /// The parts of an edge, for each pair: where each ends, and the distance in its middle that proves it.
+    ///
+    /// # Errors
+    /// Why the edge is not proved.
+    pub(super) fn edge(&mut self, from: &[f64], to: &[f64]) -> Result<Vec<Vec<[f64; 2]>>, String> {
+        let motion = Motion::new(self.model, from, to)?;
+        (0..self.shapes.len()).map(|pair| self.pair(&motion, pair)).collect()
+    }
+
+    fn pair(&mut self, motion: &Motion<'_>, index: usize) -> Result<Vec<[f64; 2]>, String> {
+        let (pair, shapes) = (&self.model.pairs[index], &self.shapes[index]);
+        let body = &self.model.bodies[pair.body];
+        let others = || pair.others.iter().map(|i| &self.model.bodies[*i]);
+        // All that stand still are as far from the body as they come near.
+        let moving = others().take(1);
+        let mut open = vec![[0.0, 1.0]];
+        let mut parts = Vec::new();
+        while let Some([begin, end]) = open.pop() {
+            if self.interrupt.ask() {
+                return Err("there was no time left to prove it".to_owned());
+            }
+            let at = 0.5 * (begin + end);
+            let frames = motion.frames(at).ok_or("the robot has no pose there")?;
+            let moved = moving.clone().map(|other| motion.bound(body, other, &frames, [begin, end]));
+            // A little more than is asked for: other programs round in other ways.
+            let needed = (moved.fold(0.0, f64::max) + self.margin) * (1.0 + 1e-9);
+            let pose = shapes.frame.map_or_else(Isometry3::identity, |frame| frames[frame]);
+            let enough = (needed + shapes.radius) * (1.0 + 1e-9);
+            match shapes.body.at_least(&frames[body.frame], &shapes.others, &pose, enough) {
+                Ok(_) => parts.push([end, needed]),
+                Err(found) if found - shapes.radius <= 0.0 => {
+                    let names: Vec<&str> = others().map(|other| other.name.as_str()).take(4).collect();
+                    return Err(format!("{} hits something of {}", body.name, names.join(", ")));
+                }
+                Err(found) if found - shapes.radius < self.margin || end - begin < SHORTEST => {
+                    return Err(format!("{} comes too near to contact", body.name));
+                }
+                Err(_) => open.extend([[at, end], [begin, at]]),
+            }
+        }
+        Ok(parts)
+    }
+}
+
+/// The pose of a frame that stands still in the world.
+fn still(model: &MotionModel, frame: usize) -> Option<Isometry3<f64>> {
+    match model.frames.get(frame)? {
+        ModelFrame::Fixed { parent: None, pose: [x, y, z, i, j, k, w] } => {
+            let turn = nalgebra::Quaternion::new(*w, *i, *j, *k);
+            let turn = nalgebra::UnitQuaternion::new_normalize(turn);
+            Some(Isometry3::from_parts(nalgebra::Translation3::new(*x, *y, *z), turn))
+        }
+        _ => None,
+    }
+}
+
+/// The pieces of bodies as triangles, of which some have no area; in the world, or in the frame of the only one.
+fn merged<'b>(
+    model: &MotionModel,
+    bodies: impl Iterator<Item = &'b ModelBody>,
+    in_world: bool,
+) -> Result<RefMesh, String> {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for body in bodies {
+        let pose = still(model, body.frame).filter(|_| in_world).unwrap_or_else(Isometry3::identity);
+        let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
+        vertices.extend(body.vertices.iter().map(|v| pose * Point3::from(*v)));
+        triangles.extend(body.pieces.iter().filter_map(|piece| {
+            let last = *piece.last()?;
+            Some(std::array::from_fn(|i| first.saturating_add(piece.get(i).copied().unwrap_or(last))))
+        }));
+    }
+    TriMesh::new(vertices, triangles).map(|mesh| RefMesh::new(&mesh)).map_err(|e| e.to_string())
+}

@@ -1,0 +1,213 @@
+//! The file, and whether it makes sense: docs/formats/certificate.md.
+
+use serde::Deserialize;
+use xxhash_rust::xxh3::xxh3_128;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Certificate {
+    pub(crate) certificate: u32,
+    pub(crate) scene: String,
+    pub(crate) columns: Vec<String>,
+    pub(crate) model: Model,
+    pub(crate) path: Vec<Vec<f64>>,
+    pub(crate) clearance: Option<f64>,
+    /// For each edge, for each pair: where each part ends, and the distance in its middle.
+    pub(crate) edges: Vec<Vec<Vec<[f64; 2]>>>,
+    pub(crate) checksum: String,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Model {
+    pub(crate) steps: Vec<Step>,
+    pub(crate) time: Option<usize>,
+    pub(crate) drive: Option<Drive>,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) bodies: Vec<Body>,
+    pub(crate) pairs: Vec<Pair>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Step {
+    Pose(usize),
+    Line(usize),
+    Circle(usize),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Drive {
+    pub(crate) by: By,
+    pub(crate) velocities: usize,
+    pub(crate) inputs: usize,
+    pub(crate) duration: usize,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum By {
+    Car { wheelbase: f64 },
+    Unicycle,
+    Velocities,
+    Accelerations,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Frame {
+    Fixed {
+        parent: Option<usize>,
+        pose: [f64; 7],
+    },
+    Pose {
+        first: usize,
+    },
+    Plane {
+        first: usize,
+        yaw: Option<usize>,
+    },
+    Joint {
+        parent: usize,
+        origin: [f64; 7],
+        axis: [f64; 3],
+        slides: bool,
+        column: Option<usize>,
+        factor: f64,
+        offset: f64,
+    },
+    Track {
+        time: usize,
+        poses: Vec<[f64; 8]>,
+    },
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Body {
+    pub(crate) name: String,
+    pub(crate) frame: usize,
+    pub(crate) of_robot: bool,
+    pub(crate) radius: f64,
+    pub(crate) solid: bool,
+    pub(crate) vertices: Vec<[f64; 3]>,
+    pub(crate) pieces: Vec<Vec<usize>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Pair {
+    pub(crate) body: usize,
+    pub(crate) others: Vec<usize>,
+}
+
+impl Step {
+    /// Its first column.
+    fn first(&self) -> usize {
+        let (Self::Pose(i) | Self::Line(i) | Self::Circle(i)) = *self;
+        i
+    }
+}
+
+impl Frame {
+    pub(crate) fn parent(&self) -> Option<usize> {
+        match self {
+            Self::Fixed { parent, .. } => *parent,
+            Self::Joint { parent, .. } => Some(*parent),
+            _ => None,
+        }
+    }
+}
+
+/// Reads a certificate and checks that nobody has changed it, and that it makes sense.
+pub(crate) fn read(text: &str) -> Result<Certificate, String> {
+    let hashed =
+        text.rfind(",\n\"checksum\":").ok_or("it has no checksum: it is not whole, or no certificate")?;
+    let file: Certificate = serde_json::from_str(text).map_err(|e| format!("it cannot be read: {e}"))?;
+    if file.certificate != 1 {
+        return Err(format!("it is of version {}, and this program knows version 1", file.certificate));
+    }
+    let hash = format!("{:032x}", xxh3_128(&text.as_bytes()[..hashed]));
+    if hash != file.checksum {
+        return Err("it was changed after it was written: its checksum is another".to_owned());
+    }
+    file.check().map(|()| file)
+}
+
+impl Certificate {
+    /// Whether every index is in range and every number finite.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        let (columns, model) = (self.columns.len(), &self.model);
+        let sound = |holds: bool, what: &str| if holds { Ok(()) } else { Err(what.to_owned()) };
+        let finite = |numbers: &[f64]| numbers.iter().all(|x| x.abs() <= 1e75);
+        let pose = |p: &[f64]| finite(p) && (p[3..].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-9;
+        sound(self.path.iter().all(|row| row.len() == columns && finite(row)), "a row of the path is odd")?;
+        sound(!self.path.is_empty(), "the path is empty")?;
+        sound(self.clearance.is_none_or(|c| c > 0.0 && c.is_finite()), "the clearance is not positive")?;
+        sound(self.clearance.is_some() || model.pairs.is_empty(), "it proves no clearance")?;
+        let mut used = vec![0; columns];
+        for step in &model.steps {
+            let range = match *step {
+                Step::Pose(first) => first..first.saturating_add(6),
+                Step::Line(i) | Step::Circle(i) => i..i.saturating_add(1),
+            };
+            sound(range.end <= columns, "a step has no column")?;
+            used[range].iter_mut().for_each(|n| *n += 1);
+        }
+        let ordered = model.steps.windows(2).all(|pair| pair[0].first() < pair[1].first());
+        sound(ordered, "the degrees of freedom are out of order")?;
+        model.time.into_iter().for_each(|time| used.get_mut(time).into_iter().for_each(|n| *n += 1));
+        let own = model.drive.as_ref().map_or(columns, |drive| drive.velocities);
+        sound(used.iter().take(own).all(|n| *n == 1), "a number of the path is without a meaning")?;
+        if let Some(drive) = &model.drive {
+            let degrees = used.iter().take(own).count() - usize::from(model.time.is_some());
+            let (velocities, inputs) = match drive.by {
+                By::Car { wheelbase } => {
+                    sound(wheelbase > 0.0 && degrees == 3, "it is no car")?;
+                    (0, 2)
+                }
+                By::Unicycle => {
+                    sound(degrees == 3, "it is no unicycle")?;
+                    (0, 2)
+                }
+                By::Velocities => (0, degrees),
+                By::Accelerations => (degrees, degrees),
+            };
+            let right = drive.inputs == own + velocities && drive.duration == drive.inputs + inputs;
+            sound(right && drive.duration + 1 == columns, "the columns of the inputs are odd")?;
+        }
+        for (i, frame) in model.frames.iter().enumerate() {
+            sound(frame.parent().is_none_or(|parent| parent < i), "a frame comes before its parent")?;
+            let right = match frame {
+                Frame::Fixed { pose: p, .. } => pose(p),
+                Frame::Pose { first } => model.steps.iter().any(|s| matches!(s, Step::Pose(f) if f == first)),
+                Frame::Plane { first, yaw } => *first + 1 < columns && yaw.is_none_or(|yaw| yaw < columns),
+                Frame::Joint { origin, axis, column, factor, offset, .. } => {
+                    let length: f64 = axis.iter().map(|x| x * x).sum();
+                    let unit = (length - 1.0).abs() < 1e-9;
+                    unit && pose(origin) && finite(&[*factor, *offset]) && column.is_none_or(|c| c < columns)
+                }
+                Frame::Track { time, poses } => {
+                    let later = poses.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+                    let finite = poses.iter().all(|p| finite(&p[..1]) && pose(&p[1..]));
+                    model.time == Some(*time) && later && finite && !poses.is_empty()
+                }
+            };
+            sound(right, &format!("frame {i} is odd"))?;
+        }
+        for body in &model.bodies {
+            let indices =
+                body.pieces.iter().all(|p| !p.is_empty() && p.iter().all(|v| *v < body.vertices.len()));
+            let right = indices && body.frame < model.frames.len() && body.radius >= 0.0;
+            let finite = finite(&[body.radius]) && body.vertices.iter().all(|v| finite(v));
+            sound(right && finite && !body.pieces.is_empty(), &format!("the body {} is odd", body.name))?;
+        }
+        let known = |i: &usize| *i < model.bodies.len();
+        let pairs = model.pairs.iter().all(|p| known(&p.body) && p.others.iter().all(known));
+        sound(pairs, "a pair has no body")?;
+        sound(self.edges.len() == (self.path.len() - 1).max(1), "there is not a proof for each edge")?;
+        let proved = self.edges.iter().all(|edge| edge.len() == model.pairs.len());
+        sound(proved, "there is not a proof for each pair of bodies")
+    }
+}

@@ -1,0 +1,66 @@
+//! Replays certificates: files that prove a path free of collision, written by `mp plan --certificate`.
+//!
+//! It shares no code with the planner. It has its own reading, kinematics, bounds on motions and trees, and plain arithmetic decides:
+//! two convex pieces are as far apart as the gap between their corners along an axis. The format, and what a certificate proves, is
+//! described in docs/formats/certificate.md.
+//!
+//! ```
+//! let refused = mp_verify_certificate::verify("{}").unwrap_err();
+//! assert!(refused.contains("no checksum"));
+//! ```
+
+#![allow(
+    clippy::disallowed_methods,
+    reason = "bits may differ here; the planner's own functions may not be used"
+)]
+
+mod file;
+mod motion;
+mod replay;
+mod shape;
+
+pub use replay::Proved;
+
+/// Replays a certificate.
+///
+/// # Errors
+/// Why it proves nothing, in a sentence.
+pub fn verify(text: &str) -> Result<Proved, String> {
+    replay::replay(&file::read(text)?)
+}
+
+/// Whether a certificate is of the path in a file: text, JSON or comma-separated values.
+///
+/// # Errors
+/// Where they differ, in a sentence.
+pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
+    let rows = file::read(text)?.path;
+    let given: Vec<Vec<f64>> = match serde_json::from_str::<serde_json::Value>(path) {
+        Ok(serde_json::Value::Object(mut file)) => {
+            let path = file.remove("path").ok_or("the file of the path has no member `path`")?;
+            serde_json::from_value(path).map_err(|e| format!("the path cannot be read: {e}"))?
+        }
+        _ => {
+            let numbers = |line: &str| -> Option<Vec<f64>> {
+                let words = line.split([' ', '\t', ',']).filter(|word| !word.is_empty());
+                words.map(|word| word.parse().ok()).collect()
+            };
+            let mut lines: Vec<Vec<f64>> =
+                path.lines().filter_map(numbers).filter(|row| !row.is_empty()).collect();
+            // The first line counts, unless it names the columns.
+            if !path.contains(',')
+                && lines.first().is_some_and(|counts| counts[0] == (lines.len() - 1) as f64)
+            {
+                lines.remove(0);
+            }
+            lines
+        }
+    };
+    if given.len() != rows.len() {
+        return Err(format!("the path has {} configurations, the certificate {}", given.len(), rows.len()));
+    }
+    match given.iter().zip(&rows).position(|(a, b)| a != b) {
+        Some(i) => Err(format!("configuration {} of the path is another one in the certificate", i + 1)),
+        None => Ok(()),
+    }
+}
