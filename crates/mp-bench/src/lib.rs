@@ -5,6 +5,7 @@
 //! `experiment` is the base of them all. Results are Markdown on standard output, and files in a folder.
 
 mod assets;
+mod certificates;
 mod clock;
 mod collide;
 mod error;
@@ -70,6 +71,8 @@ enum Suite {
     Roadmaps,
     /// The speed of growth of an RRT without obstacles, against its size.
     Scaling,
+    /// What proofs of paths cost: certifying, and replaying by `mp-verify-certificate`.
+    Certificates,
     /// No measurement: generate the shipped scenes, or check that they are up to date.
     Assets,
 }
@@ -88,6 +91,7 @@ pub fn run(options: &Options) -> Result<bool, Error> {
         Suite::Rsrt => rsrt::run(common, &options.rsrt),
         Suite::Roadmaps => roadmaps::run(common, &options.roadmaps),
         Suite::Scaling => scaling::run(common),
+        Suite::Certificates => certificates::run(common),
         Suite::Assets => assets::run(&options.assets),
     };
     Ok(complete? && !output::is_closed())

@@ -177,16 +177,23 @@ impl Certificate {
             let right = drive.inputs == own + velocities && drive.duration == drive.inputs + inputs;
             sound(right && drive.duration + 1 == columns, "the columns of the inputs are odd")?;
         }
+        let single = |i: usize| {
+            model.steps.iter().any(|step| matches!(step, Step::Line(j) | Step::Circle(j) if *j == i))
+        };
+        let wheels = model.drive.as_ref().is_some_and(|d| matches!(d.by, By::Car { .. } | By::Unicycle));
+        sound(!wheels || (0..3).all(single), "it has no wheels")?;
         for (i, frame) in model.frames.iter().enumerate() {
             sound(frame.parent().is_none_or(|parent| parent < i), "a frame comes before its parent")?;
             let right = match frame {
                 Frame::Fixed { pose: p, .. } => pose(p),
                 Frame::Pose { first } => model.steps.iter().any(|s| matches!(s, Step::Pose(f) if f == first)),
-                Frame::Plane { first, yaw } => *first + 1 < columns && yaw.is_none_or(|yaw| yaw < columns),
+                Frame::Plane { first, yaw } if wheels => *first == 0 && *yaw == Some(2),
+                Frame::Plane { first, yaw } => single(*first) && single(first + 1) && yaw.is_none_or(single),
                 Frame::Joint { origin, axis, column, factor, offset, .. } => {
                     let length: f64 = axis.iter().map(|x| x * x).sum();
                     let unit = (length - 1.0).abs() < 1e-9;
-                    unit && pose(origin) && finite(&[*factor, *offset]) && column.is_none_or(|c| c < columns)
+                    let moves = column.is_none_or(|column| single(column) && !wheels);
+                    unit && pose(origin) && finite(&[*factor, *offset]) && moves
                 }
                 Frame::Track { time, poses } => {
                     let later = poses.windows(2).all(|pair| pair[0][0] < pair[1][0]);

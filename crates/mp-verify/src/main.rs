@@ -2,6 +2,7 @@
 //!
 //! Exit code: 0 proved, 1 refused, 2 bad input.
 
+use mp_verify_certificate::Proved;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -16,62 +17,48 @@ usage: mp-verify-certificate FILE [--path PATH]
 exit code: 0 proved, 1 refused, 2 bad input";
 
 fn main() -> ExitCode {
-    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
-    let path = match arguments.iter().position(|a| a == "--path") {
-        Some(i) if i + 1 < arguments.len() => {
-            let path = arguments.remove(i + 1);
-            arguments.remove(i);
-            Some(path)
-        }
-        _ => None,
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let (file, path) = match words.as_slice() {
+        ["-h" | "--help"] => return say(HELP, 0),
+        [file] => (file, None),
+        [file, "--path", path] | ["--path", path, file] => (file, Some(path)),
+        _ => return say(HELP, 2),
     };
-    let [file] = arguments.as_slice() else {
-        say(std::io::stderr(), HELP);
-        return ExitCode::from(2);
-    };
-    if ["-h", "--help"].contains(&file.as_str()) {
-        say(std::io::stdout(), HELP);
-        return ExitCode::SUCCESS;
-    }
-    let read = |file: &String| std::fs::read_to_string(file).map_err(|e| format!("cannot read {file}: {e}"));
-    let (text, path) = match (read(file), path.as_ref().map(read).transpose()) {
+    let read =
+        |file: &&str| std::fs::read_to_string(file).map_err(|e| format!("error: cannot read {file}: {e}"));
+    let (text, path) = match (read(file), path.map(read).transpose()) {
         (Ok(text), Ok(path)) => (text, path),
-        (Err(e), _) | (_, Err(e)) => {
-            say(std::io::stderr(), &format!("error: {e}"));
-            return ExitCode::from(2);
-        }
+        (Err(e), _) | (_, Err(e)) => return say(&e, 2),
     };
     let began = std::time::Instant::now();
     let proved = mp_verify_certificate::verify(&text);
-    let took = began.elapsed().as_secs_f64();
+    let rate = |proved: &Proved| proved.edges as f64 / began.elapsed().as_secs_f64();
+    let rate = proved.as_ref().map_or(0.0, rate);
     let of_path = path.map_or(Ok(()), |path| mp_verify_certificate::is_of_path(&text, &path));
     match proved.and_then(|proved| of_path.map(|()| proved)) {
-        Ok(proved) => {
-            let clearance = match proved.clearance {
-                Some(clearance) => format!("clearance at least {clearance} m"),
-                None => "there is nothing to hit".to_owned(),
+        Ok(Proved { scene, configurations, edges, parts, pairs, may_touch, clearance }) => {
+            let clearance = clearance
+                .map_or("there is nothing to hit".to_owned(), |c| format!("clearance at least {c} m"));
+            let touch = match may_touch {
+                0 => String::new(),
+                n => format!("; {n} pairs of links of the robot may touch, and were not looked at"),
             };
-            let mut text = format!(
-                "{file}: proved free in {}\n  {} configurations, {} edges in {} parts, {clearance}\n  {} pairs of bodies are kept apart",
-                proved.scene, proved.configurations, proved.edges, proved.parts, proved.pairs
+            let told = format!(
+                "{file}: proved free in {scene}\n  {configurations} configurations, {edges} edges in {parts} parts, {clearance}\n  \
+                 {pairs} pairs of bodies are kept apart{touch}\n  {rate:.0} edges a second"
             );
-            if proved.may_touch > 0 {
-                text += &format!(
-                    "; {} pairs of links of the robot may touch, and were not looked at",
-                    proved.may_touch
-                );
-            }
-            say(std::io::stdout(), &format!("{text}\n  {:.0} edges a second", proved.edges as f64 / took));
-            ExitCode::SUCCESS
+            say(&told, 0)
         }
-        Err(why) => {
-            say(std::io::stdout(), &format!("{file}: refused\n  {why}"));
-            ExitCode::from(1)
-        }
+        Err(why) => say(&format!("{file}: refused\n  {why}"), 1),
     }
 }
 
-/// Prints a line.
-fn say(mut to: impl Write, line: &str) {
-    let _ = writeln!(to, "{line}");
+/// Prints what was found, on standard error if the input is bad, and gives the exit code.
+fn say(line: &str, code: u8) -> ExitCode {
+    let _ = match code {
+        2 => writeln!(std::io::stderr(), "{line}"),
+        _ => writeln!(std::io::stdout(), "{line}"),
+    };
+    ExitCode::from(code)
 }

@@ -22,12 +22,6 @@ struct Way {
     turn: f64,
 }
 
-/// What is true of a configuration on the way: the numbers, and the poses that stand for six of them.
-struct Moment {
-    row: Vec<f64>,
-    poses: Vec<(usize, Pose)>,
-}
-
 impl<'c> Edge<'c> {
     pub(crate) fn new(model: &'c Model, from: &'c [f64], to: &'c [f64]) -> Result<Self, String> {
         let duration = match (&model.drive, model.time) {
@@ -93,8 +87,8 @@ impl<'c> Edge<'c> {
         Ok(rate * self.duration)
     }
 
-    /// The configuration at the part `t` of the edge, from 0 to 1.
-    fn moment(&self, t: f64) -> Moment {
+    /// The configuration at the part `t` of the edge, from 0 to 1: the numbers, and the poses that stand for six of them.
+    fn moment(&self, t: f64) -> (Vec<f64>, Vec<(usize, Pose)>) {
         let (model, from, to) = (self.model, self.from, self.to);
         let (mut row, mut poses) = (from.to_vec(), Vec::new());
         let after = t * self.duration;
@@ -114,7 +108,7 @@ impl<'c> Edge<'c> {
                     }
                 }
             }
-            return Moment { row, poses };
+            return (row, poses);
         };
         let input = &to[drive.inputs..drive.duration];
         let by: Vec<f64> = match drive.by {
@@ -142,12 +136,12 @@ impl<'c> Edge<'c> {
                 }
             }
         }
-        Moment { row, poses }
+        (row, poses)
     }
 
     /// The poses of all frames in the world at the part `t` of the edge.
     pub(crate) fn frames(&self, t: f64) -> Vec<Pose> {
-        let moment = self.moment(t);
+        let (row, turned) = self.moment(t);
         let mut poses: Vec<Pose> = Vec::with_capacity(self.model.frames.len());
         for frame in &self.model.frames {
             let above = frame.parent().map_or(Pose::IDENTITY, |parent| poses[parent]);
@@ -155,14 +149,14 @@ impl<'c> Edge<'c> {
                 Frame::Fixed { pose, .. } => above * seven(pose),
                 Frame::Pose { first } => {
                     let is_it = |pose: &&(usize, Pose)| pose.0 == *first;
-                    moment.poses.iter().find(is_it).map_or(Pose::IDENTITY, |pose| pose.1)
+                    turned.iter().find(is_it).map_or(Pose::IDENTITY, |pose| pose.1)
                 }
                 Frame::Plane { first, yaw } => {
-                    let place = Vec3::new(moment.row[*first], moment.row[first + 1], 0.0);
-                    Pose::from_parts(place, Turn::from_rotation_z(yaw.map_or(0.0, |yaw| moment.row[yaw])))
+                    let place = Vec3::new(row[*first], row[first + 1], 0.0);
+                    Pose::from_parts(place, Turn::from_rotation_z(yaw.map_or(0.0, |yaw| row[yaw])))
                 }
                 Frame::Joint { origin, axis, slides, column, factor, offset, .. } => {
-                    let value = column.map_or(0.0, |column| moment.row[column]) * factor + offset;
+                    let value = column.map_or(0.0, |column| row[column]) * factor + offset;
                     let by = Vec3::from_array(*axis) * value;
                     let moved = match slides {
                         true => Pose::from_translation(by),
@@ -170,7 +164,7 @@ impl<'c> Edge<'c> {
                     };
                     above * seven(origin) * moved
                 }
-                Frame::Track { time, poses } => track(poses, moment.row[*time]),
+                Frame::Track { time, poses } => track(poses, row[*time]),
             });
         }
         poses

@@ -88,12 +88,11 @@ pub(crate) fn replay(file: &Certificate) -> Result<Proved, String> {
 
 /// Whether a frame moves as the robot does.
 fn moves(model: &Model, frame: usize) -> bool {
-    match &model.frames[frame] {
-        Frame::Fixed { parent, .. } => parent.is_some_and(|parent| moves(model, parent)),
-        Frame::Joint { parent, column, .. } => column.is_some() || moves(model, *parent),
+    std::iter::successors(Some(frame), |i| model.frames[*i].parent()).any(|i| match &model.frames[i] {
+        Frame::Fixed { .. } | Frame::Track { .. } => false,
+        Frame::Joint { column, .. } => column.is_some(),
         Frame::Pose { .. } | Frame::Plane { .. } => true,
-        Frame::Track { .. } => false,
-    }
+    })
 }
 
 /// Every body of the robot that moves must be kept from every obstacle.
