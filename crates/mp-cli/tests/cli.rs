@@ -6,7 +6,7 @@ use common::{Dir, mp};
 use serde_json::Value;
 
 /// Every field of the JSON of one run, and whether it may be null.
-const FIELDS: [(&str, bool); 34] = [
+const FIELDS: [(&str, bool); 35] = [
     ("version", false),
     ("scene", false),
     ("scene_file", false),

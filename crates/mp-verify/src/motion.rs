@@ -179,7 +179,8 @@ impl<'c> Edge<'c> {
         let (mut up_a, mut up_b) = (chain(a), chain(b));
         // What moves both moves neither relative to the other.
         while up_a.last().is_some() && up_a.last() == up_b.last() {
-            (up_a.pop(), up_b.pop());
+            up_a.pop();
+            up_b.pop();
         }
         self.strays(a, &up_a, frames, [begin, end]) + self.strays(b, &up_b, frames, [begin, end])
     }

@@ -39,7 +39,8 @@ pub(crate) fn replay(file: &Certificate) -> Result<Proved, String> {
         }
         let jump = edge.jump();
         // What jumps less far than it is clear of everything crosses nothing.
-        if !(jump <= 1e-6 && jump <= clearance) && !model.pairs.is_empty() {
+        let crosses_nothing = jump <= 1e-6 && jump <= clearance;
+        if !(crosses_nothing || model.pairs.is_empty()) {
             return Err(place(format!("the input leads {jump} m away from the next configuration")));
         }
         for (pair, proof) in model.pairs.iter().zip(proof) {
@@ -54,7 +55,8 @@ pub(crate) fn replay(file: &Certificate) -> Result<Proved, String> {
                     let (other, shape) = (&model.bodies[*other], &shapes[*other]);
                     let nearing = edge.nearing(body, other, &frames, [begin, end]) * (1.0 + 1e-9);
                     let what = || format!("{} and {} at {}", body.name, other.name, 0.5 * (begin + end));
-                    if !(distance >= nearing + clearance) {
+                    let enough = distance >= nearing + clearance;
+                    if !enough {
                         return Err(place(format!(
                             "{} may come {nearing} m nearer, and {distance} m do not leave {clearance} m",
                             what()

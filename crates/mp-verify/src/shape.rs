@@ -81,8 +81,8 @@ impl Shape {
         // The other in the frame of this one.
         let pose = at.inverse() * *other_at;
         let size = self.size + other.size + pose.translation.length();
-        // Written so that what is not a number is not apart.
-        if !(size < 1e75) {
+        // What is not a number is not apart.
+        if size.is_nan() || size > 1e75 {
             return false;
         }
         let enough = enough + self.radius + other.radius + ROUNDING * size;
@@ -122,12 +122,12 @@ impl Shape {
     fn winds_around(&self, p: Vec3) -> bool {
         let (mut odd, mut angle) = (false, 0.0);
         for piece in &self.pieces {
-            match piece.0.as_slice() {
-                &[a, b] => {
+            match *piece.0.as_slice() {
+                [a, b] => {
                     let crosses = (a.y > p.y) != (b.y > p.y);
                     odd ^= crosses && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
                 }
-                &[a, b, c] => {
+                [a, b, c] => {
                     let [a, b, c] = [a - p, b - p, c - p];
                     let [l, m, n] = [a, b, c].map(Vec3::length);
                     let below = l * m * n + a.dot(b) * n + b.dot(c) * l + c.dot(a) * m;
@@ -153,8 +153,8 @@ fn boxes_apart(a: &Node, b: &Node, pose: &Pose, axes: &[Vec3; 3], enough: f64) -
 fn pieces_apart(a: &Piece, b: &Piece, enough: f64) -> bool {
     let shows = |axis: Vec3| axis.try_normalize().is_some_and(|axis| gap(a, b, axis) >= enough);
     // Mostly the plane of one does.
-    let across = |piece: &Piece| match piece.0.as_slice() {
-        &[p, q, r] => (q - p).cross(r - p),
+    let across = |piece: &Piece| match *piece.0.as_slice() {
+        [p, q, r] => (q - p).cross(r - p),
         _ => Vec3::ZERO,
     };
     if shows(across(a)) || shows(across(b)) {
