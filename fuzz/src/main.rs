@@ -7,22 +7,46 @@
 #![no_main]
 
 mod memory;
+mod tree;
 
 use memory::Bounded;
-use mp_io::fuzz::Target;
 
 #[global_allocator]
 static MEMORY: Bounded = Bounded;
 
+/// A target of one of the crates, whose errors have different types.
+enum Target {
+    Io(mp_io::fuzz::Target),
+    Plan(mp_plan::fuzz::Target),
+    View(mp_view::fuzz::Target),
+    Tree(tree::Target),
+}
+
 /// The target of this program. Known when it is compiled, so that it holds no code, and counts no coverage, of others.
-const TARGET: Target = match find(&mp_io::fuzz::TARGETS, env!("MP_FUZZ_TARGET")) {
-    Some(target) => target,
-    None => panic!("MP_FUZZ_TARGET names no target"),
+const TARGET: Target = {
+    const NAME: &str = env!("MP_FUZZ_TARGET");
+    if let Some(target) = find(&mp_io::fuzz::TARGETS, NAME) {
+        Target::Io(target)
+    } else if let Some(target) = find(&mp_plan::fuzz::TARGETS, NAME) {
+        Target::Plan(target)
+    } else if let Some(target) = find(&mp_view::fuzz::TARGETS, NAME) {
+        Target::View(target)
+    } else if let Some(target) = find(&tree::TARGETS, NAME) {
+        Target::Tree(target)
+    } else {
+        panic!("MP_FUZZ_TARGET names no target")
+    }
 };
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     memory::begin();
-    let _ = TARGET(bytes);
+    // Whether the bytes are refused does not matter, only that the target returns.
+    match TARGET {
+        Target::Io(target) => drop(target(bytes)),
+        Target::Plan(target) => drop(target(bytes)),
+        Target::View(target) => drop(target(bytes)),
+        Target::Tree(target) => drop(target(bytes)),
+    }
 });
 
 /// The target of this name.
