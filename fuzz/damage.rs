@@ -100,7 +100,7 @@ fn corpus(target: &str) -> Vec<(String, Vec<u8>)> {
 
 /// Gives a target its corpus and damaged copies of it, `iterations` unless `MP_FUZZ_ITERATIONS` says otherwise. `read`
 /// returns whether the input was valid.
-pub fn all_are_read_or_refused(target: &str, iterations: u64, read: impl Fn(&[u8]) -> bool) {
+pub(crate) fn all_are_read_or_refused(target: &str, iterations: u64, read: impl Fn(&[u8]) -> bool) {
     let iterations = match std::env::var("MP_FUZZ_ITERATIONS") {
         Ok(n) => n.parse().expect("MP_FUZZ_ITERATIONS is a count"),
         Err(_) => iterations,
@@ -115,7 +115,7 @@ pub fn all_are_read_or_refused(target: &str, iterations: u64, read: impl Fn(&[u8
     }
     let inputs: Vec<Vec<u8>> = corpus.into_iter().map(|(_, input)| input).collect();
     assert!(!inputs.is_empty(), "{target} has a corpus");
-    let mut rng = Pcg64::seed_from_u64(target.bytes().fold(0, |seed, b| 31 * seed + u64::from(b)));
+    let mut rng = Pcg64::seed_from_u64(target.bytes().fold(0, |seed: u64, b| seed.wrapping_mul(31) + u64::from(b)));
     let valid = (0..iterations).filter(|_| call(&mutated(&mut rng, &inputs))).count() as u64;
     // Both outcomes must be met, or the test tests little.
     assert!(iterations < 1000 || (valid > 0 && valid < iterations), "{target}: {valid} were valid");
