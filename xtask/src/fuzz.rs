@@ -128,6 +128,7 @@ fn fuzz(options: &Options) -> Result<usize, String> {
 fn build(targets: &[String], out: &Path) -> Result<(), String> {
     let host = host()?;
     let folder = root().join("fuzz");
+    note("building the fuzzers: minutes at the first time, a second each later");
     for target in targets {
         let mut command = cargo();
         command.args(["build", "--release", "--quiet", "--manifest-path"]).arg(folder.join("Cargo.toml"));
