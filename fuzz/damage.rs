@@ -115,7 +115,8 @@ pub(crate) fn all_are_read_or_refused(target: &str, iterations: u64, read: impl 
     }
     let inputs: Vec<Vec<u8>> = corpus.into_iter().map(|(_, input)| input).collect();
     assert!(!inputs.is_empty(), "{target} has a corpus");
-    let mut rng = Pcg64::seed_from_u64(target.bytes().fold(0, |seed: u64, b| seed.wrapping_mul(31) + u64::from(b)));
+    let mut rng =
+        Pcg64::seed_from_u64(target.bytes().fold(0, |seed: u64, b| seed.wrapping_mul(31) + u64::from(b)));
     let valid = (0..iterations).filter(|_| call(&mutated(&mut rng, &inputs))).count() as u64;
     // Both outcomes must be met, or the test tests little.
     assert!(iterations < 1000 || (valid > 0 && valid < iterations), "{target}: {valid} were valid");

@@ -243,7 +243,9 @@ fn minimise(target: &str, out: &Path) -> Result<(), String> {
     command.args(["-set_cover_merge=1", "-use_counters=0"]).arg(format!("-max_len={MAX_BYTES}"));
     command.arg(&least).arg(&found).arg(&kept).stdout(Stdio::null()).stderr(Stdio::null());
     if !command.status().is_ok_and(|status| status.success()) {
-        return Err(format!("the corpus of {target} could not be minimised: does it hold an input that fails?"));
+        return Err(format!(
+            "the corpus of {target} could not be minimised: does it hold an input that fails?"
+        ));
     }
     for name in files(&kept)? {
         std::fs::remove_file(kept.join(name)).map_err(failed)?;
@@ -274,11 +276,8 @@ fn host() -> Result<String, String> {
 fn text(tally: &Tally) -> String {
     let mut out = String::from("target,executions,seconds,edges,findings\n");
     for (target, row) in tally {
-        let _ = writeln!(
-            out,
-            "{target},{},{:.0},{},{}",
-            row.executions, row.seconds, row.edges, row.findings
-        );
+        let _ =
+            writeln!(out, "{target},{},{:.0},{},{}", row.executions, row.seconds, row.edges, row.findings);
     }
     out
 }
@@ -349,14 +348,8 @@ mod tests {
         let some = read("off --seconds 5 stl --executions 1_000 --minimise --built --out a").unwrap();
         let targets = vec!["off".to_owned(), "stl".to_owned()];
         let out = Some(PathBuf::from("a"));
-        let all = Options {
-            seconds: Some(5),
-            executions: Some(1000),
-            minimise: true,
-            built: true,
-            out,
-            targets,
-        };
+        let all =
+            Options { seconds: Some(5), executions: Some(1000), minimise: true, built: true, out, targets };
         assert_eq!(some, all);
         for (line, word) in
             [("--seconds", "needs a value"), ("--seconds 0", "at least 1"), ("--secs 1", "no option")]

@@ -311,8 +311,7 @@ mod tests {
         for n in [4, 5, 50, 20_000_usize] {
             // Corners of a square and its middle, in an order without order.
             let places = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.4, 0.5]];
-            let corners: Vec<_> =
-                (0..n).map(|i| Point2::from(places[(i * i / 3 + i * 7 / 5) % 5])).collect();
+            let corners: Vec<_> = (0..n).map(|i| Point2::from(places[(i * i / 3 + i * 7 / 5) % 5])).collect();
             let triangles = triangulate_ccw(&corners);
             assert_eq!(triangles.len(), n - 2);
             let mut used = vec![false; n];

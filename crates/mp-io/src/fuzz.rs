@@ -200,7 +200,9 @@ pub fn errors(bytes: &[u8]) -> Result<(), Error> {
     let end = bytes.iter().position(|b| *b == b'\n').unwrap_or(bytes.len());
     let (name, rest) = bytes.split_at(end);
     let others = TARGETS.iter().filter(|(other, _)| *other != "errors");
-    let Some((_, target)) = others.into_iter().find(|(other, _)| other.as_bytes() == name) else { return Ok(()) };
+    let Some((_, target)) = others.into_iter().find(|(other, _)| other.as_bytes() == name) else {
+        return Ok(());
+    };
     target(rest.get(1..).unwrap_or_default()).inspect_err(check_error)
 }
 

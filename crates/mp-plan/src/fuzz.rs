@@ -97,7 +97,8 @@ pub fn srdf(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn request(bytes: &[u8]) -> Result<(), Error> {
-    let json = |e: serde_json::Error| Error::new(format!("not a request: {e}")).help("docs/formats describes it");
+    let json =
+        |e: serde_json::Error| Error::new(format!("not a request: {e}")).help("docs/formats describes it");
     let request: Request = serde_json::from_slice(bytes).map_err(json)?;
     let written = serde_json::to_string(&request).map_err(json)?;
     assert_eq!(serde_json::from_str::<Request>(&written).ok().as_ref(), Some(&request), "{written}");
@@ -175,7 +176,8 @@ fn roadmap_of<S: mp_cspace::StateVector + Clone>(body: &[u8]) -> Result<(), Erro
     file.extend_from_slice(body);
     file.extend(xxhash_rust::xxh3::xxh3_64(&file).to_le_bytes());
     let read = mp_roadmap::Roadmap::<S, ()>::from_bytes(&file, FINGERPRINT);
-    let map = read.map_err(|e| Error::new(e.to_string()).help("delete the file, and build the roadmap anew"))?;
+    let map =
+        read.map_err(|e| Error::new(e.to_string()).help("delete the file, and build the roadmap anew"))?;
     let again = mp_roadmap::Roadmap::<S, ()>::from_bytes(&map.to_bytes(FINGERPRINT), FINGERPRINT);
     let again = again.unwrap_or_else(|e| panic!("what was written cannot be read: {e}"));
     assert_eq!(again.to_bytes(FINGERPRINT), map.to_bytes(FINGERPRINT));
@@ -268,4 +270,5 @@ const MAY_TOUCH: &str = "<robot name=\"a\"><disable_collisions link1=\"upper\" l
 
 /// A map, and its image.
 const MAP: &str = "image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-const IMAGE: &str = "P2\n5 4\n255\n255 255 255 255 255\n255 255 0 255 255\n255 255 0 255 255\n255 255 255 255 255\n";
+const IMAGE: &str =
+    "P2\n5 4\n255\n255 255 255 255 255\n255 255 0 255 255\n255 255 0 255 255\n255 255 255 255 255\n";

@@ -216,7 +216,8 @@ pub(super) fn refuse_floods(file: &str, text: &str) -> Result<(), Error> {
     let mut rest = text;
     let mut namespaces = 0;
     let flood = |at, message| {
-        Error::at(ErrorKind::TooLarge, file, text, at, 1, message).help("export the mesh with another program")
+        Error::at(ErrorKind::TooLarge, file, text, at, 1, message)
+            .help("export the mesh with another program")
     };
     while let Some(open) = rest.find('<') {
         let tag = &rest[open..];
