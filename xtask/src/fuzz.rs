@@ -35,6 +35,9 @@ const TURN: u64 = 60;
 /// Inputs have at most so many bytes: longer ones are slow and say nothing new.
 const MAX_BYTES: u32 = 4096;
 
+/// Inputs that are kept in the repository have at most so many bytes, except those with names.
+const KEPT_BYTES: u32 = 256;
+
 /// An input may take so many seconds. Most take some microseconds; the machine may be busy.
 const MAX_SECONDS: u32 = 10;
 
@@ -227,20 +230,22 @@ fn turn(target: &str, out: &Path, seconds: u64, executions: u64) -> Result<Row, 
     })
 }
 
-/// Replaces the corpus of a target by few inputs that reach as much: the valid examples (`good-…`), and what was found.
+/// Replaces the corpus of a target by few inputs that reach as much: those that people have named, such as `good-1`, and what was
+/// found.
 fn minimise(target: &str, out: &Path) -> Result<(), String> {
     let kept = root().join("fuzz/corpus").join(target);
     let (found, least) = (out.join(target).join("corpus"), out.join(target).join("least"));
     let _ = std::fs::remove_dir_all(&least);
     create(&least)?;
     let failed = |e: std::io::Error| format!("cannot minimise the corpus of {target}: {e}");
-    let named = |name: &str| name.starts_with("good-");
+    // libFuzzer names inputs by a hash.
+    let named = |name: &str| name.len() != 40 || name.contains(|c: char| !c.is_ascii_hexdigit());
     for name in files(&kept)?.iter().filter(|name| named(name)) {
         std::fs::copy(kept.join(name), least.join(name)).map_err(failed)?;
     }
     // Edges alone, and not how often each is passed: this is what keeps corpora small.
     let mut command = Command::new(fuzzer(target, out));
-    command.args(["-set_cover_merge=1", "-use_counters=0"]).arg(format!("-max_len={MAX_BYTES}"));
+    command.args(["-set_cover_merge=1", "-use_counters=0"]).arg(format!("-max_len={KEPT_BYTES}"));
     command.arg(&least).arg(&found).arg(&kept).stdout(Stdio::null()).stderr(Stdio::null());
     if !command.status().is_ok_and(|status| status.success()) {
         return Err(format!(
