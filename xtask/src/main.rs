@@ -4,6 +4,7 @@
 //! It has no dependencies and does no work itself, so that it compiles in a second.
 
 mod ci;
+mod fuzz;
 mod golden;
 mod memcheck;
 mod programs;
@@ -23,6 +24,7 @@ Builds and starts the programs of the workspace:
   cargo xtask wasm [KIND…]      builds the planners inside pages, for `render … --with-planner`
   cargo xtask assets [--check]  generates the shipped scenes, or checks that they are up to date
   cargo xtask golden [--required] [--built] [WAY…]   the same bits on other processors: native, no-fma, nehalem, aarch64, wasm32
+  cargo xtask fuzz [--seconds N] [TARGET…]   every reader under libFuzzer: see `cargo xtask fuzz --help`
   cargo xtask memcheck [TEST…]  tests of the kernels and of arms under valgrind
   cargo xtask ci [--no-tests]   formatting, lints, tests, documentation and tidiness
 
@@ -39,6 +41,7 @@ fn main() -> ExitCode {
         "verify-certificate" => start("mp-verify-certificate", "mp-verify-certificate", &arguments[1..]),
         "wasm" => wasm::run(&arguments[1..]),
         "golden" => golden::run(&arguments[1..]),
+        "fuzz" => fuzz::run(&arguments[1..]),
         "memcheck" => memcheck::run(&arguments[1..]),
         "assets" => start("mp-bench", "mp-bench", &arguments),
         "ci" => match arguments[1..].iter().map(|a| a.to_string_lossy()).collect::<Vec<_>>().as_slice() {

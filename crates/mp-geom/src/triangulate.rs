@@ -36,12 +36,17 @@ pub(crate) fn triangulate(corners: &[Point3<f64>]) -> Vec<[usize; 3]> {
     triangulate_ccw(&projected)
 }
 
+/// A simple polygon always has an ear, and mostly one beside the last cut. After so many searches of the whole ring for one, the
+/// polygon crosses itself, and is not worth the time.
+const SEARCHES: usize = 16;
+
 /// As [`triangulate`], for a counter-clockwise polygon of the plane. O(n log n) on ordinary polygons, O(n²)
 /// on contrived ones.
 pub(crate) fn triangulate_ccw(corners: &[Point2<f64>]) -> Vec<[usize; 3]> {
     let mut ring = Ring::new(corners);
     let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2));
     let mut ears: BinaryHeap<Ear> = (0..corners.len()).filter_map(|k| ring.ear(k)).collect();
+    let mut searches = 0;
     while ring.left > 3 {
         let ear = loop {
             match ears.pop() {
@@ -54,8 +59,10 @@ pub(crate) fn triangulate_ccw(corners: &[Point2<f64>]) -> Vec<[usize; 3]> {
         };
         let corner = match ear {
             Some(ear) => ear.corner,
+            None if searches == SEARCHES => break,
             // Cutting may have made other corners ears; if not, the polygon is not simple.
             None => {
+                searches += 1;
                 ears.extend(ring.corners_left().filter_map(|k| ring.ear(k)));
                 match ears.peek() {
                     Some(ear) => ear.corner,
@@ -68,7 +75,13 @@ pub(crate) fn triangulate_ccw(corners: &[Point2<f64>]) -> Vec<[usize; 3]> {
         ring.cut(corner);
         ears.extend([cut[0], cut[2]].into_iter().filter_map(|k| ring.ear(k)));
     }
-    triangles.extend(ring.corners_left().next().filter(|_| ring.left == 3).map(|k| ring.around(k)));
+    // The rest, mostly one triangle, as a fan.
+    if let Some([fixed, mut k, mut after]) = ring.corners_left().next().map(|k| ring.around(k)) {
+        for _ in 2..ring.left {
+            triangles.push([fixed, k, after]);
+            (k, after) = (after, ring.next[after]);
+        }
+    }
     triangles
 }
 
@@ -290,6 +303,21 @@ mod tests {
             prop_assert_eq!(uses.count(), 1);
         }
         Ok(())
+    }
+
+    /// To search for ears that do not exist would take hours here. The number of triangles is right, and each corner is in one.
+    #[test]
+    fn polygons_that_cross_themselves_are_cut_into_as_many_triangles() {
+        for n in [4, 5, 50, 20_000_usize] {
+            // Corners of a square and its middle, in an order without order.
+            let places = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.4, 0.5]];
+            let corners: Vec<_> = (0..n).map(|i| Point2::from(places[(i * i / 3 + i * 7 / 5) % 5])).collect();
+            let triangles = triangulate_ccw(&corners);
+            assert_eq!(triangles.len(), n - 2);
+            let mut used = vec![false; n];
+            triangles.iter().flatten().for_each(|&k| used[k] = true);
+            assert!(used.iter().all(|used| *used));
+        }
     }
 
     proptest! {

@@ -59,10 +59,7 @@ struct Excerpt {
 impl Error {
     /// An error of this kind about a file: for [`Files`](crate::Files) of your own.
     pub fn new(kind: ErrorKind, file: impl Display, message: impl Into<String>) -> Self {
-        let mut message = shortened(&message.into(), MAX_MESSAGE);
-        if message.contains(char::is_control) {
-            message = message.replace(char::is_control, "\u{fffd}");
-        }
+        let message = one_line(&message.into(), MAX_MESSAGE);
         Self(Box::new(Inner {
             kind,
             file: file.to_string(),
@@ -251,6 +248,13 @@ pub fn shortened(text: &str, most: usize) -> String {
     let end = most / 3;
     let beginning = text.chars().take(most.saturating_sub(end + 1));
     beginning.chain(['…']).chain(text.chars().skip(count - end)).collect()
+}
+
+/// A text that may cite anything as one line of at most so many characters: [`shortened`], without control characters.
+#[must_use]
+pub fn one_line(text: &str, most: usize) -> String {
+    let text = shortened(text, most);
+    if text.contains(char::is_control) { text.replace(char::is_control, "\u{fffd}") } else { text }
 }
 
 impl Display for Error {

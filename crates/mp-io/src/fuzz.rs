@@ -1,8 +1,9 @@
 //! Entry points for fuzzing: one function for each format, to be called with any bytes at all.
 //!
 //! Each reads the bytes and, when they are valid, checks that writing and reading again gives the same. None
-//! may panic, whatever the bytes. The test `fuzz` of this crate calls them with mutated files, as many as
-//! `MP_FUZZ_ITERATIONS` says; `docs/fuzzing.md` tells how to call them from a coverage-guided fuzzer.
+//! may panic, whatever the bytes. What refuses the bytes is returned: [`check_error`] shows it, which takes longer than
+//! most readers do. `cargo xtask fuzz` calls them guided by coverage, and the test `fuzz` of this crate with the files that
+//! were found so, and with mutated ones (`docs/fuzzing.md`).
 
 use crate::collada::Scene;
 use crate::{
@@ -13,11 +14,11 @@ use crate::{csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, p
 use mp_geom::TriMesh;
 use std::fmt::Debug;
 
-/// Reads any bytes; returns whether they were valid.
-pub type Target = fn(&[u8]) -> bool;
+/// Reads any bytes. The error is the one that refuses them.
+pub type Target = fn(&[u8]) -> Result<(), Error>;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 17] = [
+pub const TARGETS: [(&str, Target); 18] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -35,135 +36,203 @@ pub const TARGETS: [(&str, Target); 17] = [
     ("ros-map", ros_map),
     ("map-image", map_image),
     ("scene-document", scene_document),
+    ("errors", errors),
 ];
 
 /// OFF documents.
-pub fn off(bytes: &[u8]) -> bool {
-    let Some(document) = valid(OffDocument::parse("f.off", bytes)) else { return false };
-    let again = valid(OffDocument::parse("f.off", document.to_text().as_bytes()));
-    assert_eq!(again.as_ref(), Some(&document));
-    valid(document.to_mesh("f.off")).is_some()
+///
+/// # Errors
+/// When the bytes are refused, as for all targets.
+pub fn off(bytes: &[u8]) -> Result<(), Error> {
+    let document = OffDocument::parse("f.off", bytes)?;
+    assert_eq!(OffDocument::parse("f.off", document.to_text().as_bytes()).as_ref().ok(), Some(&document));
+    document.to_mesh("f.off").map(drop)
 }
 
 /// GEMPA `.txt` meshes.
-pub fn gempa_mesh(bytes: &[u8]) -> bool {
-    let Some(mesh) = valid(parse_gempa_mesh("f.txt", bytes)) else { return false };
-    same_triangles(&mesh, valid(parse_gempa_mesh("f.txt", gempa_mesh_text(&mesh).as_bytes())));
-    true
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn gempa_mesh(bytes: &[u8]) -> Result<(), Error> {
+    let mesh = parse_gempa_mesh("f.txt", bytes)?;
+    same_triangles(&mesh, &parse_gempa_mesh("f.txt", gempa_mesh_text(&mesh).as_bytes()));
+    Ok(())
 }
 
 /// GEMPA environments.
-pub fn gempa_environment(bytes: &[u8]) -> bool {
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn gempa_environment(bytes: &[u8]) -> Result<(), Error> {
     round_trips(bytes, |b| Environment::parse("f.env", b), Environment::to_text)
 }
 
 /// GEMPA configuration files.
-pub fn gempa_path(bytes: &[u8]) -> bool {
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn gempa_path(bytes: &[u8]) -> Result<(), Error> {
     round_trips(bytes, |b| PathFile::parse("f.txt", b), PathFile::to_text)
 }
 
 /// Paths in JSON.
-pub fn json_path(bytes: &[u8]) -> bool {
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn json_path(bytes: &[u8]) -> Result<(), Error> {
     round_trips(bytes, |b| PathFile::parse_json("f.json", b), PathFile::to_json)
 }
 
 /// STL, text and binary.
-pub fn stl(bytes: &[u8]) -> bool {
-    let Some(mesh) = valid(parse_stl("f.stl", bytes)) else { return false };
-    same_triangles(&mesh, valid(parse_stl("f.stl", stl_text(&mesh).as_bytes())));
-    true
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn stl(bytes: &[u8]) -> Result<(), Error> {
+    let mesh = parse_stl("f.stl", bytes)?;
+    same_triangles(&mesh, &parse_stl("f.stl", stl_text(&mesh).as_bytes()));
+    Ok(())
 }
 
 /// OBJ.
-pub fn obj(bytes: &[u8]) -> bool {
-    valid(parse_obj("f.obj", bytes)).is_some()
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn obj(bytes: &[u8]) -> Result<(), Error> {
+    parse_obj("f.obj", bytes).map(drop)
 }
 
 /// COLLADA.
-pub fn collada(bytes: &[u8]) -> bool {
-    let Some(scene) = valid(Scene::parse("f.dae", bytes)) else { return false };
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn collada(bytes: &[u8]) -> Result<(), Error> {
+    let scene = Scene::parse("f.dae", bytes)?;
     let _ = scene.center();
-    valid(scene.to_mesh("f.dae")).is_some()
+    scene.to_mesh("f.dae").map(drop)
 }
 
 /// OMPL.app problems.
-pub fn ompl_app(bytes: &[u8]) -> bool {
-    valid(OmplProblem::parse("f.cfg", bytes)).is_some()
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn ompl_app(bytes: &[u8]) -> Result<(), Error> {
+    OmplProblem::parse("f.cfg", bytes).map(drop)
 }
 
 /// Robot problems.
-pub fn robot_problem(bytes: &[u8]) -> bool {
-    valid(RobotFile::parse("f.toml", bytes)).is_some()
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn robot_problem(bytes: &[u8]) -> Result<(), Error> {
+    RobotFile::parse("f.toml", bytes).map(drop)
 }
 
 /// Paths of joint values.
-pub fn joint_path(bytes: &[u8]) -> bool {
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn joint_path(bytes: &[u8]) -> Result<(), Error> {
     round_trips(bytes, |b| JointPath::parse("f.txt", b), JointPath::to_text)
 }
 
 /// Paths of joint values in JSON.
-pub fn json_joint_path(bytes: &[u8]) -> bool {
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn json_joint_path(bytes: &[u8]) -> Result<(), Error> {
     round_trips(bytes, |b| JointPath::parse_json("f.json", b), JointPath::to_json)
 }
 
 /// Paths as comma-separated values.
-pub fn csv_path(bytes: &[u8]) -> bool {
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn csv_path(bytes: &[u8]) -> Result<(), Error> {
     round_trips(bytes, |b| parse_csv("f.csv", b), |rows| csv_text(&[], rows))
 }
 
 /// Worlds in the plane.
-pub fn planar_world(bytes: &[u8]) -> bool {
-    valid(PlanarFile::parse("f.toml", bytes)).is_some()
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn planar_world(bytes: &[u8]) -> Result<(), Error> {
+    PlanarFile::parse("f.toml", bytes).map(drop)
 }
 
 /// Maps of ROS.
-pub fn ros_map(bytes: &[u8]) -> bool {
-    valid(RosMap::parse("f.yaml", bytes)).is_some()
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn ros_map(bytes: &[u8]) -> Result<(), Error> {
+    RosMap::parse("f.yaml", bytes).map(drop)
 }
 
 /// Images, and the outline of their dark pixels.
-pub fn map_image(bytes: &[u8]) -> bool {
-    let Some(grid) = valid(GridMap::parse("f.png", bytes)) else { return false };
-    grid.outline(0.5, [0.0; 2], |brightness| brightness < 128.0, &mp_stop::Interrupt::never()).is_ok()
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn map_image(bytes: &[u8]) -> Result<(), Error> {
+    let grid = GridMap::parse("f.png", bytes)?;
+    // Too many corners are an error without a file, which the reader of the problem adds.
+    let _ = grid.outline(0.5, [0.0; 2], |brightness| brightness < 128.0, &mp_stop::Interrupt::never());
+    Ok(())
 }
 
 /// Scenes of the editor.
-pub fn scene_document(bytes: &[u8]) -> bool {
-    let Some(document) = valid(SceneDocument::parse("f.mp.json", bytes)) else { return false };
-    let again = valid(SceneDocument::parse("f.mp.json", document.to_text().as_bytes()));
-    assert_eq!(again.as_ref(), Some(&document));
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn scene_document(bytes: &[u8]) -> Result<(), Error> {
+    let document = SceneDocument::parse("f.mp.json", bytes)?;
+    let again = SceneDocument::parse("f.mp.json", document.to_text().as_bytes());
+    assert_eq!(again.as_ref().ok(), Some(&document));
     let missing = |file: &str| Err(Error::new(ErrorKind::Io, file, "there is no such mesh"));
-    let _ = valid(document.problem("f.mp.json", &missing));
-    true
+    let _ = document.problem("f.mp.json", &missing);
+    Ok(())
 }
 
-/// Whether the bytes are valid. Checks that writing the value and reading it again gives the same.
+/// Files of all formats, and what is said about those that are refused: the first line names a target, the rest is
+/// for it.
+///
+/// # Errors
+/// When the bytes are refused; the error was checked.
+pub fn errors(bytes: &[u8]) -> Result<(), Error> {
+    let end = bytes.iter().position(|b| *b == b'\n').unwrap_or(bytes.len());
+    let (name, rest) = bytes.split_at(end);
+    let others = TARGETS.iter().filter(|(other, _)| *other != "errors");
+    let Some((_, target)) = others.into_iter().find(|(other, _)| other.as_bytes() == name) else {
+        return Ok(());
+    };
+    target(rest.get(1..).unwrap_or_default()).inspect_err(check_error)
+}
+
+/// Checks that the writer's text of a valid file reads back as the same value.
 fn round_trips<T: PartialEq + Debug>(
     bytes: &[u8],
     read: impl Fn(&[u8]) -> Result<T, Error>,
     text: impl Fn(&T) -> String,
-) -> bool {
-    let Some(value) = valid(read(bytes)) else { return false };
-    assert_eq!(valid(read(text(&value).as_bytes())), Some(value));
-    true
+) -> Result<(), Error> {
+    let value = read(bytes)?;
+    assert_eq!(read(text(&value).as_bytes()).ok(), Some(value));
+    Ok(())
 }
 
-/// The value that was read. Checks of an error that it can be shown: one line, a place inside the file, a remedy.
-fn valid<T>(read: Result<T, Error>) -> Option<T> {
-    let error = match read {
-        Ok(value) => return Some(value),
-        Err(error) => error,
-    };
+/// Checks that an error can be shown: one line, a place inside the file, a remedy.
+///
+/// # Panics
+/// When it cannot.
+pub fn check_error(error: &Error) {
     let line = error.to_string();
-    assert!(!line.contains('\n') && line.chars().count() < 500, "{line}");
+    assert!(!line.contains(char::is_control) && line.chars().count() < 500, "{line}");
     assert!(error.line().is_none_or(|l| l > 0) && error.column().is_none_or(|c| c > 0));
     assert!(error.remedy().is_some(), "{line}");
     let report = error.report();
     assert!(report.lines().count() <= 4 && report.chars().count() < 500, "{report}");
-    None
+    // Tabs of the file stay in its line and above the mark below.
+    assert!(!report.contains(|c: char| c.is_control() && !matches!(c, '\n' | '\t')), "{report:?}");
 }
 
-fn same_triangles(mesh: &TriMesh, again: Option<TriMesh>) {
+fn same_triangles(mesh: &TriMesh, again: &Result<TriMesh, Error>) {
     let all = |m: &TriMesh| (0..m.triangles().len()).map(|i| m.triangle(i)).collect::<Vec<_>>();
-    assert_eq!(again.map(|m| all(&m)), Some(all(mesh)));
+    assert_eq!(again.as_ref().ok().map(all), Some(all(mesh)));
 }

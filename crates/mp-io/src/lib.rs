@@ -40,7 +40,7 @@ pub use collada::parse_collada;
 pub use csv::{csv_text, parse_csv};
 pub use document::{DocumentBody, DocumentShape, SceneDocument};
 pub use drive::{Drive, Driven};
-pub use error::{Error, ErrorKind, shortened};
+pub use error::{Error, ErrorKind, one_line, shortened};
 pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, Until, read_text};
 pub use gempa::{Environment, Obstacle, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
 pub use mesh::{MAX_CORNERS, MeshFormat, read_mesh, read_mesh_of};

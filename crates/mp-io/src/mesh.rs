@@ -128,7 +128,7 @@ pub(crate) fn mesh_error(file: &str, e: &MeshError) -> Error {
     let error = Error::new(ErrorKind::Content, file, e.to_string());
     match e {
         MeshError::Empty => error.help("a body needs at least one triangle"),
-        _ => error,
+        _ => error.help("correct the program that wrote the mesh, or export it again"),
     }
 }
 

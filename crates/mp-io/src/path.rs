@@ -245,7 +245,9 @@ fn write<C: AsRef<[f64]> + Serialize>(
 ) -> Result<(), Error> {
     if configurations.iter().flat_map(AsRef::as_ref).any(|v| !v.is_finite()) {
         let message = "the path has a number that is not finite: nothing is written";
-        return Err(Error::new(ErrorKind::Content, path.display(), message));
+        return Err(
+            Error::new(ErrorKind::Content, path.display(), message).help("correct what made the path")
+        );
     }
     let content = if is_json(path) { rows_text(configurations) } else { text() };
     Ok(mp_store::write(path, content.as_bytes())?)

@@ -23,7 +23,7 @@ struct Inner {
 impl Error {
     /// An error with this message: lower case, no full stop.
     pub fn new(message: impl Into<String>) -> Self {
-        let message = mp_io::shortened(&message.into(), MAX_MESSAGE);
+        let message = mp_io::one_line(&message.into(), MAX_MESSAGE);
         Self(Box::new(Inner { context: Vec::new(), message, help: None, file: None }))
     }
 

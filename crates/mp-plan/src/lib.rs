@@ -64,6 +64,8 @@ mod field;
 mod film;
 mod find;
 mod finish;
+#[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
+pub mod fuzz;
 mod goals;
 pub mod info;
 mod inputs;

@@ -7,6 +7,7 @@ use crate::{
 };
 use mp_plan::Column;
 use serde::{Deserialize, Serialize};
+use std::cell::Cell;
 
 /// The version written and read.
 const VERSION: u32 = 1;
@@ -307,9 +308,16 @@ impl SceneFile {
 }
 
 fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
-    fn get<T: Entry>(data: &[u8], array: &ArrayRef, what: &str) -> Result<Vec<T>, ViewError> {
-        extract(data, array, what)
+    /// Arrays, and how many bytes of them may still be read: many arrays in one place would take memory out of proportion.
+    struct Data<'d>(&'d [u8], Cell<usize>);
+    fn get<T: Entry>(data: &Data<'_>, array: &ArrayRef, what: &str) -> Result<Vec<T>, ViewError> {
+        let entries = extract(data.0, array, what)?;
+        let left = data.1.get().checked_sub(entries.len() * T::SIZE);
+        let problem = "is in the place of another array";
+        data.1.set(left.ok_or_else(|| ViewError::Array { what: what.to_owned(), problem })?);
+        Ok(entries)
     }
+    let data = &Data(data, Cell::new(data.len()));
     let configuration = |q: ConfigurationHead| Configuration { row: q.row, poses: q.poses };
     let body = |body: BodyHead| {
         Ok(Body {

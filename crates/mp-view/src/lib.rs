@@ -21,6 +21,7 @@
 mod arrays;
 mod bytes;
 mod error;
+pub mod fuzz;
 mod glb;
 mod growth;
 mod message;

@@ -11,6 +11,7 @@ mod tests;
 mod threads;
 mod worker;
 
+pub(crate) use desk::Desk;
 pub use desk::Opening;
 pub use mesh::{is_mesh, scene_of_mesh};
 #[cfg(not(target_family = "wasm"))]

@@ -84,9 +84,9 @@ fn files_that_do_not_fit_are_refused_with_a_reason() {
     assert!(matches!(refused(&bytes[..6]), ViewError::CutOff { .. }));
     assert!(matches!(refused(&bytes[..100]), ViewError::CutOff { .. }));
     assert!(matches!(refused(&bytes[..bytes.len() - 8]), ViewError::Array { .. }));
+    let head = u32::from_le_bytes(bytes[4..8].try_into().unwrap()) as usize;
+    let json = std::str::from_utf8(&bytes[8..8 + head]).unwrap();
     let text = |from: &str, to: &str| {
-        let head = u32::from_le_bytes(bytes[4..8].try_into().unwrap()) as usize;
-        let json = std::str::from_utf8(&bytes[8..8 + head]).unwrap();
         assert!(json.contains(from), "{from}");
         let json = json.replacen(from, to, 1);
         let mut other = b"MPV1".to_vec();
@@ -105,6 +105,11 @@ fn files_that_do_not_fit_are_refused_with_a_reason() {
         assert!(matches!(refused(&text("#007fff", color)), ViewError::Array { .. }), "{color}");
     }
     assert!(matches!(refused(&text("\"type\":\"f32\"", "\"type\":\"u8\"")), ViewError::Array { .. }));
+    // The same array many times would take memory out of proportion.
+    let mesh = json.split_once("\"meshes\":[").unwrap().1.split_once("}}").unwrap().0;
+    let again = format!("{mesh}}}}},").repeat(1000) + mesh;
+    let many = refused(&text(mesh, &again)).to_string();
+    assert!(many.contains("in the place of another array"), "{many}");
     // Members of later versions are ignored.
     assert_eq!(&SceneFile::parse(&text("{\"version\":1,", "{\"version\":1,\"later\":[1],")).unwrap(), full());
 }

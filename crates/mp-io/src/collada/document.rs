@@ -215,6 +215,10 @@ pub(super) fn xml_error(file: &str, text: &str, error: &roxmltree::Error) -> Err
 pub(super) fn refuse_floods(file: &str, text: &str) -> Result<(), Error> {
     let mut rest = text;
     let mut namespaces = 0;
+    let flood = |at, message| {
+        Error::at(ErrorKind::TooLarge, file, text, at, 1, message)
+            .help("export the mesh with another program")
+    };
     while let Some(open) = rest.find('<') {
         let tag = &rest[open..];
         let skip = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")]
@@ -240,13 +244,13 @@ pub(super) fn refuse_floods(file: &str, text: &str) -> Result<(), Error> {
             }
             if attributes > MAX_ATTRIBUTES {
                 let message = format!("an element with more than {MAX_ATTRIBUTES} attributes");
-                return Err(Error::at(ErrorKind::TooLarge, file, text, text.len() - tag.len(), 1, message));
+                return Err(flood(text.len() - tag.len(), message));
             }
         }
         namespaces += tag[..close].matches("xmlns").count();
         if namespaces > MAX_NAMESPACES {
             let message = format!("more than {MAX_NAMESPACES} declarations of name spaces");
-            return Err(Error::at(ErrorKind::TooLarge, file, text, text.len() - tag.len(), 1, message));
+            return Err(flood(text.len() - tag.len(), message));
         }
         rest = &tag[close..];
     }

@@ -21,11 +21,15 @@ impl Named {
         let none = || Error::new("the request has no files");
         let list = request.head.get("files").and_then(Value::as_array).ok_or_else(none)?;
         let mut files = Vec::new();
+        let mut left = request.data.len();
         for file in list {
             let members = file.as_object().ok_or_else(none)?;
             let name = text_of(members, "name")?.to_owned();
             let bytes = members.get("bytes").cloned().unwrap_or_default();
-            files.push((name, request.bytes(&bytes, "bytes").map_err(|e| Error::new(e.to_string()))?));
+            let bytes = request.bytes(&bytes, "bytes").map_err(|e| Error::new(e.to_string()))?;
+            // Many files in one place would take memory out of proportion.
+            left = left.checked_sub(bytes.len()).ok_or_else(|| Error::new("files of the request overlap"))?;
+            files.push((name, bytes));
         }
         if files.is_empty() { Err(none()) } else { Ok(Self(files)) }
     }

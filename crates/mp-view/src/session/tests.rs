@@ -428,6 +428,10 @@ fn documents_are_edited_and_saved() {
     let tetrahedron = b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
     let mesh = page.reply(with_files(json!({"do": "mesh"}), &[("four.off", tetrahedron)]));
     assert_eq!((&mesh.head["file"], &mesh.head["triangles"]), (&json!("four.off"), &json!(4)));
+    let mut many = with_files(json!({"do": "mesh"}), &[("four.off", tetrahedron)]);
+    let file = many.head["files"][0].clone();
+    many.set("files", vec![file; 1000]);
+    assert!(page.reply(many).head["error"]["message"].as_str().unwrap().contains("overlap"));
     let mut changed = document();
     let four = json!({"name": "four", "shape": {"mesh": {"file": "four.off"}}, "pose": [0, 3, 0, 0, 0, 0]});
     changed["obstacles"].as_array_mut().unwrap().push(four);

@@ -1,0 +1,15 @@
+//! The corpora of the fuzzer for scenes, robots, requests and roadmaps, and damaged copies of them: docs/fuzzing.md.
+
+#![cfg(not(target_family = "wasm"))]
+
+#[path = "../../../fuzz/damage.rs"]
+mod damage;
+
+use mp_plan::fuzz::{TARGETS, check_error};
+
+#[test]
+fn damaged_files_are_read_or_refused() {
+    for (name, target) in TARGETS {
+        damage::all_are_read_or_refused(name, 400, |bytes| target(bytes).inspect_err(check_error).is_ok());
+    }
+}
