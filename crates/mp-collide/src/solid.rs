@@ -75,7 +75,7 @@ impl Solid {
     }
 
     fn swept([p, q]: [Point3<f64>; 2], radius: f64) -> Self {
-        let core = CollisionMesh::from_triangles(vec![[p, q, q]]);
+        let core = CollisionMesh::from_triangles(&[[p, q, q]]);
         Self { primitive: Primitive::Swept { core, radius } }
     }
 

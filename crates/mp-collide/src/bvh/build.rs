@@ -1,8 +1,6 @@
 //! Building: a binary tree by the surface-area heuristic, collapsed to eight children where dynamic
 //! programming finds it cheapest.
 
-use std::ops::Range;
-
 use nalgebra::{Point3, Vector3};
 
 use crate::bvh::collapse::{Choice, children, choose};
@@ -11,13 +9,23 @@ use crate::bvh::split::{BinaryNode, BuildTriangle, split_all};
 use crate::bvh::{LEAF, Leaf, Node, NodeBox, Tree, WIDTH};
 use crate::triangle::Triangle;
 
+/// For up to so many triangles it is speed that counts, for more of them memory.
+pub(crate) const SMALL: usize = 1 << 20;
+
 impl Tree {
-    /// The tree of `triangles`, which are at least one and at most `u32::MAX`, as [`mp_geom::TriMesh`] ensures.
+    /// The tree of `count` triangles, at least one and at most `u32::MAX`, as [`mp_geom::TriMesh`] ensures.
+    ///
+    /// Triangles of which there are more than a million take at most 200 bytes each meanwhile, with those of the finished tree.
     ///
     /// # Errors
     /// That of `go_on`, which is called often.
-    pub(crate) fn build<E>(triangles: &[Triangle], go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
-        let corners = || triangles.iter().flatten();
+    pub(crate) fn build<E>(
+        count: usize,
+        triangle: impl Fn(usize) -> Triangle,
+        go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let all = || (0..count).map(&triangle);
+        let corners = || all().flatten();
         let (mut lo, mut hi) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
         for p in corners() {
             lo = lo.inf(&p.coords);
@@ -31,44 +39,50 @@ impl Tree {
         let radius_center = corners().map(|p| (p - center).norm()).fold(0.0, farthest) * up;
         // Meshes so small that this overflows are not decided by boxes (`Frames::fits_f32`).
         let scale = Some(radius_center.recip()).filter(|s| s.is_finite()).unwrap_or(1.0);
-        let in_unit = |p: &Point3<f64>| {
+        let in_unit = |p: Point3<f64>| {
             let p = (p - center) * scale;
-            [p.x as f32, p.y as f32, p.z as f32, 0.0]
+            [p.x as f32, p.y as f32, p.z as f32]
         };
-        let mut items: Vec<BuildTriangle> = triangles
-            .iter()
-            .enumerate()
-            .map(|(i, t)| BuildTriangle {
-                corners: [in_unit(&t[0]), in_unit(&t[1]), in_unit(&t[2])],
-                id: i as u32,
-            })
-            .collect();
+        let items = all().enumerate().map(|(i, t)| BuildTriangle { corners: t.map(in_unit), id: i as u32 });
+        let mut items: Vec<BuildTriangle> = items.collect();
         let binary = split_all(&mut items, go_on)?;
         let choices = choose(&binary);
-        let leaves = binary.iter().filter(|b| b.children == 0).count();
+        let leaves = binary.iter().filter(|b| b.children() == 0).count();
         let mut tree = Self {
             nodes: Vec::new(),
             leaves: Vec::with_capacity(leaves),
             node_boxes: Vec::new(),
             leaf_boxes: Vec::with_capacity(leaves),
             root: 0,
-            bounding: RootBox::fit(triangles.iter()),
-            triangles: items.iter().map(|i| triangles[i.id as usize]).collect(),
-            ids: items.iter().map(|i| i.id).collect(),
+            bounding: RootBox::fit(all()),
+            triangles: Vec::new(),
+            ids: Vec::new(),
             center,
             radius_center,
             radius,
         };
         let obb = binary[0].obb(&items, radius_center);
-        tree.root = tree.emit(&items, &binary, &choices, 0, obb);
+        // Beside all the rest only where they are not too many.
+        let in_order = |i: &BuildTriangle| triangle(i.id as usize);
+        if count <= SMALL {
+            tree.triangles = items.iter().map(in_order).collect();
+        }
+        tree.root = tree.emit(&triangle, &items, &binary, &choices, 0, obb);
+        drop((binary, choices));
         tree.nodes.shrink_to_fit();
         tree.node_boxes.shrink_to_fit();
+        tree.ids = items.iter().map(|i| i.id).collect();
+        drop(items);
+        if count > SMALL {
+            tree.triangles = tree.ids.iter().map(|id| triangle(*id as usize)).collect();
+        }
         Ok(tree)
     }
 
     /// Adds binary node `n`, whose box is `obb`, and all below; returns the reference to it.
     fn emit(
         &mut self,
+        triangle: &impl Fn(usize) -> Triangle,
         items: &[BuildTriangle],
         binary: &[BinaryNode],
         choices: &[Choice],
@@ -76,8 +90,13 @@ impl Tree {
         obb: NodeBox,
     ) -> u32 {
         let b = &binary[n];
-        if b.children == 0 {
-            self.leaves.push(leaf(&self.triangles, &self.center, &b.range, &obb));
+        if b.children() == 0 {
+            let own = b.range().map(|i| match self.triangles.get(i) {
+                Some(own) => *own,
+                None => triangle(items[i].id as usize),
+            });
+            let leaf = leaf(own, b.range().start, &self.center, &obb);
+            self.leaves.push(leaf);
             self.leaf_boxes.push(obb);
             return LEAF | (self.leaves.len() - 1) as u32;
         }
@@ -86,21 +105,25 @@ impl Tree {
         self.node_boxes.push(obb);
         for (lane, &root) in children(binary, choices, n).iter().enumerate() {
             let obb = binary[root].obb(items, self.radius_center);
-            let child = self.emit(items, binary, choices, root, obb);
+            let child = self.emit(triangle, items, binary, choices, root, obb);
             self.nodes[me].set(lane, child, &obb);
         }
         me as u32
     }
 }
 
-/// The leaf of `triangles[range]`, one to eight, with the box around them.
+/// The leaf of one to eight triangles, of which the first is the triangle `first` of the tree, with the box around them.
 pub(crate) fn leaf(
-    triangles: &[Triangle],
+    triangles: impl Iterator<Item = Triangle>,
+    first: usize,
     center: &Point3<f64>,
-    range: &Range<usize>,
     obb: &NodeBox,
 ) -> Leaf {
-    let (first, count) = (range.start, range.len());
+    let (mut own, mut count) = ([[Point3::origin(); 3]; WIDTH], 0);
+    for (slot, triangle) in own.iter_mut().zip(triangles) {
+        *slot = triangle;
+        count += 1;
+    }
     let middle: [f64; 3] = std::array::from_fn(|d| center[d] + f64::from(obb.frame[d][0]));
     let mut leaf = Leaf {
         corner: [[[0.0; WIDTH]; 3]; 3],
@@ -112,7 +135,7 @@ pub(crate) fn leaf(
     };
     let mut edge: f64 = 0.0;
     for lane in 0..WIDTH {
-        let t = &triangles[first + lane.min(count - 1)];
+        let t = &own[lane.min(count - 1)];
         for k in 0..3 {
             for d in 0..3 {
                 let x = (t[k][d] - middle[d]) as f32;
@@ -166,7 +189,11 @@ mod tests {
                     let place = |p: Point3<f64>| (turn * p * scale) + Vector3::repeat(far * scale);
                     let triangles: Vec<Triangle> =
                         (0..mesh.triangles().len()).map(|i| mesh.triangle(i).map(place)).collect();
-                    let Ok(tree) = Tree::build(&triangles, || Ok::<(), std::convert::Infallible>(()));
+                    let Ok(tree) = Tree::build(
+                        triangles.len(),
+                        |i| triangles[i],
+                        || Ok::<(), std::convert::Infallible>(()),
+                    );
                     assert_eq!(below(&tree, tree.root).len(), triangles.len());
                 }
             }

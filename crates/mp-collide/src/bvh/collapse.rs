@@ -19,11 +19,11 @@ pub(crate) fn choose(binary: &[BinaryNode]) -> Vec<Choice> {
     choices.resize_with(binary.len(), || Choice { cost: [0.0; WIDTH], left: [0; WIDTH], node_left: 1 });
     for n in (0..binary.len()).rev() {
         let b = &binary[n];
-        if b.children == 0 {
+        if b.children() == 0 {
             choices[n].cost = [b.surface; WIDTH];
             continue;
         }
-        let (l, r) = (b.children, b.children + 1);
+        let (l, r) = (b.children(), b.children() + 1);
         // The cheapest division of k + 1 roots, k ≥ 1, between the children; where all costs have overflowed,
         // some division.
         let mut divided = [(f32::INFINITY, 1u8); WIDTH + 1];
@@ -50,8 +50,8 @@ pub(crate) fn choose(binary: &[BinaryNode]) -> Vec<Choice> {
 pub(crate) fn children(binary: &[BinaryNode], choices: &[Choice], n: usize) -> Vec<usize> {
     let mut roots = Vec::with_capacity(WIDTH);
     let left = usize::from(choices[n].node_left);
-    forest(binary, choices, binary[n].children, left, &mut roots);
-    forest(binary, choices, binary[n].children + 1, WIDTH - left, &mut roots);
+    forest(binary, choices, binary[n].children(), left, &mut roots);
+    forest(binary, choices, binary[n].children() + 1, WIDTH - left, &mut roots);
     roots
 }
 
@@ -64,10 +64,10 @@ fn forest(binary: &[BinaryNode], choices: &[Choice], n: usize, k: usize, roots: 
         k -= 1;
     }
     let left = usize::from(c.left[k - 1]);
-    if binary[n].children == 0 || k == 1 || left == 0 {
+    if binary[n].children() == 0 || k == 1 || left == 0 {
         roots.push(n);
         return;
     }
-    forest(binary, choices, binary[n].children, left, roots);
-    forest(binary, choices, binary[n].children + 1, k - left, roots);
+    forest(binary, choices, binary[n].children(), left, roots);
+    forest(binary, choices, binary[n].children() + 1, k - left, roots);
 }

@@ -35,7 +35,7 @@ fn sample(items: &[BuildTriangle]) -> ([[Vec4; 3]; SAMPLE], usize) {
     let step = items.len().div_ceil(SAMPLE);
     let mut count = 0;
     for item in items.iter().step_by(step) {
-        sample[count] = item.corners;
+        sample[count] = item.corners();
         count += 1;
     }
     (sample, count)
@@ -47,7 +47,7 @@ pub(crate) fn refine(items: &[BuildTriangle], frame: &Axes) -> Option<Axes> {
     let (sample, count) = sample(items);
     let corners = sample[..count].as_flattened();
     let mut axes = frame.map(|u| Vector3::from(u.map(f64::from)));
-    let (lo, hi) = extent(corners, &columns(frame));
+    let (lo, hi) = extent(corners.iter().copied(), &columns(frame));
     let mut size: [f32; 3] = std::array::from_fn(|k| hi[k] - lo[k]);
     let start = surface(&lo, &hi);
     let mut best = start;
@@ -59,7 +59,7 @@ pub(crate) fn refine(items: &[BuildTriangle], frame: &Axes) -> Option<Axes> {
             // Both senses of rotation at once.
             let turned = [ci + sj, cj - si, ci - sj, cj + si];
             let columns = std::array::from_fn(|d| turned.map(|u| u[d] as f32));
-            let (lo, hi) = extent(corners, &columns);
+            let (lo, hi) = extent(corners.iter().copied(), &columns);
             for (p, q) in [(0, 1), (2, 3)] {
                 let (x, y) = (hi[p] - lo[p], hi[q] - lo[q]);
                 let surface = x * y + size[k] * (x + y);
@@ -90,10 +90,10 @@ fn rounded(axes: &[Vector3<f64>; 3]) -> Axes {
 
 /// The least and the greatest coordinate along each axis.
 #[inline(always)]
-pub(crate) fn extent<'a>(corners: impl IntoIterator<Item = &'a Vec4>, columns: &[Vec4; 3]) -> (Vec4, Vec4) {
+pub(crate) fn extent(corners: impl IntoIterator<Item = Vec4>, columns: &[Vec4; 3]) -> (Vec4, Vec4) {
     let (mut lo, mut hi) = ([f32::INFINITY; 4], [f32::NEG_INFINITY; 4]);
     for p in corners {
-        let x = along(columns, p);
+        let x = along(columns, &p);
         (lo, hi) = (min(&x, &lo), max(&x, &hi));
     }
     (lo, hi)
@@ -114,7 +114,7 @@ struct BestAxes<'a> {
 
 impl BestAxes<'_> {
     fn offer(&mut self, frame: &Axes) {
-        let (lo, hi) = extent(self.corners, &columns(frame));
+        let (lo, hi) = extent(self.corners.iter().copied(), &columns(frame));
         let surface = surface(&lo, &hi);
         if surface < self.surface * 0.999 && frame.as_flattened().iter().all(|x| x.is_finite()) {
             (self.surface, self.frame) = (surface, *frame);

@@ -19,7 +19,7 @@ pub(crate) struct RootBox {
 impl RootBox {
     /// A small box around `triangles`: the one of least surface along several frames (the principal axes of the surface,
     /// the frame of the largest triangle, the axes of the mesh). O(n).
-    pub(crate) fn fit<'a>(triangles: impl Iterator<Item = &'a Triangle> + Clone) -> Self {
+    pub(crate) fn fit(triangles: impl Iterator<Item = Triangle> + Clone) -> Self {
         let frames = [
             principal_axes(triangles.clone()),
             largest_triangle_axes(triangles.clone()),
@@ -36,7 +36,7 @@ impl RootBox {
     }
 
     /// The smallest box with these axes.
-    fn around<'a>(triangles: impl Iterator<Item = &'a Triangle>, axes: [Vector3<f64>; 3]) -> Self {
+    fn around(triangles: impl Iterator<Item = Triangle>, axes: [Vector3<f64>; 3]) -> Self {
         let (mut min, mut max) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
         for p in triangles.flatten() {
             let along = Vector3::new(axes[0].dot(&p.coords), axes[1].dot(&p.coords), axes[2].dot(&p.coords));
@@ -81,7 +81,7 @@ impl RootBox {
 }
 
 /// The principal axes of the surface of `triangles` (of their corners when that has no area).
-fn principal_axes<'a>(triangles: impl Iterator<Item = &'a Triangle> + Clone) -> [Vector3<f64>; 3] {
+fn principal_axes(triangles: impl Iterator<Item = Triangle> + Clone) -> [Vector3<f64>; 3] {
     // Relative to a corner: less cancellation for meshes far from their origin.
     let Some(origin) = triangles.clone().next().map(|t| t[0]) else {
         return [Vector3::x(), Vector3::y(), Vector3::z()];
@@ -109,7 +109,7 @@ fn principal_axes<'a>(triangles: impl Iterator<Item = &'a Triangle> + Clone) -> 
 }
 
 /// The frame of the largest triangle: its longest edge, its normal, and the direction orthogonal to both.
-fn largest_triangle_axes<'a>(triangles: impl Iterator<Item = &'a Triangle>) -> [Vector3<f64>; 3] {
+fn largest_triangle_axes(triangles: impl Iterator<Item = Triangle>) -> [Vector3<f64>; 3] {
     let mut best = (0.0, [Vector3::x(), Vector3::y(), Vector3::z()]);
     for t in triangles {
         let edges = [t[1] - t[0], t[2] - t[1], t[0] - t[2]];

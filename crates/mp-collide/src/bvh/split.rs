@@ -23,37 +23,64 @@ const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
 /// Three coordinates in a register of four.
 pub(crate) type Vec4 = [f32; 4];
 
-/// A triangle during the build.
+/// Up to this many triangles their extents are kept while they are divided; those of more are computed anew in each pass.
+const KEPT: usize = 1 << 20;
+
+/// A triangle during the build. 40 bytes.
 #[derive(Clone, Copy)]
 pub(crate) struct BuildTriangle {
-    pub(crate) corners: [Vec4; 3],
+    pub(crate) corners: [[f32; 3]; 3],
     pub(crate) id: u32,
 }
 
+impl BuildTriangle {
+    const NONE: Self = Self { corners: [[0.0; 3]; 3], id: 0 };
+
+    #[inline(always)]
+    pub(crate) fn corners(&self) -> [Vec4; 3] {
+        self.corners.map(|[x, y, z]| [x, y, z, 0.0])
+    }
+}
+
+/// A node of the binary tree. 76 bytes.
 pub(crate) struct BinaryNode {
     /// The index of the first child, which the second follows; 0 in a leaf.
-    pub(crate) children: usize,
-    pub(crate) range: Range<usize>,
+    children: u32,
+    range: [u32; 2],
     pub(crate) surface: f32,
     frame: Axes,
-    lo: Vec4,
-    hi: Vec4,
+    lo: [f32; 3],
+    hi: [f32; 3],
 }
 
 impl BinaryNode {
+    /// There are no more than `u32::MAX` triangles.
     fn new(range: Range<usize>) -> Self {
-        Self { children: 0, range, surface: 0.0, frame: fit::MESH, lo: [0.0; 4], hi: [0.0; 4] }
+        let range = [range.start as u32, range.end as u32];
+        Self { children: 0, range, surface: 0.0, frame: fit::MESH, lo: [0.0; 3], hi: [0.0; 3] }
+    }
+
+    /// The index of the first child, which the second follows; 0 in a leaf.
+    #[inline]
+    pub(crate) fn children(&self) -> usize {
+        self.children as usize
+    }
+
+    /// Its part of the triangles.
+    #[inline]
+    pub(crate) fn range(&self) -> Range<usize> {
+        self.range[0] as usize..self.range[1] as usize
     }
 
     /// The box around the node's part of `items`, rounding included, in metres: `unit` is the radius of the mesh. Relative
     /// to the centre of the mesh.
     pub(crate) fn obb(&self, items: &[BuildTriangle], unit: f64) -> NodeBox {
-        let items = &items[self.range.clone()];
+        let items = &items[self.range()];
         let (f, lo, hi) = match fit::refine(items, &self.frame) {
             Some(frame) => {
-                let (lo, hi) =
-                    fit::extent(items.iter().flat_map(|item| &item.corners), &fit::columns(&frame));
-                (frame, lo, hi)
+                let corners = items.iter().flat_map(BuildTriangle::corners);
+                let ([lx, ly, lz, _], [hx, hy, hz, _]) = fit::extent(corners, &fit::columns(&frame));
+                (frame, [lx, ly, lz], [hx, hy, hz])
             }
             None => (self.frame, self.lo, self.hi),
         };
@@ -84,25 +111,32 @@ pub(crate) fn split_all<E>(
     items: &mut [BuildTriangle],
     mut go_on: impl FnMut() -> Result<(), E>,
 ) -> Result<Vec<BinaryNode>, E> {
-    let mut own = Vec::with_capacity(items.len());
-    let mut aside = items.to_vec();
+    let mut own = Vec::with_capacity(items.len().min(KEPT));
+    let mut aside = Vec::new();
     let mut binary = Vec::with_capacity(items.len() / 2 + 1);
     binary.push(BinaryNode::new(0..items.len()));
     let mut todo = vec![0];
     while let Some(n) = todo.pop() {
         go_on()?;
-        let range = binary[n].range.clone();
+        let range = binary[n].range();
         let items = &mut items[range.clone()];
         let frame = fit::frame(items);
         let all = bounds(items, &frame, &mut own);
         let b = &mut binary[n];
-        (b.frame, b.lo, b.hi) = (frame, all.lo[1], all.hi[1]);
-        b.surface = surface(&b.lo, &b.hi);
+        let three = |[x, y, z, _]: Vec4| [x, y, z];
+        (b.frame, b.lo, b.hi) = (frame, three(all.lo[1]), three(all.hi[1]));
+        b.surface = surface(&all.lo[1], &all.hi[1]);
         // Along the axes of the mesh alone where those of the box are the same.
         let frames = if frame == fit::MESH { 1 } else { 2 };
-        if let Some(first) = split(items, &own, frames, b.surface, &mut aside) {
+        let first = if items.len() > KEPT {
+            let columns = fit::columns(&frame);
+            Some(bin(items, |items, i| extents(&items[i], &columns), frames, &mut aside))
+        } else {
+            split(items, &own, frames, b.surface, &mut aside)
+        };
+        if let Some(first) = first {
             let children = binary.len();
-            binary[n].children = children;
+            binary[n].children = children as u32;
             binary.push(BinaryNode::new(range.start..range.start + first));
             binary.push(BinaryNode::new(range.start + first..range.end));
             todo.extend([children, children + 1]);
@@ -165,20 +199,28 @@ pub(crate) fn along(columns: &[Vec4; 3], p: &Vec4) -> Vec4 {
     std::array::from_fn(|k| columns[0][k] * p[0] + columns[1][k] * p[1] + columns[2][k] * p[2])
 }
 
-/// The extents of each triangle, in `own`, and of all.
+/// The extents of a triangle, in a frame that comes as columns.
+#[inline(always)]
+fn extents(item: &BuildTriangle, columns: &[Vec4; 3]) -> Extents {
+    let [a, b, c] = &item.corners();
+    let [x, y, z] = [along(columns, a), along(columns, b), along(columns, c)];
+    Extents {
+        lo: [min(&min(a, b), c), min(&min(&x, &y), &z)],
+        hi: [max(&max(a, b), c), max(&max(&x, &y), &z)],
+    }
+}
+
+/// The extents of all triangles, and those of each, in `own`, if they are not too many to be kept.
 fn bounds(items: &[BuildTriangle], frame: &Axes, own: &mut Vec<Extents>) -> Extents {
     let columns = fit::columns(frame);
-    let mut all = Extents::EMPTY;
+    let (mut all, keep) = (Extents::EMPTY, items.len() <= KEPT);
     own.clear();
     for item in items {
-        let [a, b, c] = &item.corners;
-        let [x, y, z] = [along(&columns, a), along(&columns, b), along(&columns, c)];
-        let one = Extents {
-            lo: [min(&min(a, b), c), min(&min(&x, &y), &z)],
-            hi: [max(&max(a, b), c), max(&max(&x, &y), &z)],
-        };
+        let one = extents(item, &columns);
         all.join(&one);
-        own.push(one);
+        if keep {
+            own.push(one);
+        }
     }
     all
 }
@@ -190,11 +232,11 @@ fn split(
     own: &[Extents],
     frames: usize,
     whole: f32,
-    aside: &mut [BuildTriangle],
+    aside: &mut Vec<BuildTriangle>,
 ) -> Option<usize> {
     let n = items.len();
     if n > SWEEP {
-        return Some(bin(items, own, frames, aside));
+        return Some(bin(items, |_, i| own[i], frames, aside));
     }
     if n > WIDTH {
         return Some(sweep(items, own, frames, aside, |bounds, count| bounds.surface() * count as f32).0);
@@ -213,7 +255,7 @@ fn sweep(
     items: &mut [BuildTriangle],
     own: &[Extents],
     frames: usize,
-    aside: &mut [BuildTriangle],
+    aside: &mut Vec<BuildTriangle>,
     cost: impl Fn(&Extents, usize) -> f32,
 ) -> (usize, f32) {
     let n = items.len();
@@ -246,7 +288,8 @@ fn sweep(
             best_order[..n].copy_from_slice(order);
         }
     }
-    aside[..n].copy_from_slice(items);
+    aside.clear();
+    aside.extend_from_slice(items);
     for (item, i) in items.iter_mut().zip(best_order) {
         *item = aside[i as u32 as usize];
     }
@@ -260,24 +303,31 @@ fn ordered(x: f32) -> u32 {
     bits ^ if bits >> 31 == 1 { u32::MAX } else { 1 << 31 }
 }
 
-/// The best division between bins along each axis.
-fn bin(items: &mut [BuildTriangle], own: &[Extents], frames: usize, aside: &mut [BuildTriangle]) -> usize {
+/// The best division between bins along each axis. `own` gives the extents of an item.
+#[inline(always)]
+fn bin(
+    items: &mut [BuildTriangle],
+    own: impl Fn(&[BuildTriangle], usize) -> Extents,
+    frames: usize,
+    aside: &mut Vec<BuildTriangle>,
+) -> usize {
     let n = items.len();
     let mut best: Option<(f32, usize, usize, usize)> = None;
     let (mut start, mut scale) = ([[0.0; 4]; 2], [[0.0; 4]; 2]);
     for f in 0..frames {
         let (mut lo, mut hi) = ([f32::INFINITY; 4], [f32::NEG_INFINITY; 4]);
-        for o in own {
-            let middle = o.middle(f);
+        for i in 0..n {
+            let middle = own(items, i).middle(f);
             (lo, hi) = (min(&middle, &lo), max(&middle, &hi));
         }
         (start[f], scale[f]) = (lo, std::array::from_fn(|k| (BINS - 1) as f32 / (hi[k] - lo[k])));
         let mut bins = [[(Extents::EMPTY, 0u32); BINS]; 3];
-        for o in own {
-            let at = place(o, f, &start[f], &scale[f]);
+        for i in 0..n {
+            let o = own(items, i);
+            let at = place(&o, f, &start[f], &scale[f]);
             for k in 0..3 {
                 let bin = &mut bins[k][at[k]];
-                bin.0.join(o);
+                bin.0.join(&o);
                 bin.1 += 1;
             }
         }
@@ -306,9 +356,13 @@ fn bin(items: &mut [BuildTriangle], own: &[Extents], frames: usize, aside: &mut 
     };
     // A stable partition: the order depends on the mesh alone.
     let (mut low, mut high) = (0, 0);
-    for (j, o) in own.iter().enumerate() {
+    for j in 0..n {
+        // Room for the next ones, and not for all: most divisions are even.
+        if aside.len() <= high {
+            aside.resize((high + n / 16 + 64).min(n), BuildTriangle::NONE);
+        }
         let item = items[j];
-        let first = place(o, f, &start[f], &scale[f])[k] < i;
+        let first = place(&own(items, j), f, &start[f], &scale[f])[k] < i;
         items[low] = item;
         aside[high] = item;
         low += usize::from(first);

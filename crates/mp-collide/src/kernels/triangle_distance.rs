@@ -324,7 +324,7 @@ mod tests {
                 triangles[3] = triangles[3].map(|p| p + any() * (size * 1e-3));
             }
             let single = triangles[3].map(|p| turn * p + away);
-            let leaf = leaf(&triangles, &Point3::origin(), &(0..8), &obb);
+            let leaf = leaf(triangles.iter().copied(), 0, &Point3::origin(), &obb);
             for isa in Isa::available() {
                 let (bounds, close) = run(isa, Between(&leaf, &single));
                 assert_eq!(close.near, 0xff);

@@ -306,7 +306,7 @@ mod tests {
         let mut queries: Vec<Query> = Isa::available().into_iter().map(Query::with_isa).collect();
         for _ in 0..150 {
             let (a, b) = (some(&mut rng), some(&mut rng));
-            let meshes = [CollisionMesh::from_triangles(a.clone()), CollisionMesh::from_triangles(b.clone())];
+            let meshes = [CollisionMesh::from_triangles(&a), CollisionMesh::from_triangles(&b)];
             let turn = UnitQuaternion::from_scaled_axis(Vector3::from_fn(|_, _| rng.random_range(-3.0..3.0)));
             let way = Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0)).normalize();
             let mut check = |x: f64| {

@@ -23,7 +23,7 @@ impl Merged {
         if triangles.is_empty() || u32::try_from(triangles.len()).is_err() {
             return None;
         }
-        let mesh = CollisionMesh::from_triangles(triangles);
+        let mesh = CollisionMesh::from_triangles(&triangles);
         // A large mesh far away may be beyond the limit in the world, though mesh and pose are each within it.
         (mesh.radius() <= LIMIT).then_some(Self { mesh, starts })
     }
