@@ -199,6 +199,76 @@ fn a_scene_is_shown_planned_saved_and_ended() {
     assert!(run.code == 0 && run.stderr.contains("Ctrl-C"), "{run:?}");
 }
 
+/// Kills views while they save, and checks every time that the file is one of those that were saved, whole.
+#[cfg(unix)]
+fn kill_views(times: u32) {
+    let dir = Dir::new();
+    let path = |seed: &str| {
+        let made = mp(&dir, &["plan", "window.env", "--seed", seed, "--json", "--out", "p.txt"]);
+        assert_eq!(made.code, 0, "{made:?}");
+        (made.json()["path"].clone(), dir.bytes("p.txt"))
+    };
+    let paths = [path("1"), path("2")];
+    assert_ne!(paths[0].1, paths[1].1);
+    let mut seen = [0, 0];
+    for i in 0..times {
+        let mut view = View::start(&dir, &["window.env"]);
+        let mut child = view.child.take().unwrap();
+        let tab = view.tab();
+        let opened = tab.request(&json!({"do": "hello"}));
+        assert!(opened["folder"].is_string(), "{opened}");
+        let save = |rows: &Value| {
+            let save =
+                json!({"do": "save_path", "rows": rows, "format": "txt", "name": "found", "overwrite": true});
+            let mut stream = TcpStream::connect(&view.host).ok()?;
+            let body = message(&save);
+            let View { host, token, .. } = &view;
+            let head = format!(
+                "POST /{token}/message/{} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\n",
+                tab.session
+            );
+            let head = format!("{head}Content-Length: {}\r\nConnection: close\r\n\r\n", body.len());
+            stream.write_all(&[head.as_bytes(), &body].concat()).ok()?;
+            let mut reply = Vec::new();
+            stream.read_to_end(&mut reply).ok()?;
+            (!reply.is_empty()).then_some(())
+        };
+        // Saves one after the other until it is killed.
+        std::thread::scope(|scope| {
+            let saving = scope.spawn(|| (0..).take_while(|k| save(&paths[k % 2].0).is_some()).count());
+            std::thread::sleep(Duration::from_millis(20 + u64::from(i * 37 % 60)));
+            child.kill().unwrap();
+            finish(child);
+            saving.join().unwrap()
+        });
+        if dir.exists("found.txt") {
+            let found = dir.bytes("found.txt");
+            let whole = paths.iter().position(|path| path.1 == found);
+            seen[whole.unwrap_or_else(|| panic!("{i}: {}", String::from_utf8_lossy(&found)))] += 1;
+        }
+    }
+    assert!(seen[0] + seen[1] > 0, "nothing was saved");
+    // What a killed process leaves behind is swept up by the next one that writes.
+    assert_eq!(mp(&dir, &["plan", "window.env", "--json", "--out", "p.txt"]).code, 0);
+    let left: Vec<String> = dir.entries(".").into_iter().filter(|name| name.starts_with('.')).collect();
+    assert!(left.is_empty(), "{left:?}");
+    let _ = writeln!(std::io::stderr(), "{times} views killed, {seen:?} times one path or the other");
+}
+
+#[cfg(unix)]
+#[test]
+fn views_that_are_killed_while_they_save_tear_nothing() {
+    kill_views(4);
+}
+
+/// As many as a release is tested with: `cargo test -p mp-motion-cli --test view -- --ignored`.
+#[cfg(unix)]
+#[test]
+#[ignore = "takes a minute"]
+fn hundreds_of_views_that_are_killed_while_they_save_tear_nothing() {
+    kill_views(250);
+}
+
 #[cfg(unix)]
 #[test]
 fn a_run_ends_with_its_tab_and_cancels_at_once() {
