@@ -1,0 +1,291 @@
+//! One problem: its world, its request, what the program answers, and what the oracle says of it.
+
+use crate::draw::Draw;
+use crate::oracle::{Fault, Judged, rows_of};
+use crate::request::request;
+use crate::worlds::{Kind, World};
+use mp_io::InMemory;
+use mp_plan::{PathFileKind, PathRows, Report, Request, Scene};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+/// The path of a problem is also damaged, and judged again, with this probability.
+const DAMAGED: f64 = 0.15;
+/// A problem is solved again on another number of threads with this probability.
+const AGAIN: f64 = 0.05;
+
+/// Which problems are wanted.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// Only worlds of this kind.
+    pub kind: Option<String>,
+    /// Only this planner.
+    pub planner: Option<String>,
+}
+
+/// How a problem ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// A path was returned.
+    Solved,
+    /// No path within the budget.
+    Unsolved,
+    /// Start or goal is not free.
+    EndRefused,
+    /// The request does not suit the robot.
+    RequestRefused,
+}
+
+/// A finding: what is wrong with the program, or with the oracle.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// What sort of finding it is: a word or two, for the tally.
+    pub sort: &'static str,
+    /// What is wrong.
+    pub what: String,
+}
+
+/// What became of one problem.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// The kind of its world.
+    pub kind: &'static str,
+    /// The name of its planner; empty if the scene could not be loaded.
+    pub planner: String,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// What the oracle said of the path.
+    pub judged: Option<Judged>,
+    /// Damaged paths that the oracle refused, all of which `check` must refuse too.
+    pub damaged: u64,
+    /// Findings.
+    pub findings: Vec<Finding>,
+    /// The message with which the program refused.
+    pub refusal: Option<String>,
+    /// The text of the path.
+    pub path: Option<String>,
+}
+
+/// A problem as it is drawn.
+#[derive(Debug)]
+pub struct Problem {
+    /// The kind of its world.
+    pub kind: &'static Kind,
+    /// Its world.
+    pub world: World,
+    /// What follows in its stream of random numbers.
+    rest: Draw,
+}
+
+impl Problem {
+    /// Problem `number` of seed `seed`.
+    #[must_use]
+    pub fn new(seed: u64, number: u64, wanted: &Wanted) -> Self {
+        let mut draw = Draw::new(seed, number);
+        let drawn = Kind::drawn(&mut draw);
+        let kind = wanted.kind.as_deref().and_then(Kind::named).unwrap_or(drawn);
+        let world = kind.make(&mut draw);
+        Self { kind, world, rest: draw }
+    }
+
+    /// Its scene, read from its files in memory.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn scene(&self) -> Result<Scene, mp_plan::Error> {
+        let files = &self.world.files;
+        let found = |name: &str| files.get(&plain(name)).cloned();
+        Scene::load_from(&InMemory(found), Path::new(&self.world.main))
+    }
+
+    /// Its request for this scene.
+    #[must_use]
+    pub fn request(&self, scene: &Scene, wanted: &Wanted) -> Request {
+        request(&mut self.rest.clone(), scene, wanted.planner.as_deref())
+    }
+
+    /// Plans, and judges the answer. A panic is a finding.
+    #[must_use]
+    pub fn run(&self, wanted: &Wanted) -> Trial {
+        catch_unwind(AssertUnwindSafe(|| self.try_run(wanted))).unwrap_or_else(|panic| {
+            let text = panic.downcast_ref::<String>().cloned();
+            let text = text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
+            let mut trial = self.unfinished();
+            trial.find("panic", text.unwrap_or_default());
+            trial
+        })
+    }
+
+    fn unfinished(&self) -> Trial {
+        Trial {
+            kind: self.kind.name,
+            planner: String::new(),
+            outcome: Outcome::RequestRefused,
+            judged: None,
+            damaged: 0,
+            findings: Vec::new(),
+            refusal: None,
+            path: None,
+        }
+    }
+
+    fn try_run(&self, wanted: &Wanted) -> Trial {
+        let mut trial = self.unfinished();
+        let scene = match self.scene() {
+            Ok(scene) => scene,
+            Err(error) => {
+                trial.find("scene refused", error.report());
+                return trial;
+            }
+        };
+        let request = self.request(&scene, wanted);
+        trial.planner.clone_from(&request.planner);
+        if let Err(error) = scene.check_ends() {
+            trial.outcome = Outcome::EndRefused;
+            self.judge_refusal(&error, &mut trial);
+            return trial;
+        }
+        let report = match scene.plan(&request) {
+            Ok(report) => report,
+            Err(error) => {
+                trial.refusal = Some(error.report());
+                return trial;
+            }
+        };
+        let mut rest = self.rest.clone();
+        (0..1000).for_each(|_| drop(rest.next()));
+        if rest.chance(AGAIN) {
+            self.plan_again(&scene, &request, &report, &mut trial);
+        }
+        trial.outcome = Outcome::Unsolved;
+        if let Some(rows) = &report.path {
+            trial.outcome = Outcome::Solved;
+            let path = PathRows { format: scene.path_format(), columns: report.columns.clone(), rows: rows.clone() };
+            self.judge_path(&scene, &path, &mut rest, &mut trial);
+        }
+        trial
+    }
+
+    /// An end was refused: the oracle must agree that one is not free.
+    fn judge_refusal(&self, error: &mp_plan::Error, trial: &mut Trial) {
+        let case = &self.world.case;
+        let mut ends = vec![("the start", Some(case.start.clone()))];
+        for goal in &case.goals {
+            ends.push(("a goal", case.example(goal)));
+        }
+        let clear = |row: &Vec<f64>| case.clearance_at(row).is_ok_and(|clearance| clearance > self.world.margin);
+        if ends.iter().all(|(_, row)| row.as_ref().is_some_and(clear)) {
+            trial.find("free end refused", error.report());
+        }
+        trial.refusal = Some(error.report());
+    }
+
+    /// The same request on another number of threads must give the same report.
+    fn plan_again(&self, scene: &Scene, request: &Request, first: &Report, trial: &mut Trial) {
+        let threads = if request.threads == 1 { 3 } else { 1 };
+        let again = scene.plan(&request.clone().threads(threads));
+        let same = again.as_ref().is_ok_and(|again| {
+            let told = |report: &Report| {
+                (
+                    report.fingerprint.clone(),
+                    report.path.clone(),
+                    (report.iterations, report.nodes, report.edges),
+                    (report.motion_checks, report.collision_checks, report.stopped_by),
+                )
+            };
+            told(again) == told(first)
+        });
+        if !same {
+            trial.find("threads differ", format!("on {threads} threads the result is another one"));
+        }
+    }
+
+    fn judge_path(&self, scene: &Scene, path: &PathRows, rest: &mut Draw, trial: &mut Trial) {
+        let text = path.to_text();
+        let case = &self.world.case;
+        let rows = match rows_of(&text) {
+            Ok(rows) => rows,
+            Err(what) => {
+                trial.find("path unreadable", what);
+                return;
+            }
+        };
+        let judged = case.judge(&rows);
+        if let Some(fault) = &judged.fault {
+            let sort = match fault {
+                Fault::Contact { .. } => "path collides",
+                Fault::Invalid(_) => "path invalid",
+            };
+            trial.find(sort, fault.to_string());
+        }
+        let sound = judged.fault.is_none();
+        trial.judged = Some(judged);
+        if rest.chance(DAMAGED) && sound {
+            self.judge_damaged(scene, path, &rows, rest, trial);
+        }
+        trial.path = Some(text);
+    }
+
+    /// Moves a configuration of a good path. Where the oracle refuses that, the verifier must refuse it too; and the verifier must
+    /// accept the path as it was.
+    fn judge_damaged(&self, scene: &Scene, path: &PathRows, rows: &[Vec<f64>], rest: &mut Draw, trial: &mut Trial) {
+        let case = &self.world.case;
+        let verified = |rows: &[Vec<f64>]| {
+            let text = PathRows { rows: rows.to_vec(), ..path.clone() }.to_text();
+            let read = PathRows::parse("the path", text.as_bytes(), PathFileKind::Text, path.format);
+            read.and_then(|read| scene.check(&read))
+        };
+        match verified(rows) {
+            Ok(verdict) if verdict.free => {}
+            Ok(verdict) => trial.find("own path refused", verdict.faults.join("; ")),
+            Err(error) => trial.find("own path refused", error.report()),
+        }
+        for _ in 0..3 {
+            let mut damaged = rows.to_vec();
+            damage(&mut damaged, case.extent, rest);
+            let judged = case.judge(&damaged);
+            let Some(fault @ Fault::Contact { .. }) = &judged.fault else { continue };
+            trial.damaged += 1;
+            if let Ok(verdict) = verified(&damaged)
+                && verdict.free
+            {
+                trial.find("collision accepted", fault.to_string());
+                trial.path = Some(PathRows { rows: damaged, ..path.clone() }.to_text());
+            }
+        }
+    }
+}
+
+/// Moves a row of a path, or puts one between two others.
+pub fn damage(rows: &mut Vec<Vec<f64>>, extent: f64, draw: &mut Draw) {
+    let at = draw.below(rows.len());
+    if draw.chance(0.5) {
+        let copy = rows[at].clone();
+        rows.insert(at, copy);
+    }
+    let by = extent * draw.logarithmic(1e-3, 1.0);
+    for (i, x) in rows[at].iter_mut().enumerate() {
+        if i < 3 || draw.chance(0.3) {
+            *x += by * draw.within(-1.0, 1.0);
+        }
+    }
+}
+
+impl Trial {
+    fn find(&mut self, sort: &'static str, what: String) {
+        self.findings.push(Finding { sort, what });
+    }
+}
+
+/// A name without `.` and `..`.
+fn plain(name: &str) -> String {
+    let mut parts: Vec<&str> = Vec::new();
+    for part in name.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => drop(parts.pop()),
+            part => parts.push(part),
+        }
+    }
+    parts.join("/")
+}
