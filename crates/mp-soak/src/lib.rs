@@ -8,5 +8,7 @@
 pub mod draw;
 pub mod oracle;
 pub mod request;
+pub mod soak;
+pub mod tally;
 pub mod trial;
 pub mod worlds;

@@ -5,7 +5,7 @@ use crate::oracle::{Fault, Judged, rows_of};
 use crate::request::request;
 use crate::worlds::{Kind, World};
 use mp_io::InMemory;
-use mp_plan::{PathFileKind, PathRows, Report, Request, Scene};
+use mp_plan::{Finish, MetricName, PathFileKind, PathRows, RelaxField, Report, Request, Scene};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -15,7 +15,7 @@ const DAMAGED: f64 = 0.15;
 const AGAIN: f64 = 0.05;
 
 /// Which problems are wanted.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Wanted {
     /// Only worlds of this kind.
     pub kind: Option<String>,
@@ -32,8 +32,8 @@ pub enum Outcome {
     Unsolved,
     /// Start or goal is not free.
     EndRefused,
-    /// The request does not suit the robot.
-    RequestRefused,
+    /// Nothing was planned.
+    Refused,
 }
 
 /// A finding: what is wrong with the program, or with the oracle.
@@ -58,6 +58,10 @@ pub struct Trial {
     pub judged: Option<Judged>,
     /// Damaged paths that the oracle refused, all of which `check` must refuse too.
     pub damaged: u64,
+    /// Requests that were refused before one suited the robot.
+    pub refused_requests: u64,
+    /// The request that was answered; `None` if none was.
+    pub request: Option<Request>,
     /// Findings.
     pub findings: Vec<Finding>,
     /// The message with which the program refused.
@@ -120,9 +124,11 @@ impl Problem {
         Trial {
             kind: self.kind.name,
             planner: String::new(),
-            outcome: Outcome::RequestRefused,
+            outcome: Outcome::Refused,
             judged: None,
             damaged: 0,
+            refused_requests: 0,
+            request: None,
             findings: Vec::new(),
             refusal: None,
             path: None,
@@ -138,22 +144,37 @@ impl Problem {
                 return trial;
             }
         };
-        let request = self.request(&scene, wanted);
+        let mut request = self.request(&scene, wanted);
         trial.planner.clone_from(&request.planner);
         if let Err(error) = scene.check_ends() {
             trial.outcome = Outcome::EndRefused;
             self.judge_refusal(&error, &mut trial);
             return trial;
         }
-        let report = match scene.plan(&request) {
+        let mut answer = scene.plan(&request);
+        for simpler in [Simpler::Plain, Simpler::Unset, Simpler::Default] {
+            let Err(error) = &answer else { break };
+            if wanted.planner.is_some() && matches!(simpler, Simpler::Default) {
+                break;
+            }
+            trial.refusal = Some(error.report());
+            trial.refused_requests += 1;
+            request = simpler.of(request, &scene);
+            trial.planner.clone_from(&request.planner);
+            answer = scene.plan(&request);
+        }
+        let report = match answer {
             Ok(report) => report,
+            // The planner that was asked for does not suit the robot.
+            Err(_) if wanted.planner.is_some() => return trial,
             Err(error) => {
-                trial.refusal = Some(error.report());
+                trial.find("request refused", error.report());
                 return trial;
             }
         };
+        trial.request = Some(request.clone());
         let mut rest = self.rest.clone();
-        (0..1000).for_each(|_| drop(rest.next()));
+        (0..1000).for_each(|_| { rest.next(); });
         if rest.chance(AGAIN) {
             self.plan_again(&scene, &request, &report, &mut trial);
         }
@@ -268,6 +289,34 @@ pub fn damage(rows: &mut Vec<Vec<f64>>, extent: f64, draw: &mut Draw) {
         if i < 3 || draw.chance(0.3) {
             *x += by * draw.within(-1.0, 1.0);
         }
+    }
+}
+
+/// What is left out of a request that does not suit the robot.
+#[derive(Clone, Copy, Debug)]
+enum Simpler {
+    /// Metric and finish.
+    Plain,
+    /// The settings too.
+    Unset,
+    /// The planner too.
+    Default,
+}
+
+impl Simpler {
+    fn of(self, mut request: Request, scene: &Scene) -> Request {
+        request.metric = MetricName::Default;
+        request.field = RelaxField::Clearance;
+        if request.finish == Finish::Relax {
+            request.finish = Finish::Shorten;
+        }
+        if !matches!(self, Self::Plain) {
+            request.settings.clear();
+        }
+        if matches!(self, Self::Default) {
+            scene.default_planner().clone_into(&mut request.planner);
+        }
+        request
     }
 }
 

@@ -2,6 +2,8 @@
 
 use super::moment::{Edge, Moment, Row, angle_of, pose, wrapped};
 use super::{Ask, Case, Moves};
+use std::f64::consts::PI;
+use std::ops::Range;
 
 /// How far, as a part of the extent or in radians, a number of a path may be from where it has to be: the text of a path has
 /// angles, and near β = π/2 these lose half of their digits.
@@ -103,7 +105,7 @@ impl Case {
                 return Err(format!("a velocity of {v} instead of {w}"));
             }
         }
-        match (a.time - b.time).abs() <= NEAR_TIME {
+        match self.timing.is_none() || (a.time - b.time).abs() <= NEAR_TIME {
             true => Ok(()),
             false => Err(format!("at {} s instead of {} s", a.time, b.time)),
         }
@@ -111,7 +113,6 @@ impl Case {
 
     /// Whether a row is at a goal.
     fn check_goal(&self, goal: &[Ask], row: &Row<'_>) -> Result<(), String> {
-        let own = self.moves.numbers();
         let turns = match &self.moves {
             Moves::Space => true,
             Moves::Tree(tree) => tree.floats,
@@ -133,6 +134,26 @@ impl Case {
             skip = 3..6;
         }
         numbers.extend(&row.moment.velocities);
+        let first = self.check_asked(goal, &numbers, skip.clone());
+        let second = || {
+            // The same orientation has two triples of angles.
+            let mut numbers = numbers.clone();
+            let turned = [numbers[3] + PI, PI - numbers[4], numbers[5] + PI];
+            numbers[3..6].copy_from_slice(&turned);
+            self.check_asked(goal, &numbers, skip.clone())
+        };
+        first.or_else(|what| if turns { second() } else { Err(what) })?;
+        match &self.timing {
+            Some(timing) if !(timing.goal[0] - NEAR_TIME..=timing.goal[1] + NEAR_TIME).contains(&row.moment.time) => {
+                Err(format!("at {} s, not from {} s to {} s", row.moment.time, timing.goal[0], timing.goal[1]))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether numbers are what a goal asks, apart from those to skip.
+    fn check_asked(&self, goal: &[Ask], numbers: &[f64], skip: Range<usize>) -> Result<(), String> {
+        let own = self.moves.numbers();
         for (i, (x, ask)) in numbers.iter().zip(goal).enumerate().filter(|(i, _)| !skip.contains(i)) {
             let angle = i < own && self.limits.get(i).is_some_and(Option::is_none);
             let length = match &self.moves {
@@ -152,12 +173,7 @@ impl Case {
                 return Err(format!("number {} is {x}, and has to be {ask:?}", i + 1));
             }
         }
-        match &self.timing {
-            Some(timing) if !(timing.goal[0] - NEAR_TIME..=timing.goal[1] + NEAR_TIME).contains(&row.moment.time) => {
-                Err(format!("at {} s, not from {} s to {} s", row.moment.time, timing.goal[0], timing.goal[1]))
-            }
-            _ => Ok(()),
-        }
+        Ok(())
     }
 
     /// Whether the robot can go along an edge. On curved ones it looks at `places` places whether the robot is within its limits.

@@ -149,6 +149,11 @@ impl<'c> Ready<'c> {
         self.pieces.iter().filter(crossed).count() % 2 == 1
     }
 
+    /// Whether a point of it is inside of another body.
+    fn inside_of(&self, own: &Isometry3<f64>, other: &Self, pose: &Isometry3<f64>) -> bool {
+        self.some_point().is_some_and(|p| other.encloses(&pose.inverse_transform_point(&(own * p))))
+    }
+
     /// A point of its pieces.
     fn some_point(&self) -> Option<Point3<f64>> {
         match &self.pieces.first()?.0 {
@@ -190,15 +195,19 @@ impl<'c> Bodies<'c> {
         Self { case, robot: ready(&case.robot), still: ready(&case.still), moving, pairs }
     }
 
+    /// The two bodies of a pair, each with its pose.
+    fn placed(&self, pair: Pair, frames: &[Isometry3<f64>]) -> [(&Ready<'c>, Isometry3<f64>); 2] {
+        let own = |i: usize| (&self.robot[i], frames[self.robot[i].body.frame]);
+        match pair {
+            Pair::Still(i, j) => [own(i), (&self.still[j], Isometry3::identity())],
+            Pair::Moving(i, j) => [own(i), (&self.moving[j], frames[frames.len() - self.moving.len() + j])],
+            Pair::Own(i, j) => [own(i), own(j)],
+        }
+    }
+
     fn distance(&self, pair: Pair, frames: &[Isometry3<f64>], than: f64) -> f64 {
-        let own = |i: usize| (&self.robot[i], &frames[self.robot[i].body.frame]);
-        let here = Isometry3::identity();
-        let ((a, at), (b, to)) = match pair {
-            Pair::Still(i, j) => (own(i), (&self.still[j], &here)),
-            Pair::Moving(i, j) => (own(i), (&self.moving[j], &frames[frames.len() - self.moving.len() + j])),
-            Pair::Own(i, j) => (own(i), own(j)),
-        };
-        a.distance(at, b, to, than)
+        let [(a, at), (b, to)] = self.placed(pair, frames);
+        a.distance(&at, b, &to, than)
     }
 
     fn names(&self, pair: Pair) -> String {
@@ -332,28 +341,11 @@ impl Case {
         let mut least = f64::INFINITY;
         for pair in &bodies.pairs {
             least = least.min(bodies.distance(*pair, &frames, f64::INFINITY));
-            if let Pair::Still(i, j) = *pair
-                && bodies.inside(i, &frames, &bodies.still[j], &Isometry3::identity())
-            {
-                return Ok(0.0);
-            }
-            if let Pair::Moving(i, j) = *pair
-                && bodies.inside(i, &frames, &bodies.moving[j], &frames[frames.len() - bodies.moving.len() + j])
-            {
+            let [a, b] = bodies.placed(*pair, &frames);
+            if a.0.inside_of(&a.1, b.0, &b.1) || b.0.inside_of(&b.1, a.0, &a.1) {
                 return Ok(0.0);
             }
         }
         Ok(least)
-    }
-}
-
-impl Bodies<'_> {
-    /// Whether a body of the robot is inside of an obstacle, or around it.
-    fn inside(&self, i: usize, frames: &[Isometry3<f64>], other: &Ready<'_>, pose: &Isometry3<f64>) -> bool {
-        let (own, at) = (&self.robot[i], &frames[self.robot[i].body.frame]);
-        let within = |outer: &Ready<'_>, of: &Isometry3<f64>, inner: &Ready<'_>, is: &Isometry3<f64>| {
-            inner.some_point().is_some_and(|p| outer.encloses(&of.inverse_transform_point(&(is * p))))
-        };
-        within(own, at, other, pose) || within(other, pose, own, at)
     }
 }

@@ -229,7 +229,7 @@ impl Made {
         all.retain(|pair| !may_touch.contains(&pair.map(|i| of_link[i])));
         self.pairs = all;
         // Without this file, links that always touch are found by the program. That cannot be if none touch at the neutral one.
-        if neutral_touches || draw.chance(0.5) {
+        if neutral_touches || !may_touch.is_empty() || draw.chance(0.5) {
             let lines = may_touch.iter().map(|[a, b]| {
                 format!("<disable_collisions link1=\"link{a}\" link2=\"link{b}\" reason=\"Default\"/>\n")
             });

@@ -278,7 +278,7 @@ pub(super) fn moving(draw: &mut Draw) -> World {
     let turning = draw.chance(0.5);
     let mut room = Room::new(draw, turning);
     room.fill(draw, 5);
-    let begin = if draw.chance(0.7) { 0.0 } else { draw.within(-5.0, 5.0) };
+    let begin = if draw.chance(0.7) { 0.0 } else { draw.within(0.0, 5.0) };
     let horizon = begin + add_moving(draw, &mut room);
     let mut case = room.case();
     let margin = room.margin(&case);

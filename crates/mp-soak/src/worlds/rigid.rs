@@ -307,7 +307,7 @@ pub(super) fn moving(draw: &mut Draw) -> World {
     let (mut case, horizon) = timed(draw, &mut room);
     let speed = room.scale * draw.logarithmic(0.3, 30.0);
     let margin = room.margin(&case);
-    let begin = if draw.chance(0.7) { 0.0 } else { draw.within(-5.0, 5.0) };
+    let begin = if draw.chance(0.7) { 0.0 } else { draw.within(0.0, 5.0) };
     let horizon = begin + horizon;
     let [first, last] = if draw.chance(0.6) { [begin, horizon] } else { [begin + 0.3 * (horizon - begin), horizon] };
     case.timing = Some(Timing { speed: Some(speed), start: begin, goal: [first, last] });
