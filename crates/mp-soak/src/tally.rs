@@ -29,7 +29,7 @@ pub struct Counts {
     pub tests: u64,
     /// Paths that took the oracle too long.
     pub unfinished: u64,
-    /// Damaged paths in which the oracle saw a contact, and which the verifier was asked to refuse.
+    /// Damaged paths that the oracle refused, and that the verifier was asked to refuse too.
     pub damaged: u64,
     /// Findings.
     pub findings: u64,
@@ -66,9 +66,8 @@ impl Counts {
     fn row(&self, name: &str) -> String {
         let Self { problems, solved, unsolved, ends_refused, edges, damaged, findings, .. } = self;
         let least = self.least.map_or("–".to_owned(), |least| format!("{least:.0e}"));
-        let each = 1e3 * self.seconds / (*problems).max(1) as f64;
         let numbers = [*problems, *solved, *unsolved, *ends_refused, *edges, *damaged, *findings].map(grouped);
-        format!("| {name} | {} | {least} | {each:.0} |\n", numbers.join(" | "))
+        format!("| {name} | {} | {least} |\n", numbers.join(" | "))
     }
 }
 
@@ -87,8 +86,8 @@ pub fn grouped(number: u64) -> String {
 }
 
 /// The head of a table.
-const HEAD: &str = "problems | solved | unsolved | ends refused | edges shown free | damaged paths refused | findings | least distance / size | ms each |
-|---|---|---|---|---|---|---|---|---|---|";
+const HEAD: &str = "problems | solved | unsolved | ends refused | edges shown free | damaged paths refused | findings | least distance / size |
+|---|---|---|---|---|---|---|---|---|";
 
 /// The counts of a run, and where it goes on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

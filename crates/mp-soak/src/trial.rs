@@ -56,7 +56,7 @@ pub struct Trial {
     pub outcome: Outcome,
     /// What the oracle said of the path.
     pub judged: Option<Judged>,
-    /// Damaged paths that the oracle refused, all of which `check` must refuse too.
+    /// Damaged paths that the oracle refused, and that the verifier was asked to refuse too.
     pub damaged: u64,
     /// Requests that were refused before one suited the robot.
     pub refused_requests: u64,
@@ -265,28 +265,29 @@ impl Problem {
             let mut damaged = rows.to_vec();
             damage(&mut damaged, case.extent, rest);
             let judged = case.judge(&damaged);
-            let Some(fault @ Fault::Contact { .. }) = &judged.fault else { continue };
+            let Some(fault) = &judged.fault else { continue };
             trial.damaged += 1;
             if let Ok(verdict) = verified(&damaged)
                 && verdict.free
             {
-                trial.find("collision accepted", fault.to_string());
+                trial.find("damage accepted", fault.to_string());
                 trial.path = Some(PathRows { rows: damaged, ..path.clone() }.to_text());
             }
         }
     }
 }
 
-/// Moves a row of a path, or puts one between two others.
+/// Puts a row between two others, out of the way, or moves a row.
 pub fn damage(rows: &mut Vec<Vec<f64>>, extent: f64, draw: &mut Draw) {
-    let at = draw.below(rows.len());
-    if draw.chance(0.5) {
-        let copy = rows[at].clone();
-        rows.insert(at, copy);
+    let mut at = draw.below(rows.len());
+    if rows.len() > 1 && draw.chance(0.7) {
+        at = at.max(1);
+        let middle = rows[at - 1].iter().zip(&rows[at]).map(|(a, b)| 0.5 * (a + b)).collect();
+        rows.insert(at, middle);
     }
-    let by = extent * draw.logarithmic(1e-3, 1.0);
+    let by = extent * draw.logarithmic(1e-2, 1.0);
     for (i, x) in rows[at].iter_mut().enumerate() {
-        if i < 3 || draw.chance(0.3) {
+        if i < 2 || draw.chance(0.3) {
             *x += by * draw.within(-1.0, 1.0);
         }
     }

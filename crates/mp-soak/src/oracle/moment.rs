@@ -147,7 +147,8 @@ impl Case {
         let timed = usize::from(self.timing.is_some());
         let (velocities, inputs) =
             self.drive.as_ref().map_or((0, 0), |drive| (drive.velocities.len(), drive.limits.len() + 1));
-        let flat = row.len() == 6 && self.moves == Moves::Plane && timed + velocities + inputs == 0;
+        // A path of a mesh in the plane is written as poses in space.
+        let flat = self.moves == Moves::Plane && self.drive.is_none() && row.len() == 6 + timed;
         if !flat && row.len() != own + timed + velocities + inputs {
             return Err(format!("a row has {} numbers, not {}", row.len(), own + timed + velocities + inputs));
         }
@@ -155,14 +156,14 @@ impl Case {
             return Err("a number is not finite".to_owned());
         }
         if flat {
-            // A path of a mesh in the plane is written as poses in space.
-            let root = pose(row);
+            let root = pose(&row[..6]);
             let upright = (root.rotation * Vector3::z() - Vector3::z()).norm();
             if row[2] != 0.0 || upright > 1e-9 {
                 return Err("a pose leaves the plane".to_owned());
             }
-            let moment = Moment { root, joints: Vec::new(), velocities: Vec::new(), time: 0.0 };
-            return Ok(Row { moment, own: row, input: &[], duration: 0.0 });
+            let time = row.get(6).copied().unwrap_or(0.0);
+            let moment = Moment { root, joints: Vec::new(), velocities: Vec::new(), time };
+            return Ok(Row { moment, own: &row[..6], input: &[], duration: 0.0 });
         }
         let (numbers, rest) = row.split_at(own);
         let (time, rest) = rest.split_at(timed);

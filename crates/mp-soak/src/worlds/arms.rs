@@ -152,7 +152,7 @@ fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
             7 if followed.is_some() => {
                 let i = followed.unwrap_or(0);
                 let (factor, shift) = (draw.within(-1.5, 1.5), draw.within(-0.3, 0.3));
-                text += &limit(-30.0, 30.0);
+                text += &limit(-1e9, 1e9);
                 let name: &String = &names[i];
                 text += &format!("<mimic joint=\"{name}\" multiplier=\"{factor}\" offset=\"{shift}\"/>");
                 ("revolute", false, Some((i, factor, shift)), 0.0)
