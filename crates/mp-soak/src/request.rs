@@ -4,6 +4,9 @@ use crate::draw::Draw;
 use mp_plan::{Budget, Finish, Length, MetricName, MotionValidator, Parameter, PlannerInfo, RelaxField, Request, Scene};
 use std::collections::BTreeMap;
 
+/// What is planned must not depend on the clock. This only ends what would take all night, and is counted.
+const MOST_SECONDS: f64 = 30.0;
+
 /// Parameters are set with this probability each.
 const SET: f64 = 0.35;
 
@@ -40,6 +43,8 @@ pub fn request(draw: &mut Draw, scene: &Scene, planner: Option<&str>) -> Request
         1 => RelaxField::Risk(draw.logarithmic(0.1, 10.0)),
         _ => RelaxField::Clearance,
     };
+    // An iteration of these is many iterations of each of their runs.
+    let most = 3000.0 / mp_math::powf(8.0, name.matches("or-").count() as f64);
     let nodes = draw.chance(0.1).then(|| draw.logarithmic(2.0, 2000.0) as usize);
     Request {
         planner: name,
@@ -47,9 +52,8 @@ pub fn request(draw: &mut Draw, scene: &Scene, planner: Option<&str>) -> Request
         metric,
         motion,
         budget: Budget {
-            // Never used up: what is planned must not depend on the clock.
-            time_s: Some(3600.0),
-            iterations: Some(draw.logarithmic(100.0, 3000.0) as u64),
+            time_s: Some(MOST_SECONDS),
+            iterations: Some(draw.logarithmic(0.03 * most, most) as u64),
             queries: Some(draw.logarithmic(2_000.0, 30_000.0) as u64),
             nodes,
         },
@@ -143,10 +147,12 @@ fn whole_number(draw: &mut Draw, parameter: &Parameter) -> u64 {
     let least = if ["1 to", "from 1"].iter().any(|text| parameter.range.contains(text)) { 1 } else { 0 };
     let default: f64 = parameter.default.parse().unwrap_or(1.0);
     let most: u64 = match parameter.name {
-        // How many runs there are, and how many magnitudes of inputs.
-        "runs" => 64,
+        // Products of these are the work of an iteration.
+        "runs" => 24,
+        "slice" => 200,
         "levels" => 20,
-        "inputs" => 300,
+        "inputs" => 40,
+        "samples" | "candidates" => 300,
         "bounces" => 100,
         _ => 5000,
     };

@@ -29,6 +29,8 @@ pub struct Counts {
     pub tests: u64,
     /// Paths that took the oracle too long.
     pub unfinished: u64,
+    /// Problems that the clock ended.
+    pub out_of_time: u64,
     /// Damaged paths that the oracle refused, and that the verifier was asked to refuse too.
     pub damaged: u64,
     /// Findings.
@@ -50,6 +52,7 @@ impl Counts {
         }
         self.requests_refused += trial.refused_requests;
         self.damaged += trial.damaged;
+        self.out_of_time += u64::from(trial.out_of_time);
         self.findings += trial.findings.len() as u64;
         self.seconds += seconds;
         if let Some(judged) = &trial.judged {
@@ -175,13 +178,13 @@ impl Tally {
         self.planners.iter().for_each(|(name, counts)| text += &counts.row(&format!("`{name}`")));
         let found: Vec<_> = self.findings.iter().map(|(sort, count)| format!("{sort}: {count}")).collect();
         let found = if found.is_empty() { "none".to_owned() } else { found.join(", ") };
-        let Counts { tests, unfinished, requests_refused, refused, .. } = &self.all;
-        let numbers = [*tests, *unfinished, *requests_refused, *refused].map(grouped);
-        let [tests, unfinished, requests, refused] = numbers;
+        let Counts { tests, unfinished, requests_refused, refused, out_of_time, .. } = &self.all;
+        let numbers = [*tests, *unfinished, *requests_refused, *refused, *out_of_time].map(grouped);
+        let [tests, unfinished, requests, refused, late] = numbers;
         let _ = write!(
             text,
             "\nSeed {}, problems 0 to {}. The oracle compared two bodies {tests} times; {unfinished} paths took it too long. \
-             {requests} requests did not suit the robot and were made simpler; in {refused} problems nothing was planned. \
+             {requests} requests did not suit the robot and were made simpler; in {refused} problems nothing was planned, and {late} were ended by the clock. \
              Findings: {found}.\n",
             self.seed,
             self.next.saturating_sub(1),

@@ -5,7 +5,7 @@ use crate::oracle::{Fault, Judged, rows_of};
 use crate::request::request;
 use crate::worlds::{Kind, World};
 use mp_io::InMemory;
-use mp_plan::{Finish, MetricName, PathFileKind, PathRows, RelaxField, Report, Request, Scene};
+use mp_plan::{Finish, MetricName, PathFileKind, PathRows, RelaxField, Report, Request, Scene, StoppedBy};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -60,6 +60,8 @@ pub struct Trial {
     pub damaged: u64,
     /// Requests that were refused before one suited the robot.
     pub refused_requests: u64,
+    /// Whether the clock ended the run, which it should not.
+    pub out_of_time: bool,
     /// The request that was answered; `None` if none was.
     pub request: Option<Request>,
     /// Findings.
@@ -128,6 +130,7 @@ impl Problem {
             judged: None,
             damaged: 0,
             refused_requests: 0,
+            out_of_time: false,
             request: None,
             findings: Vec::new(),
             refusal: None,
@@ -178,6 +181,7 @@ impl Problem {
         if rest.chance(AGAIN) {
             self.plan_again(&scene, &request, &report, &mut trial);
         }
+        trial.out_of_time = report.stages.iter().any(|stage| stage.ended_by == Some(StoppedBy::Time));
         trial.outcome = Outcome::Unsolved;
         if let Some(rows) = &report.path {
             trial.outcome = Outcome::Solved;
