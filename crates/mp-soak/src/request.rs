@@ -44,7 +44,7 @@ pub fn request(draw: &mut Draw, scene: &Scene, planner: Option<&str>) -> Request
         _ => RelaxField::Clearance,
     };
     // An iteration of these is many iterations of each of their runs.
-    let most = 3000.0 / mp_math::powf(8.0, name.matches("or-").count() as f64);
+    let most = 1500.0 / mp_math::powf(8.0, name.matches("or-").count() as f64);
     let nodes = draw.chance(0.1).then(|| draw.logarithmic(2.0, 2000.0) as usize);
     Request {
         planner: name,
@@ -53,8 +53,8 @@ pub fn request(draw: &mut Draw, scene: &Scene, planner: Option<&str>) -> Request
         motion,
         budget: Budget {
             time_s: Some(MOST_SECONDS),
-            iterations: Some(draw.logarithmic(0.03 * most, most) as u64),
-            queries: Some(draw.logarithmic(2_000.0, 30_000.0) as u64),
+            iterations: Some(draw.logarithmic(0.05 * most, most) as u64),
+            queries: Some(draw.logarithmic(1_000.0, 15_000.0) as u64),
             nodes,
         },
         seed: draw.next() >> 12,
@@ -148,8 +148,8 @@ fn whole_number(draw: &mut Draw, parameter: &Parameter) -> u64 {
     let default: f64 = parameter.default.parse().unwrap_or(1.0);
     let most: u64 = match parameter.name {
         // Products of these are the work of an iteration.
-        "runs" => 24,
-        "slice" => 200,
+        "runs" => 12,
+        "slice" => 64,
         "levels" => 20,
         "inputs" => 40,
         "samples" | "candidates" => 300,

@@ -100,8 +100,9 @@ fn block(
             let began = Instant::now();
             let problem = Problem::new(options.seed, number, &options.wanted);
             let trial = problem.run(&options.wanted);
-            if !trial.findings.is_empty() {
-                let folder = options.out.join("findings").join(format!("{}-{number}", options.seed));
+            if !trial.findings.is_empty() || trial.out_of_time {
+                let sort = if trial.findings.is_empty() { "late" } else { "findings" };
+                let folder = options.out.join(sort).join(format!("{}-{number}", options.seed));
                 write_problem(&problem, &trial, &folder, options, number)?;
             }
             let (extent, seconds) = (problem.world.case.extent, began.elapsed().as_secs_f64());

@@ -1,7 +1,7 @@
 //! Whether a path begins at the start, ends at a goal, stays within its limits, and goes as the robot can.
 
 use super::moment::{Edge, Moment, Row, angle_of, pose, wrapped};
-use super::{Ask, Case, Moves};
+use super::{Ask, Case, Fault, Moves};
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -65,20 +65,21 @@ impl Case {
     }
 
     /// Whether rows are within their limits, and lead from the start to a goal.
-    pub(super) fn check_rows(&self, rows: &[Row<'_>]) -> Result<(), String> {
+    pub(super) fn check_rows(&self, rows: &[Row<'_>]) -> Result<(), Fault> {
         let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
-            return Err("the path has no rows".to_owned());
+            return Err(Fault::Invalid("the path has no rows".to_owned()));
         };
         for (i, row) in rows.iter().enumerate() {
-            self.check_limits(row).map_err(|what| format!("in row {}, {what}", i + 1))?;
+            self.check_limits(row).map_err(|what| Fault::Invalid(format!("in row {}, {what}", i + 1)))?;
         }
         let inputs = self.drive.as_ref().map_or(0, |drive| drive.limits.len() + 1);
         let start: Vec<f64> = self.start.iter().copied().chain(std::iter::repeat_n(0.0, inputs)).collect();
-        let start = self.row(&start)?;
-        self.check_same(&first.moment, &start.moment).map_err(|what| format!("it does not begin at the start: {what}"))?;
+        let start = self.row(&start).map_err(Fault::Invalid)?;
+        let off = |what| Fault::Ends(format!("it does not begin at the start: {what}"));
+        self.check_same(&first.moment, &start.moment).map_err(off)?;
         let faults: Vec<String> = self.goals.iter().filter_map(|goal| self.check_goal(goal, last).err()).collect();
         match (faults.len() < self.goals.len(), faults.first()) {
-            (false, Some(fault)) => Err(format!("it does not end at a goal: {fault}")),
+            (false, Some(fault)) => Err(Fault::Ends(format!("it does not end at a goal: {fault}"))),
             _ => Ok(()),
         }
     }

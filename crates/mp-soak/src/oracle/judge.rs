@@ -27,7 +27,9 @@ pub enum Fault {
         /// The two bodies.
         between: String,
     },
-    /// It does not begin at the start or end at a goal, leaves its limits, or goes as the robot cannot.
+    /// It does not begin at the start or end at a goal.
+    Ends(String),
+    /// It leaves its limits, or goes as the robot cannot.
     Invalid(String),
 }
 
@@ -37,7 +39,7 @@ impl std::fmt::Display for Fault {
             Self::Contact { edge, at, between } => {
                 write!(f, "{between} touch between rows {} and {}, {at} of the way", edge + 1, edge + 2)
             }
-            Self::Invalid(what) => f.write_str(what),
+            Self::Ends(what) | Self::Invalid(what) => f.write_str(what),
         }
     }
 }
@@ -290,10 +292,10 @@ impl Case {
             travel: 0.0,
         };
         let rows: Result<Vec<Row<'_>>, String> = rows.iter().map(|row| self.row(row)).collect();
-        let rows = match rows.and_then(|rows| self.check_rows(&rows).map(|()| rows)) {
+        let rows = match rows.map_err(Fault::Invalid).and_then(|rows| self.check_rows(&rows).map(|()| rows)) {
             Ok(rows) => rows,
-            Err(what) => {
-                judged.fault = Some(Fault::Invalid(what));
+            Err(fault) => {
+                judged.fault = Some(fault);
                 return judged;
             }
         };
