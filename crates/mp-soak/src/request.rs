@@ -89,7 +89,9 @@ fn planner_for(draw: &mut Draw, scene: &Scene) -> (String, Vec<Parameter>) {
             mp_plan::meta_planners().iter().filter(|meta| fits(meta.prefix, meta.around)).collect();
         name = format!("{}{name}", draw.one(&metas).prefix);
         if draw.chance(0.2) {
-            name = format!("{}{name}", draw.one(&["or-", "restart-"]));
+            // Rounds within rounds would take the square of the time.
+            let outer = if name.contains("or-") { "restart-" } else { *draw.one(&["or-", "restart-"]) };
+            name = format!("{outer}{name}");
         }
     }
     let parameters = parameters_of(&name);
