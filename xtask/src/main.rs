@@ -19,6 +19,7 @@ Builds and starts the programs of the workspace:
 
   cargo xtask plan | view | check | info | render | scenes | completions | man …   the program `mp`: see `cargo xtask plan --help`
   cargo xtask bench SUITE …     measurements, the program `mp-bench`: see `cargo xtask bench --help`
+  cargo xtask soak --out DIR …  random problems for every planner under an oracle: see `cargo xtask soak --help`
   cargo xtask wasm [KIND…]      builds the planners inside pages, for `render … --with-planner`
   cargo xtask assets [--check]  generates the shipped scenes, or checks that they are up to date
   cargo xtask golden [--required] [--built] [WAY…]   the same bits on other processors: native, no-fma, nehalem, aarch64, wasm32
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
             start("mp-motion-cli", "mp", &arguments)
         }
         "bench" => start("mp-bench", "mp-bench", &arguments[1..]),
+        "soak" => start("mp-soak", "mp-soak", &arguments[1..]),
         "wasm" => wasm::run(&arguments[1..]),
         "golden" => golden::run(&arguments[1..]),
         "memcheck" => memcheck::run(&arguments[1..]),

@@ -80,7 +80,8 @@ fn soak(arguments: &Arguments) -> Result<bool, String> {
         wanted: Wanted { kind: arguments.only.clone(), planner: arguments.planner.clone() },
     };
     if let Some(folder) = &arguments.tally {
-        let tally = read_tally(folder)?.ok_or_else(|| format!("there is no tally in {}", folder.display()))?;
+        let tally =
+            read_tally(folder)?.ok_or_else(|| format!("there is no tally in {}", folder.display()))?;
         print(&tally.to_markdown());
         return Ok(tally.all.findings == 0);
     }

@@ -1,7 +1,9 @@
 //! Random requests: every planner by name, with its settings at their ends too.
 
 use crate::draw::Draw;
-use mp_plan::{Budget, Finish, Length, MetricName, MotionValidator, Parameter, PlannerInfo, RelaxField, Request, Scene};
+use mp_plan::{
+    Budget, Finish, Length, MetricName, MotionValidator, Parameter, PlannerInfo, RelaxField, Request, Scene,
+};
 use std::collections::BTreeMap;
 
 /// What is planned must not depend on the clock. This only ends what would take all night, and is counted.
@@ -20,7 +22,8 @@ pub fn request(draw: &mut Draw, scene: &Scene, planner: Option<&str>) -> Request
     let mut settings = BTreeMap::new();
     let plain = draw.chance(0.3);
     for parameter in parameters {
-        if !plain && draw.chance(SET)
+        if !plain
+            && draw.chance(SET)
             && let Some(value) = value(draw, &parameter)
         {
             settings.insert(parameter.name.to_owned(), value);
@@ -107,7 +110,8 @@ fn parameters_of(name: &str) -> Vec<Parameter> {
             parameters.extend_from_slice(info.parameters);
             return parameters;
         }
-        let outer = mp_plan::meta_planners().iter().find_map(|meta| Some((meta, rest.strip_prefix(meta.prefix)?)));
+        let outer =
+            mp_plan::meta_planners().iter().find_map(|meta| Some((meta, rest.strip_prefix(meta.prefix)?)));
         let Some((meta, inner)) = outer else { return parameters };
         parameters.extend_from_slice(meta.parameters);
         rest = inner;
@@ -135,9 +139,12 @@ fn value(draw: &mut Draw, parameter: &Parameter) -> Option<String> {
         "positive and finite" => Some(draw.logarithmic(1e-9, 1e9).to_string()),
         "positive and finite, in steps" => Some(draw.logarithmic(0.1, 100.0).to_string()),
         "in (0, radius], in steps" => Some(draw.logarithmic(1e-3, 2.0).to_string()),
-        "0, or a length above" => Some(if draw.chance(0.5) { 0.0 } else { draw.logarithmic(1e-3, 1e3) }.to_string()),
+        "0, or a length above" => {
+            Some(if draw.chance(0.5) { 0.0 } else { draw.logarithmic(1e-3, 1e3) }.to_string())
+        }
         _ => {
-            let words: Vec<&str> = range.split([',', ' ']).filter(|word| !["", "or", "to"].contains(word)).collect();
+            let words: Vec<&str> =
+                range.split([',', ' ']).filter(|word| !["", "or", "to"].contains(word)).collect();
             let plain = words.iter().all(|word| word.chars().all(|c| c.is_ascii_alphanumeric() || c == '-'));
             (plain && !words.is_empty()).then(|| (*draw.one(&words)).to_owned())
         }

@@ -114,7 +114,8 @@ fn block(
     std::thread::scope(|scope| {
         let threads: Vec<_> = (1..options.threads).map(|_| scope.spawn(work)).collect();
         let own = work();
-        let others = threads.into_iter().map(|thread| thread.join().unwrap_or_else(|_| Err("a thread failed".into())));
+        let others =
+            threads.into_iter().map(|thread| thread.join().unwrap_or_else(|_| Err("a thread failed".into())));
         others.fold(own, Result::and)
     })?;
     let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);

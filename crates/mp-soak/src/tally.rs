@@ -69,7 +69,8 @@ impl Counts {
     fn row(&self, name: &str) -> String {
         let Self { problems, solved, unsolved, ends_refused, edges, damaged, findings, .. } = self;
         let least = self.least.map_or("–".to_owned(), |least| format!("{least:.0e}"));
-        let numbers = [*problems, *solved, *unsolved, *ends_refused, *edges, *damaged, *findings].map(grouped);
+        let numbers =
+            [*problems, *solved, *unsolved, *ends_refused, *edges, *damaged, *findings].map(grouped);
         format!("| {name} | {} | {least} |\n", numbers.join(" | "))
     }
 }
@@ -153,8 +154,9 @@ impl Tally {
         self.all.add(trial, extent, seconds);
         self.kinds.entry(trial.kind.to_owned()).or_default().add(trial, extent, seconds);
         let mut rest = trial.planner.as_str();
-        while let Some((prefix, inner)) =
-            mp_plan::meta_planners().iter().find_map(|meta| Some((meta.prefix, rest.strip_prefix(meta.prefix)?)))
+        while let Some((prefix, inner)) = mp_plan::meta_planners()
+            .iter()
+            .find_map(|meta| Some((meta.prefix, rest.strip_prefix(meta.prefix)?)))
         {
             self.planners.entry(format!("{prefix}…")).or_default().add(trial, extent, seconds);
             rest = inner;
@@ -207,7 +209,10 @@ mod tests {
             tally.add(&problem.run(&wanted), problem.world.case.extent, 0.25);
             tally.next += 1;
         }
-        assert!(tally.all.solved > 5 && tally.all.edges > 5 && tally.kinds["disc"].problems == 20, "{tally:?}");
+        assert!(
+            tally.all.solved > 5 && tally.all.edges > 5 && tally.kinds["disc"].problems == 20,
+            "{tally:?}"
+        );
         assert_eq!(Tally::from_json(tally.to_json().as_bytes()).unwrap(), tally);
         assert!(Tally::from_json(b"{}").is_err());
         assert!(tally.to_markdown().contains("| disc | 20 |"), "{}", tally.to_markdown());

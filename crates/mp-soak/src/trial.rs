@@ -177,7 +177,9 @@ impl Problem {
         };
         trial.request = Some(request.clone());
         let mut rest = self.rest.clone();
-        (0..1000).for_each(|_| { rest.next(); });
+        (0..1000).for_each(|_| {
+            rest.next();
+        });
         if rest.chance(AGAIN) {
             self.plan_again(&scene, &request, &report, &mut trial);
         }
@@ -185,7 +187,8 @@ impl Problem {
         trial.outcome = Outcome::Unsolved;
         if let Some(rows) = &report.path {
             trial.outcome = Outcome::Solved;
-            let path = PathRows { format: scene.path_format(), columns: report.columns.clone(), rows: rows.clone() };
+            let path =
+                PathRows { format: scene.path_format(), columns: report.columns.clone(), rows: rows.clone() };
             self.judge_path(&scene, &path, &mut rest, &mut trial);
         }
         trial
@@ -198,7 +201,8 @@ impl Problem {
         for goal in &case.goals {
             ends.push(("a goal", case.example(goal)));
         }
-        let clear = |row: &Vec<f64>| case.clearance_at(row).is_ok_and(|clearance| clearance > self.world.margin);
+        let clear =
+            |row: &Vec<f64>| case.clearance_at(row).is_ok_and(|clearance| clearance > self.world.margin);
         if ends.iter().all(|(_, row)| row.as_ref().is_some_and(clear)) {
             trial.find("free end refused", error.report());
         }
@@ -253,7 +257,14 @@ impl Problem {
 
     /// Moves a configuration of a good path. Where the oracle refuses that, the verifier must refuse it too; and the verifier must
     /// accept the path as it was.
-    fn judge_damaged(&self, scene: &Scene, path: &PathRows, rows: &[Vec<f64>], rest: &mut Draw, trial: &mut Trial) {
+    fn judge_damaged(
+        &self,
+        scene: &Scene,
+        path: &PathRows,
+        rows: &[Vec<f64>],
+        rest: &mut Draw,
+        trial: &mut Trial,
+    ) {
         let case = &self.world.case;
         let verified = |rows: &[Vec<f64>]| {
             let text = PathRows { rows: rows.to_vec(), ..path.clone() }.to_text();

@@ -237,14 +237,17 @@ mod tests {
 
     #[test]
     fn cylinders_stand_about_z() {
-        let cylinder = Piece::Cylinder { pose: Isometry3::translation(1.0, 2.0, 3.0), radius: 0.5, half: 2.0 };
-        let ball = |x, y, z| Piece::Capsule { a: Point3::new(x, y, z), b: Point3::new(x, y, z), radius: 0.25 };
+        let cylinder =
+            Piece::Cylinder { pose: Isometry3::translation(1.0, 2.0, 3.0), radius: 0.5, half: 2.0 };
+        let ball =
+            |x, y, z| Piece::Capsule { a: Point3::new(x, y, z), b: Point3::new(x, y, z), radius: 0.25 };
         let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-7, "{found} {expected}");
         near(between(&cylinder, &ball(3.0, 2.0, 4.5)), 1.25);
         near(between(&cylinder, &ball(1.0, 2.0, 6.0)), 0.75);
         near(between(&ball(1.0, 2.0, 4.9), &cylinder), 0.0);
         let lying = Isometry3::rotation(Vector3::x() * std::f64::consts::FRAC_PI_2);
-        let lying = Piece::Cylinder { pose: Isometry3::translation(4.0, 2.0, 3.0) * lying, radius: 0.5, half: 2.0 };
+        let lying =
+            Piece::Cylinder { pose: Isometry3::translation(4.0, 2.0, 3.0) * lying, radius: 0.5, half: 2.0 };
         near(between(&cylinder, &lying), 2.0);
         let triangle = Piece::Triangle([
             Point3::new(2.0, -1.0, 0.0),

@@ -42,25 +42,31 @@ impl Case {
         Ok(())
     }
 
-    /// Whether a row is within its limits.
+    /// Whether a row is within its limits, but for the input that leads there.
     pub(super) fn check_limits(&self, row: &Row<'_>) -> Result<(), String> {
         self.check_numbers(&row.moment)?;
-        let Some(drive) = &self.drive else { return Ok(()) };
-        for (v, most) in row.moment.velocities.iter().zip(&drive.velocities) {
-            if v.abs() > most * (1.0 + ROUNDING) {
-                return Err(format!("a velocity of {v} is beyond {most}"));
-            }
+        let most = self.drive.iter().flat_map(|drive| &drive.velocities);
+        match row.moment.velocities.iter().zip(most).find(|(v, most)| v.abs() > **most * (1.0 + ROUNDING)) {
+            Some((v, most)) => Err(format!("a velocity of {v} is beyond {most}")),
+            None => Ok(()),
         }
+    }
+
+    /// Whether the input that leads to a row, and its duration, are within their limits.
+    fn check_input(&self, row: &Row<'_>) -> Result<(), String> {
+        let Some(drive) = &self.drive else { return Ok(()) };
         for (u, [low, high]) in row.input.iter().zip(&drive.limits) {
             let slack = ROUNDING * (high - low);
-            // No input leads to the first row.
-            if row.duration > 0.0 && !(low - slack..=high + slack).contains(u) {
+            if !(low - slack..=high + slack).contains(u) {
                 return Err(format!("an input of {u} is not from {low} to {high}"));
             }
         }
         match (0.0..=drive.longest * (1.0 + ROUNDING)).contains(&row.duration) {
             true => Ok(()),
-            false => Err(format!("an input is held for {} s, at most {} s are allowed", row.duration, drive.longest)),
+            false => Err(format!(
+                "an input is held for {} s, at most {} s are allowed",
+                row.duration, drive.longest
+            )),
         }
     }
 
@@ -70,14 +76,18 @@ impl Case {
             return Err(Fault::Invalid("the path has no rows".to_owned()));
         };
         for (i, row) in rows.iter().enumerate() {
-            self.check_limits(row).map_err(|what| Fault::Invalid(format!("in row {}, {what}", i + 1)))?;
+            // No input leads to the first row.
+            let input = if i > 0 { self.check_input(row) } else { Ok(()) };
+            let within = self.check_limits(row).and(input);
+            within.map_err(|what| Fault::Invalid(format!("in row {}, {what}", i + 1)))?;
         }
         let inputs = self.drive.as_ref().map_or(0, |drive| drive.limits.len() + 1);
         let start: Vec<f64> = self.start.iter().copied().chain(std::iter::repeat_n(0.0, inputs)).collect();
         let start = self.row(&start).map_err(Fault::Invalid)?;
         let off = |what| Fault::Ends(format!("it does not begin at the start: {what}"));
         self.check_same(&first.moment, &start.moment).map_err(off)?;
-        let faults: Vec<String> = self.goals.iter().filter_map(|goal| self.check_goal(goal, last).err()).collect();
+        let faults: Vec<String> =
+            self.goals.iter().filter_map(|goal| self.check_goal(goal, last).err()).collect();
         match (faults.len() < self.goals.len(), faults.first()) {
             (false, Some(fault)) => Err(Fault::Ends(format!("it does not end at a goal: {fault}"))),
             _ => Ok(()),
@@ -123,8 +133,11 @@ impl Case {
             Moves::Plane => self.numbers(&row.moment),
             _ => row.own.to_vec(),
         };
-        let exact: Vec<f64> =
-            goal.iter().take(6).filter_map(|ask| if let Ask::Exactly(x) = ask { Some(*x) } else { None }).collect();
+        let exact: Vec<f64> = goal
+            .iter()
+            .take(6)
+            .filter_map(|ask| if let Ask::Exactly(x) = ask { Some(*x) } else { None })
+            .collect();
         let mut skip = 0..0;
         if turns && exact.len() == 6 {
             // Angles may be written in several ways.
@@ -145,8 +158,13 @@ impl Case {
         };
         first.or_else(|what| if turns { second() } else { Err(what) })?;
         match &self.timing {
-            Some(timing) if !(timing.goal[0] - NEAR_TIME..=timing.goal[1] + NEAR_TIME).contains(&row.moment.time) => {
-                Err(format!("at {} s, not from {} s to {} s", row.moment.time, timing.goal[0], timing.goal[1]))
+            Some(timing)
+                if !(timing.goal[0] - NEAR_TIME..=timing.goal[1] + NEAR_TIME).contains(&row.moment.time) =>
+            {
+                Err(format!(
+                    "at {} s, not from {} s to {} s",
+                    row.moment.time, timing.goal[0], timing.goal[1]
+                ))
             }
             _ => Ok(()),
         }

@@ -141,7 +141,8 @@ impl<'c> Ready<'c> {
 
     /// Whether a ray from a point crosses its triangles an odd number of times.
     fn encloses(&self, point: &Point3<f64>) -> bool {
-        let far = point + Vector3::new(0.577, 0.211, 0.789) * (4.0 * self.radius + (point - self.middle).norm());
+        let far =
+            point + Vector3::new(0.577, 0.211, 0.789) * (4.0 * self.radius + (point - self.middle).norm());
         let crossed = |(piece, ..): &&(Piece, Point3<f64>, f64)| match piece {
             Piece::Triangle(_) => {
                 distance::between(piece, &Piece::Capsule { a: *point, b: far, radius: 0.0 }) == 0.0
@@ -283,14 +284,8 @@ impl Case {
     /// Judges a path: whether it is free all along, leads from the start to a goal, and goes as the robot can.
     #[must_use]
     pub fn judge(&self, rows: &[Vec<f64>]) -> Judged {
-        let mut judged = Judged {
-            fault: None,
-            finished: true,
-            edges: 0,
-            tests: 0,
-            least: f64::INFINITY,
-            travel: 0.0,
-        };
+        let mut judged =
+            Judged { fault: None, finished: true, edges: 0, tests: 0, least: f64::INFINITY, travel: 0.0 };
         let rows: Result<Vec<Row<'_>>, String> = rows.iter().map(|row| self.row(row)).collect();
         let rows = match rows.map_err(Fault::Invalid).and_then(|rows| self.check_rows(&rows).map(|()| rows)) {
             Ok(rows) => rows,
@@ -306,9 +301,7 @@ impl Case {
             let from = &from.moment;
             let edge = Edge::new(self, from, to, false);
             let fault = match self.check_edge(&edge, from, to, PLACES) {
-                Err(what) => {
-                    Some(Fault::Invalid(format!("between rows {} and {}, {what}", i + 1, i + 2)))
-                }
+                Err(what) => Some(Fault::Invalid(format!("between rows {} and {}, {what}", i + 1, i + 2))),
                 Ok(()) => {
                     let mut contact = bodies.contact(&edge, from, &mut judged);
                     if contact.is_some() && edge.ambiguous {

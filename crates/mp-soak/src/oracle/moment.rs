@@ -150,7 +150,11 @@ impl Case {
         // A path of a mesh in the plane is written as poses in space.
         let flat = self.moves == Moves::Plane && self.drive.is_none() && row.len() == 6 + timed;
         if !flat && row.len() != own + timed + velocities + inputs {
-            return Err(format!("a row has {} numbers, not {}", row.len(), own + timed + velocities + inputs));
+            return Err(format!(
+                "a row has {} numbers, not {}",
+                row.len(),
+                own + timed + velocities + inputs
+            ));
         }
         if !row.iter().all(|x| x.is_finite()) {
             return Err("a number is not finite".to_owned());
@@ -180,7 +184,8 @@ impl Case {
         let mut frames = vec![moment.root];
         if let Moves::Tree(tree) = &self.moves {
             for joint in &tree.joints {
-                let value = joint.number.map_or(0.0, |(i, factor, offset)| factor * moment.joints[i] + offset);
+                let value =
+                    joint.number.map_or(0.0, |(i, factor, offset)| factor * moment.joints[i] + offset);
                 let own = match joint.slides {
                     true => Isometry3::from(Translation3::from(joint.axis * value)),
                     false => {
@@ -396,13 +401,16 @@ impl<'e> Edge<'e> {
                     Moves::Tree(_) => {
                         moment.joints = from.joints.iter().zip(&moved).map(|(q, d)| q + d).collect();
                     }
-                    Moves::Point => moment.root.translation.vector = place + Vector3::new(moved[0], moved[1], 0.0),
+                    Moves::Point => {
+                        moment.root.translation.vector = place + Vector3::new(moved[0], moved[1], 0.0)
+                    }
                     Moves::Plane => {
                         let angle = angle_of(&from.root) + moved[2];
                         moment.root = pose(&[place.x + moved[0], place.y + moved[1], 0.0, angle, 0.0, 0.0]);
                     }
                     Moves::Space => {
-                        let turn = UnitQuaternion::from_scaled_axis(Vector3::new(moved[3], moved[4], moved[5]));
+                        let turn =
+                            UnitQuaternion::from_scaled_axis(Vector3::new(moved[3], moved[4], moved[5]));
                         let place = place + Vector3::new(moved[0], moved[1], moved[2]);
                         moment.root =
                             Isometry3::from_parts(Translation3::from(place), turn * from.root.rotation);

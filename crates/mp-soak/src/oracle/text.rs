@@ -7,8 +7,10 @@
 pub fn rows_of(text: &str) -> Result<Vec<Vec<f64>>, String> {
     let mut lines = text.lines().filter(|line| !line.trim().is_empty());
     let first = lines.next().ok_or("the path is empty")?;
-    let head: Vec<usize> =
-        first.split_whitespace().map(|w| w.parse().map_err(|_| format!("`{w}` is no count"))).collect::<Result<_, _>>()?;
+    let head: Vec<usize> = first
+        .split_whitespace()
+        .map(|w| w.parse().map_err(|_| format!("`{w}` is no count")))
+        .collect::<Result<_, _>>()?;
     let (count, width) = match head[..] {
         [count] => (count, 6),
         [count, width] => (count, width),

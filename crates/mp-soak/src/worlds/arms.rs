@@ -50,7 +50,9 @@ fn collision(
             (format!("<sphere radius=\"{radius}\"/>"), pieces)
         }
         1 => {
-            let Shape::Pieces(pieces) = Form::Cylinder([thick, tall]).shape(&at) else { return Default::default() };
+            let Shape::Pieces(pieces) = Form::Cylinder([thick, tall]).shape(&at) else {
+                return Default::default();
+            };
             (format!("<cylinder radius=\"{thick}\" length=\"{tall}\"/>"), pieces)
         }
         2 => {
@@ -67,7 +69,9 @@ fn collision(
             let scale = draw.within(0.2, 1.0);
             let Form::Mesh(triangles, _) = form else { return Default::default() };
             let scaled = triangles.iter().map(|t| t.map(|p| p.map(|x| scale * x))).collect();
-            let Shape::Pieces(pieces) = Form::Mesh(scaled, String::new()).shape(&at) else { return Default::default() };
+            let Shape::Pieces(pieces) = Form::Mesh(scaled, String::new()).shape(&at) else {
+                return Default::default();
+            };
             (format!("<mesh filename=\"{file}\" scale=\"{scale} {scale} {scale}\"/>"), pieces)
         }
         _ => {
@@ -116,7 +120,8 @@ fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
             _ => *draw.one(&[0, 1, 1, 1, 2]),
         };
         for shape in 0..shapes {
-            let (element, pieces) = collision(draw, lengths[link], &format!("part-{link}-{shape}"), &mut files);
+            let (element, pieces) =
+                collision(draw, lengths[link], &format!("part-{link}-{shape}"), &mut files);
             elements += &element;
             bodies.push(Body::new(format!("link{link}"), Shape::Pieces(pieces), link));
             of_link.push(link);
@@ -134,9 +139,12 @@ fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
         // Something has to move: the first joint does.
         let kind = if j == 0 { draw.below(4) } else { draw.below(8) };
         let followed = limits.iter().rposition(Option::is_some);
-        let mut text = format!("<parent link=\"link{above}\"/><child link=\"link{}\"/>{}", j + 1, origin(&six));
+        let mut text =
+            format!("<parent link=\"link{above}\"/><child link=\"link{}\"/>{}", j + 1, origin(&six));
         text += &format!("<axis xyz=\"{} {} {}\"/>", axis.x, axis.y, axis.z);
-        let limit = |low: f64, high: f64| format!("<limit lower=\"{low}\" upper=\"{high}\" effort=\"1\" velocity=\"1\"/>");
+        let limit = |low: f64, high: f64| {
+            format!("<limit lower=\"{low}\" upper=\"{high}\" effort=\"1\" velocity=\"1\"/>")
+        };
         let (word, slides, number, farthest) = match kind {
             3 => {
                 limits.push(None);
@@ -193,7 +201,8 @@ impl Made {
     /// Finds out which links are compared, and writes down those that may touch.
     fn pair_links(&mut self, draw: &mut Draw, of_link: &[usize]) {
         let joined = |a: usize, b: usize| {
-            let child_of = |child: usize, parent: usize| child > 0 && self.tree.joints[child - 1].above == parent;
+            let child_of =
+                |child: usize, parent: usize| child > 0 && self.tree.joints[child - 1].above == parent;
             child_of(a, b) || child_of(b, a)
         };
         let mut all = Vec::new();
@@ -204,7 +213,8 @@ impl Made {
                 }
             }
         }
-        let neutral = self.limits.iter().map(|limits| limits.map_or(0.0, |[low, high]| 0.0_f64.clamp(low, high)));
+        let neutral =
+            self.limits.iter().map(|limits| limits.map_or(0.0, |[low, high]| 0.0_f64.clamp(low, high)));
         let mut samples: Vec<Vec<f64>> = vec![neutral.collect()];
         for _ in 0..SAMPLES {
             samples.push(self.joint_values(draw));
@@ -311,8 +321,18 @@ fn jointed(draw: &mut Draw, floats: bool) -> World {
         let size = draw.within(0.2, 1.6);
         let form = form(draw, size * scale, &name);
         let at = |draw: &mut Draw| draw.within(-half, half);
-        let six = [at(draw), at(draw), at(draw), draw.within(-PI, PI), draw.within(-1.5, 1.5), draw.within(-PI, PI)];
-        line(&mut obstacles, format!("\n[[obstacle]]\nname = \"{name}\"\n{}\npose = {}", form.toml(), list(&six)));
+        let six = [
+            at(draw),
+            at(draw),
+            at(draw),
+            draw.within(-PI, PI),
+            draw.within(-1.5, 1.5),
+            draw.within(-PI, PI),
+        ];
+        line(
+            &mut obstacles,
+            format!("\n[[obstacle]]\nname = \"{name}\"\n{}\npose = {}", form.toml(), list(&six)),
+        );
         form.write(&mut files);
         case.still.push(form.body(&name, &pose(six), 0));
         round = round.max(form.round());
@@ -348,7 +368,8 @@ fn jointed(draw: &mut Draw, floats: bool) -> World {
     } else {
         let time = draw.logarithmic(0.05, 1.5);
         let by_velocities = draw.chance(0.5);
-        let rates = |draw: &mut Draw| widths.iter().map(|width| width * draw.within(2.0, 8.0)).collect::<Vec<f64>>();
+        let rates =
+            |draw: &mut Draw| widths.iter().map(|width| width * draw.within(2.0, 8.0)).collect::<Vec<f64>>();
         let (speeds, accelerations) = (rates(draw), rates(draw));
         line(&mut text, format!("speeds = {}\nduration = {time:?}", list(&speeds)));
         let (kind, limits, velocities) = match by_velocities {
@@ -357,7 +378,10 @@ fn jointed(draw: &mut Draw, floats: bool) -> World {
                 (DriveKind::Velocities, &speeds, Vec::new())
             }
             false => {
-                line(&mut text, format!("kind = \"accelerations\"\naccelerations = {}", list(&accelerations)));
+                line(
+                    &mut text,
+                    format!("kind = \"accelerations\"\naccelerations = {}", list(&accelerations)),
+                );
                 (DriveKind::Accelerations, &accelerations, speeds.clone())
             }
         };

@@ -131,7 +131,8 @@ fn mesh_text(triangles: &[Triangle], file: &str) -> String {
         }
         Some("obj") => {
             triangles.iter().flatten().for_each(|p| text += &format!("v {}\n", row(p)));
-            (0..triangles.len()).for_each(|i| text += &format!("f {} {} {}\n", 3 * i + 1, 3 * i + 2, 3 * i + 3));
+            (0..triangles.len())
+                .for_each(|i| text += &format!("f {} {} {}\n", 3 * i + 1, 3 * i + 2, 3 * i + 3));
         }
         _ => {
             text += &format!("OFF\n{} {} 0\n", 3 * triangles.len(), triangles.len());

@@ -69,7 +69,12 @@ pub const KINDS: [Kind; 13] = [
     Kind { name: "soup", summary: "rigid body among loose triangles", weight: 4, make: rigid::soup },
     Kind { name: "flat-mesh", summary: "mesh that stays in the plane", weight: 2, make: rigid::flat },
     Kind { name: "space-moving", summary: "rigid body, obstacles move", weight: 2, make: rigid::moving },
-    Kind { name: "flyer", summary: "rigid body by inputs, obstacles may move", weight: 1, make: rigid::flyer },
+    Kind {
+        name: "flyer",
+        summary: "rigid body by inputs, obstacles may move",
+        weight: 1,
+        make: rigid::flyer,
+    },
     Kind { name: "disc", summary: "disc in the plane", weight: 4, make: plane::disc },
     Kind { name: "polygon", summary: "polygon in the plane", weight: 4, make: plane::polygon },
     Kind { name: "plane-moving", summary: "disc or polygon, obstacles move", weight: 3, make: plane::moving },
@@ -82,7 +87,12 @@ pub const KINDS: [Kind; 13] = [
     },
     Kind { name: "arm", summary: "arm, also by inputs", weight: 4, make: arms::arm },
     Kind { name: "floating", summary: "body with joints that flies", weight: 2, make: arms::floating },
-    Kind { name: "shipped", summary: "shipped scenes, other starts and goals", weight: 1, make: shipped::shipped },
+    Kind {
+        name: "shipped",
+        summary: "shipped scenes, other starts and goals",
+        weight: 1,
+        make: shipped::shipped,
+    },
 ];
 
 /// A list of numbers as TOML writes it.

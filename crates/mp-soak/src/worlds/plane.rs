@@ -7,6 +7,9 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
+/// Files accept coordinates up to twice this (m).
+const FARTHEST: f64 = 5e8;
+
 /// The sides of the room, before it is scaled.
 const SIDE: f64 = 10.0;
 
@@ -78,7 +81,7 @@ fn star(draw: &mut Draw, [x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
 impl Room {
     fn new(draw: &mut Draw, turning: bool) -> Self {
         let scale = if draw.chance(0.7) { 1.0 } else { draw.logarithmic(1e-4, 1e4) };
-        let far = if draw.chance(0.85) { 0.0 } else { scale * draw.logarithmic(10.0, 1e6) };
+        let far = if draw.chance(0.85) { 0.0 } else { (scale * draw.logarithmic(10.0, 1e6)).min(FARTHEST) };
         let low = [draw.within(-far, far), draw.within(-far, far)];
         let high = [low[0] + scale * SIDE, low[1] + scale * SIDE * draw.within(0.4, 1.0)];
         let size = scale * draw.logarithmic(0.05, 0.8);
@@ -116,7 +119,8 @@ impl Room {
                 // A frame with room inside of it.
                 let outer = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
                 let inner = draw.within(0.3, 0.97);
-                let ring = |by: f64| outer.map(|[x, y]| [at[0] + by * size * x, at[1] + by * size * y]).to_vec();
+                let ring =
+                    |by: f64| outer.map(|[x, y]| [at[0] + by * size * x, at[1] + by * size * y]).to_vec();
                 Outline::Rings(vec![ring(1.0), ring(inner)])
             }
             _ => Outline::Rings(vec![star(draw, at, size)]),
@@ -141,8 +145,12 @@ impl Room {
     }
 
     fn case(&self) -> Case {
-        let mut still: Vec<Body> = self.obstacles.iter().enumerate()
-            .map(|(i, outline)| Body::new(format!("obstacle {}", i + 1), outline.shape(), 0)).collect();
+        let mut still: Vec<Body> = self
+            .obstacles
+            .iter()
+            .enumerate()
+            .map(|(i, outline)| Body::new(format!("obstacle {}", i + 1), outline.shape(), 0))
+            .collect();
         let ([a, b], [c, d]) = (self.low, self.high);
         let walls = Shape::Rings { rings: vec![vec![[a, b], [c, b], [c, d], [a, d]]], filled: false };
         still.push(Body::new("walls", walls, 0));
@@ -336,7 +344,9 @@ fn by_inputs(draw: &mut Draw, moves: bool) -> World {
     let reverse = draw.chance(0.6);
     let back = if reverse { -speed } else { 0.0 };
     let degrees = if turning { 3 } else { 2 };
-    let rate = |draw: &mut Draw, i: usize| if i < 2 { scale * draw.logarithmic(0.3, 6.0) } else { draw.within(0.3, 4.0) };
+    let rate = |draw: &mut Draw, i: usize| {
+        if i < 2 { scale * draw.logarithmic(0.3, 6.0) } else { draw.within(0.3, 4.0) }
+    };
     let speeds: Vec<f64> = (0..degrees).map(|i| rate(draw, i)).collect();
     let mut robot = vec![format!("duration = {time:?}")];
     let (kind, limits, velocities) = match which {
@@ -351,7 +361,11 @@ fn by_inputs(draw: &mut Draw, moves: bool) -> World {
         1 => {
             let turn = draw.within(0.2, 4.0);
             robot.push("kind = \"unicycle\"".to_owned());
-            robot.extend([format!("speed = {speed:?}"), format!("turning = {turn:?}"), format!("reverse = {reverse}")]);
+            robot.extend([
+                format!("speed = {speed:?}"),
+                format!("turning = {turn:?}"),
+                format!("reverse = {reverse}"),
+            ]);
             (DriveKind::Unicycle, vec![[back, speed], [-turn, turn]], Vec::new())
         }
         2 => {

@@ -8,6 +8,9 @@ use nalgebra::{Isometry3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
+/// Files accept coordinates up to twice this (m).
+const FARTHEST: f64 = 5e8;
+
 /// The half of each side of the room, before it is scaled.
 const HALF: f64 = 5.0;
 
@@ -33,13 +36,17 @@ fn offset(draw: &mut Draw, scale: f64) -> Vector3<f64> {
     if draw.chance(0.85) {
         return Vector3::zeros();
     }
-    let far = scale * draw.logarithmic(10.0, 1e6);
+    let far = (scale * draw.logarithmic(10.0, 1e6)).min(FARTHEST);
     Vector3::new(draw.within(-far, far), draw.within(-far, far), draw.within(-far, far))
 }
 
 /// An angle, also one of the special ones.
 fn angle(draw: &mut Draw) -> f64 {
-    if draw.chance(0.2) { *draw.one(&[0.0, 0.5 * PI, PI, -0.5 * PI, 0.25 * PI]) } else { draw.within(-PI, PI) }
+    if draw.chance(0.2) {
+        *draw.one(&[0.0, 0.5 * PI, PI, -0.5 * PI, 0.25 * PI])
+    } else {
+        draw.within(-PI, PI)
+    }
 }
 
 /// Three angles of a pose.
@@ -115,13 +122,18 @@ impl Room {
 
     /// The clearance beyond which a start must be accepted.
     fn margin(&self, case: &Case) -> f64 {
-        let forms = self.obstacles.iter().map(|(form, _)| form).chain(self.moving.iter().map(|(form, _)| form));
+        let forms =
+            self.obstacles.iter().map(|(form, _)| form).chain(self.moving.iter().map(|(form, _)| form));
         let round = forms.chain([&self.robot]).map(Form::round).fold(0.0, f64::max);
         0.05 * round + 1e-3 * case.robot[0].reach + 1e-8 * case.far
     }
 
     fn names(&self) -> Vec<String> {
-        if self.flat { names(&["x", "y", "alpha"]) } else { names(&["x", "y", "z", "alpha", "beta", "gamma"]) }
+        if self.flat {
+            names(&["x", "y", "alpha"])
+        } else {
+            names(&["x", "y", "z", "alpha", "beta", "gamma"])
+        }
     }
 
     /// The widths of intervals of goals.
@@ -168,7 +180,8 @@ impl Room {
             _ => String::new(),
         };
         self.robot.write(&mut files);
-        let goal: Vec<f64> = case.goals[0].iter().map(|ask| if let Ask::Exactly(x) = ask { *x } else { 0.0 }).collect();
+        let goal: Vec<f64> =
+            case.goals[0].iter().map(|ask| if let Ask::Exactly(x) = ask { *x } else { 0.0 }).collect();
         line(&mut text, format!("Robot\n{}\n{}\n{}\n", file(&self.robot), six(&case.start), six(&goal)));
         for (i, (form, six)) in self.obstacles.iter().enumerate() {
             form.write(&mut files);
@@ -193,7 +206,8 @@ impl Room {
         case.goals = asked;
         let meshes = self.obstacles.iter().map(|(form, _)| form).chain([&self.robot]);
         let all_meshes = meshes.into_iter().all(|form| matches!(form, Form::Mesh(..)));
-        let one_goal = case.goals.len() == 1 && case.goals[0].iter().all(|ask| matches!(ask, Ask::Exactly(_)));
+        let one_goal =
+            case.goals.len() == 1 && case.goals[0].iter().all(|ask| matches!(ask, Ask::Exactly(_)));
         let (main, (text, mut files)) = match all_meshes && one_goal && draw.chance(0.7) {
             true => ("scene.env", self.environment(&case)),
             false => ("scene.toml", self.toml(&[], &[format!("start = {}", list(&case.start)), goal])),
@@ -309,7 +323,8 @@ pub(super) fn moving(draw: &mut Draw) -> World {
     let margin = room.margin(&case);
     let begin = if draw.chance(0.7) { 0.0 } else { draw.within(0.0, 5.0) };
     let horizon = begin + horizon;
-    let [first, last] = if draw.chance(0.6) { [begin, horizon] } else { [begin + 0.3 * (horizon - begin), horizon] };
+    let [first, last] =
+        if draw.chance(0.6) { [begin, horizon] } else { [begin + 0.3 * (horizon - begin), horizon] };
     case.timing = Some(Timing { speed: Some(speed), start: begin, goal: [first, last] });
     let with_time = |mut q: Vec<f64>, time: f64| {
         q.push(time);
@@ -371,7 +386,9 @@ pub(super) fn flyer(draw: &mut Draw) -> World {
     let by_velocities = draw.chance(0.5);
     let far = 2.0 * HALF * room.scale;
     let time = draw.logarithmic(0.05, 2.0);
-    let limit = |draw: &mut Draw, i: usize, length: f64| if i < 3 { length * draw.within(0.1, 0.6) } else { draw.within(0.2, 3.0) };
+    let limit = |draw: &mut Draw, i: usize, length: f64| {
+        if i < 3 { length * draw.within(0.1, 0.6) } else { draw.within(0.2, 3.0) }
+    };
     let speeds: Vec<f64> = (0..6).map(|i| limit(draw, i, far)).collect();
     let accelerations: Vec<f64> = (0..6).map(|i| 2.0 * limit(draw, i, far)).collect();
     let mut robot = vec![

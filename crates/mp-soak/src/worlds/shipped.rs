@@ -116,7 +116,8 @@ fn environment(draw: &mut Draw) -> World {
     };
     let margin = 1e-3 * case.robot[0].reach;
     let any = |draw: &mut Draw| {
-        let mut six: [f64; 6] = std::array::from_fn(|i| if i < 3 { draw.within(low[i], high[i]) } else { 0.0 });
+        let mut six: [f64; 6] =
+            std::array::from_fn(|i| if i < 3 { draw.within(low[i], high[i]) } else { 0.0 });
         six[3] = draw.within(-PI, PI);
         if flat {
             return vec![six[0], six[1], six[3]];
@@ -158,7 +159,13 @@ fn wrench(draw: &mut Draw) -> World {
         number: Some((0, 1.0, 0.0)),
         farthest: 0.38,
     };
-    let tree = Tree { floats: true, base: Isometry3::identity(), joints: vec![joint], numbers: 1, circles: vec![false] };
+    let tree = Tree {
+        floats: true,
+        base: Isometry3::identity(),
+        joints: vec![joint],
+        numbers: 1,
+        circles: vec![false],
+    };
     let mut still = bodies("wall", &mesh("meshes/wrench/wall.off"), &Isometry3::identity());
     still.extend(bodies("nut", &mesh("meshes/wrench/nut.off"), &pose([1.1, 0.2, 0.0, 0.6, 0.0, 0.0])));
     let bolt = Isometry3::from(Translation3::new(1.1, 0.2, -0.4));
@@ -182,7 +189,12 @@ fn wrench(draw: &mut Draw) -> World {
     let margin = 0.01;
     let any = |draw: &mut Draw| {
         let mut row: Vec<f64> = (0..3).map(|i| draw.within(low[i], high[i])).collect();
-        row.extend([draw.within(-PI, PI), draw.within(-1.5, 1.5), draw.within(-PI, PI), draw.within(0.04, 0.38)]);
+        row.extend([
+            draw.within(-PI, PI),
+            draw.within(-1.5, 1.5),
+            draw.within(-PI, PI),
+            draw.within(0.04, 0.38),
+        ]);
         row
     };
     let main = "scenes/wrench.toml".to_owned();
@@ -195,9 +207,11 @@ fn wrench(draw: &mut Draw) -> World {
     let ((start_line, own_start), (goal_line, own_goal)) = (own("start"), own("goal"));
     case.start = if kept { own_start } else { end(draw, &case, margin, any) };
     let goal = if kept { own_goal } else { end(draw, &case, margin, any) };
-    let changed = text
-        .replacen(&start_line, &format!("start = {}", list(&case.start)), 1)
-        .replacen(&goal_line, &format!("goal = {}", list(&goal)), 1);
+    let changed = text.replacen(&start_line, &format!("start = {}", list(&case.start)), 1).replacen(
+        &goal_line,
+        &format!("goal = {}", list(&goal)),
+        1,
+    );
     case.goals = vec![goal.iter().map(|x| Ask::Exactly(*x)).collect()];
     let mut files = files(&["meshes/wrench/".to_owned(), "robots/wrench.urdf".to_owned()]);
     files.insert(main.clone(), changed.into_bytes());
