@@ -301,7 +301,7 @@ pub fn damage(rows: &mut Vec<Vec<f64>>, extent: f64, draw: &mut Draw) {
         let middle = rows[at - 1].iter().zip(&rows[at]).map(|(a, b)| 0.5 * (a + b)).collect();
         rows.insert(at, middle);
     }
-    let by = extent * draw.logarithmic(1e-2, 1.0);
+    let by = extent * draw.logarithmic(3e-3, 0.5);
     for (i, x) in rows[at].iter_mut().enumerate() {
         if i < 2 || draw.chance(0.3) {
             *x += by * draw.within(-1.0, 1.0);

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 /// Problems of each kind.
-const EACH: u64 = 20;
+const EACH: u64 = 16;
 
 fn of_kind(kind: &str) -> Wanted {
     Wanted { kind: Some(kind.to_owned()), planner: None }
@@ -36,7 +36,7 @@ fn no_problem_of_any_kind_has_a_finding() {
             solved += u64::from(trial.outcome == Outcome::Solved);
         }
         // Hard ones are among them, but a slice in which little is solved would show little.
-        assert!(solved >= EACH / 5, "{}: {solved}", kind.name);
+        assert!(solved >= 2, "{}: {solved}", kind.name);
     }
 }
 
@@ -61,6 +61,8 @@ fn every_planner_solves_problems_that_the_oracle_accepts() {
 fn the_oracle_refuses_damaged_paths_in_worlds_of_every_kind() {
     for kind in KINDS {
         let wanted = of_kind(kind.name);
+        // Of these an input leads nowhere near a row that was moved; tests of thin walls are about their collisions.
+        let by_inputs = ["flyer", "driven", "driven-moving"].contains(&kind.name);
         let (mut contacts, mut refused, mut paths) = (0, 0, 0);
         for number in 0..60 {
             let problem = Problem::new(9, number, &wanted);
@@ -70,7 +72,7 @@ fn the_oracle_refuses_damaged_paths_in_worlds_of_every_kind() {
             assert_eq!(case.judge(&rows).fault, None);
             paths += 1;
             let mut draw = Draw::new(4, number);
-            for _ in 0..10 {
+            for _ in 0..20 {
                 let mut damaged = rows.clone();
                 damage(&mut damaged, case.extent, &mut draw);
                 match case.judge(&damaged).fault {
@@ -79,11 +81,10 @@ fn the_oracle_refuses_damaged_paths_in_worlds_of_every_kind() {
                     None => {}
                 }
             }
-            if paths >= 8 && contacts + refused >= 8 {
+            if paths >= 4 && if by_inputs { refused > 0 } else { contacts > 0 } {
                 break;
             }
         }
-        let by_inputs = ["flyer", "driven", "driven-moving"].contains(&kind.name);
         assert!(
             if by_inputs { refused > 0 } else { contacts > 0 },
             "{}: {contacts} {refused} {paths}",

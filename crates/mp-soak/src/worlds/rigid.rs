@@ -416,7 +416,7 @@ pub(super) fn flyer(draw: &mut Draw) -> World {
     };
     case.start = end(draw, &case, margin, |draw| whole(room.configuration(draw), 0.0));
     let row = end(draw, &case, margin, |draw| whole(room.configuration(draw), horizon));
-    let wide = room.scale * draw.within(1.0, 2.5);
+    let wide = room.scale * draw.within(1.5, 4.0);
     let (goal, text) = wide_goal(draw, &room.names(), &row[..6], &[wide, wide, wide, 1.5, 0.0, 1.5]);
     case.goals = vec![goal];
     let mut motion = vec![format!("start = {}", list(&case.start[..6])), text];
