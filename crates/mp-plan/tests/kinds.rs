@@ -139,3 +139,64 @@ fn any_goal_of_a_set_will_do() {
     }
     assert!(ends.iter().filter(|n| **n > 0).count() > 1, "{ends:?}");
 }
+
+/// A curve that is in bounds at both ends and in its middle, but leaves them by a hair in between, is refused.
+#[test]
+fn curves_stay_in_bounds_between_their_ends() {
+    // x = 9 + v t - t²/2 is greatest at t = v, which is no moment that halving finds.
+    let puck = |speed: f64| {
+        let text = format!(
+            "[world]\nwalls = [[0, 0], [20, 10]]\nbounds = [[1, 1], [10, 9]]\n[robot]\nkind = \"accelerations\"\ndisc = 0.1\n\
+             speeds = [4, 4]\naccelerations = [1, 1]\nduration = 4\n[motion]\nstart = [9, 5, {speed:?}, 0]\n\
+             goal = {{ x = [5, 10], y = [4, 6] }}\n"
+        );
+        let scene = Scene::parse("puck", &text, std::path::Path::new("")).unwrap();
+        let end = vec![9.0 + 3.3 * speed - 0.5 * 3.3 * 3.3, 5.0, speed - 3.3, 0.0, -1.0, 0.0, 3.3];
+        let rows = vec![scene.start(), end];
+        scene.check(&path(&scene, rows)).unwrap()
+    };
+    let most = f64::sqrt(2.0);
+    assert!(puck(most - 1e-6).free);
+    let outside = puck(most + 1e-6);
+    assert!(!outside.free, "{outside:?}");
+    // A unicycle on a circle of radius one about (9, 5): its rightmost place is (10, 5).
+    let unicycle = |bound: f64| {
+        let text = format!(
+            "[world]\nwalls = [[0, 0], [20, 10]]\nbounds = [[1, 1], [{bound:?}, 9]]\n[robot]\nkind = \"unicycle\"\ndisc = 0.1\n\
+             speed = 1\nturning = 1\nduration = 3\n[motion]\nstart = [9.5, {:?}, {:?}]\ngoal = {{ x = [5, 10] }}\n",
+            5.0 - 0.75_f64.sqrt(),
+            std::f64::consts::FRAC_PI_6
+        );
+        let scene = Scene::parse("unicycle", &text, std::path::Path::new("")).unwrap();
+        let car = |t: f64| {
+            mp_control::Unicycle.integrate(
+                &Se2State::new(9.5, 5.0 - 0.75_f64.sqrt(), std::f64::consts::FRAC_PI_6),
+                &[1.0, 1.0],
+                t,
+            )
+        };
+        let end = car(2.9);
+        let rows = vec![scene.start(), vec![end.translation.x, end.translation.y, end.angle, 1.0, 1.0, 2.9]];
+        scene.check(&path(&scene, rows)).unwrap()
+    };
+    assert!(unicycle(10.0 + 1e-6).free);
+    assert!(!unicycle(10.0 - 1e-6).free);
+}
+
+/// Among obstacles that move too, a path of a mesh in the plane may not leave it.
+#[test]
+fn meshes_in_the_plane_stay_there_among_obstacles_that_move() {
+    let text = "[robot]\nbox = [0.5, 0.5, 0.5]\nplanar = true\nbounds = [[-5, -5, -1], [5, 5, 1]]\n[motion]\nstart = [-4, 0, 0]\n\
+                goal = [4, 0, 0]\nspeed = 2\n[[moving]]\nbox = [1, 1, 1]\npath = [[0, 0, 4, 0], [5, 0, 3, 0]]\n";
+    let scene = Scene::parse("flat", text, std::path::Path::new("")).unwrap();
+    let rows = |z: f64| {
+        vec![
+            vec![-4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            vec![0.0, 0.0, z, 0.0, 0.0, 0.0, 4.0],
+            vec![4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 8.0],
+        ]
+    };
+    let verdict = |z: f64| scene.check(&path(&scene, rows(z))).unwrap();
+    assert!(verdict(0.0).free, "{:?}", verdict(0.0));
+    assert!(verdict(0.5).faults.concat().contains("leaves the plane"), "{:?}", verdict(0.5));
+}

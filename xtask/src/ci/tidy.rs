@@ -27,6 +27,10 @@ const FILE_CALLS: [&str; 7] = [
 const OWN_FILES: [&str; 3] =
     ["mp-plan/src/mp4.rs", "mp-scenes/src/source.rs", "mp-bench/src/scaling/growth.rs"];
 
+/// The oracle of `mp-soak`, and the crates that it may use: it judges paths without any code of the project.
+const ORACLE: &str = "crates/mp-soak/src/oracle";
+const ORACLE_USES: [&str; 5] = ["nalgebra", "parry3d_f64", "self", "std", "super"];
+
 /// All errors found in the workspace at `root`, a line each.
 pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     let architecture = read(&root.join("ARCHITECTURE.md"))?;
@@ -47,6 +51,7 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     for (path, text) in &sources {
         let path = path.strip_prefix(root).unwrap_or(path);
         findings.extend(file_calls(path, text));
+        findings.extend(oracle_uses(path, text));
         let shown = path.display();
         if has_vague_name(path) {
             findings.push(format!("{shown} has a name that does not say what it holds"));
@@ -187,6 +192,32 @@ fn file_calls(path: &Path, text: &str) -> Vec<String> {
         .collect()
 }
 
+/// What a file of the [`ORACLE`] uses beyond its own files and [`ORACLE_USES`], tests apart.
+fn oracle_uses(path: &Path, text: &str) -> Vec<String> {
+    if !path.starts_with(ORACLE) {
+        return Vec::new();
+    }
+    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let lines = code.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//"));
+    let foreign = |line: &str| {
+        let used = line.trim_start().trim_start_matches("pub ").strip_prefix("use ");
+        let first = used.map(|used| used.split([':', ';', ' ']).next().unwrap_or_default());
+        let known = |first: &str| ORACLE_USES.contains(&first) || text.contains(&format!("mod {first};"));
+        line.contains("mp_") || line.contains("crate::") || first.is_some_and(|first| !known(first))
+    };
+    let found = lines.filter(|(_, line)| foreign(line));
+    found
+        .map(|(i, line)| {
+            format!(
+                "{}, line {}: the oracle uses no code of the project: {}",
+                path.display(),
+                i + 1,
+                line.trim()
+            )
+        })
+        .collect()
+}
+
 /// What an algorithm's file (`…/algo/NAME.rs`) lacks: an example called so, or a test (in the file, in one called
 /// so, in one that names it or its type, or, when it can be made by name, in one that runs all that can).
 fn algorithm(sources: &[(PathBuf, String)], path: &Path) -> Option<&'static str> {
@@ -239,6 +270,28 @@ mod tests {
         ] {
             assert!(found(path).is_empty(), "{path}");
         }
+    }
+
+    #[test]
+    fn the_oracle_uses_nothing_of_ours() {
+        let found = |file: &str, text: &str| oracle_uses(&Path::new(ORACLE).join(file), text).len();
+        assert_eq!(
+            found(
+                "a.rs",
+                "mod flat;\npub use flat::x;\nuse super::{A};\nuse std::fmt;\nuse nalgebra::Point3;\n"
+            ),
+            0
+        );
+        assert_eq!(found("a.rs", "// mp_plan\n#[cfg(test)]\nmod tests { use crate::draw; }\n"), 0);
+        for bad in [
+            "use mp_math::sin;",
+            "    let x = mp_geom::X;",
+            "use crate::draw::Draw;",
+            "pub use serde::Serialize;",
+        ] {
+            assert_eq!(found("a.rs", bad), 1, "{bad}");
+        }
+        assert!(oracle_uses(Path::new("crates/mp-soak/src/trial.rs"), "use mp_plan::Scene;").is_empty());
     }
 
     #[test]

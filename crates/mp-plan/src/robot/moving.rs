@@ -317,6 +317,10 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         vector::<K>((self.still.state(position), *time))
     }
     fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
+        let positions: Vec<_> = rows.iter().map(|row| row[..row.len().saturating_sub(1)].to_vec()).collect();
+        if let Some(odd) = self.still.odd_rows(&positions) {
+            return Some(odd);
+        }
         let moments: Vec<_> = rows.iter().map(|row| self.moment(&self.state(row))).collect();
         let space = &self.space.0;
         let i = moments.windows(2).position(|pair| !space.can_move(&pair[0], &pair[1]))?;

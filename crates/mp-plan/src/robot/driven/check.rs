@@ -89,6 +89,13 @@ impl<K: SpeedBound> MotionValidity<DVector<f64>> for DrivenVerifier<'_, K> {
         if gap > ROUNDING * space.extent() {
             return MotionCheck::Unproven { at: 1.0 };
         }
+        // Between these moments and the ends no number of the position is beyond its values there.
+        for time in space.system.turning_times(&a, &b) {
+            let then = space.system.flow(&space.positions, &a, &b.input, time);
+            if !space.positions.contains(&then.q) {
+                return MotionCheck::Unproven { at: time / b.duration };
+            }
+        }
         let travel = self.scene.robot.speed_bound(&space.system.rates(&a, &b)) * b.duration * ROUND_UP;
         let tolerance = 0.1 * self.scene.robot.tolerance();
         let mut least = f64::INFINITY;

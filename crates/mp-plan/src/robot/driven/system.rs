@@ -6,7 +6,10 @@ use mp_cspace::{Se2State, Space, StateVector};
 use mp_io::Drive;
 use nalgebra::DVector;
 use std::borrow::Cow;
+use std::f64::consts::FRAC_PI_2;
 
+/// A circle has four places where it turns back in x or y. Going around again leads to the same ones.
+const MOST_TURNS: f64 = 4.0;
 /// Steering angles to either side, when their number is not given.
 const STEERING: usize = 2;
 
@@ -113,6 +116,30 @@ impl System {
             true => velocity.iter().copied().chain([1.0]).collect(),
             false => velocity.into(),
         }
+    }
+
+    /// The times (s) on the way from `from` by the input of `to` at which a number of the position has its least or greatest value,
+    /// apart from the ends.
+    pub(super) fn turning_times<S: StateVector>(&self, from: &Parts<S>, to: &Parts<S>) -> Vec<f64> {
+        let input = &to.input;
+        let rate = match &self.drive {
+            Drive::Velocities { .. } => return Vec::new(),
+            Drive::Accelerations { .. } => {
+                let times = from.velocity.iter().zip(input).map(|(v, a)| -v / a);
+                return times.filter(|time| *time > 0.0 && *time < to.duration).collect();
+            }
+            Drive::Car { wheelbase, .. } => input[0] * mp_math::tan(input[1]) / wheelbase,
+            Drive::Unicycle { .. } => input[1],
+        };
+        if rate == 0.0 || input[0] == 0.0 {
+            return Vec::new();
+        }
+        // Where the robot heads along an axis.
+        let Some((pose, _)) = self.pose(&from.q) else { return Vec::new() };
+        let [begin, end] = [pose.angle, pose.angle + rate * to.duration];
+        let first = (begin.min(end) / FRAC_PI_2).ceil();
+        let count = ((begin.max(end) / FRAC_PI_2).floor() - first + 1.0).clamp(0.0, MOST_TURNS) as usize;
+        (0..count).map(|k| ((first + k as f64) * FRAC_PI_2 - begin) / rate).collect()
     }
 
     /// The greatest rate of each degree of freedom, as of [`rates`](Self::rates).

@@ -1,0 +1,196 @@
+//! Random worlds: the files of a problem, and the same problem as the oracle knows it.
+
+mod arms;
+mod bodies;
+mod plane;
+mod rigid;
+mod shipped;
+
+use crate::draw::Draw;
+use crate::oracle::{Ask, Case};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// A problem without a planner.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// The file of the scene.
+    pub main: String,
+    /// The contents of all files by name.
+    pub files: BTreeMap<String, Vec<u8>>,
+    /// The problem as the oracle knows it.
+    pub case: Case,
+    /// A start or goal with more clearance (m) must be accepted: round bodies are meshes a little larger than they are, and checks
+    /// have tolerances.
+    pub margin: f64,
+}
+
+/// A kind of world.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is.
+    pub summary: &'static str,
+    /// How often it is drawn, beside the others.
+    pub weight: u32,
+    make: fn(&mut Draw) -> World,
+}
+
+impl Kind {
+    /// A random world of this kind.
+    #[must_use]
+    pub fn make(&self, draw: &mut Draw) -> World {
+        (self.make)(draw)
+    }
+
+    /// The kind called `name`.
+    #[must_use]
+    pub fn named(name: &str) -> Option<&'static Self> {
+        KINDS.iter().find(|kind| kind.name == name)
+    }
+
+    /// One of all kinds.
+    pub fn drawn(draw: &mut Draw) -> &'static Self {
+        let mut left = draw.below(KINDS.iter().map(|kind| kind.weight as usize).sum());
+        for kind in &KINDS {
+            match left.checked_sub(kind.weight as usize) {
+                Some(rest) => left = rest,
+                None => return kind,
+            }
+        }
+        &KINDS[0]
+    }
+}
+
+/// All kinds of worlds.
+pub const KINDS: [Kind; 13] = [
+    Kind { name: "space", summary: "rigid body in space among figures", weight: 4, make: rigid::space },
+    Kind { name: "soup", summary: "rigid body among loose triangles", weight: 4, make: rigid::soup },
+    Kind { name: "flat-mesh", summary: "mesh that stays in the plane", weight: 2, make: rigid::flat },
+    Kind { name: "space-moving", summary: "rigid body, obstacles move", weight: 2, make: rigid::moving },
+    Kind {
+        name: "flyer",
+        summary: "rigid body by inputs, obstacles may move",
+        weight: 1,
+        make: rigid::flyer,
+    },
+    Kind { name: "disc", summary: "disc in the plane", weight: 4, make: plane::disc },
+    Kind { name: "polygon", summary: "polygon in the plane", weight: 4, make: plane::polygon },
+    Kind { name: "plane-moving", summary: "disc or polygon, obstacles move", weight: 3, make: plane::moving },
+    Kind { name: "driven", summary: "car, unicycle, … in the plane", weight: 3, make: plane::driven },
+    Kind {
+        name: "driven-moving",
+        summary: "car, unicycle, …, obstacles move",
+        weight: 2,
+        make: plane::driven_moving,
+    },
+    Kind { name: "arm", summary: "arm, also by inputs", weight: 4, make: arms::arm },
+    Kind { name: "floating", summary: "body with joints that flies", weight: 2, make: arms::floating },
+    Kind {
+        name: "shipped",
+        summary: "shipped scenes, other starts and goals",
+        weight: 1,
+        make: shipped::shipped,
+    },
+];
+
+/// A list of numbers as TOML writes it.
+fn list(numbers: &[f64]) -> String {
+    let numbers: Vec<String> = numbers.iter().map(|x| format!("{x:?}")).collect();
+    format!("[{}]", numbers.join(", "))
+}
+
+/// Rows of numbers as TOML writes them.
+fn lists<'r>(rows: impl IntoIterator<Item = &'r [f64]>) -> String {
+    let rows: Vec<String> = rows.into_iter().map(list).collect();
+    format!("[{}]", rows.join(", "))
+}
+
+/// How many ends are drawn before one is taken as it is.
+const TRIES: usize = 60;
+/// Starts and goals that are taken as drawn, free or not.
+const UNSEEN: f64 = 0.02;
+
+/// A configuration with more than the margin of clearance, if one is found; rarely any configuration.
+fn end(draw: &mut Draw, case: &Case, margin: f64, mut make: impl FnMut(&mut Draw) -> Vec<f64>) -> Vec<f64> {
+    let any = draw.chance(UNSEEN);
+    let mut row = make(draw);
+    for _ in 0..TRIES {
+        if any || case.clearance_at(&row).is_ok_and(|clearance| clearance > margin) {
+            break;
+        }
+        row = make(draw);
+    }
+    row
+}
+
+/// Goals around free configurations, and how TOML writes them.
+fn goals(
+    draw: &mut Draw,
+    names: &[String],
+    lengths: &[f64],
+    mut free: impl FnMut(&mut Draw) -> Vec<f64>,
+) -> (Vec<Vec<Ask>>, String) {
+    let count = if draw.chance(0.2) { draw.count(2, 3) } else { 1 };
+    let regions = draw.chance(0.25);
+    let mut all = Vec::new();
+    let mut texts = Vec::new();
+    for _ in 0..count {
+        let row = free(draw);
+        if !regions {
+            texts.push(list(&row));
+            all.push(row.iter().map(|x| Ask::Exactly(*x)).collect());
+            continue;
+        }
+        let mut goal = vec![Ask::Free; row.len()];
+        let mut parts = Vec::new();
+        for (i, x) in row.iter().enumerate() {
+            match draw.below(3) {
+                0 if i > 0 => {}
+                1 => {
+                    let ends = [x - draw.unit() * lengths[i], x + draw.unit() * lengths[i]];
+                    goal[i] = Ask::Between(ends);
+                    parts.push(format!("{} = {}", names[i], list(&ends)));
+                }
+                _ => {
+                    goal[i] = Ask::Exactly(*x);
+                    parts.push(format!("{} = {x:?}", names[i]));
+                }
+            }
+        }
+        texts.push(format!("{{ {} }}", parts.join(", ")));
+        all.push(goal);
+    }
+    let text = match texts.len() {
+        1 => format!("goal = {}", texts[0]),
+        _ => format!("goals = [{}]", texts.join(", ")),
+    };
+    (all, text)
+}
+
+/// A goal as an interval of each number, for robots that move by inputs. Numbers of width zero are free.
+fn wide_goal(draw: &mut Draw, names: &[String], row: &[f64], widths: &[f64]) -> (Vec<Ask>, String) {
+    let mut goal = vec![Ask::Free; row.len()];
+    let mut parts = Vec::new();
+    for (i, (x, width)) in row.iter().zip(widths).enumerate() {
+        // Numbers after the first two may be free.
+        if i < 2 || (*width > 0.0 && draw.chance(0.3)) {
+            let ends = [x - width, x + width];
+            goal[i] = Ask::Between(ends);
+            parts.push(format!("{} = {}", names[i], list(&ends)));
+        }
+    }
+    (goal, format!("goal = {{ {} }}", parts.join(", ")))
+}
+
+/// Writes a line.
+fn line(text: &mut String, line: impl std::fmt::Display) {
+    // Writing to a String does not fail.
+    let _ = writeln!(text, "{line}");
+}
+
+/// Names as text.
+fn names(names: &[&str]) -> Vec<String> {
+    names.iter().map(|name| (*name).to_owned()).collect()
+}
