@@ -9,7 +9,7 @@ use std::process::Command;
 /// The program with the benchmarks, and its folder in the repository.
 pub(crate) const BENCH: [&str; 2] = ["mp-bench", "crates/mp-bench"];
 /// The program that replays certificates.
-pub(crate) const VERIFY_CERTIFICATE: [&str; 2] = ["mp-verify-certificate", "crates/mp-verify"];
+pub(crate) const VERIFY_CERTIFICATE: [&str; 2] = ["mp-verify-certificate", "crates/mp-verify-certificate"];
 
 /// Runs a program with the arguments, from the folder of this program or from the search path. True when it succeeds.
 pub(crate) fn run([program, folder]: [&str; 2], args: &Passed) -> Result<bool, Error> {

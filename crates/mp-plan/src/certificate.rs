@@ -4,15 +4,11 @@
 //! program; it shares no code with this crate. The proof is that of Schwarzer, Saha and Latombe, *Adaptive dynamic collision
 //! checking* (2005): what is farther apart than it can move stays apart.
 
-mod model;
 mod motion;
 mod prove;
 
-pub(crate) use model::seven;
-pub use model::{Drive, DriveModel, ModelBody, ModelFrame, ModelPair, MotionModel, Step};
-
 use crate::path::states;
-use crate::{Error, PathRows, RobotKind, brief};
+use crate::{Error, MotionModel, PathRows, RobotKind, brief};
 use mp_cspace::Interrupt;
 use nalgebra::Isometry3;
 use prove::Prover;

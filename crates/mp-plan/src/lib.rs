@@ -97,7 +97,7 @@ mod search;
 mod sweep;
 mod watch;
 
-pub use certificate::{Certificate, Drive, DriveModel, ModelBody, ModelFrame, ModelPair, MotionModel, Step};
+pub use certificate::Certificate;
 pub use check::Verdict;
 pub use error::Error;
 pub use explain::Explanation;
@@ -118,9 +118,10 @@ pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, RelaxField, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
-    ArmScene, Body, BodyShape, Checker, Column, Counted, DrivenScene, End, FloatingScene, LinkedScene,
-    LinkedSpace, Measured, Mismatch, MovingScene, PathFormat, PlanarBody, PlanarScene, Queries, RigidScene,
-    RigidSpace, RobotKind, SpeedBound, Touch, WithMoving,
+    ArmScene, Body, BodyShape, Checker, Column, Counted, Drive, DriveModel, DrivenScene, End, FloatingScene,
+    LinkedScene, LinkedSpace, Measured, Mismatch, ModelBody, ModelFrame, ModelPair, MotionModel, MovingScene,
+    PathFormat, PlanarBody, PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, SpeedBound, Step, Touch,
+    WithMoving,
 };
 pub use run::{PreparedRun, Run};
 pub use runs::{Medians, Runs, median, medians};

@@ -2,6 +2,7 @@
 
 mod arm;
 mod driven;
+mod model;
 mod moving;
 mod planar;
 mod rigid;
@@ -11,11 +12,11 @@ mod vectors;
 pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace};
 pub(crate) use driven::greatest_speed;
 pub use driven::{DrivenScene, SpeedBound};
+pub use model::{Drive, DriveModel, ModelBody, ModelFrame, ModelPair, MotionModel, Step};
 pub use moving::{MovingScene, WithMoving};
 pub use planar::{PlanarBody, PlanarScene};
 pub use rigid::{RigidScene, RigidSpace};
 
-use crate::certificate::MotionModel;
 use crate::numbers::plain;
 use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};

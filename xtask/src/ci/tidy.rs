@@ -12,6 +12,9 @@ type Result<T> = std::result::Result<T, String>;
 /// Names that say nothing about what a file or folder holds.
 const VAGUE_NAMES: [&str; 8] = ["common", "helper", "helpers", "misc", "shared", "stuff", "util", "utils"];
 
+/// The program that must share no code with the others.
+const ALONE: &str = "crates/mp-verify-certificate";
+
 /// Calls that only `mp-store` makes: what it reads has a limit, and what it writes is whole.
 const FILE_CALLS: [&str; 7] = [
     "fs::read(",
@@ -174,7 +177,12 @@ fn has_vague_name(path: &Path) -> bool {
 fn file_calls(path: &Path, text: &str) -> Vec<String> {
     let is_test = path.iter().any(|part| part == "tests" || part == "tests.rs" || part == "examples");
     let is_own = OWN_FILES.iter().any(|own| path.ends_with(own));
-    if is_test || is_own || !path.starts_with("crates") || path.starts_with("crates/mp-store") {
+    if is_test
+        || is_own
+        || !path.starts_with("crates")
+        || path.starts_with("crates/mp-store")
+        || path.starts_with(ALONE)
+    {
         return Vec::new();
     }
     let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();

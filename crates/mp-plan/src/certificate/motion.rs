@@ -1,6 +1,6 @@
 //! Where the bodies of a model are along an edge, and how far they can move.
 
-use super::model::{DriveModel, ModelBody, ModelFrame, MotionModel, Step};
+use crate::{DriveModel, ModelBody, ModelFrame, MotionModel, Step};
 use mp_cspace::angle::{rotation_angle, slerp, wrap_angle};
 use mp_geom::pose_from_six;
 use mp_robot::Trajectory;

@@ -1,7 +1,7 @@
 //! Divides edges into parts of which each is proved free by one distance.
 
-use super::model::{ModelBody, ModelFrame, MotionModel};
 use super::motion::Motion;
+use crate::{ModelBody, ModelFrame, MotionModel};
 use mp_collide::reference::RefMesh;
 use mp_cspace::Interrupt;
 use mp_geom::TriMesh;

@@ -1,10 +1,10 @@
 //! Arms, and other trees of links, among meshes; their base stands still or floats.
 
+use super::model::{ModelBody, ModelFrame, ModelPair, MotionModel, Step, seven};
 use super::{
     Body, BodyShape, Column, Counted, DrivenScene, End, Measured, Queries, RobotKind, SpeedBound, Touch,
     hints_and_gradient, no_metric,
 };
-use crate::certificate::{ModelBody, ModelFrame, ModelPair, MotionModel, Step, seven};
 use crate::goals::{GoalPart, examples, rows};
 use crate::{Error, MetricName, brief};
 use mp_cspace::{

@@ -5,8 +5,8 @@ mod space;
 mod steer;
 mod system;
 
+use super::model::{self, DriveModel, MotionModel};
 use super::{Body, Column, End, Measured, RobotKind, Touch, no_metric};
-use crate::certificate::{self, DriveModel, MotionModel};
 use crate::goals::{GoalPart, examples};
 use crate::{Error, MetricName};
 use check::{DrivenChecker, DrivenVerifier};
@@ -363,7 +363,7 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
             mp_io::Drive::Accelerations { .. } => DriveModel::Accelerations,
         };
         let inputs = own + system.velocities;
-        let drive = certificate::Drive { by, velocities: own, inputs, duration: inputs + system.inputs };
+        let drive = model::Drive { by, velocities: own, inputs, duration: inputs + system.inputs };
         Ok(MotionModel { drive: Some(drive), ..self.robot.motion_model()? })
     }
 

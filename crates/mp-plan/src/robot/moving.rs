@@ -1,11 +1,11 @@
 //! Robots among obstacles that move: time is a dimension of planning.
 
+use super::model::{ModelBody, MotionModel};
 use super::vectors::OnVectors;
 use super::{
     Body, BodyShape, Checker, Column, DrivenScene, End, Measured, Mismatch, RobotKind, SpeedBound, Touch,
     no_metric,
 };
-use crate::certificate::{ModelBody, MotionModel};
 use crate::goals::{GoalPart, examples};
 use crate::{Error, MetricName};
 use mp_cspace::space_time::SpaceTime;

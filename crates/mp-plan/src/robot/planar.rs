@@ -1,10 +1,10 @@
 //! Robots in the plane among polygons: a disc, or a polygon that turns.
 
+use super::model::{ModelBody, ModelFrame, MotionModel, Step};
 use super::{
     Body, BodyShape, Checker, Column, Counted, DrivenScene, End, Measured, MovingScene, Queries, RobotKind,
     SpeedBound, Touch, WithMoving, greatest_speed, hints_and_gradient, no_metric,
 };
-use crate::certificate::{ModelBody, ModelFrame, MotionModel, Step};
 use crate::goals::{GoalPart, examples, rows};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};

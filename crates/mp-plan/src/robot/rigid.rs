@@ -1,10 +1,10 @@
 //! Rigid bodies among meshes, in space or in the plane.
 
+use super::model::{ModelBody, ModelFrame, MotionModel, Step};
 use super::{
     Body, BodyShape, Column, Counted, End, Measured, Mismatch, MovingScene, PathFormat, Queries, RobotKind,
     SpeedBound, Touch, WithMoving, hints_and_gradient, tuples,
 };
-use crate::certificate::{ModelBody, ModelFrame, MotionModel, Step};
 use crate::goals::{GoalPart, examples, rows};
 use crate::numbers::{fingerprint, plain};
 use crate::roadmaps::RoadmapState;
