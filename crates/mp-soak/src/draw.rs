@@ -9,14 +9,14 @@ impl Draw {
     #[must_use]
     pub fn new(seed: u64, number: u64) -> Self {
         let mut start = Self(seed);
-        let mixed = start.next() ^ number.wrapping_mul(0xD1B5_4A32_D192_ED03);
+        let mixed = start.bits() ^ number.wrapping_mul(0xD1B5_4A32_D192_ED03);
         let mut draw = Self(mixed);
-        draw.next();
+        draw.bits();
         draw
     }
 
     /// The next 64 bits.
-    pub fn next(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -26,7 +26,7 @@ impl Draw {
 
     /// A number in \[0, 1).
     pub fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// A number in \[low, high).
@@ -46,7 +46,7 @@ impl Draw {
 
     /// A whole number from 0 to `count` - 1; 0 for a count of 0.
     pub fn below(&mut self, count: usize) -> usize {
-        ((u128::from(self.next()) * count as u128) >> 64) as usize
+        ((u128::from(self.bits()) * count as u128) >> 64) as usize
     }
 
     /// A whole number from `low` to `high`, both included.
@@ -69,10 +69,10 @@ mod tests {
         let mut seen = std::collections::BTreeSet::new();
         for seed in 0..30 {
             for number in 0..30 {
-                assert!(seen.insert(Draw::new(seed, number).next()));
+                assert!(seen.insert(Draw::new(seed, number).bits()));
             }
         }
-        assert_eq!(Draw::new(1, 2).next(), Draw::new(1, 2).next());
+        assert_eq!(Draw::new(1, 2).bits(), Draw::new(1, 2).bits());
         let mut draw = Draw::new(7, 7);
         let mean = (0..10_000).map(|_| draw.unit()).sum::<f64>() / 10_000.0;
         assert!((mean - 0.5).abs() < 0.02, "{mean}");

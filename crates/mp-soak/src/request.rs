@@ -60,7 +60,7 @@ pub fn request(draw: &mut Draw, scene: &Scene, planner: Option<&str>) -> Request
             queries: Some(draw.logarithmic(1_000.0, 15_000.0) as u64),
             nodes,
         },
-        seed: draw.next() >> 12,
+        seed: draw.bits() >> 12,
         threads: if draw.chance(0.9) { 1 } else { draw.count(2, 4) },
         finish,
         field: if finish == Finish::Relax { field } else { RelaxField::Clearance },

@@ -110,7 +110,7 @@ fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
     let mut names = Vec::new();
     let mut reach = 0.0;
     let lengths: Vec<f64> = (0..=count).map(|_| scale * draw.within(0.25, 0.9)).collect();
-    for link in 0..=count {
+    for (link, length) in lengths.iter().enumerate() {
         let mut elements = String::new();
         let shapes = match link {
             0 if !floats => draw.below(2),
@@ -120,8 +120,7 @@ fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
             _ => *draw.one(&[0, 1, 1, 1, 2]),
         };
         for shape in 0..shapes {
-            let (element, pieces) =
-                collision(draw, lengths[link], &format!("part-{link}-{shape}"), &mut files);
+            let (element, pieces) = collision(draw, *length, &format!("part-{link}-{shape}"), &mut files);
             elements += &element;
             bodies.push(Body::new(format!("link{link}"), Shape::Pieces(pieces), link));
             of_link.push(link);
