@@ -178,7 +178,7 @@ impl Problem {
         trial.request = Some(request.clone());
         let mut rest = self.rest.clone();
         (0..1000).for_each(|_| {
-            rest.next();
+            rest.bits();
         });
         if rest.chance(AGAIN) {
             self.plan_again(&scene, &request, &report, &mut trial);
