@@ -255,7 +255,7 @@ fn robots_moved_by_inputs() {
     let quarter = [vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0], vec![1.0, 1.0, 0.5 * PI, 1.0, 1.0, 0.5 * PI]];
     driven(Moves::Plane, polygon(), drive(DriveKind::Unicycle, 2, 0), quarter.clone(), line_wall(0.377));
     let mut car = quarter;
-    car[1][4] = f64::atan(0.5);
+    car[1][4] = mp_math::atan(0.5);
     driven(Moves::Plane, polygon(), drive(DriveKind::Car(0.5), 2, 0), car, line_wall(0.377));
     let straight = [vec![-1.0, 0.0, 0.0, 0.0, 0.0], vec![1.0, 0.5, 1.0, 0.25, 2.0]];
     driven(Moves::Point, disc(), drive(DriveKind::Velocities, 2, 0), straight, line_wall(0.377));
