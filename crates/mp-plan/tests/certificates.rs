@@ -68,10 +68,7 @@ fn a_certificate_of_which_one_number_was_changed_is_refused() {
             let mut changed = text.clone().into_bytes();
             changed[i] = if changed[i] == b'9' { b'8' } else { changed[i] + 1 };
             let why = verify(&String::from_utf8(changed).unwrap()).unwrap_err();
-            assert!(
-                why.contains("checksum") || why.contains("cannot be read") || why.contains("version"),
-                "{why}"
-            );
+            assert!(why.contains("checksum"), "{why}");
         }
     }
 }

@@ -14,7 +14,8 @@ pub(crate) struct Certificate {
     pub(crate) clearance: Option<f64>,
     /// For each edge, for each pair: where each part ends, and the distance in its middle.
     pub(crate) edges: Vec<Vec<Vec<[f64; 2]>>>,
-    pub(crate) checksum: String,
+    #[serde(rename = "checksum")]
+    _checksum: String,
 }
 
 #[derive(Debug, Deserialize)]
@@ -122,15 +123,15 @@ impl Frame {
 
 /// Reads a certificate and checks that nobody has changed it, and that it makes sense.
 pub(crate) fn read(text: &str) -> Result<Certificate, String> {
-    let hashed =
+    let end =
         text.rfind(",\n\"checksum\":").ok_or("it has no checksum: it is not whole, or no certificate")?;
+    let hash = format!(",\n\"checksum\":\"{:032x}\"}}", xxh3_128(&text.as_bytes()[..end]));
+    if text[end..].trim_end() != hash {
+        return Err("it was changed after it was written: its checksum is another".to_owned());
+    }
     let file: Certificate = serde_json::from_str(text).map_err(|e| format!("it cannot be read: {e}"))?;
     if file.certificate != 1 {
         return Err(format!("it is of version {}, and this program knows version 1", file.certificate));
-    }
-    let hash = format!("{:032x}", xxh3_128(&text.as_bytes()[..hashed]));
-    if hash != file.checksum {
-        return Err("it was changed after it was written: its checksum is another".to_owned());
     }
     file.check().map(|()| file)
 }
