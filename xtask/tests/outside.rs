@@ -14,8 +14,6 @@ fn run(name: &str) -> String {
         .args(["run", "--quiet", "--offline"])
         .current_dir(&folder)
         .env("CARGO_TARGET_DIR", target)
-        // One large crate after the other: only in parts can they use all cores.
-        .env_remove("CARGO_PROFILE_DEV_CODEGEN_UNITS")
         .output()
         .unwrap();
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
