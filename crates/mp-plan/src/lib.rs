@@ -50,7 +50,7 @@
 //! | work with states instead of rows of numbers | [`search`], [`shorten`] with a [`RobotKind`] |
 //!
 //! Units are metres, radians and seconds. The crate prints nothing. It reports through `tracing`, with the spans `load`,
-//! `build`, `plan`, `roadmap`, `query`, `relax`, `shorten`, `verify` and `check`.
+//! `build`, `plan`, `roadmap`, `query`, `relax`, `shorten`, `verify`, `check` and `certificate`.
 
 mod alone;
 mod any_robot;
