@@ -10,6 +10,8 @@ mod clock;
 mod collide;
 mod error;
 mod experiment;
+#[cfg(test)]
+mod killed;
 mod options;
 mod output;
 mod planners;
@@ -23,6 +25,7 @@ mod scenes;
 
 use clap::{Parser, ValueEnum};
 pub use mp_plan::Error;
+use std::io::Write;
 
 /// What to measure, and how: the command line.
 ///
@@ -95,6 +98,21 @@ pub fn run(options: &Options) -> Result<bool, Error> {
         Suite::Assets => assets::run(&options.assets),
     };
     Ok(complete? && !output::is_closed())
+}
+
+/// The program `mp-bench`: [`run`], with what it logs and its error on standard error. Returns the exit code.
+#[must_use]
+pub fn program(options: &Options) -> u8 {
+    let level = std::env::var("RUST_LOG").ok().and_then(|level| level.parse().ok());
+    let level = level.unwrap_or(tracing_subscriber::filter::LevelFilter::WARN);
+    tracing_subscriber::fmt().with_max_level(level).with_writer(std::io::stderr).init();
+    match run(options) {
+        Ok(complete) => u8::from(!complete),
+        Err(error) => {
+            let _ = writeln!(std::io::stderr().lock(), "{}", error.report());
+            2
+        }
+    }
 }
 
 #[cfg(test)]

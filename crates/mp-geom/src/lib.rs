@@ -7,7 +7,7 @@
 //! - [`Features`]: size, place and direction of a body for obstacle-geometry planners; [`TriMesh::parts`]: its components.
 //! - [`primitives`]: closed solids.
 //! - [`planar`]: polygons in the plane.
-//! - [`pose_from_six`] and others: poses to and from numbers.
+//! - [`pose_from_six`] and others: poses to and from numbers; [`six_tuples`] of a motion.
 //!
 //! Lengths are metres, angles radians.
 
@@ -20,6 +20,7 @@ mod obb;
 pub mod planar;
 mod pose;
 pub mod primitives;
+mod six_tuples;
 mod sphere;
 mod spread;
 mod topology;
@@ -35,6 +36,7 @@ pub use pose::{
     rotation_from_matrix, short_six_from_pose, six_from_pose,
 };
 pub use primitives::PrimitiveError;
+pub use six_tuples::{displacement_bound, six_tuples};
 pub use sphere::{Sphere, minimal_sphere};
 pub use spread::evenly;
 pub use topology::{NO_COMPONENT, Topology};

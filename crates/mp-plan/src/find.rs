@@ -158,17 +158,3 @@ fn edits(a: &str, b: &str) -> usize {
     }
     row[b.len()]
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn near_names_are_found_and_far_ones_are_not() {
-        let similar = |given| similar(given, ["easy", "cubicles"].into_iter());
-        assert_eq!(edits("kitten", "sitting"), 3);
-        assert_eq!(similar("cubicle"), Some("cubicles"));
-        assert_eq!(similar("esay"), Some("easy"));
-        assert_eq!(similar("zebra"), None);
-    }
-}

@@ -93,27 +93,3 @@ fn content(file: &Path) -> Result<FileContent, Error> {
         _ => FileContent::Mesh,
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn txt_files_are_told_apart_by_how_they_begin() {
-        let dir = tempfile::tempdir().unwrap();
-        let cases = [
-            ("Robot\nr.off\n", FileContent::Scene),
-            ("\n  2 \n0 0 0 0 0 0\n1 0 0 0 0 0\n", FileContent::Path(PathFormat::Poses)),
-            ("1\n0 0 0 1 0 0 0 1 0\n", FileContent::Mesh),
-            ("2 3\n0 0 0\n1 0 0\n", FileContent::Path(PathFormat::Joints)),
-            ("OFF\n3 1 0\n", FileContent::Mesh),
-            ("", FileContent::Mesh),
-        ];
-        for (text, expected) in cases {
-            let file = dir.path().join("x.txt");
-            std::fs::write(&file, text).unwrap();
-            assert_eq!(content(&file).unwrap(), expected, "{text:?}");
-        }
-        assert!(content(dir.path()).is_err());
-    }
-}

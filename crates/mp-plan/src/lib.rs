@@ -107,7 +107,7 @@ pub use film::{Film, FilmKind};
 pub use find::find_problem;
 pub use finish::shorten;
 pub use goals::GoalPart;
-pub use numbers::{brief, count, positive_number};
+pub use numbers::{brief, count, plain, positive_number};
 pub use output::{make_folder, write_file};
 pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};

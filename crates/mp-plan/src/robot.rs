@@ -6,7 +6,6 @@ mod model;
 mod moving;
 mod planar;
 mod rigid;
-mod tuples;
 mod vectors;
 
 pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace};

@@ -105,33 +105,3 @@ pub(crate) fn track<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Track, Er
     }
     Ok(track)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The robot is where the way says, whatever the spacing of the configurations.
-    #[test]
-    fn tracks_are_followed_at_even_speed() {
-        let places = [0.0, 1.0, 1.0, 1.5, 8.0];
-        let track = Track {
-            rows: Vec::new(),
-            poses: places.iter().map(|x| vec![Isometry3::translation(*x, 0.0, 0.0)]).collect(),
-            trace: places.iter().map(|x| Point3::new(*x, 1.0, 0.0)).collect(),
-            clearance: Vec::new(),
-            travel: places.to_vec(),
-        };
-        for (fraction, x) in
-            [(0.0, 0.0), (0.0625, 0.5), (0.125, 1.0), (0.5, 4.0), (1.0, 8.0), (-1.0, 0.0), (2.0, 8.0)]
-        {
-            let (poses, point) = track.at(fraction).unwrap();
-            assert!(
-                (poses[0].translation.x - x).abs() < 1e-12 && (point.x - x).abs() < 1e-12,
-                "{fraction}: {point}"
-            );
-        }
-        let still = Track { travel: vec![0.0; 5], ..track };
-        assert_eq!(still.at(0.7).unwrap().1.x, 0.0);
-        assert!(Track::default().at(0.5).is_none());
-    }
-}

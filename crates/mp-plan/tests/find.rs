@@ -25,6 +25,22 @@ fn files_come_first_with_or_without_ending() {
     assert!(Scene::find(dir.path()).unwrap_err().message().contains("is a folder"));
 }
 
+#[test]
+fn near_names_are_found_and_far_ones_are_not() {
+    for (given, meant) in [
+        ("cubicle", Some("cubicles")),
+        ("esay", Some("easy")),
+        ("qubikles", Some("cubicles")),
+        ("zebra", None),
+    ] {
+        let e = Scene::find(given).unwrap_err();
+        let help = e.remedy().unwrap_or_default();
+        let similar =
+            Scene::shipped().into_iter().find(|name| help.contains(&format!("did you mean `{name}`?")));
+        assert_eq!(similar, meant, "{given}: {help}");
+    }
+}
+
 /// A path in a file of the name of a scene does not hide the scene.
 #[test]
 fn paths_do_not_hide_scenes() {

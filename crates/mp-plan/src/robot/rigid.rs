@@ -3,7 +3,7 @@
 use super::model::{ModelBody, ModelFrame, MotionModel, Step};
 use super::{
     Body, BodyShape, Column, Counted, End, Measured, Mismatch, MovingScene, PathFormat, Queries, RobotKind,
-    SpeedBound, Touch, WithMoving, hints_and_gradient, tuples,
+    SpeedBound, Touch, WithMoving, hints_and_gradient,
 };
 use crate::goals::{GoalPart, examples, rows};
 use crate::numbers::{fingerprint, plain};
@@ -17,7 +17,7 @@ use mp_cspace::{
     MotionCheck, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume,
     TrueMetric, WithMetric,
 };
-use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
+use mp_geom::{Aabb, TriMesh, displacement_bound, pose_from_six, six_from_pose, six_tuples};
 use mp_io::{RigidMoving, RigidProblem, SpaceKind, Timing};
 use mp_robot::{
     AmongMoving, MovingVerifier, Placement, Planar, RigidBody, Spatial, Trajectory, Verifier, is_solid,
@@ -441,7 +441,7 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
             Some(next) => M::pose(&self.space.interpolate(&states[i], next, t)),
             None => M::pose(&states[i]),
         };
-        tuples::six_tuples(states.len() - 1, self.radius, at).iter().map(|six| six.to_vec()).collect()
+        six_tuples(states.len() - 1, self.radius, at).iter().map(|six| six.to_vec()).collect()
     }
     fn details(&self) -> Vec<(String, String)> {
         let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
@@ -480,7 +480,7 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
         Some(format!("configuration {} leaves the plane: z, β and γ must be 0", i + 1))
     }
     fn mismatch(&self, q: &M::State, wanted: &M::State) -> Mismatch {
-        let off = tuples::travel(&M::pose(q), &M::pose(wanted), self.radius);
+        let off = displacement_bound(&M::pose(q), &M::pose(wanted), self.radius);
         Mismatch { off, allowed: END_TOLERANCE * self.radius, unit: " m" }
     }
     fn written(&self, q: &M::State) -> String {

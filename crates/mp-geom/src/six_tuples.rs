@@ -1,6 +1,6 @@
 //! Paths as six-tuples, close enough together for players that interpolate the six numbers.
 
-use mp_geom::{pose_from_six, six_from_pose};
+use crate::{pose_from_six, six_from_pose};
 use nalgebra::Isometry3;
 use std::f64::consts::{PI, TAU};
 
@@ -14,11 +14,8 @@ const DEPTH: u32 = 10;
 /// Six-tuples (x, y, z, α, β, γ) along the motion through `segments + 1` poses, where `at(i, t)` is the pose
 /// at fraction `t` of segment `i`. Angles are continuous along the path, so they may leave (-π, π]. `radius` is the
 /// distance of the robot's farthest point from its origin.
-pub(crate) fn six_tuples(
-    segments: usize,
-    radius: f64,
-    at: impl Fn(usize, f64) -> Isometry3<f64>,
-) -> Vec<[f64; 6]> {
+#[must_use]
+pub fn six_tuples(segments: usize, radius: f64, at: impl Fn(usize, f64) -> Isometry3<f64>) -> Vec<[f64; 6]> {
     // Adding zero removes the sign of negative zeros.
     let six = |pose: &Isometry3<f64>| six_from_pose(pose).map(|v| v + 0.0);
     let mut out = vec![six(&at(0, 0.0))];
@@ -30,8 +27,8 @@ pub(crate) fn six_tuples(
             let next = continued(&last, &six(&b));
             let middle = 0.5 * (from + to);
             let played = pose_from_six(std::array::from_fn(|k| 0.5 * (last[k] + next[k])));
-            let fine = travel(&a, &b, radius) <= SPACING * radius
-                && travel(&played, &at(i, middle), radius) <= DEVIATION * radius;
+            let fine = displacement_bound(&a, &b, radius) <= SPACING * radius
+                && displacement_bound(&played, &at(i, middle), radius) <= DEVIATION * radius;
             if fine || depth == DEPTH {
                 out.push(next);
             } else {
@@ -44,7 +41,8 @@ pub(crate) fn six_tuples(
 }
 
 /// An upper bound on how far any point within `radius` of the origin moves from `a` to `b`.
-pub(crate) fn travel(a: &Isometry3<f64>, b: &Isometry3<f64>, radius: f64) -> f64 {
+#[must_use]
+pub fn displacement_bound(a: &Isometry3<f64>, b: &Isometry3<f64>, radius: f64) -> f64 {
     (a.translation.vector - b.translation.vector).norm() + radius * a.rotation.angle_to(&b.rotation)
 }
 
@@ -81,11 +79,11 @@ mod tests {
             let Some(_) = from.try_lerp_slerp(&to, 0.5, 1e-9) else { return Ok(()) };
             let at = |_: usize, t: f64| from.try_lerp_slerp(&to, t, 1e-9).unwrap_or(from);
             let tuples = six_tuples(1, 1.0, at);
-            prop_assert!(travel(&pose_from_six(tuples[0]), &from, 1.0) < 1e-7);
-            prop_assert!(travel(&pose_from_six(tuples[tuples.len() - 1]), &to, 1.0) < 1e-7);
+            prop_assert!(displacement_bound(&pose_from_six(tuples[0]), &from, 1.0) < 1e-7);
+            prop_assert!(displacement_bound(&pose_from_six(tuples[tuples.len() - 1]), &to, 1.0) < 1e-7);
             let mut far = 0;
             for w in tuples.windows(2) {
-                let step = travel(&pose_from_six(w[0]), &pose_from_six(w[1]), 1.0);
+                let step = displacement_bound(&pose_from_six(w[0]), &pose_from_six(w[1]), 1.0);
                 prop_assert!(step <= SPACING + 1e-6, "{step}");
                 // Only at the singularity of the angles may they jump.
                 far += usize::from((3..6).any(|k| (w[0][k] - w[1][k]).abs() > 1.0));

@@ -1,11 +1,11 @@
 //! Nodes per second of a tree that grows in an empty unit cube, by size, space and index.
 //!
-//! `cargo run --release -p mp-cspace --example nn_growth -- SPACE [INDEX] [NODES] [REPEATS]`
+//! `cargo bench -p mp-cspace --bench nn_growth -- SPACE [INDEX] [NODES] [REPEATS]`
 //! with SPACE one of `r2 r3 r6 se2 se3 so3 t6`, INDEX one of `default dynamic metric linear`.
 //! Prints the average rate, by processor time, when the tree reaches 10³, 10⁴ … nodes: the median
 //! over the repeats, and the best.
 
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example talks to its user")]
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a benchmark talks to its user")]
 
 use mp_cspace::nn::grow;
 use mp_cspace::{
@@ -58,7 +58,7 @@ impl Request {
 }
 
 fn main() -> Result<(), SpaceError> {
-    let mut args = std::env::args().skip(1);
+    let mut args = std::env::args().skip(1).filter(|word| word != "--bench");
     let request = Request {
         name: args.next().unwrap_or_else(|| "r3".into()),
         index: args.next().unwrap_or_else(|| "default".into()),

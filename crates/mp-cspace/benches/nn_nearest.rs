@@ -1,9 +1,9 @@
 //! Nanoseconds for the nearest and the k nearest of random states, by space and size.
 //!
-//! `cargo run --release -p mp-cspace --example nn_nearest -- [K] [STATES]`
+//! `cargo bench -p mp-cspace --bench nn_nearest -- [K] [STATES]`
 //! By processor time, the least of 15 trials of 2000 random queries each.
 
-#![allow(clippy::print_stdout, reason = "an example talks to its user")]
+#![allow(clippy::print_stdout, reason = "a benchmark talks to its user")]
 
 use mp_cspace::{DefaultNn, NearestNeighbors, Rn, Rng, Se3, SpaceError};
 use rustix::time::{ClockId, clock_gettime};
@@ -46,7 +46,7 @@ fn time<C: DefaultNn>(name: &str, space: &C, k: usize, n: usize) {
 }
 
 fn main() -> Result<(), SpaceError> {
-    let mut args = std::env::args().skip(1);
+    let mut args = std::env::args().skip(1).filter(|word| word != "--bench");
     let k = args.next().and_then(|k| k.parse().ok()).unwrap_or(10);
     let n = args.next().and_then(|n| n.parse::<f64>().ok()).unwrap_or(1e5) as usize;
     time("R^2", &Rn::<2>::new([0.0; 2], [1.0; 2])?, k, n);

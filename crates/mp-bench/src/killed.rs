@@ -1,21 +1,39 @@
 //! Measurements that are killed: what was measured is kept, and goes on from there.
+//!
+//! Here and not in `tests`, and the test program itself is what is killed: another one would compile the whole library a second
+//! time.
 
+use crate::{Options, program};
+use clap::Parser;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 const LOG: &str = "planners-runs.jsonl";
 
-/// A small measurement into `out`.
+/// The variable that says where the program measures into.
+const OUT: &str = "MP_BENCH_KILLED_OUT";
+
+/// A small measurement into `out`, by [`the_program`].
 fn start(out: &Path) -> Child {
-    let args = ["planners", "--scene", "easy", "--runs", "1", "--time", "0.2", "--out"];
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mp-bench"));
-    command.args(args).arg(out).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    command.args(["killed::the_program", "--exact", "--ignored", "--nocapture"]).env(OUT, out);
+    command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+#[test]
+#[ignore = "started by the others"]
+fn the_program() {
+    let Some(out) = std::env::var_os(OUT) else { return };
+    let words = ["mp-bench", "planners", "--scene", "easy", "--runs", "1", "--time", "0.2", "--out"];
+    let options = Options::parse_from(words.map(Into::into).into_iter().chain([out]));
+    std::process::exit(program(&options).into());
 }
 
 /// How many complete lines the log has.
 fn lines(out: &Path) -> usize {
-    let text = std::fs::read_to_string(out.join(LOG)).unwrap_or_default();
+    let text = mp_store::read(&out.join(LOG), 1 << 24).unwrap_or_default();
+    let text = String::from_utf8(text).unwrap();
     let complete: Vec<_> = text.split_inclusive('\n').filter(|line| line.ends_with('\n')).collect();
     for line in &complete {
         assert!(serde_json::from_str::<serde_json::Value>(line).is_ok(), "{line}");
@@ -52,7 +70,7 @@ fn measurements_that_are_killed_lose_nothing() {
     kill_measurements(5);
 }
 
-/// As many as a release is tested with: `cargo test -p mp-bench --test killed -- --ignored`.
+/// As many as a release is tested with: `cargo test -p mp-bench killed -- --ignored`.
 #[test]
 #[ignore = "takes minutes"]
 fn hundreds_of_measurements_that_are_killed_lose_nothing() {

@@ -1,0 +1,161 @@
+//! The small parts of the library that others use alone: numbers, requests, tracks, and what is in a file.
+
+use mp_geom::TriMesh;
+use mp_geom::primitives::cuboid;
+use mp_plan::info::{Info, MeshInfo, Surface};
+use mp_plan::{Length, MetricName, MotionValidator, RelaxField, Request, Track, brief, plain, write_file};
+use nalgebra::{Isometry3, Point3};
+
+#[test]
+fn numbers_are_brief() {
+    for (v, text) in [
+        (0.0, "0"),
+        (1.0, "1"),
+        (-0.00001, "-1.000e-5"),
+        (12.3456, "12.346"),
+        (1234.56, "1234.6"),
+        (2e7, "2.000e7"),
+    ] {
+        assert_eq!(brief(v), text);
+    }
+    assert_eq!(plain(-1e-12), "0");
+}
+
+#[test]
+fn the_folder_of_a_file_is_made() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("a/b.txt");
+    write_file(&path, b"one").unwrap();
+    write_file(&path, b"two").unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), b"two");
+    assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+}
+
+/// The robot is where the way says, whatever the spacing of the configurations.
+#[test]
+fn tracks_are_followed_at_even_speed() {
+    let places = [0.0, 1.0, 1.0, 1.5, 8.0];
+    let track = Track {
+        poses: places.iter().map(|x| vec![Isometry3::translation(*x, 0.0, 0.0)]).collect(),
+        trace: places.iter().map(|x| Point3::new(*x, 1.0, 0.0)).collect(),
+        travel: places.to_vec(),
+        ..Track::default()
+    };
+    for (fraction, x) in
+        [(0.0, 0.0), (0.0625, 0.5), (0.125, 1.0), (0.5, 4.0), (1.0, 8.0), (-1.0, 0.0), (2.0, 8.0)]
+    {
+        let (poses, point) = track.at(fraction).unwrap();
+        assert!(
+            (poses[0].translation.x - x).abs() < 1e-12 && (point.x - x).abs() < 1e-12,
+            "{fraction}: {point}"
+        );
+    }
+    let still = Track { travel: vec![0.0; 5], ..track };
+    assert_eq!(still.at(0.7).unwrap().1.x, 0.0);
+    assert!(Track::default().at(0.5).is_none());
+}
+
+#[test]
+fn txt_files_are_told_apart_by_how_they_begin() {
+    let dir = tempfile::tempdir().unwrap();
+    let read = |text: &str| {
+        let file = dir.path().join("x.txt");
+        std::fs::write(&file, text).unwrap();
+        Info::read(&file)
+    };
+    // Poses have a length in metres, joints have none.
+    for (text, numbers, length) in
+        [("\n  2 \n0 0 0 0 0 0\n1 0 0 0 0 0\n", 6, Some(1.0)), ("2 3\n0 0 0\n1 0 0\n", 3, None)]
+    {
+        let found = read(text).unwrap();
+        let Info::Path(path) = &found else { panic!("{text:?}: {found}") };
+        assert_eq!((path.configurations, path.numbers, path.length), (2, numbers, length));
+    }
+    let triangle = read("1\n0 0 0 1 0 0 0 1 0\n").unwrap();
+    assert!(
+        matches!(&triangle, Info::Mesh(MeshInfo { surface, .. }) if surface.triangles == 1),
+        "{triangle}"
+    );
+    for (text, said) in [("Robot\nr.off\n", "r.off"), ("OFF\n3 1 0\n", "vertex 0 of 3"), ("", "mesh")] {
+        let e = read(text).unwrap_err().report();
+        assert!(e.contains(said), "{text:?}: {e}");
+    }
+    assert!(Info::read(dir.path()).is_err());
+}
+
+#[test]
+fn lengths_and_motions() {
+    assert_eq!("20%".parse::<Length>().unwrap(), Length::Fraction(0.2));
+    assert_eq!("0.5".parse::<Length>().unwrap(), Length::Absolute(0.5));
+    let one = MotionValidator::Discrete(Length::Fraction(0.01));
+    assert_eq!("discrete:1%".parse::<MotionValidator>().unwrap(), one);
+    assert_eq!(one.to_string(), "discrete:1%");
+    for bad in ["", "0", "-1", "nan", "inf", "101%", "0%", "%", "x"] {
+        assert!(bad.parse::<Length>().is_err(), "{bad}");
+        assert!(format!("discrete:{bad}").parse::<MotionValidator>().is_err(), "{bad}");
+    }
+}
+
+#[test]
+fn fields_are_read_back() {
+    for text in ["clearance", "paper", "risk", "risk:2", "image:a b.png"] {
+        assert_eq!(text.parse::<RelaxField>().unwrap().to_string(), text);
+    }
+    for bad in ["", "risks", "risk:", "risk:0", "risk:x", "image:", "image", "paper:2", "clearance:1"] {
+        assert!(bad.parse::<RelaxField>().is_err(), "{bad}");
+    }
+}
+
+#[test]
+fn requests_are_read_back_and_checked() {
+    let request = Request::new("prm")
+        .metric(MetricName::MaxDisplacement)
+        .motion("discrete:2%".parse().unwrap())
+        .relax(RelaxField::Risk(2.0));
+    let text = serde_json::to_string(&request).unwrap();
+    assert_eq!(serde_json::from_str::<Request>(&text).unwrap(), request);
+    assert_eq!(serde_json::from_str::<Request>("{}").unwrap(), Request::default());
+    assert!(serde_json::from_str::<Request>(r#"{"planer": "prm"}"#).is_err());
+    assert!(request.check().is_ok());
+    for bad in [
+        Request::new("rrt-conect"),
+        Request::default().set("stepp", 1),
+        Request::default().time(f64::NAN),
+        Request::default().threads(0),
+        Request { roadmap: Some("x".into()), ..Request::default() },
+    ] {
+        assert!(bad.check().is_err(), "{bad:?}");
+    }
+}
+
+#[test]
+fn a_box_is_sound_and_an_open_one_is_not() {
+    let whole = cuboid(1.0, 2.0, 3.0).unwrap();
+    let shape = Surface::of(&whole);
+    assert!(shape.watertight && shape.warnings.is_empty(), "{:?}", shape.warnings);
+    assert!((shape.area - 22.0).abs() < 1e-12);
+    let open = TriMesh::new(whole.vertices().to_vec(), whole.triangles()[2..].to_vec()).unwrap();
+    let shape = Surface::of(&open);
+    assert!(!shape.watertight && !shape.two_sided);
+    assert_eq!(shape.warnings, ["4 boundary edges: the surface has holes, or is a sheet"]);
+}
+
+/// As SketchUp writes surfaces: with vertices of their own for each side.
+#[test]
+fn the_other_sides_of_triangles_are_no_defects() {
+    let whole = cuboid(1.0, 2.0, 3.0).unwrap();
+    let doubled = |mesh: &TriMesh, turn: bool| {
+        let n = mesh.vertices().len() as u32;
+        let other =
+            mesh.triangles().iter().map(|&[a, b, c]| if turn { [c, b, a] } else { [a, b, c] }.map(|i| i + n));
+        let triangles = mesh.triangles().iter().copied().chain(other).collect();
+        TriMesh::new([mesh.vertices(), mesh.vertices()].concat(), triangles).unwrap()
+    };
+    let shape = Surface::of(&doubled(&whole, true));
+    assert!(shape.two_sided && shape.warnings.is_empty(), "{:?}", shape.warnings);
+    let twice = Surface::of(&doubled(&whole, false));
+    assert!(!twice.two_sided && !twice.warnings.is_empty());
+    let open = TriMesh::new(whole.vertices().to_vec(), whole.triangles()[2..].to_vec()).unwrap();
+    let shape = Surface::of(&doubled(&open, true));
+    assert_eq!(shape.warnings, ["4 boundary edges: the surface has holes, or is a sheet"]);
+}

@@ -1,0 +1,62 @@
+//! The programs of the folder `examples` do what they say, and they build outside of the workspace: one depends on `mp-plan`
+//! alone, one on `mp-cspace` and `mp-tree` alone.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The folder `examples/NAME`.
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+/// What a command prints.
+fn output(command: &mut Command) -> String {
+    let output = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}"));
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    assert!(output.status.success(), "{command:?}: {}", text(&output.stderr));
+    text(&output.stdout)
+}
+
+/// Compiles the program in `examples/NAME` as one outside of the workspace, with the features that it asks for. Without
+/// machine code, which takes twice as long.
+fn check(name: &str) {
+    let folder = folder(name);
+    // The versions of the workspace: nothing is fetched.
+    let lock = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("Cargo.lock");
+    std::fs::copy(lock, folder.join("Cargo.lock")).unwrap();
+    let target = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("outside");
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["check", "--quiet", "--offline"]).current_dir(&folder).env("CARGO_TARGET_DIR", target);
+    output(&mut cargo);
+}
+
+/// Lines of a program that are code.
+fn lines(name: &str) -> usize {
+    let text = std::fs::read_to_string(folder(name).join("src/main.rs")).unwrap();
+    text.lines().filter(|line| !line.trim().is_empty() && !line.trim().starts_with("//")).count()
+}
+
+#[test]
+fn a_scene_is_planned_for_in_a_few_lines() {
+    let printed = output(&mut Command::new(env!("CARGO_BIN_EXE_plan-a-scene")));
+    assert!(printed.contains("configurations, clear by"), "{printed}");
+    assert!(lines("plan-a-scene") < 20);
+}
+
+#[test]
+fn a_robot_of_ones_own_needs_the_vocabulary_and_the_trees_only() {
+    let printed = output(&mut Command::new(env!("CARGO_BIN_EXE_own-robot")));
+    let (first, last) = (printed.lines().next().unwrap(), printed.lines().last().unwrap());
+    assert_eq!(
+        [first, last],
+        ["Leaves { left: 0.0, right: 0.0 }", "Leaves { left: 1.5, right: 0.0 }"],
+        "{printed}"
+    );
+}
+
+#[test]
+fn they_build_outside_of_the_workspace() {
+    for name in ["plan-a-scene", "own-robot"] {
+        check(name);
+    }
+}
