@@ -54,7 +54,9 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
             findings.push(format!("{shown} has a circle of imports between folders: {circle}"));
         }
     }
-    findings.extend(alone_lines(sources.iter().map(|(p, text)| (p.strip_prefix(root).unwrap_or(p), text.as_str()))));
+    findings.extend(alone_lines(
+        sources.iter().map(|(p, text)| (p.strip_prefix(root).unwrap_or(p), text.as_str())),
+    ));
     for (path, text) in &sources {
         let path = path.strip_prefix(root).unwrap_or(path);
         findings.extend(file_calls(path, text));
@@ -79,7 +81,11 @@ fn alone_lines<'s>(sources: impl Iterator<Item = (&'s Path, &'s str)>) -> Option
     let own = sources.filter(|(path, _)| path.starts_with(&src) && !path.ends_with("tests.rs"));
     let code = |line: &&str| !(line.trim().is_empty() || line.trim_start().starts_with("//"));
     let lines: usize = own.map(|(_, text)| text.lines().filter(code).count()).sum();
-    let long = || format!("{ALONE} has {lines} lines of code, and must have fewer than {ALONE_LINES}: it is read by who must trust it");
+    let long = || {
+        format!(
+            "{ALONE} has {lines} lines of code, and must have fewer than {ALONE_LINES}: it is read by who must trust it"
+        )
+    };
     (lines >= ALONE_LINES).then(long)
 }
 
@@ -276,9 +282,11 @@ mod tests {
     fn the_program_that_shares_no_code_stays_short() {
         let code = "fn f() {\n    // why\n\n}\n";
         let of = |times: usize| {
-            let (src, tests) = (Path::new(ALONE).join("src/x.rs"), Path::new(ALONE).join("src/shape/tests.rs"));
+            let (src, tests) =
+                (Path::new(ALONE).join("src/x.rs"), Path::new(ALONE).join("src/shape/tests.rs"));
             let (text, other) = (code.repeat(times), code.repeat(1000));
-            let sources = [(&src, &text), (&tests, &other), (&PathBuf::from("crates/mp-io/src/x.rs"), &other)];
+            let sources =
+                [(&src, &text), (&tests, &other), (&PathBuf::from("crates/mp-io/src/x.rs"), &other)];
             alone_lines(sources.into_iter().map(|(path, text)| (path.as_path(), text.as_str())))
         };
         assert_eq!(of(499), None);
