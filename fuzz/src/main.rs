@@ -6,6 +6,7 @@
 
 #![no_main]
 
+mod certificate;
 mod memory;
 mod tree;
 
@@ -20,6 +21,7 @@ enum Target {
     Plan(mp_plan::fuzz::Target),
     View(mp_view::fuzz::Target),
     Tree(tree::Target),
+    Certificate(certificate::Target),
 }
 
 /// The target of this program. Known when it is compiled, so that it holds no code, and counts no coverage, of others.
@@ -33,6 +35,8 @@ const TARGET: Target = {
         Target::View(target)
     } else if let Some(target) = find(&tree::TARGETS, NAME) {
         Target::Tree(target)
+    } else if let Some(target) = find(&certificate::TARGETS, NAME) {
+        Target::Certificate(target)
     } else {
         panic!("MP_FUZZ_TARGET names no target")
     }
@@ -46,6 +50,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
         Target::Plan(target) => drop(target(bytes)),
         Target::View(target) => drop(target(bytes)),
         Target::Tree(target) => drop(target(bytes)),
+        Target::Certificate(target) => drop(target(bytes)),
     }
 });
 

@@ -7,12 +7,15 @@ use std::io::Write;
 use std::process::Child;
 use std::time::{Duration, Instant};
 
-/// Waits until `done`, at most a minute.
-fn wait_until(what: &str, mut done: impl FnMut() -> bool) {
+/// Often enough for what takes seconds.
+const OFTEN: Duration = Duration::from_millis(20);
+
+/// Waits until `done`, at most a minute, and asks every so often.
+fn wait_until(what: &str, every: Duration, mut done: impl FnMut() -> bool) {
     let began = Instant::now();
     while !done() {
         assert!(began.elapsed() < Duration::from_secs(60), "{what}");
-        std::thread::sleep(Duration::from_millis(20));
+        std::thread::sleep(every);
     }
 }
 
@@ -94,7 +97,7 @@ fn outputs_are_files_of_their_own() {
 fn one_process_at_a_time_grows_a_roadmap() {
     let dir = Dir::new();
     let mut first = growing(&dir, "maps/m.roadmap");
-    wait_until("a lock", || dir.exists("maps/.m.roadmap.lock"));
+    wait_until("a lock", OFTEN, || dir.exists("maps/.m.roadmap.lock"));
     let second = mp(
         &dir,
         &["plan", "closed.env", "--planner", "prm", "--roadmap", "maps/m.roadmap", "--time", "1", "--json"],
@@ -121,7 +124,7 @@ fn one_process_at_a_time_grows_a_roadmap() {
 fn a_killed_run_leaves_its_roadmap() {
     let dir = Dir::new();
     let mut child = growing(&dir, "m.roadmap");
-    wait_until("a checkpoint", || dir.exists("m.roadmap"));
+    wait_until("a checkpoint", OFTEN, || dir.exists("m.roadmap"));
     child.kill().unwrap();
     finish(child);
     let run = mp(
@@ -129,6 +132,69 @@ fn a_killed_run_leaves_its_roadmap() {
         &["plan", "closed.env", "--planner", "prm", "--roadmap", "m.roadmap", "--iterations", "1", "--json"],
     );
     assert!(run.json()["nodes"].as_u64() > Some(100), "{run:?}");
+}
+
+/// Kills runs while they write a checkpoint of a roadmap that grows, and checks every time that it is the old or the new one:
+/// `times` on each of so many `files`, all at once, as checkpoints are seconds apart.
+fn kill_growths(files: u32, times: u32) {
+    let dir = Dir::new();
+    let kill = |file: u32| {
+        let (folder, roadmap) = (format!("maps{file}"), format!("maps{file}/m.roadmap"));
+        let temporary = || dir.entries(&folder).into_iter().filter(|name| name.starts_with(".mp-"));
+        std::fs::create_dir(dir.path(&folder)).unwrap();
+        let (mut nodes, mut cut) = (0, 0);
+        for i in 0..times {
+            let mut child = growing(&dir, &roadmap);
+            // Temporary files that are empty only show that the folder takes them; those that were cut are removed before.
+            let length =
+                |name: String| std::fs::metadata(dir.path(&folder).join(name)).map_or(0, |m| m.len());
+            let old: Vec<String> = temporary().collect();
+            let written = || temporary().any(|name| !old.contains(&name) && length(name) > 0);
+            wait_until("a checkpoint", Duration::from_millis(1), written);
+            if i % 2 == 1 {
+                wait_until("the end of a checkpoint", Duration::from_millis(1), || !written());
+            }
+            std::thread::sleep(Duration::from_micros(u64::from(i * 37 % 50) * 60));
+            child.kill().unwrap();
+            assert_ne!(finish(child).code, 0);
+            cut += u32::from(temporary().any(|name| !old.contains(&name)));
+            if dir.exists(&roadmap) {
+                let go_on = ["--roadmap", &roadmap, "--iterations", "1", "--json"];
+                let run = mp(&dir, &[&["plan", "closed.env", "--planner", "prm"], &go_on[..]].concat());
+                let now = run.json()["nodes"].as_u64().unwrap();
+                assert!(now >= nodes, "{now} nodes after {nodes}");
+                nodes = now;
+            }
+        }
+        assert!(nodes > 100, "{nodes} nodes");
+        #[cfg(unix)]
+        assert_eq!(dir.entries(&folder), ["m.roadmap"]);
+        (nodes, cut)
+    };
+    let grown: Vec<(u64, u32)> = std::thread::scope(|scope| {
+        let kill = &kill;
+        let threads: Vec<_> = (0..files).map(|file| scope.spawn(move || kill(file))).collect();
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+    });
+    let (nodes, cut): (Vec<u64>, Vec<u32>) = grown.into_iter().unzip();
+    let (most, cut) = (nodes.iter().max().unwrap(), cut.iter().sum::<u32>());
+    let _ = writeln!(
+        std::io::stderr(),
+        "{} runs killed while their roadmaps grew to {most} nodes, {cut} within a checkpoint: nothing lost or torn",
+        files * times
+    );
+}
+
+#[test]
+fn roadmaps_of_runs_that_are_killed_within_a_checkpoint_are_whole() {
+    kill_growths(2, 2);
+}
+
+/// As many as a release is tested with: `cargo test -p mp-motion-cli --test outputs -- --ignored --nocapture`.
+#[test]
+#[ignore = "takes minutes"]
+fn hundreds_of_roadmaps_of_runs_that_are_killed_within_a_checkpoint_are_whole() {
+    kill_growths(10, 25);
 }
 
 /// A reader that goes away is not worth a message, but the exit code tells that not all was read.
@@ -148,6 +214,20 @@ fn a_closed_output_is_told_by_the_exit_code() {
     assert!(dir.exists("out/plane.path.txt") && dir.exists("p.png"), "the files are written all the same");
 }
 
+/// Without a standard output the first file that is opened could take its number, and what is printed would end in it.
+#[cfg(unix)]
+#[test]
+fn without_an_output_nothing_is_printed_into_files() {
+    let dir = Dir::new();
+    let run =
+        format!("exec '{}' plan plane.env --json --out p.txt --picture p.png >&-", env!("CARGO_BIN_EXE_mp"));
+    let status =
+        std::process::Command::new("sh").args(["-c", &run]).current_dir(dir.path(".")).status().unwrap();
+    assert_eq!(status.code(), Some(0));
+    assert!(is_whole(&dir.read("p.txt")), "{}", dir.read("p.txt"));
+    check_picture(&dir.bytes("p.png"));
+}
+
 /// The numbers of the path in a file, or `None` when it is torn: not what the program writes.
 fn is_whole(text: &str) -> bool {
     let mut lines = text.lines();
@@ -155,6 +235,14 @@ fn is_whole(text: &str) -> bool {
     let rows: Vec<usize> =
         lines.map(|line| line.split(' ').filter(|w| w.parse::<f64>().is_ok()).count()).collect();
     text.ends_with('\n') && count == Some(rows.len()) && rows.iter().all(|numbers| *numbers == 6)
+}
+
+/// Reads a whole PNG.
+fn check_picture(png: &[u8]) {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    reader.finish().unwrap();
 }
 
 /// Kills runs at times spread over what a run takes, and checks every time that each file is the old or the new one.
@@ -180,11 +268,7 @@ fn kill_runs(times: usize) {
             ended += 1
         }
         assert!(is_whole(&dir.read("p.txt")), "{i}: {}", dir.read("p.txt"));
-        let picture = dir.bytes("p.png");
-        let mut reader = png::Decoder::new(std::io::Cursor::new(&picture)).read_info().unwrap();
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut pixels).unwrap();
-        reader.finish().unwrap();
+        check_picture(&dir.bytes("p.png"));
         // A run that continues the roadmap reads it whole; it never shrinks.
         if i % 20 == 19 || i + 1 == times {
             let check = [

@@ -205,8 +205,9 @@ impl Certificate {
             sound(right, &format!("frame {i} is odd"))?;
         }
         for body in &model.bodies {
-            let indices =
-                body.pieces.iter().all(|p| !p.is_empty() && p.iter().all(|v| *v < body.vertices.len()));
+            let corners =
+                |p: &Vec<usize>| matches!(p.len(), 1..=3) && p.iter().all(|v| *v < body.vertices.len());
+            let indices = body.pieces.iter().all(corners);
             let right = indices && body.frame < model.frames.len() && body.radius >= 0.0;
             let finite = finite(&[body.radius]) && body.vertices.iter().all(|v| finite(v));
             sound(right && finite && !body.pieces.is_empty(), &format!("the body {} is odd", body.name))?;

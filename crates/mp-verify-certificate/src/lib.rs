@@ -15,6 +15,7 @@
 )]
 
 mod file;
+mod mesh;
 mod motion;
 mod replay;
 mod shape;
@@ -63,4 +64,24 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
         Some(i) => Err(format!("configuration {} of the path is another one in the certificate", i + 1)),
         None => Ok(()),
     }
+}
+
+/// Whether bodies of a certificate are the meshes of files: pairs of the name of a body and the content of a file (OFF, OBJ, STL, GEMPA
+/// text). Returns the names of the bodies that were not compared.
+///
+/// # Errors
+/// Which body is another, in a sentence.
+pub fn is_of_meshes(text: &str, meshes: &[(String, Vec<u8>)]) -> Result<Vec<String>, String> {
+    let bodies = file::read(text)?.model.bodies;
+    for (name, mesh) in meshes {
+        let mut named = bodies.iter().filter(|body| body.name == *name).peekable();
+        if named.peek().is_none() {
+            let names: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).take(20).collect();
+            return Err(format!("no body is called {name}; there are {}", names.join(", ")));
+        }
+        let mut all = named.map(|body| mesh::is_of(body, mesh));
+        all.try_for_each(|is| is.map_err(|why| format!("{name} is not the mesh of its file: {why}")))?;
+    }
+    let names = bodies.into_iter().map(|body| body.name);
+    Ok(names.filter(|name| meshes.iter().all(|(compared, _)| compared != name)).collect())
 }

@@ -9,49 +9,70 @@ use std::process::ExitCode;
 const HELP: &str = "\
 Replays a certificate of `mp plan --certificate FILE`: proves again, with code of its own, that the path is free of collision.
 
-usage: mp-verify-certificate FILE [--path PATH]
+usage: mp-verify-certificate FILE [--path PATH] [--mesh NAME=MESH]…
 
-  FILE         the certificate
-  --path PATH  also say whether it is the certificate of this path: text, .json or .csv
+  FILE              the certificate
+  --path PATH       also say whether it is the certificate of this path: text, .json or .csv
+  --mesh NAME=MESH  also say whether the body NAME is this mesh: OFF, OBJ, STL or GEMPA text, to the last bit
 
 exit code: 0 proved, 1 refused, 2 bad input";
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let (file, path) = match words.as_slice() {
-        ["-h" | "--help"] => return say(HELP, 0),
-        [file] => (file, None),
-        [file, "--path", path] | ["--path", path, file] => (file, Some(path)),
-        _ => return say(HELP, 2),
-    };
-    let read =
-        |file: &&str| std::fs::read_to_string(file).map_err(|e| format!("error: cannot read {file}: {e}"));
-    let (text, path) = match (read(file), path.map(read).transpose()) {
-        (Ok(text), Ok(path)) => (text, path),
-        (Err(e), _) | (_, Err(e)) => return say(&e, 2),
-    };
-    let began = std::time::Instant::now();
-    let proved = mp_verify_certificate::verify(&text);
-    let rate = |proved: &Proved| proved.edges as f64 / began.elapsed().as_secs_f64();
-    let rate = proved.as_ref().map_or(0.0, rate);
-    let of_path = path.map_or(Ok(()), |path| mp_verify_certificate::is_of_path(&text, &path));
-    match proved.and_then(|proved| of_path.map(|()| proved)) {
-        Ok(Proved { scene, configurations, edges, parts, pairs, may_touch, clearance }) => {
-            let clearance = clearance
-                .map_or("there is nothing to hit".to_owned(), |c| format!("clearance at least {c} m"));
-            let touch = match may_touch {
-                0 => String::new(),
-                n => format!("; {n} pairs of links of the robot may touch, and were not looked at"),
-            };
-            let told = format!(
-                "{file}: proved free in {scene}\n  {configurations} configurations, {edges} edges in {parts} parts, {clearance}\n  \
-                 {pairs} pairs of bodies are kept apart{touch}\n  {rate:.0} edges a second"
-            );
-            say(&told, 0)
+    let (mut files, mut path, mut meshes) = (Vec::new(), None, Vec::new());
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        match (word.as_str(), words.len()) {
+            ("-h" | "--help", _) => return say(HELP, 0),
+            ("--path", 1..) if path.is_none() => path = words.next(),
+            ("--mesh", 1..) => meshes.extend(words.next()),
+            (option, _) if option.starts_with("--") => return say(HELP, 2),
+            _ => files.push(word),
         }
+    }
+    let [file] = files.as_slice() else { return say(HELP, 2) };
+    let read = |file: &str| std::fs::read(file).map_err(|e| format!("error: cannot read {file}: {e}"));
+    let text = |file: &str| {
+        let text = String::from_utf8(read(file)?);
+        text.map_err(|_| format!("error: cannot read {file}: it is not text in UTF-8"))
+    };
+    let named = |mesh: &String| {
+        let (name, file) = mesh.rsplit_once('=').ok_or(format!("error: --mesh {mesh} is not NAME=MESH"))?;
+        Ok((name.to_owned(), read(file)?))
+    };
+    let meshes: Result<Vec<(String, Vec<u8>)>, String> = meshes.iter().map(named).collect();
+    let (text, path, meshes) = match (text(file), path.as_deref().map(text).transpose(), meshes) {
+        (Ok(text), Ok(path), Ok(meshes)) => (text, path, meshes),
+        (Err(e), ..) | (_, Err(e), _) | (.., Err(e)) => return say(&e, 2),
+    };
+    match replayed(&text, path.as_deref(), &meshes) {
+        Ok(told) => say(&format!("{file}: {told}"), 0),
         Err(why) => say(&format!("{file}: refused\n  {why}"), 1),
     }
+}
+
+/// What is said of a certificate that proves its path, and is that of the files.
+fn replayed(text: &str, path: Option<&str>, meshes: &[(String, Vec<u8>)]) -> Result<String, String> {
+    let began = std::time::Instant::now();
+    let Proved { scene, configurations, edges, parts, pairs, may_touch, clearance } =
+        mp_verify_certificate::verify(text)?;
+    let rate = edges as f64 / began.elapsed().as_secs_f64();
+    let clearance =
+        clearance.map_or("there is nothing to hit".to_owned(), |c| format!("clearance at least {c} m"));
+    let touch = match may_touch {
+        0 => String::new(),
+        n => format!("; {n} pairs of links of the robot may touch, and were not looked at"),
+    };
+    let mut told = format!(
+        "proved free in {scene}\n  {configurations} configurations, {edges} edges in {parts} parts, {clearance}\n  \
+         {pairs} pairs of bodies are kept apart{touch}\n  {rate:.0} edges a second"
+    );
+    path.map_or(Ok(()), |path| mp_verify_certificate::is_of_path(text, path))?;
+    if !meshes.is_empty() {
+        let others = mp_verify_certificate::is_of_meshes(text, meshes)?;
+        let others = if others.is_empty() { "none".to_owned() } else { others.join(", ") };
+        told += &format!("\n  bodies are the meshes of their files; not compared: {others}");
+    }
+    Ok(told)
 }
 
 /// Prints what was found, on standard error if the input is bad, and gives the exit code.

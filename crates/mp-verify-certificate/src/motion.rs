@@ -170,11 +170,11 @@ impl<'c> Edge<'c> {
         poses
     }
 
-    /// How much nearer (m) two bodies come at most than they are in the middle of the part from `begin` to `end` of the edge, where
-    /// the frames are at `frames`.
-    pub(crate) fn nearing(&self, a: &Body, b: &Body, frames: &[Pose], [begin, end]: [f64; 2]) -> f64 {
-        let chain = |body: &Body| -> Vec<usize> {
-            std::iter::successors(Some(body.frame), |i| self.model.frames[*i].parent()).collect()
+    /// How much nearer (m) two bodies in balls come at most than they are in the middle of the part from `begin` to `end` of the edge,
+    /// where the frames are at `frames`.
+    pub(crate) fn nearing(&self, a: &Ball, b: &Ball, frames: &[Pose], [begin, end]: [f64; 2]) -> f64 {
+        let chain = |ball: &Ball| -> Vec<usize> {
+            std::iter::successors(Some(ball.frame), |i| self.model.frames[*i].parent()).collect()
         };
         let (mut up_a, mut up_b) = (chain(a), chain(b));
         // What moves both moves neither relative to the other.
@@ -187,10 +187,9 @@ impl<'c> Edge<'c> {
 
     /// How far `frames_above` move a point of a body away from where it is in the middle, at most. Let them move one after the other,
     /// the nearest to the body first: each finds the point where the ones before have brought it.
-    fn strays(&self, body: &Body, frames_above: &[usize], frames: &[Pose], [begin, end]: [f64; 2]) -> f64 {
+    fn strays(&self, ball: &Ball, frames_above: &[usize], frames: &[Pose], [begin, end]: [f64; 2]) -> f64 {
         let half = 0.5 * (end - begin);
-        let (center, radius) = ball(body);
-        let center = frames[body.frame].transform_point(center);
+        let center = frames[ball.frame].transform_point(ball.center);
         let mut strayed = 0.0;
         for &i in frames_above {
             let Way { slide, turn } = self.ways[i];
@@ -204,12 +203,11 @@ impl<'c> Edge<'c> {
                 }
                 Frame::Track { time, poses } => {
                     let at = |t: f64| self.from[*time] + t * self.duration;
-                    let far = body.vertices.iter().map(|v| Vec3::from_array(*v).length()).fold(0.0, f64::max);
-                    strayed += half * self.duration * fastest(poses, far + body.radius, [at(begin), at(end)]);
+                    strayed += half * self.duration * fastest(poses, ball.reach, [at(begin), at(end)]);
                     continue;
                 }
             };
-            strayed += half * (slide + turn * (lever + radius + strayed));
+            strayed += half * (slide + turn * (lever + ball.radius + strayed));
         }
         strayed
     }
@@ -235,13 +233,25 @@ impl<'c> Edge<'c> {
     }
 }
 
-/// A ball around a body, in its frame.
-pub(crate) fn ball(body: &Body) -> (Vec3, f64) {
-    let points = || body.vertices.iter().map(|v| Vec3::from_array(*v));
-    let low = points().fold(Vec3::INFINITY, Vec3::min);
-    let high = points().fold(Vec3::NEG_INFINITY, Vec3::max);
-    let center = 0.5 * (low + high);
-    (center, points().map(|p| (p - center).length()).fold(0.0, f64::max) + body.radius)
+/// A ball around a body.
+pub(crate) struct Ball {
+    frame: usize,
+    /// Its middle in the frame.
+    center: Vec3,
+    radius: f64,
+    /// How far the body reaches from the origin of the frame.
+    reach: f64,
+}
+
+impl Ball {
+    pub(crate) fn new(body: &Body) -> Self {
+        let points = || body.vertices.iter().map(|v| Vec3::from_array(*v));
+        let low = points().fold(Vec3::INFINITY, Vec3::min);
+        let high = points().fold(Vec3::NEG_INFINITY, Vec3::max);
+        let center = 0.5 * (low + high);
+        let from = |origin: Vec3| points().map(|p| (p - origin).length()).fold(0.0, f64::max) + body.radius;
+        Self { frame: body.frame, center, radius: from(center), reach: from(Vec3::ZERO) }
+    }
 }
 
 /// The pose of x, y, z, α, β, γ: Rz(α)·Ry(β)·Rx(γ).

@@ -1,7 +1,7 @@
 //! Replays a proof: every part of every edge, every pair of bodies.
 
 use crate::file::{Certificate, Frame, Model};
-use crate::motion::Edge;
+use crate::motion::{Ball, Edge};
 use crate::shape::Shape;
 
 /// What a certificate proves.
@@ -28,6 +28,7 @@ pub(crate) fn replay(file: &Certificate) -> Result<Proved, String> {
     let model = &file.model;
     covers(model)?;
     let shapes: Vec<Shape> = model.bodies.iter().map(Shape::new).collect();
+    let balls: Vec<Ball> = model.bodies.iter().map(Ball::new).collect();
     let clearance = file.clearance.unwrap_or(0.0);
     let mut parts = 0;
     for (i, proof) in file.edges.iter().enumerate() {
@@ -51,9 +52,10 @@ pub(crate) fn replay(file: &Certificate) -> Result<Proved, String> {
                     return Err(place(format!("the parts of {} are out of order", body.name)));
                 }
                 let frames = edge.frames(0.5 * (begin + end));
-                for other in &pair.others {
-                    let (other, shape) = (&model.bodies[*other], &shapes[*other]);
-                    let nearing = edge.nearing(body, other, &frames, [begin, end]) * (1.0 + 1e-9);
+                for &k in &pair.others {
+                    let (other, shape) = (&model.bodies[k], &shapes[k]);
+                    let nearing = edge.nearing(&balls[pair.body], &balls[k], &frames, [begin, end]);
+                    let nearing = nearing * (1.0 + 1e-9);
                     let what = || format!("{} and {} at {}", body.name, other.name, 0.5 * (begin + end));
                     let enough = distance >= nearing + clearance;
                     if !enough {

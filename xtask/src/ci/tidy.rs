@@ -15,6 +15,9 @@ const VAGUE_NAMES: [&str; 8] = ["common", "helper", "helpers", "misc", "shared",
 /// The program that must share no code with the others.
 const ALONE: &str = "crates/mp-verify-certificate";
 
+/// It must be small enough to be read: so many lines of code, without tests, comments and blank lines.
+const ALONE_LINES: usize = 1000;
+
 /// Calls that only `mp-store` makes: what it reads has a limit, and what it writes is whole.
 const FILE_CALLS: [&str; 7] = [
     "fs::read(",
@@ -51,6 +54,9 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
             findings.push(format!("{shown} has a circle of imports between folders: {circle}"));
         }
     }
+    findings.extend(alone_lines(
+        sources.iter().map(|(p, text)| (p.strip_prefix(root).unwrap_or(p), text.as_str())),
+    ));
     for (path, text) in &sources {
         let path = path.strip_prefix(root).unwrap_or(path);
         findings.extend(file_calls(path, text));
@@ -67,6 +73,20 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
 /// The folders of sources of all crates.
 fn paths_of_crates(root: &Path) -> Result<Vec<PathBuf>> {
     list(&root.join("crates"))?.map(|folder| Ok(folder?.join("src"))).collect()
+}
+
+/// Whether the program that shares no code has become long.
+fn alone_lines<'s>(sources: impl Iterator<Item = (&'s Path, &'s str)>) -> Option<String> {
+    let src = Path::new(ALONE).join("src");
+    let own = sources.filter(|(path, _)| path.starts_with(&src) && !path.ends_with("tests.rs"));
+    let code = |line: &&str| !(line.trim().is_empty() || line.trim_start().starts_with("//"));
+    let lines: usize = own.map(|(_, text)| text.lines().filter(code).count()).sum();
+    let long = || {
+        format!(
+            "{ALONE} has {lines} lines of code, and must have fewer than {ALONE_LINES}: it is read by who must trust it"
+        )
+    };
+    (lines >= ALONE_LINES).then(long)
 }
 
 fn read(path: &Path) -> Result<String> {
@@ -257,6 +277,21 @@ fn algorithm(sources: &[(PathBuf, String)], path: &Path) -> Option<&'static str>
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_program_that_shares_no_code_stays_short() {
+        let code = "fn f() {\n    // why\n\n}\n";
+        let of = |times: usize| {
+            let (src, tests) =
+                (Path::new(ALONE).join("src/x.rs"), Path::new(ALONE).join("src/shape/tests.rs"));
+            let (text, other) = (code.repeat(times), code.repeat(1000));
+            let sources =
+                [(&src, &text), (&tests, &other), (&PathBuf::from("crates/mp-io/src/x.rs"), &other)];
+            alone_lines(sources.into_iter().map(|(path, text)| (path.as_path(), text.as_str())))
+        };
+        assert_eq!(of(499), None);
+        assert!(of(500).unwrap().contains("1000 lines of code"));
+    }
 
     #[test]
     fn the_workspace_is_tidy() {
