@@ -76,7 +76,9 @@ fn txt_files_are_told_apart_by_how_they_begin() {
         matches!(&triangle, Info::Mesh(MeshInfo { surface, .. }) if surface.triangles == 1),
         "{triangle}"
     );
-    for (text, said) in [("Robot\nr.off\n", "r.off"), ("OFF\n3 1 0\n", "vertex 0 of 3"), ("", "mesh")] {
+    for (text, said) in
+        [("Robot\nr.off\n", "r.off"), ("OFF\n3 1 0\n", "vertex 0 of 3"), ("", "number of triangles")]
+    {
         let e = read(text).unwrap_err().report();
         assert!(e.contains(said), "{text:?}: {e}");
     }
