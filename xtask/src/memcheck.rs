@@ -35,6 +35,8 @@ pub(crate) fn run(filters: &[OsString]) -> ExitCode {
         command.args(["--quiet", "--track-origins=yes", &format!("--error-exitcode={ERROR}")]).arg(program);
         // Valgrind runs one thread at a time. It has no AVX-512, so the kernels of AVX2 and narrower ones are run.
         command.arg("--test-threads=1").args(filters).current_dir(root());
+        // Tests with many cases take fewer of them.
+        command.env("MP_MEMCHECK", "1");
         if !command.status().is_ok_and(|status| status.success()) {
             failed.push(program.display().to_string());
         }

@@ -9,6 +9,11 @@ pub(crate) fn rng(seed: u64) -> Pcg64 {
     Pcg64::seed_from_u64(seed)
 }
 
+/// How many of `all` cases a test takes: under valgrind, which takes a hundred times as long, a tenth (`cargo xtask memcheck` says so).
+pub(crate) fn cases_of(all: usize) -> usize {
+    if std::env::var_os("MP_MEMCHECK").is_some() { all.div_ceil(10) } else { all }
+}
+
 pub(crate) fn point(rng: &mut Pcg64, size: f64) -> Point3<f64> {
     Point3::from([0; 3].map(|_| rng.random_range(-size..size)))
 }

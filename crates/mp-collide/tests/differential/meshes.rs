@@ -6,7 +6,7 @@ use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3, Translation3, Vector3};
 use rand::RngExt;
 
-use crate::common::{Pcg64, bumpy, cuboid, point, pose, rng, rotation, soup};
+use crate::common::{Pcg64, bumpy, cases_of, cuboid, point, pose, rng, rotation, soup};
 use crate::referee::{self, Corner};
 
 /// Every triangle as a mesh of its own: the same arithmetic without a tree.
@@ -272,7 +272,7 @@ fn distances_are_right_for_awkward_triangles_at_any_scale() {
     let turns = queries.len();
     let mut apart = 0;
     let scales = [1.0, 1e-30, 1e-12, 1e-9, 1e-8, 1e-6, 1e-3, 1e3, 1e6, 3e8, 1e9, 1e12, 1e30];
-    for round in 0..260 {
+    for round in 0..cases_of(260) {
         let scale = scales[round % scales.len()];
         let reach = [0.1, 1.0, 3.0][round % 3];
         let (a, b) = (awkward(&mut rng, 25, reach), awkward(&mut rng, 30, reach));
@@ -315,7 +315,7 @@ fn distances_are_right_for_awkward_triangles_at_any_scale() {
             }
         }
     }
-    assert!(apart > 400, "{apart} apart");
+    assert!(apart > cases_of(400), "{apart} apart");
 }
 
 #[test]

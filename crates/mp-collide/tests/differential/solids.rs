@@ -8,7 +8,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use parry3d_f64::{math::Pose, query::distance as parry_distance, shape};
 use rand::RngExt;
 
-use crate::common::{Pcg64, bumpy, point, pose, rng, soup};
+use crate::common::{Pcg64, bumpy, cases_of, point, pose, rng, soup};
 
 /// How far parry's iterations may end from the distance of a curved shape.
 const BAND: f64 = 1e-4;
@@ -98,7 +98,7 @@ fn solids_answer_as_brute_force_and_parry_do() {
     let mut queries: Vec<Query> = Isa::available().into_iter().map(Query::with_isa).collect();
     let turns = queries.len();
     let (mut hits, mut total) = (0, 0);
-    for round in 0..60 {
+    for round in 0..cases_of(60) {
         let mesh = match round % 3 {
             0 => soup(&mut rng, 30, 1.0, 0.3),
             1 => bumpy(5, 0.8, 0.2),

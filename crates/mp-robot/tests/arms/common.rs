@@ -6,6 +6,11 @@ use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};
 use nalgebra::{Isometry3, Matrix4, Point3, SVector, Vector3};
 use rand::RngExt;
 
+/// How many of `all` cases a test takes: under valgrind, which takes a hundred times as long, a tenth (`cargo xtask memcheck` says so).
+pub(crate) fn cases_of(all: usize) -> usize {
+    if std::env::var_os("MP_MEMCHECK").is_some() { all.div_ceil(10) } else { all }
+}
+
 pub(crate) type Obstacle = (String, TriMesh, Isometry3<f64>);
 
 pub(crate) fn obstacle(name: &str, mesh: TriMesh, six: [f64; 6]) -> Obstacle {

@@ -1,6 +1,6 @@
 //! Validity, clearance and certified motions, against plain triangle distances and against sampling.
 
-use crate::common::{Six, across, clutter, obstacle, random_tree, six};
+use crate::common::{Six, across, cases_of, clutter, obstacle, random_tree, six};
 use mp_collide::reference::RefMesh;
 use mp_cspace::{
     Certified, Clearance, Coordinates, Joints, MotionCheck, MotionClearance, MotionValidity, Path, Rng,
@@ -56,8 +56,8 @@ fn consistent(mut arm: Arm, still: &[&str], samples: usize) -> [usize; 2] {
 
 #[test]
 fn answers_are_those_of_the_reference() {
-    let counts = consistent(arm().0, &["base"], 400);
-    assert!(counts.into_iter().all(|n| n > 60), "{counts:?}");
+    let counts = consistent(arm().0, &["base"], cases_of(400));
+    assert!(counts.into_iter().all(|n| n > cases_of(60)), "{counts:?}");
     let mut rng = Rng::seed(5);
     let mut sum = [0, 0];
     for count in 4..14 {
@@ -73,10 +73,10 @@ fn answers_are_those_of_the_reference() {
             let more: Vec<_> = fixed.filter(|j| still.contains(&&*j.parent)).map(|j| &*j.child).collect();
             still.extend(more);
         }
-        let counts = consistent(arm, &still, 60);
+        let counts = consistent(arm, &still, cases_of(60));
         sum = [sum[0] + counts[0], sum[1] + counts[1]];
     }
-    assert!(sum[0] > 50 && sum[1] > 5, "{sum:?}");
+    assert!(sum[0] > cases_of(50) && sum[1] >= cases_of(6), "{sum:?}");
 }
 
 /// Which pairs are compared: not those a joint joins, not those that always touch, not those given.
@@ -143,12 +143,12 @@ fn agree(arm: &Arm, space: &Joints<Six>, motions: usize) -> [usize; 2] {
 #[test]
 fn certified_motions_are_free() {
     let (arm, space) = arm();
-    let counts = agree(&arm, &space, 900);
-    assert!(counts.into_iter().all(|n| n > 100), "{counts:?}");
+    let counts = agree(&arm, &space, cases_of(900));
+    assert!(counts.into_iter().all(|n| n > cases_of(100)), "{counts:?}");
     // Alone it hits itself only.
     let alone = arm.among([]).unwrap();
-    let counts = agree(&alone, &space, 900);
-    assert!(counts.into_iter().all(|n| n > 40), "{counts:?}");
+    let counts = agree(&alone, &space, cases_of(900));
+    assert!(counts.into_iter().all(|n| n > cases_of(40)), "{counts:?}");
 }
 
 /// The arm with the search for the least clearance that all robots have.
@@ -227,7 +227,7 @@ fn a_thin_wall_is_never_crossed() {
         let mut arm = Arm::new(&six(), [sheet]).unwrap();
         let space: Joints<Six> = arm.space().unwrap();
         let mut certified = Certified::new(&space, arm.clone(), arm.tolerance()).unwrap();
-        for [a, b] in across(&mut arm, &space, &plane, 150, &mut rng) {
+        for [a, b] in across(&mut arm, &space, &plane, cases_of(150), &mut rng) {
             assert!(!certified.check_motion(&a, &b).is_free());
         }
     }
