@@ -26,7 +26,7 @@ const TOUCHING: f64 = 1e-13;
 
 /// Meshes of more triangles store neither copies of their triangles nor the balls around [so few](FEW) of them, which are most balls:
 /// these are made when they are needed.
-const LARGE: usize = 1 << 19;
+const LARGE: usize = 1 << 20;
 
 /// Large meshes store the balls around more triangles than this.
 const FEW: u32 = 8;
@@ -76,8 +76,8 @@ pub struct RefMesh {
 }
 
 impl RefMesh {
-    /// Builds the tree of `mesh`: O(n log² n) for n triangles. It takes 232 bytes a triangle. Of more than half a million triangles
-    /// it takes 14 to 24 bytes each, and answers take longer.
+    /// Builds the tree of `mesh`: O(n log² n) for n triangles. It takes 232 bytes a triangle. Of more than a million triangles it takes
+    /// 14 to 24 bytes each; then answers take two to three times as long, and building nearly twice.
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
         Self::storing(mesh, if mesh.triangles().len() > LARGE { FEW } else { 0 })
