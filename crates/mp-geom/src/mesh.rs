@@ -127,18 +127,24 @@ impl TriMesh {
         Self { vertices: Arc::clone(&self.vertices), triangles: triangles.into() }
     }
 
-    /// The mesh moved by `pose`.
+    /// The mesh moved by `pose`. It shares the triangles with this one, and the vertices, too, if the pose is the identity.
     #[must_use]
     pub fn transformed(&self, pose: &Isometry3<f64>) -> Self {
+        if *pose == Isometry3::identity() {
+            return self.clone();
+        }
         let vertices: Vec<_> = self.vertices.iter().map(|p| pose * p).collect();
         Self { vertices: vertices.into(), triangles: Arc::clone(&self.triangles) }
     }
 
-    /// All of `meshes` in one. `None` when there are none.
+    /// All of `meshes` in one. `None` when there are none. A single one is cloned.
     #[must_use]
     pub fn merged<'a>(meshes: impl IntoIterator<Item = &'a TriMesh>) -> Option<Self> {
+        let mut meshes = meshes.into_iter();
+        let first = meshes.next()?;
+        let Some(second) = meshes.next() else { return Some(first.clone()) };
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-        for m in meshes {
+        for m in [first, second].into_iter().chain(meshes) {
             let base = u32::try_from(vertices.len()).ok()?;
             vertices.extend_from_slice(&m.vertices);
             triangles.extend(m.triangles.iter().map(|t| t.map(|i| i.wrapping_add(base))));
@@ -172,6 +178,22 @@ mod tests {
             }
         }
         assert!(TriMesh::merged([]).is_none());
+    }
+
+    /// Copies that change nothing share all; others nothing that differs.
+    #[test]
+    fn copies_share_what_they_can() {
+        let mesh = TriMesh::new(corners(), vec![[0, 1, 2]]).unwrap();
+        let shared = |a: &TriMesh, b: &TriMesh| {
+            [Arc::ptr_eq(&a.vertices, &b.vertices), Arc::ptr_eq(&a.triangles, &b.triangles)]
+        };
+        assert_eq!(shared(&mesh, &mesh.transformed(&Isometry3::identity())), [true, true]);
+        let moved = mesh.transformed(&Isometry3::translation(0.0, 0.0, 1e-300));
+        assert_eq!(shared(&mesh, &moved), [false, true]);
+        assert!(moved.vertices().iter().all(|p| p.z == 1e-300));
+        assert_eq!(shared(&mesh, &TriMesh::merged([&mesh]).unwrap()), [true, true]);
+        let two = TriMesh::merged([&mesh, &moved]).unwrap();
+        assert_eq!((two.vertices().len(), two.triangles()), (6, &[[0, 1, 2], [3, 4, 5]][..]));
     }
 
     #[test]

@@ -16,8 +16,8 @@ pub(crate) struct SolidObstacle {
 /// Whether a mesh is a solid: closed, consistently oriented, triangles facing outward. A point robot inside of a solid touches it.
 #[must_use]
 pub fn is_solid(mesh: &TriMesh) -> bool {
-    let topology = mesh.topology();
-    topology.closed && topology.oriented && mesh.signed_volume() > 0.0
+    // First what takes less time.
+    mesh.signed_volume() > 0.0 && mesh.is_closed_and_oriented()
 }
 
 impl SolidObstacle {

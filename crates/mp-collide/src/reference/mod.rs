@@ -14,6 +14,7 @@ mod triangle;
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, IsometryMatrix3, Point3, Vector3};
 use std::cmp::Ordering;
+use std::collections::HashSet;
 
 pub use sweep::{Sweep, SweepCheck};
 pub use triangle::triangle_distance;
@@ -22,6 +23,13 @@ use triangle::{Triangle, point_triangle};
 
 /// Anything nearer than this fraction of the coordinates counts as touching.
 const TOUCHING: f64 = 1e-13;
+
+/// Meshes of more triangles store neither copies of their triangles nor the balls around [so few](FEW) of them, which are most balls:
+/// these are made when they are needed.
+const LARGE: usize = 1 << 20;
+
+/// Large meshes store the balls around more triangles than this.
+const FEW: u32 = 8;
 
 /// A ball around some triangles.
 #[derive(Clone, Copy, Debug)]
@@ -37,17 +45,30 @@ struct Ball {
 
 #[derive(Clone, Copy, Debug)]
 enum Content {
-    Triangle(usize),
-    /// Two balls.
-    Parts([usize; 2]),
+    Triangle(u32),
+    Parts([Node; 2]),
+}
+
+/// Names a ball.
+#[derive(Clone, Copy, Debug)]
+enum Node {
+    /// The number of a stored ball.
+    Stored(u32),
+    /// The ball around `count` triangles from the place `first` of the order on.
+    Few { first: u32, count: u16 },
 }
 
 /// A mesh with its tree of spheres.
 #[derive(Clone, Debug)]
 pub struct RefMesh {
-    /// The last one is the root.
-    balls: Vec<Ball>,
+    /// Shares its vertices and triangles with the mesh that was given.
+    mesh: TriMesh,
+    /// Of a mesh that is not large, the triangles.
     triangles: Vec<Triangle>,
+    /// Of a large mesh, the numbers of the triangles in the order of the leaves.
+    order: Vec<u32>,
+    balls: Vec<Ball>,
+    root: Node,
     /// The largest absolute coordinate.
     size: f64,
     /// Its corners, each once; none when there are too many to look for an axis.
@@ -55,22 +76,116 @@ pub struct RefMesh {
 }
 
 impl RefMesh {
-    /// Builds the tree of `mesh`: O(n log² n) for n triangles.
+    /// Builds the tree of `mesh`: O(n log² n) for n triangles. It takes 232 bytes a triangle. Of more than a million triangles it takes
+    /// 14 to 24 bytes each; then answers take two to three times as long, and building nearly twice.
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
-        let triangles: Vec<Triangle> = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect();
-        let size = triangles.iter().flatten().map(|p| p.coords.amax()).fold(0.0, f64::max);
-        let mut order: Vec<usize> = (0..triangles.len()).collect();
-        let mut balls = Vec::with_capacity(2 * triangles.len());
-        build(&triangles, &mut order, &mut balls);
-        let mut corners: Vec<Point3<f64>> = triangles.iter().flatten().copied().collect();
-        corners
-            .sort_by(|p, q| p.iter().zip(q.iter()).fold(Ordering::Equal, |o, (x, y)| o.then(x.total_cmp(y))));
-        corners.dedup();
-        if corners.len() > axis::MOST_CORNERS {
-            corners.clear();
+        Self::storing(mesh, if mesh.triangles().len() > LARGE { FEW } else { 0 })
+    }
+
+    /// Stores the balls around more than `few` triangles, and the triangles if `few` is 0. Answers do not depend on that.
+    fn storing(mesh: &TriMesh, few: u32) -> Self {
+        let count = mesh.triangles().len();
+        let triangles = || (0..count).map(|i| mesh.triangle(i));
+        let mut tree = Self {
+            mesh: mesh.clone(),
+            triangles: if few == 0 { triangles().collect() } else { Vec::new() },
+            order: (0..count as u32).collect(),
+            balls: Vec::with_capacity(larger_balls(count, few as usize)),
+            root: Node::Stored(0),
+            size: triangles().flatten().map(|p| p.coords.amax()).fold(0.0, f64::max),
+            corners: distinct(triangles().flatten()),
+        };
+        let mut order = std::mem::take(&mut tree.order);
+        tree.sort(&mut order);
+        tree.order = order;
+        tree.root = tree.store(0, count as u32, few);
+        if few == 0 {
+            tree.order = Vec::new();
         }
-        Self { balls, triangles, size, corners }
+        tree
+    }
+
+    /// Puts triangles in the order of the leaves: those on the lower side of the median first, and so on within both halves.
+    fn sort(&self, order: &mut [u32]) {
+        if order.len() < 2 {
+            return;
+        }
+        let middle = |i: u32, k: usize| self.triangle(i, &mut None).iter().map(|p| p[k] / 3.0).sum::<f64>();
+        let extent = |k: usize| {
+            let along = order.iter().map(|&i| middle(i, k));
+            let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
+            let (low, high) = along.fold((low, high), |(low, high), x| (low.min(x), high.max(x)));
+            high - low
+        };
+        let extents = [extent(0), extent(1), extent(2)];
+        let widest = (0..3).max_by(|&x, &y| extents[x].total_cmp(&extents[y])).unwrap_or(0);
+        order.select_nth_unstable_by(order.len() / 2, |&x, &y| {
+            middle(x, widest).total_cmp(&middle(y, widest)).then(x.cmp(&y))
+        });
+        let (low, high) = order.split_at_mut(order.len() / 2);
+        self.sort(low);
+        self.sort(high);
+    }
+
+    /// Adds the balls around `count` triangles from the place `first` of the order on, children first. Returns that around them all.
+    fn store(&mut self, first: u32, count: u32, few: u32) -> Node {
+        if count <= few {
+            return Node::Few { first, count: count as u16 };
+        }
+        let content = match halves(first, count) {
+            None => Content::Triangle(self.order[first as usize]),
+            Some(parts) => Content::Parts(parts.map(|(first, count)| self.store(first, count, few))),
+        };
+        self.balls.push(self.enclosing_ball(first, count, content));
+        Node::Stored(self.balls.len() as u32 - 1)
+    }
+
+    /// A ball, put into `made` unless it is stored.
+    #[inline]
+    fn ball<'a>(&'a self, node: Node, made: &'a mut Option<Ball>) -> &'a Ball {
+        match node {
+            Node::Stored(i) => &self.balls[i as usize],
+            Node::Few { first, count } => self.make_ball(first, count, made),
+        }
+    }
+
+    // Out of the way of small meshes.
+    #[cold]
+    fn make_ball<'a>(&self, first: u32, count: u16, made: &'a mut Option<Ball>) -> &'a Ball {
+        let content = match halves(first, count.into()) {
+            None => Content::Triangle(self.order[first as usize]),
+            Some(parts) => {
+                Content::Parts(parts.map(|(first, count)| Node::Few { first, count: count as u16 }))
+            }
+        };
+        made.insert(self.enclosing_ball(first, count.into(), content))
+    }
+
+    /// A ball around `count` triangles from the place `first` of the order on, about the middle of their box.
+    fn enclosing_ball(&self, first: u32, count: u32, content: Content) -> Ball {
+        let triangles = &self.order[first as usize..][..count as usize];
+        let points = triangles.iter().flat_map(|&i| *self.triangle(i, &mut None));
+        let low = points.clone().reduce(|p, q| p.inf(&q)).unwrap_or_default();
+        let high = points.clone().reduce(|p, q| p.sup(&q)).unwrap_or_default();
+        let center = nalgebra::center(&low, &high);
+        let radius = points.clone().map(|p| (p - center).norm()).fold(0.0, f64::max);
+        let reach = points.map(|p| p.coords.norm()).fold(0.0, f64::max);
+        Ball { center, radius, half: (high - center).sup(&(center - low)), reach, content }
+    }
+
+    /// A triangle, put into `made` unless it is stored.
+    #[inline]
+    fn triangle<'a>(&'a self, i: u32, made: &'a mut Option<Triangle>) -> &'a Triangle {
+        match self.triangles.get(i as usize) {
+            Some(triangle) => triangle,
+            None => self.make_triangle(i, made),
+        }
+    }
+
+    #[cold]
+    fn make_triangle<'a>(&self, i: u32, made: &'a mut Option<Triangle>) -> &'a Triangle {
+        made.insert(self.mesh.triangle(i as usize))
     }
 
     /// Whether the distance from this mesh at `pose_wa` to `other` at `pose_wb` is at least `enough` (metres):
@@ -149,7 +264,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// The distance found, 0 for touching; a lower bound when the roots are farther apart than is enough.
     fn run(mut self) -> f64 {
-        let (root_a, root_b) = (self.a.balls.len() - 1, self.b.balls.len() - 1);
+        let (root_a, root_b) = (self.a.root, self.b.root);
         let bound = self.bound(root_a, root_b);
         if bound >= self.best {
             return bound;
@@ -166,39 +281,54 @@ impl Search<'_> {
     }
 
     /// A lower bound on the distance of the triangles of two balls.
-    fn bound(&self, i: usize, j: usize) -> f64 {
-        let (ball_a, ball_b) = (&self.a.balls[i], &self.b.balls[j]);
+    fn bound(&self, i: Node, j: Node) -> f64 {
+        let (mut made_a, mut made_b, mut made) = (None, None, None);
+        let (ball_a, ball_b) = (self.a.ball(i, &mut made_a), self.b.ball(j, &mut made_b));
         // For a ball against a single triangle, the triangle itself is the better bound.
         let distance = match (ball_a.content, ball_b.content) {
             (Content::Triangle(k), Content::Parts(_)) => {
-                point_triangle(&(self.pose_ab * ball_b.center), &self.a.triangles[k]) - ball_b.radius
+                let triangle = self.a.triangle(k, &mut made);
+                point_triangle(&(self.pose_ab * ball_b.center), triangle) - ball_b.radius
             }
             (Content::Parts(_), Content::Triangle(l)) => {
                 let center = self.pose_ab.inverse_transform_point(&ball_a.center);
-                point_triangle(&center, &self.b.triangles[l]) - ball_a.radius
+                point_triangle(&center, self.b.triangle(l, &mut made)) - ball_a.radius
             }
             _ => (self.pose_ab * ball_b.center - ball_a.center).norm() - ball_a.radius - ball_b.radius,
         };
         distance - self.touching
     }
 
-    /// Lowers `best` to the distance of the triangles of two balls, if that is smaller.
-    /// Returns whether the search is over.
-    fn visit(&mut self, i: usize, j: usize) -> bool {
-        let (ball_a, ball_b) = (&self.a.balls[i], &self.b.balls[j]);
-        let pairs = match (ball_a.content, ball_b.content) {
-            (Content::Triangle(k), Content::Triangle(l)) => {
-                let triangle_b = self.b.triangles[l].map(|p| self.pose_ab * p);
-                let distance = triangle_distance(&self.a.triangles[k], &triangle_b);
-                let nearer = distance < self.best;
-                self.best = self.best.min(distance);
-                return self.best <= self.touching || (nearer && self.any);
-            }
+    /// The parts of the larger of two balls, each with the other ball.
+    ///
+    /// # Errors
+    /// The triangles, where each ball holds one.
+    #[inline]
+    fn split(&self, i: Node, j: Node) -> Result<[(Node, Node); 2], [u32; 2]> {
+        let (mut made_a, mut made_b) = (None, None);
+        let (ball_a, ball_b) = (self.a.ball(i, &mut made_a), self.b.ball(j, &mut made_b));
+        Ok(match (ball_a.content, ball_b.content) {
+            (Content::Triangle(k), Content::Triangle(l)) => return Err([k, l]),
             (Content::Parts(parts), Content::Parts(_)) if ball_a.radius >= ball_b.radius => {
                 parts.map(|part| (part, j))
             }
             (_, Content::Parts(parts)) => parts.map(|part| (i, part)),
             (Content::Parts(parts), Content::Triangle(_)) => parts.map(|part| (part, j)),
+        })
+    }
+
+    /// Lowers `best` to the distance of the triangles of two balls, if that is smaller.
+    /// Returns whether the search is over.
+    fn visit(&mut self, i: Node, j: Node) -> bool {
+        let pairs = match self.split(i, j) {
+            Ok(pairs) => pairs,
+            Err([k, l]) => {
+                let triangle_b = self.b.triangle(l, &mut None).map(|p| self.pose_ab * p);
+                let distance = triangle_distance(self.a.triangle(k, &mut None), &triangle_b);
+                let nearer = distance < self.best;
+                self.best = self.best.min(distance);
+                return self.best <= self.touching || (nearer && self.any);
+            }
         };
         let mut bounds = pairs.map(|(k, l)| (self.bound(k, l), k, l));
         if bounds[1].0 < bounds[0].0 {
@@ -219,35 +349,110 @@ fn is_usable(pose: &Isometry3<f64>, size: f64) -> bool {
     rigid && pose.translation.vector.norm() + size < 1e75
 }
 
-/// Adds the balls of the triangles in `order`, children first; returns the index of the ball around them all.
-fn build(triangles: &[Triangle], order: &mut [usize], balls: &mut Vec<Ball>) -> usize {
-    let content = if let [only] = order {
-        Content::Triangle(*only)
-    } else {
-        let middle = |i: &usize, k: usize| triangles[*i].iter().map(|p| p[k] / 3.0).sum::<f64>();
-        let extent = |k: usize| {
-            let along = order.iter().map(|i| middle(i, k));
-            along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
-        };
-        let extents = [extent(0), extent(1), extent(2)];
-        let widest = (0..3).max_by(|&x, &y| extents[x].total_cmp(&extents[y])).unwrap_or(0);
-        let half = order.len() / 2;
-        order.select_nth_unstable_by(half, |x, y| {
-            middle(x, widest).total_cmp(&middle(y, widest)).then(x.cmp(y))
-        });
-        let (low, high) = order.split_at_mut(half);
-        Content::Parts([build(triangles, low, balls), build(triangles, high, balls)])
-    };
-    balls.push(enclosing_ball(order.iter().flat_map(|&i| triangles[i]), content));
-    balls.len() - 1
+/// Where the halves of `count` triangles from the place `first` on begin, and their numbers; `None` for a single triangle.
+fn halves(first: u32, count: u32) -> Option<[(u32, u32); 2]> {
+    let half = count / 2;
+    (count > 1).then_some([(first, half), (first + half, count - half)])
 }
 
-/// A ball around the points, about the middle of their box.
-fn enclosing_ball(points: impl Iterator<Item = Point3<f64>> + Clone, content: Content) -> Ball {
-    let low = points.clone().reduce(|p, q| p.inf(&q)).unwrap_or_default();
-    let high = points.clone().reduce(|p, q| p.sup(&q)).unwrap_or_default();
-    let center = nalgebra::center(&low, &high);
-    let radius = points.clone().map(|p| (p - center).norm()).fold(0.0, f64::max);
-    let reach = points.map(|p| p.coords.norm()).fold(0.0, f64::max);
-    Ball { center, radius, half: (high - center).sup(&(center - low)), reach, content }
+/// How many balls of the tree of `count` triangles are around more than `few`.
+fn larger_balls(count: usize, few: usize) -> usize {
+    match count {
+        _ if count <= few => 0,
+        1 => 1,
+        _ => 1 + larger_balls(count / 2, few) + larger_balls(count - count / 2, few),
+    }
+}
+
+/// The corners, each once, in order; none when there are too many to look for an axis.
+fn distinct(corners: impl Iterator<Item = Point3<f64>>) -> Vec<Point3<f64>> {
+    // A zero is written in two ways, so that a place may be found up to eight times.
+    let most = 8 * axis::MOST_CORNERS;
+    let mut seen = HashSet::new();
+    for p in corners {
+        seen.insert([p.x, p.y, p.z].map(f64::to_bits));
+        if seen.len() > most {
+            return Vec::new();
+        }
+    }
+    let mut corners: Vec<_> = seen.into_iter().map(|p| Point3::from(p.map(f64::from_bits))).collect();
+    corners.sort_by(|p, q| p.iter().zip(q.iter()).fold(Ordering::Equal, |o, (x, y)| o.then(x.total_cmp(y))));
+    corners.dedup();
+    if corners.len() > axis::MOST_CORNERS { Vec::new() } else { corners }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mp_geom::primitives;
+
+    /// One mesh with a tree for each number of balls stored; the first one stores them all.
+    fn trees(mesh: &TriMesh) -> [RefMesh; 4] {
+        let trees = [0, 1, FEW, 1000].map(|few| RefMesh::storing(mesh, few));
+        let (all, stored) = (2 * mesh.triangles().len() - 1, trees.each_ref().map(|tree| tree.balls.len()));
+        assert!(stored[0] == all && stored[1] < all && stored[2] < all / 3, "{stored:?}");
+        let counted = |few| larger_balls(mesh.triangles().len(), few as usize);
+        assert_eq!(stored, [0, 1, FEW, 1000].map(counted));
+        trees
+    }
+
+    #[test]
+    fn answers_do_not_depend_on_which_balls_are_stored() {
+        let ring = trees(&primitives::torus(0.8, 0.1, 24, 13).unwrap());
+        // Coarse beside fine, and two triangles in one place.
+        let bar = primitives::cuboid(1.4, 0.1, 0.2).unwrap();
+        let ball = primitives::sphere(0.2, 2).unwrap().transformed(&Isometry3::translation(0.8, 0.0, 0.0));
+        let body = trees(&TriMesh::merged([&bar, &ball, &bar]).unwrap());
+        let bits = |found: Result<f64, f64>| (found.is_ok(), found.map_or_else(f64::to_bits, f64::to_bits));
+        let (mut free, mut hit) = (0, 0);
+        for i in 0..150 {
+            let x = f64::from(i);
+            let wave = |k: f64| mp_math::sin(k * x);
+            let from =
+                mp_geom::pose_from_six([1.3 * wave(0.7), 1.3 * wave(1.1), wave(0.3), x, 2.0 * x, 0.3 * x]);
+            let by = Vector3::new(wave(0.9), wave(1.7), 0.1);
+            let pose_at =
+                |t: f64| Isometry3::from_parts((from.translation.vector + by * t).into(), from.rotation);
+            let here = Isometry3::identity();
+            let answers: Vec<_> = [(0, 0), (2, 2), (1, 3), (3, 1), (0, 2), (3, 0)]
+                .into_iter()
+                .map(|(k, l)| {
+                    let (a, b) = (&body[k], &ring[l]);
+                    let mut pairs = Vec::new();
+                    a.any_near_pair(&from, b, &here, |k, l| {
+                        pairs.push((k, l));
+                        false
+                    });
+                    let mut sweep = Sweep::default();
+                    let swept = match sweep.sweep(a, pose_at, b, 1e-3) {
+                        SweepCheck::Free { clearance } => (0, clearance.to_bits()),
+                        SweepCheck::Collision { at } => (1, at.to_bits()),
+                        SweepCheck::TooClose { at } => (2, at.to_bits()),
+                    };
+                    let clearances = [0.0, 0.05, f64::INFINITY]
+                        .map(|enough| a.clearance(&from, b, &here, enough).to_bits());
+                    (clearances, bits(a.at_least(&from, b, &here, 0.05)), swept, sweep.compared(), pairs)
+                })
+                .collect();
+            assert!(answers.iter().all(|answer| *answer == answers[0]), "{i}: {answers:?}");
+            if answers[0].2.0 == 0 { free += 1 } else { hit += 1 }
+        }
+        assert!(free > 30 && hit > 30, "{free} {hit}");
+    }
+
+    #[test]
+    fn corners_are_listed_once_unless_there_are_too_many() {
+        let [a, b] = [Point3::new(-0.0, 5.0, 1.0), Point3::new(0.0, 5.0, 1.0)];
+        let between = Point3::new(0.0, 3.0, 1.0);
+        let bits = |points: Vec<Point3<f64>>| {
+            points.into_iter().map(|p| <[f64; 3]>::from(p).map(f64::to_bits)).collect::<Vec<_>>()
+        };
+        assert_eq!(bits(distinct([b, a, a, b, b].into_iter())), bits(vec![a]));
+        // In order, equal places are not beside each other here.
+        assert_eq!(bits(distinct([b, between, a, b].into_iter())), bits(vec![a, between, b]));
+        let row = |n: usize| (0..3 * n).map(move |i| Point3::new((i % n) as f64, 0.0, 0.0));
+        assert_eq!(distinct(row(axis::MOST_CORNERS)).len(), axis::MOST_CORNERS);
+        assert!(distinct(row(axis::MOST_CORNERS + 1)).is_empty());
+        assert!(distinct(row(100 * axis::MOST_CORNERS)).is_empty());
+    }
 }

@@ -1,6 +1,6 @@
 //! Pairs of triangles that may touch.
 
-use super::{Content, RefMesh};
+use super::RefMesh;
 use nalgebra::Isometry3;
 
 impl RefMesh {
@@ -16,23 +16,15 @@ impl RefMesh {
         mut visit: impl FnMut(usize, usize) -> bool,
     ) -> bool {
         let Some(search) = self.search(pose_wa, other, pose_wb, 0.0) else { return true };
-        let mut stack = vec![(self.balls.len() - 1, other.balls.len() - 1)];
+        let mut stack = vec![(self.root, other.root)];
         while let Some((i, j)) = stack.pop() {
             if search.bound(i, j) >= search.best {
                 continue;
             }
-            let (ball_a, ball_b) = (&self.balls[i], &other.balls[j]);
-            match (ball_a.content, ball_b.content) {
-                (Content::Triangle(k), Content::Triangle(l)) => {
-                    if visit(k, l) {
-                        return true;
-                    }
-                }
-                (Content::Parts(parts), Content::Parts(_)) if ball_a.radius >= ball_b.radius => {
-                    stack.extend(parts.map(|part| (part, j)));
-                }
-                (_, Content::Parts(parts)) => stack.extend(parts.map(|part| (i, part))),
-                (Content::Parts(parts), Content::Triangle(_)) => stack.extend(parts.map(|part| (part, j))),
+            match search.split(i, j) {
+                Ok(pairs) => stack.extend(pairs),
+                Err([k, l]) if visit(k as usize, l as usize) => return true,
+                Err(_) => {}
             }
         }
         false

@@ -2,7 +2,7 @@
 
 use super::swept_triangle::SweptTriangle;
 use super::triangle::{Triangle, triangle_gap};
-use super::{Ball, Content, RefMesh, TOUCHING, is_usable};
+use super::{Ball, Content, Node, RefMesh, TOUCHING, is_usable};
 use mp_stop::Interrupt;
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
@@ -56,7 +56,7 @@ pub struct Sweep {
 /// A moving ball during a part of the motion.
 #[derive(Clone, Copy, Debug)]
 struct Open {
-    ball: usize,
+    ball: Node,
     part: usize,
     /// The range of `Sweep::near` that lists what may be near.
     near: [usize; 2],
@@ -65,7 +65,7 @@ struct Open {
 /// A static ball that may be near.
 #[derive(Clone, Copy, Debug)]
 struct Near {
-    ball: usize,
+    ball: Node,
     /// A direction that may separate triangles; zero when none is known.
     way: Vector3<f64>,
 }
@@ -120,9 +120,8 @@ impl Moment {
     }
 }
 
-/// The two meshes of a sweep, and its distances.
+/// The static mesh of a sweep, and its distances.
 struct Task<'a> {
-    moving: &'a RefMesh,
     standing: &'a RefMesh,
     margin: f64,
     touching: f64,
@@ -178,23 +177,23 @@ impl Sweep {
         let turn = 2.0 * mp_math::atan2(between.imag().norm(), between.w.abs());
         self.parts.push(Part { ends: [0, 1], bend: turn * turn / 8.0, halves: None });
         let far = self.moments.iter().map(|moment| moment.origin.norm()).fold(0.0, f64::max);
-        let task = Task { moving, standing, margin, touching: TOUCHING * (size + far) };
-        let [ball, other] = [moving, standing].map(|mesh| mesh.balls.len() - 1);
-        self.near.push(Near { ball: other, way: Vector3::zeros() });
-        self.open.push(Open { ball, part: 0, near: [0, 1] });
+        let task = Task { standing, margin, touching: TOUCHING * (size + far) };
+        self.near.push(Near { ball: standing.root, way: Vector3::zeros() });
+        self.open.push(Open { ball: moving.root, part: 0, near: [0, 1] });
 
         let mut least = f64::INFINITY;
         let limit = self.compared + MAX_COMPARED;
         while let Some(open) = self.open.pop() {
-            let ball = &moving.balls[open.ball];
+            let mut made = None;
+            let ball = moving.ball(open.ball, &mut made);
             let swath = self.swath(ball, open.part);
             let first = open.near[1];
-            self.list(&task, &open, &swath, &mut least);
+            self.list(&task, &open, ball, &swath, &mut least);
             if self.compared > limit || self.interrupt.ask() {
                 return SweepCheck::TooClose { at: self.middle(open.part) };
             }
             let triangle = match ball.content {
-                Content::Triangle(k) => Some(moving.triangles[k]),
+                Content::Triangle(k) => Some(*moving.triangle(k, &mut None)),
                 Content::Parts(_) => None,
             };
             if let Some(triangle) = &triangle {
@@ -234,12 +233,12 @@ impl Sweep {
 
     /// Lists the static balls that may be near a ball in a part of the motion, from the list of its parent: balls no larger
     /// than the ball or its motion; for a ball with one triangle, single triangles.
-    fn list(&mut self, task: &Task<'_>, open: &Open, swath: &Swath, least: &mut f64) {
+    fn list(&mut self, task: &Task<'_>, open: &Open, ball: &Ball, swath: &Swath, least: &mut f64) {
         let [from, to] = open.near;
         self.near.truncate(to);
-        let size = match task.moving.balls[open.ball] {
-            Ball { content: Content::Triangle(_), .. } => f64::NEG_INFINITY,
-            ball => ball.radius.max(swath.length),
+        let size = match ball.content {
+            Content::Triangle(_) => f64::NEG_INFINITY,
+            Content::Parts(_) => ball.radius.max(swath.length),
         };
         for i in from..to {
             self.todo.push(self.near[i]);
@@ -249,7 +248,8 @@ impl Sweep {
                     self.todo.clear();
                     return;
                 }
-                let ball = &task.standing.balls[near.ball];
+                let mut made = None;
+                let ball = task.standing.ball(near.ball, &mut made);
                 match (swath.apart(ball, task.margin + task.touching), ball.content) {
                     (Some(apart), _) => *least = least.min(apart - task.touching),
                     (None, Content::Parts(parts)) if ball.radius > size => {
@@ -279,7 +279,7 @@ impl Sweep {
         for i in first..self.near.len() {
             let near = self.near[i];
             let gap = |stands| hull.gap_from(stands, near.way, enough + swath.bend).0 - swath.bend;
-            let gap = task.stands(&near).map_or(f64::NEG_INFINITY, gap);
+            let gap = task.stands(&near, &mut None).map_or(f64::NEG_INFINITY, gap);
             if gap >= enough {
                 *least = least.min(gap - task.touching);
             } else {
@@ -349,10 +349,10 @@ impl Sweep {
 }
 
 impl Task<'_> {
-    /// The static triangle; for a moving triangle only single triangles are listed.
-    fn stands(&self, near: &Near) -> Option<&Triangle> {
-        match self.standing.balls[near.ball].content {
-            Content::Triangle(l) => Some(&self.standing.triangles[l]),
+    /// The static triangle, put into `made` unless it is stored; for a moving triangle only single triangles are listed.
+    fn stands<'a>(&'a self, near: &Near, made: &'a mut Option<Triangle>) -> Option<&'a Triangle> {
+        match self.standing.ball(near.ball, &mut None).content {
+            Content::Triangle(l) => Some(self.standing.triangle(l, made)),
             Content::Parts(_) => None,
         }
     }
@@ -362,7 +362,8 @@ impl Task<'_> {
     /// # Errors
     /// Their distance when it is less.
     fn way(&self, moved: &Triangle, near: &Near) -> Result<Vector3<f64>, f64> {
-        let Some(stands) = self.stands(near) else { return Err(0.0) };
+        let mut made = None;
+        let Some(stands) = self.stands(near, &mut made) else { return Err(0.0) };
         let enough = 2.0 * self.margin + self.touching;
         let (gap, way) = SweptTriangle::new(*moved, *moved).gap_from(stands, near.way, enough);
         if gap >= enough {
