@@ -67,6 +67,9 @@ pub(crate) struct Plan {
     /// Stop after this many seconds, loading, shortening and verifying included. Planning may take nine tenths of them.
     #[arg(long, value_name = "S", default_value = "60", value_parser = positive_number)]
     pub(crate) time: f64,
+    /// Stop when the program takes this much memory, such as 500MB or 1.5GiB.
+    #[arg(long, value_name = "SIZE", value_parser = crate::memory::size)]
+    pub(crate) memory: Option<u64>,
     /// Stop after this many iterations.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) iterations: Option<u64>,

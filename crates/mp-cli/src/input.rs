@@ -43,6 +43,10 @@ pub(crate) fn scene_until(given: &Path, interrupt: &Interrupt) -> Result<Scene, 
             let message = format!("the time was up while {} was loaded", given.display());
             return Err(Error::new(message).help("give more time by --time, or simplify the file"));
         }
+        (_, Some(StopReason::Memory)) => {
+            let message = format!("the memory was used up while {} was loaded", given.display());
+            return Err(Error::new(message).help("give more memory by --memory, or simplify the file"));
+        }
         (_, Some(_)) => return Err(Error::new(format!("interrupted while {} was loaded", given.display()))),
     };
     scene.notes().iter().for_each(|line| note(&format!("note: {line}")));

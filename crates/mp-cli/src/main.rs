@@ -11,6 +11,7 @@ mod info;
 mod input;
 mod interrupt;
 mod log;
+mod memory;
 mod output;
 mod page_planner;
 mod picture;

@@ -3,15 +3,15 @@
 use crate::cli::{Drawing, Plan};
 use crate::files::{Files, numbered};
 use crate::input::{is_standard, scene_until};
-use crate::interrupt;
 use crate::output::{Claims, note, print, print_json, write};
 use crate::picture::{Picture, Shown, Watched};
 use crate::progress::Line;
 use crate::request::{request, request_for};
 use crate::text::{caption, summary, table};
+use crate::{interrupt, memory};
 use mp_plan::{
     Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Report, Request, Runs,
-    Scene, in_parallel, make_folder,
+    Scene, StopReason, StoppedBy, in_parallel, make_folder,
 };
 use mp_view::GrownTrees;
 use std::path::{Path, PathBuf};
@@ -24,6 +24,9 @@ const SAMPLE: &str = "cubicles";
 pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let began = mp_plan::Clock::default().now();
     let cancel = interrupt::flag();
+    if let Some(memory) = args.memory {
+        memory::limit(&cancel, memory)?;
+    }
     let request = request(args)?;
     let named = match args.scenes.as_slice() {
         [] => vec![PathBuf::from(SAMPLE)],
@@ -104,9 +107,14 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let (missing, solved) = (jobs.len() - reports.len(), reports.iter().all(|r| r.solved));
     show(args, reports, single)?;
     if missing > 0 {
-        note(&format!("interrupted: {missing} of {} runs were not started", jobs.len()));
+        note(&format!("{}: {missing} of {} runs were not started", ended_by(&cancel), jobs.len()));
     }
     Ok(missing == 0 && solved)
+}
+
+/// Why the flag was raised, in a few words.
+fn ended_by(cancel: &Cancel) -> StoppedBy {
+    cancel.reason().map_or(StoppedBy::Interrupted, StoppedBy::from)
 }
 
 /// Finds routes, and writes each to files of its own. True when there are as many as asked for.
@@ -224,7 +232,11 @@ fn one(
         write(&file, certificate.to_json().as_bytes())?;
         report.certificate_file = Some(file.display().to_string());
     }
-    if let Some((picture, file)) = picture {
+    if let Some((_, file)) = &picture
+        && let Some(StopReason::Memory) = cancel.reason()
+    {
+        note(&format!("{}: {} was not drawn", StoppedBy::Memory, file.display()));
+    } else if let Some((picture, file)) = picture {
         line.say("drawing the picture");
         let shown = Shown { scene, path: Some(&path), report: Some(&report), caption: &caption(&report) };
         match picture.bytes(&shown, grown, cancel, &line)? {
@@ -232,7 +244,7 @@ fn one(
                 write(&file, &bytes)?;
                 report.picture_file = Some(file.display().to_string());
             }
-            None => note(&format!("interrupted: {} was not written", file.display())),
+            None => note(&format!("{}: {} was not written", ended_by(cancel), file.display())),
         }
     }
     Ok(report)

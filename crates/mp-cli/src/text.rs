@@ -80,6 +80,7 @@ fn stages(report: &Report) -> String {
 fn until(by: StoppedBy) -> &'static str {
     match by {
         StoppedBy::Time => "the time was up",
+        StoppedBy::Memory => "the memory was used up",
         StoppedBy::Interrupted => "it was interrupted",
         StoppedBy::Exhausted => "all was tried",
         _ => "the budget was used up",
@@ -97,6 +98,7 @@ fn explained(reason: StoppedBy) -> String {
     let option = match reason {
         StoppedBy::Time | StoppedBy::Unverified => " (--time)",
         StoppedBy::Iterations => " (--iterations)",
+        StoppedBy::Memory => " (--memory)",
         _ => "",
     };
     format!("{reason}{option}")

@@ -305,3 +305,20 @@ fn runs_that_are_killed_lose_and_tear_nothing() {
 fn a_thousand_runs_that_are_killed_lose_and_tear_nothing() {
     kill_runs(1000);
 }
+
+/// What `--memory` allows is used up, and the run ends with a report.
+#[test]
+fn memory_is_a_budget() {
+    let dir = Dir::new();
+    let told =
+        mp(&dir, &["plan", "closed.env", "--planner", "rrt", "--memory", "40MB", "--time", "600", "--json"]);
+    let report = told.json();
+    assert_eq!((told.code, &report["stopped_by"]), (1, &serde_json::json!("memory")), "{told:?}");
+    assert_eq!(report["why"], "the memory is used up");
+    assert!(report["nodes"].as_u64().unwrap() > 1000, "{report}");
+
+    let told = mp(&dir, &["plan", "closed.env", "--memory", "1kB"]);
+    assert!(told.code == 2 && told.stderr.contains("the program itself takes"), "{told:?}");
+    let told = mp(&dir, &["plan", "closed.env", "--memory", "much"]);
+    assert!(told.code == 2 && told.stderr.contains("500MB"), "{told:?}");
+}

@@ -179,6 +179,21 @@ fn systems_move_as_their_equations_say() {
     assert!((decay.integrate(&[1.0].into(), &1.0, 1.0).x - mp_math::exp(-1.0)).abs() < 1e-6);
 }
 
+/// With many joints that are soon too fast, few states have an input that does not leave the space; these are looked for.
+#[test]
+fn inputs_that_seldom_stay_in_the_space_are_enough() {
+    let joints = Rn::new([-1.0; 6], [1.0; 6]).unwrap();
+    let space = Product::with_velocity(joints, [1.0; 6]).unwrap();
+    let flow = DoubleIntegrator::new(space.spaces().0).unwrap();
+    let planner = |duration: f64| {
+        let inputs = InputSet::grid([1.6; 6], 2).unwrap();
+        let check = DiscreteFlowCheck::new(&space, |_: &_| true, Resolution::Fraction(0.01)).unwrap();
+        InputPlanner::new(&space, flow.clone(), inputs, duration, check).map(drop)
+    };
+    assert!(planner(1.0).is_ok());
+    assert!(matches!(planner(3.0), Err(InputError::LeavesSpace { .. })));
+}
+
 /// The reversed flow, run forward again, leads back up to rounding.
 fn reverses<C: Space, U, F: Flow<C::State, U>>(space: &C, flow: &F, input: &U, time: f64, q: &C::State) {
     let before = flow.reversed(q, input, time).unwrap();

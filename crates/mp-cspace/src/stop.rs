@@ -155,7 +155,7 @@ impl Stop for Deadline {
 
 impl Stop for Cancel {
     fn check(&mut self, _: &Progress) -> Option<StopReason> {
-        self.is_raised().then_some(StopReason::Cancelled)
+        self.reason()
     }
 }
 

@@ -175,13 +175,19 @@ impl TriMesh {
         if 2 * upward != edges().count() {
             return false;
         }
-        let (mut up, mut down) = (Vec::with_capacity(upward), Vec::with_capacity(upward));
-        for [a, b] in edges() {
-            if a < b { up.push([a, b]) } else { down.push([b, a]) }
-        }
-        up.sort_unstable();
-        down.sort_unstable();
-        up == down
+        // Some at a time: lists of all take more memory than the mesh.
+        let groups = u32::try_from(upward.div_ceil(1 << 21)).unwrap_or(u32::MAX);
+        let (mut up, mut down) = (Vec::new(), Vec::new());
+        (0..groups).all(|group| {
+            up.clear();
+            down.clear();
+            for [a, b] in edges().filter(|[a, b]| a.min(b) % groups == group) {
+                if a < b { up.push([a, b]) } else { down.push([b, a]) }
+            }
+            up.sort_unstable();
+            down.sort_unstable();
+            up == down
+        })
     }
 
     /// The components connected through edges, each with only its own vertices, in the order of their first

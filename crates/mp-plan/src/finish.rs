@@ -93,8 +93,8 @@ pub(crate) fn finish<K: RobotKind>(
     let interrupt = timed.interrupt(1.0);
     let mut finished = verified_as_written(kind, found, false, &interrupt)?;
     timed.ends(RunStage::Verifying, &interrupt);
-    // A cancelled run keeps its path, even if this takes as long as the verification.
-    if matches!(finished, Err(StoppedBy::Interrupted)) {
+    // A cancelled run keeps its path, even if this takes as long as the verification, and the memory that it needs.
+    if matches!(finished, Err(StoppedBy::Interrupted | StoppedBy::Memory)) {
         let interrupt = timed.interrupt_by_deadline();
         finished = verified_as_written(kind, found, false, &interrupt)?;
         timed.ends(RunStage::Verifying, &interrupt);

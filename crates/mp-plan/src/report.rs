@@ -145,6 +145,8 @@ pub enum StoppedBy {
     Nodes,
     /// The budget of collision queries.
     Queries,
+    /// The budget of memory.
+    Memory,
     /// Another budget.
     Budget,
     /// It was cancelled from outside.
@@ -168,6 +170,7 @@ impl StoppedBy {
             Self::Iterations => "iterations",
             Self::Nodes => "nodes",
             Self::Queries => "queries",
+            Self::Memory => "memory",
             Self::Budget => "budget",
             Self::Interrupted => "interrupted",
             Self::Exhausted => "exhausted",
@@ -186,6 +189,7 @@ impl fmt::Display for StoppedBy {
             Self::Iterations => "the iterations are used up",
             Self::Nodes => "the nodes are used up",
             Self::Queries => "the collision queries are used up",
+            Self::Memory => "the memory is used up",
             Self::Budget => "the budget is used up",
             Self::Interrupted => "interrupted",
             Self::Exhausted => "the planner has tried all it can by its own rule",
@@ -206,6 +210,7 @@ impl From<mp_cspace::StopReason> for StoppedBy {
             Why::Exhausted => Self::Exhausted,
             Why::Nodes => Self::Nodes,
             Why::Motions => Self::Queries,
+            Why::Memory => Self::Memory,
             _ => Self::Budget,
         }
     }

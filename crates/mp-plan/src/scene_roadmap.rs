@@ -204,11 +204,11 @@ impl<K: RobotKind> AnySceneRoadmap for RobotRoadmap<K> {
         drop(checker);
         let queries = prepared.queries.load(Ordering::Relaxed);
         let map = Some([self.roadmap.map().edges(), self.roadmap.map_mut().components()]);
-        let (outcome, why) = match answer {
-            Ok(path) => (Outcome::Solved(relax_if_requested(kind, request, path, control, None)?), None),
+        let (outcome, why) = match (answer, interrupt.raised()) {
+            (Ok(path), _) => (Outcome::Solved(relax_if_requested(kind, request, path, control, None)?), None),
             // What the query says about the roadmap means nothing when it was told to end.
-            Err(_) if interrupt.raised().is_some() => (Outcome::Stopped(StopReason::Cancelled), None),
-            Err(why) => (Outcome::Stopped(StopReason::Exhausted), Some(why.to_string())),
+            (Err(_), Some(reason)) => (Outcome::Stopped(reason), None),
+            (Err(why), None) => (Outcome::Stopped(StopReason::Exhausted), Some(why.to_string())),
         };
         let found = Search {
             outcome,

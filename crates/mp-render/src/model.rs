@@ -10,12 +10,18 @@ use std::collections::HashMap;
 /// Faces that meet at less than this angle are shaded as one smooth surface (cosine of 35°).
 const SMOOTH: f64 = 0.82;
 
+/// Meshes of more triangles than a picture has pixels are drawn flat and without edges, as they are: smooth normals and edges take seven times
+/// the memory of the mesh.
+const LARGE: usize = 1 << 21;
+
 /// A mesh with the data for drawing it many times.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Model {
+    /// Points and triangles of a mesh that is large.
+    large: Option<TriMesh>,
     points: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
-    /// Per corner of each triangle.
+    /// Per corner of each triangle; none of a mesh that is large.
     normals: Vec<[Vector3<f64>; 3]>,
     /// Edges of one face, and edges where faces meet at an angle.
     edges: Vec<[u32; 2]>,
@@ -27,6 +33,9 @@ pub(crate) struct Model {
 
 impl Model {
     pub(crate) fn new(mesh: &TriMesh) -> Self {
+        if mesh.triangles().len() > LARGE {
+            return Self::flat(mesh);
+        }
         // Soups repeat their vertices: join equal ones, so that neighbours are known.
         let mut ids = HashMap::new();
         let mut points: Vec<Point3<f64>> = Vec::new();
@@ -51,8 +60,13 @@ impl Model {
             .collect();
         let normals = smooth_normals(points.len(), &triangles, &faces);
         let (edges, inner) = feature_edges(&triangles, &faces);
-        let radius = points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
-        Self { points, triangles, normals, edges, inner, radius }
+        let radius = radius(&points);
+        Self { large: None, points, triangles, normals, edges, inner, radius }
+    }
+
+    /// The model of a large mesh, which it shares.
+    fn flat(mesh: &TriMesh) -> Self {
+        Self { radius: radius(mesh.vertices()), large: Some(mesh.clone()), ..Self::default() }
     }
 
     /// The model of a point, which is invisible.
@@ -62,7 +76,7 @@ impl Model {
 
     /// Its points.
     pub(crate) fn points(&self) -> &[Point3<f64>] {
-        &self.points
+        self.large.as_ref().map_or(&self.points, TriMesh::vertices)
     }
 
     /// The number of edges that [`edges`](Model::edges) draws.
@@ -84,13 +98,18 @@ impl Model {
         mut fragment: impl FnMut(usize, f32, f32),
     ) {
         let pose_cm = camera.pose_cw * pose;
+        // Each once, but for large meshes, of which there is no room for a copy.
+        let points = self.points();
         let seen: Vec<Point3<f64>> = self.points.iter().map(|p| pose_cm * p).collect();
+        let seen = |v: u32| seen.get(v as usize).copied().unwrap_or_else(|| pose_cm * points[v as usize]);
 
         let lights = lights.seen_from(pose);
-        for (t, normals) in self.triangles.iter().zip(&self.normals) {
-            let at = t.map(|v| seen[v as usize]);
-            let middle = self.points[t[0] as usize];
-            let face = (self.points[t[1] as usize] - middle).cross(&(self.points[t[2] as usize] - middle));
+        let triangles = self.large.as_ref().map_or(&*self.triangles, TriMesh::triangles);
+        for (i, t) in triangles.iter().enumerate() {
+            let at = t.map(seen);
+            let middle = points[t[0] as usize];
+            let face = (points[t[1] as usize] - middle).cross(&(points[t[2] as usize] - middle));
+            let normals = self.normals.get(i).copied().unwrap_or_else(|| [unit(&face); 3]);
             // Both sides are lit, as triangles of a soup may have any orientation.
             let toward = pose.inverse_transform_vector(&camera.toward_eye(&(pose * middle)));
             let side = if face.dot(&toward) < 0.0 { -1.0 } else { 1.0 };
@@ -138,6 +157,16 @@ impl Model {
     }
 }
 
+/// The vector of length 1 in this direction; some vector for zero.
+fn unit(n: &Vector3<f64>) -> Vector3<f64> {
+    n.try_normalize(0.0).unwrap_or_else(Vector3::z)
+}
+
+/// The largest distance of a point from the origin.
+fn radius(points: &[Point3<f64>]) -> f64 {
+    points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max)
+}
+
 /// For each corner of each triangle, the mean normal of the faces around it that are at less than 35° to its own.
 fn smooth_normals(points: usize, triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[Vector3<f64>; 3]> {
     let mut around: Vec<Vec<u32>> = vec![Vec::new(); points];
@@ -146,7 +175,6 @@ fn smooth_normals(points: usize, triangles: &[[u32; 3]], faces: &[Vector3<f64>])
             around[v as usize].push(f as u32);
         }
     }
-    let unit = |n: &Vector3<f64>| n.try_normalize(0.0).unwrap_or_else(Vector3::z);
     let units: Vec<_> = faces.iter().map(unit).collect();
     triangles
         .iter()
@@ -205,5 +233,28 @@ mod tests {
         let model = Model::new(&TriMesh::new(soup, triangles).unwrap());
         assert_eq!((model.points.len(), model.edges.len(), model.inner.len()), (8, 12, 6));
         assert!(model.normals.iter().flatten().all(|n| (n.amax() - 1.0).abs() < 1e-12));
+    }
+
+    /// A large mesh is drawn as others are, but for smooth normals and edges: where faces are flat, to the last pixel.
+    #[test]
+    fn large_meshes_are_drawn_flat() {
+        let mesh = mp_geom::primitives::cuboid(1.0, 2.0, 3.0).unwrap();
+        let camera = Camera::three_quarter(mesh.vertices(), 0.7, 0.4, (80, 60), [0.1; 4]);
+        let drawn = |model: &Model| {
+            let mut all = Vec::new();
+            let pose = Isometry3::rotation(Vector3::new(0.1, 0.2, 0.3));
+            model.faces(&camera, &pose, &Lights::of(&camera), |sample, key, light| {
+                all.push((sample, key, light))
+            });
+            all
+        };
+        let (whole, flat) = (Model::new(&mesh), Model::flat(&mesh));
+        assert_eq!((flat.points(), flat.radius), (mesh.vertices(), whole.radius));
+        assert_eq!((flat.edge_count(), flat.inner_edge_count()), (0, 0));
+        let (whole, flat) = (drawn(&whole), drawn(&flat));
+        assert!(whole.len() > 1000 && whole.len() == flat.len());
+        for (a, b) in whole.iter().zip(&flat) {
+            assert!(a.0 == b.0 && a.1 == b.1 && (a.2 - b.2).abs() < 1e-6, "{a:?} {b:?}");
+        }
     }
 }

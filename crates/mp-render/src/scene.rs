@@ -86,7 +86,12 @@ impl Scene {
 
     /// The points that the picture must show.
     pub(crate) fn frame(&self) -> Vec<Point3<f64>> {
-        let placed = |body: &Body| body.model.points().iter().map(|p| body.pose_wb * p).collect::<Vec<_>>();
+        let placed = |body: &Body| {
+            let (points, pose_wb) = (body.model.points(), body.pose_wb);
+            // Those of large meshes are nearer to each other than pixels.
+            let some = points.iter().step_by(points.len().div_ceil(MOST_OF_BODY).max(1));
+            some.map(|p| pose_wb * p).collect::<Vec<_>>()
+        };
         let mut points: Vec<Point3<f64>> = self.robots().flat_map(placed).collect();
         let of_robot = points.len();
         points.extend(self.obstacles.iter().flat_map(placed));
@@ -109,6 +114,9 @@ impl Scene {
         points
     }
 }
+
+/// The most points of a body that are looked at for the frame of a picture.
+const MOST_OF_BODY: usize = 1 << 19;
 
 /// The box around `points`.
 pub(crate) fn corners(points: &[Point3<f64>]) -> (Point3<f64>, Point3<f64>) {

@@ -23,7 +23,7 @@
 //! ```
 
 use std::fmt;
-use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
@@ -39,6 +39,8 @@ pub enum StopReason {
     Motions,
     /// The deadline has passed.
     Deadline,
+    /// The memory budget is spent.
+    Memory,
     /// A [`Cancel`] was raised.
     Cancelled,
     /// The planner has tried all it can: there is no solution at its resolution.
@@ -47,7 +49,7 @@ pub enum StopReason {
 
 /// A flag that ends work, raised from another thread or a signal handler.
 #[derive(Clone, Debug, Default)]
-pub struct Cancel(pub Arc<AtomicBool>);
+pub struct Cancel(Arc<AtomicU8>);
 
 impl Cancel {
     /// A flag that is not raised; clones share it.
@@ -58,13 +60,29 @@ impl Cancel {
 
     /// Raises the flag.
     pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.raise(CANCELLED);
+    }
+
+    /// Raises the flag because a memory budget is spent. Whoever raises it measures the memory.
+    pub fn out_of_memory(&self) {
+        self.raise(MEMORY);
+    }
+
+    /// The first reason stays.
+    fn raise(&self, why: u8) {
+        let _ = self.0.compare_exchange(0, why, Ordering::Relaxed, Ordering::Relaxed);
     }
 
     /// Whether the flag is raised.
     #[must_use]
     pub fn is_raised(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.0.load(Ordering::Relaxed) != 0
+    }
+
+    /// Why the flag was raised, if it is.
+    #[must_use]
+    pub fn reason(&self) -> Option<StopReason> {
+        reason(self.0.load(Ordering::Relaxed))
     }
 }
 
@@ -168,9 +186,20 @@ struct Shared {
     told: AtomicU8,
 }
 
-/// The values of [`Shared::told`].
+/// The values of [`Shared::told`] and [`Cancel`].
 const CANCELLED: u8 = 1;
 const DEADLINE: u8 = 2;
+const MEMORY: u8 = 3;
+
+/// What these values mean.
+fn reason(told: u8) -> Option<StopReason> {
+    match told {
+        CANCELLED => Some(StopReason::Cancelled),
+        DEADLINE => Some(StopReason::Deadline),
+        MEMORY => Some(StopReason::Memory),
+        _ => None,
+    }
+}
 
 impl Interrupt {
     /// Ends nothing.
@@ -210,13 +239,12 @@ impl Interrupt {
         if shared.told.load(Ordering::Relaxed) != 0 {
             return true;
         }
-        let why = if shared.cancel.is_raised() {
-            CANCELLED
-        } else {
-            match self.clock.as_mut().and_then(SparseClock::read) {
+        let why = match shared.cancel.0.load(Ordering::Relaxed) {
+            0 => match self.clock.as_mut().and_then(SparseClock::read) {
                 Some(now) if nanoseconds(now) >= shared.at.load(Ordering::Relaxed) => DEADLINE,
                 _ => return false,
-            }
+            },
+            why => why,
         };
         // The first reason stays.
         let _ = shared.told.compare_exchange(0, why, Ordering::Relaxed, Ordering::Relaxed);
@@ -226,11 +254,7 @@ impl Interrupt {
     /// Why work was told to end, if any of the clones was. Looks neither at the flag nor at the clock.
     #[must_use]
     pub fn raised(&self) -> Option<StopReason> {
-        match self.shared.as_ref()?.told.load(Ordering::Relaxed) {
-            CANCELLED => Some(StopReason::Cancelled),
-            DEADLINE => Some(StopReason::Deadline),
-            _ => None,
-        }
+        reason(self.shared.as_ref()?.told.load(Ordering::Relaxed))
     }
 }
 
@@ -265,6 +289,21 @@ mod tests {
         assert!(next.ask());
         assert_eq!(next.raised(), Some(StopReason::Cancelled));
         assert!(!Interrupt::never().ask());
+    }
+
+    #[test]
+    fn work_without_memory_is_told_so() {
+        let cancel = Cancel::new();
+        let mut interrupt = Interrupt::new(cancel.clone());
+        assert_eq!((interrupt.ask(), cancel.reason()), (false, None));
+        cancel.out_of_memory();
+        assert_eq!((interrupt.ask(), interrupt.raised()), (true, Some(StopReason::Memory)));
+        // Ctrl-C afterwards changes nothing.
+        cancel.cancel();
+        assert_eq!((cancel.is_raised(), cancel.reason()), (true, Some(StopReason::Memory)));
+        let other = Cancel::new();
+        other.cancel();
+        assert_eq!(other.reason(), Some(StopReason::Cancelled));
     }
 
     /// However quick the asks before were, a late one is at most 16 asks behind the clock; slow asks are not late at all.

@@ -29,7 +29,7 @@ const TOUCHING: f64 = 1e-13;
 const LARGE: usize = 1 << 20;
 
 /// Large meshes store the balls around more triangles than this.
-const FEW: u32 = 8;
+const FEW: u32 = 16;
 
 /// A ball around some triangles.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +77,7 @@ pub struct RefMesh {
 
 impl RefMesh {
     /// Builds the tree of `mesh`: O(n log² n) for n triangles. It takes 232 bytes a triangle. Of more than a million triangles it takes
-    /// 14 to 24 bytes each; then answers take two to three times as long, and building nearly twice.
+    /// 9 to 15 bytes each; then answers take two to three times as long, and building nearly twice.
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
         Self::storing(mesh, if mesh.triangles().len() > LARGE { FEW } else { 0 })
