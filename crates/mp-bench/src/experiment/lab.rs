@@ -12,7 +12,6 @@ use mp_store::Lock;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use std::sync::atomic::Ordering;
 
 /// Runs experiments: the folder for results, the threads, and cancellation.
 #[derive(Debug)]
@@ -229,9 +228,10 @@ fn interrupt() -> Cancel {
         let raised = Cancel::new();
         let shared = raised.clone();
         let handler = ctrlc::set_handler(move || {
-            if shared.0.swap(true, Ordering::SeqCst) {
+            if shared.is_raised() {
                 std::process::exit(130);
             }
+            shared.cancel();
         });
         if let Err(e) = handler {
             tracing::warn!("Ctrl-C will end the program at once: {e}");
@@ -244,6 +244,7 @@ fn interrupt() -> Cancel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::Ordering;
 
     #[test]
     fn nothing_is_run_twice_and_places_are_made_once() {
