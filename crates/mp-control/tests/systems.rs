@@ -188,7 +188,7 @@ fn inputs_that_seldom_stay_in_the_space_are_enough() {
     let planner = |duration: f64| {
         let inputs = InputSet::grid([1.6; 6], 2).unwrap();
         let check = DiscreteFlowCheck::new(&space, |_: &_| true, Resolution::Fraction(0.01)).unwrap();
-        InputPlanner::new(&space, flow.clone(), inputs, duration, check).map(drop)
+        InputPlanner::new(&space, flow, inputs, duration, check).map(drop)
     };
     assert!(planner(1.0).is_ok());
     assert!(matches!(planner(3.0), Err(InputError::LeavesSpace { .. })));
