@@ -88,9 +88,14 @@ impl Scene {
     pub(crate) fn frame(&self) -> Vec<Point3<f64>> {
         let placed = |body: &Body| {
             let (points, pose_wb) = (body.model.points(), body.pose_wb);
-            // Those of large meshes are nearer to each other than pixels.
-            let some = points.iter().step_by(points.len().div_ceil(MOST_OF_BODY).max(1));
-            some.map(|p| pose_wb * p).collect::<Vec<_>>()
+            // Those of large meshes are nearer to each other than pixels; what sticks out is not left out.
+            let step = points.len().div_ceil(MOST_OF_BODY).max(1);
+            let ends = (0..3).flat_map(|k| {
+                let by = |p: &&Point3<f64>, q: &&Point3<f64>| p[k].total_cmp(&q[k]);
+                [points.iter().min_by(by), points.iter().max_by(by)]
+            });
+            let ends = ends.flatten().take(if step > 1 { 6 } else { 0 });
+            points.iter().step_by(step).chain(ends).map(|p| pose_wb * p).collect::<Vec<_>>()
         };
         let mut points: Vec<Point3<f64>> = self.robots().flat_map(placed).collect();
         let of_robot = points.len();
