@@ -43,7 +43,7 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     let mut findings = arrows(root, &architecture)?;
     findings.extend(missing_paths(root, &architecture));
     let mut paths = Vec::new();
-    for folder in ["crates", "xtask"] {
+    for folder in ["crates", "python", "xtask"] {
         rust_files(&root.join(folder), &mut paths)?;
     }
     paths.sort();
@@ -72,7 +72,9 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
 
 /// The folders of sources of all crates.
 fn paths_of_crates(root: &Path) -> Result<Vec<PathBuf>> {
-    list(&root.join("crates"))?.map(|folder| Ok(folder?.join("src"))).collect()
+    let crates = root.join("crates");
+    let crates = list(&crates)?.map(|folder| Ok(folder?.join("src")));
+    crates.chain([Ok(root.join("python/src"))]).collect()
 }
 
 /// Whether the program that shares no code has become long.
@@ -150,7 +152,7 @@ fn dependencies(manifest: &str) -> BTreeSet<String> {
 fn arrows(root: &Path, architecture: &str) -> Result<Vec<String>> {
     let map = code_map(architecture);
     let mut findings = Vec::new();
-    let mut folders = vec![root.join("xtask")];
+    let mut folders = vec![root.join("python"), root.join("xtask")];
     let crates = root.join("crates");
     for entry in list(&crates)? {
         folders.push(entry?);

@@ -1,0 +1,72 @@
+"""Motion planning: from a scene to a verified path.
+
+>>> import mp_motion as mp
+>>> scene = mp.Scene("cubicles")
+>>> report = scene.plan("rrt-connect", seed=1)
+>>> report.solved
+True
+
+Units are metres, radians and seconds. The engine is written in Rust. It gives the same path as the program ``mp``, to the
+bit, and other threads of Python run while it works.
+"""
+
+from ._errors import Error, InternalError, Interrupted
+from ._mp import Cancel
+from ._planners import Parameter, PlannerInfo, meta_planners, metrics, planners, scenes
+from ._progress import Progress
+from ._report import Column, Explanation, Report, StageTime, Touch, Verdict
+from ._roadmap import Roadmap
+from ._scene import Options, Scene
+from ._shapes import (
+    Body,
+    Box,
+    Circle,
+    Cylinder,
+    Disc,
+    Mesh,
+    Polygon,
+    Rectangle,
+    Shape,
+    Sphere,
+    matrix_from_pose,
+    pose_from_matrix,
+    pose_from_rotation,
+    pose_from_xyz_qxyzw,
+)
+
+__all__ = [
+    "Body",
+    "Box",
+    "Cancel",
+    "Circle",
+    "Column",
+    "Cylinder",
+    "Disc",
+    "Error",
+    "Explanation",
+    "InternalError",
+    "Interrupted",
+    "Mesh",
+    "Options",
+    "Parameter",
+    "PlannerInfo",
+    "Polygon",
+    "Progress",
+    "Rectangle",
+    "Report",
+    "Roadmap",
+    "Scene",
+    "Shape",
+    "Sphere",
+    "StageTime",
+    "Touch",
+    "Verdict",
+    "matrix_from_pose",
+    "meta_planners",
+    "metrics",
+    "planners",
+    "pose_from_matrix",
+    "pose_from_rotation",
+    "pose_from_xyz_qxyzw",
+    "scenes",
+]

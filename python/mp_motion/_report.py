@@ -1,0 +1,340 @@
+"""Results: plain data."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._shapes import Array
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from ._scene import Scene
+
+
+@dataclass(frozen=True)
+class Column:
+    """The meaning of one number of a configuration.
+
+    Attributes
+    ----------
+    name : str
+        ``x``, ``yaw``, or the name of a joint.
+    unit : str
+        ``m``, ``rad``, ``s``, …
+    """
+
+    name: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class StageTime:
+    """A stage of a run, and how long it took.
+
+    Attributes
+    ----------
+    stage : str
+        ``loading``, ``planning``, ``relaxing``, ``shortening`` or ``verifying``.
+    time_s : float
+        Seconds.
+    ended_by : str or None
+        What ended it before it was done.
+    """
+
+    stage: str
+    time_s: float
+    ended_by: str | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Report:
+    """The result of a run. Lengths are in the metric of the space, clearances in metres, times in seconds.
+
+    Attributes
+    ----------
+    scene : str
+        The name of the scene.
+    scene_file : str or None
+        Its file.
+    space : str
+        The configuration space: ``SE3``, ``SE2``, ``R2``, ``6 joints``.
+    solved : bool
+        Whether a path was found, and passed the independent verifier.
+    path : ndarray, shape (n, len(columns)), or None
+        The path: one configuration in each row, the start first.
+    columns : tuple of Column
+        The meaning of each number of a configuration.
+    stopped_by, why : str or None
+        What ended a run without a path: in a word, in a sentence.
+    planner, metric, motion : str
+        The planner, the metric, and how motions were checked while planning.
+    seed : int
+        The seed.
+    iterations, nodes, motion_checks, collision_checks, rejected : int
+        Counts of the search.
+    edges, components : int or None
+        Of a roadmap.
+    time_s, finish_s : float
+        The time of planning alone, and of shortening and verifying.
+    stages : tuple of StageTime
+        What was done when.
+    first_s, first_length, first_path
+        When an anytime planner found its first path, its length, and the path.
+    path_length_found, path_length : float or None
+        The length of the path as it was found, and as it is.
+    clearance : float or None
+        A lower bound on the clearance along the path, metres.
+    shortened : bool
+        Whether the path was shortened.
+    fingerprint : str or None
+        A hash of the numbers of the path: with the same hash two paths are the same, to the bit.
+    """
+
+    scene: str
+    scene_file: str | None
+    space: str
+    solved: bool
+    verified: bool
+    stopped_by: str | None
+    why: str | None
+    planner: str
+    metric: str
+    motion: str
+    seed: int
+    iterations: int
+    nodes: int
+    edges: int | None
+    components: int | None
+    motion_checks: int
+    collision_checks: int
+    rejected: int
+    time_s: float
+    finish_s: float
+    stages: tuple[StageTime, ...]
+    first_s: float | None
+    first_length: float | None
+    first_path: Array | None
+    path_length_found: float | None
+    path_length: float | None
+    clearance: float | None
+    shortened: bool
+    fingerprint: str | None
+    columns: tuple[Column, ...]
+    path: Array | None
+    version: int
+    path_file: str | None = None
+    picture_file: str | None = None
+    certificate_file: str | None = None
+    _scene: Scene | None = field(default=None)
+
+    @classmethod
+    def _of(cls, text: str, path: Array | None, first_path: Array | None, scene: Scene | None) -> Report:
+        members: dict[str, Any] = json.loads(text)
+        members["columns"] = tuple(Column(**column) for column in members["columns"])
+        members["stages"] = tuple(StageTime(**stage) for stage in members["stages"])
+        members["path"], members["first_path"] = path, first_path
+        return cls(**members, _scene=scene)
+
+    @classmethod
+    def from_json(cls, text: str) -> Report:
+        """Read a report back from the JSON form that :meth:`to_json` and ``mp plan --json`` write."""
+        members: dict[str, Any] = json.loads(text)
+        rows = [members.pop(name, None) for name in ("path", "first_path")]
+        path, first = (None if r is None else np.array(r, dtype=np.float64) for r in rows)
+        return cls._of(json.dumps(members), path, first, None)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, with lists in place of arrays: what ``mp plan --json`` prints."""
+        members: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "_scene"}
+        members["columns"] = [vars(column) for column in self.columns]
+        members["stages"] = [vars(stage) for stage in self.stages]
+        for name in ("path", "first_path"):
+            rows: Array | None = members[name]
+            members[name] = None if rows is None else rows.tolist()
+        return members
+
+    def to_json(self) -> str:
+        """One line of JSON, as ``mp plan --json`` prints it."""
+        return json.dumps(self.to_dict())
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the path as a table with a column for each number, named with its unit.
+
+        Raises
+        ------
+        ValueError
+            When there is no path.
+        """
+        import pandas as pd
+
+        if self.path is None:
+            raise ValueError(f"there is no path: {self.why}")
+        return pd.DataFrame(self.path, columns=[f"{c.name} ({c.unit})" for c in self.columns])
+
+    def __str__(self) -> str:
+        if self.path is None:
+            return f"{self.scene}: not solved by {self.planner}, seed {self.seed}: {self.why}"
+        clearance = "" if self.clearance is None else f", clearance at least {self.clearance:.3g} m"
+        return (
+            f"{self.scene}: solved in {1e3 * self.time_s:.1f} ms by {self.planner}, seed {self.seed}; "
+            f"{len(self.path)} configurations, length {self.path_length:.4g}{clearance}"
+        )
+
+    def __repr__(self) -> str:
+        return f"<Report {self}>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        # A scene is much larger than its report.
+        return {f.name: getattr(self, f.name) for f in fields(self)} | {"_scene": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+
+    def _repr_html_(self) -> str | None:
+        return None if self._scene is None else self._scene._frame(self)
+
+    def show(self) -> None:
+        """Open the scene with the path in the browser.
+
+        Raises
+        ------
+        ValueError
+            When the report was read back without its scene: then use ``scene.show(report)``.
+        """
+        self._of_scene().show(self)
+
+    def save(self, file: str) -> None:
+        """Write the path, a picture, a film or a page: see :meth:`Scene.save`.
+
+        Raises
+        ------
+        ValueError
+            When the report was read back without its scene: then use ``scene.save(file, report)``.
+        """
+        self._of_scene().save(file, self)
+
+    def _of_scene(self) -> Scene:
+        if self._scene is None:
+            raise ValueError("the report has come without its scene: use scene.show(report), scene.save(file, report)")
+        return self._scene
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The result of checking a path.
+
+    Attributes
+    ----------
+    scene : str
+        The name of the scene.
+    free : bool
+        Whether the path is free all along, and leads from the start of the scene to a goal.
+    configurations : int
+        The number of configurations.
+    path_length : float
+        In the metric of the space.
+    clearance : float
+        A lower bound along the path, metres; 0 when it is not free, ``inf`` where there is nothing to hit.
+    faults : tuple of str
+        What is wrong. Empty when the path is free.
+    """
+
+    scene: str
+    free: bool
+    configurations: int
+    path_length: float
+    clearance: float
+    faults: tuple[str, ...]
+
+    def __bool__(self) -> bool:
+        return self.free
+
+
+@dataclass(frozen=True)
+class Touch:
+    """A contact.
+
+    Attributes
+    ----------
+    part : str or None
+        The part of the robot that touches, if the robot has several.
+    other : str
+        What it touches.
+    with_itself : bool
+        Whether `other` is a part of the robot.
+    depth : float or None
+        An estimate of the depth, metres.
+    """
+
+    part: str | None
+    other: str
+    with_itself: bool
+    depth: float | None
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Why a configuration is free or not.
+
+    Attributes
+    ----------
+    free : bool
+        Whether it is in bounds, and not in contact.
+    in_bounds : bool
+        Whether it is within the bounds of the space.
+    clearance : float
+        A lower bound on the distance to contact, metres; zero in collision, ``inf`` where there is nothing to hit.
+    touching : tuple of Touch
+        What touches what.
+    fault : str or None
+        What is wrong, to follow the words "the configuration is".
+    nearest_free : ndarray or None
+        A free configuration nearby, for one that is not free.
+    """
+
+    free: bool
+    in_bounds: bool
+    clearance: float
+    touching: tuple[Touch, ...]
+    fault: str | None
+    nearest_free: Array | None
+
+    def __bool__(self) -> bool:
+        return self.free
+
+
+def verdict(text: str) -> Verdict:
+    """Make a verdict of its JSON form."""
+    m: dict[str, Any] = json.loads(text)
+    return Verdict(
+        scene=m["scene"],
+        free=m["free"],
+        configurations=m["configurations"],
+        path_length=_number(m["path_length"]),
+        clearance=_number(m["clearance"]),
+        faults=tuple(m["faults"]),
+    )
+
+
+def explanation(text: str) -> Explanation:
+    """Make an explanation of its JSON form."""
+    m: dict[str, Any] = json.loads(text)
+    nearest = m["nearest_free"]
+    return Explanation(
+        free=m["free"],
+        in_bounds=m["in_bounds"],
+        clearance=_number(m["clearance"]),
+        touching=tuple(Touch(**touch) for touch in m["touching"]),
+        fault=m["fault"],
+        nearest_free=None if nearest is None else np.array(nearest, dtype=np.float64),
+    )
+
+
+def _number(value: float | None) -> float:
+    """JSON has no infinity: nothing is near."""
+    return float("inf") if value is None else value

@@ -1,0 +1,864 @@
+"""Scenes: what to plan in."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+import tomli_w
+from numpy.typing import ArrayLike, NDArray
+
+from . import _mp, _view
+from ._errors import Error, Interrupted
+from ._mp import Cancel
+from ._names import MetricName, PlannerName
+from ._progress import Progress, reporter
+from ._report import Column, Explanation, Report, Verdict, explanation, verdict
+from ._roadmap import Roadmap
+from ._shapes import (
+    Array,
+    Body,
+    Circle,
+    Disc,
+    Polygon,
+    Rectangle,
+    Shape,
+    body_members,
+    plain,
+    planar_members,
+    pose_numbers,
+    shape_members,
+)
+
+#: A file, as a name or a path.
+File: TypeAlias = str | os.PathLike[str]
+#: What is done to the path that a planner found.
+Finish: TypeAlias = Literal["shorten", "as-found", "relax"]
+#: A number is fixed, a pair is an interval; what is not named is free.
+FreeGoal: TypeAlias = Mapping[str, float | tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to plan: the options of :meth:`Scene.plan`, to be kept and given to many runs.
+
+    Every option that is left out has its default; :meth:`Scene.plan` describes them.
+    """
+
+    planner: PlannerName | str | None = None
+    seed: int = 1
+    time: float | None = 60.0
+    iterations: int | None = None
+    queries: int | None = None
+    nodes: int | None = None
+    settings: Mapping[str, object] | None = None
+    metric: MetricName | str = "default"
+    motion: str = "certified"
+    threads: int = 1
+    finish: Finish = "shorten"
+    field: str = "clearance"
+    first_only: bool = False
+    roadmap: File | None = None
+
+    def to_json(self, scene: Scene) -> str:
+        """Return the request as ``mp plan --request`` reads it, with the planner that suits the scene if none is named."""
+        return json.dumps(
+            {
+                "planner": self.planner if self.planner is not None else scene.default_planner,
+                "settings": {key: _setting(value) for key, value in (self.settings or {}).items()},
+                "metric": self.metric,
+                "motion": self.motion,
+                "budget": budget(self.time, self.iterations, self.queries, self.nodes),
+                "seed": int(self.seed),
+                "threads": int(self.threads),
+                "finish": self.finish,
+                "field": self.field,
+                "first_only": self.first_only,
+                "roadmap": None if self.roadmap is None else os.fspath(self.roadmap),
+            }
+        )
+
+
+def _setting(value: object) -> str:
+    """Turn a setting into text, as the registry reads it."""
+    if isinstance(value, bool | np.bool_):
+        return "true" if value else "false"
+    return str(value)
+
+
+def budget(time: float | None, iterations: int | None, queries: int | None, nodes: int | None) -> dict[str, float | int | None]:
+    """Return the budget of a request."""
+    return {
+        "time_s": None if time is None else float(time),
+        "iterations": iterations,
+        "queries": queries,
+        "nodes": nodes,
+    }
+
+
+class Scene:
+    """A robot among obstacles, with a start and one or more goals.
+
+    A scene does not change. It can be pickled, and used from several threads at a time.
+
+    Parameters
+    ----------
+    name : str or path
+        A file (GEMPA ``.env``, OMPL.app ``.cfg``, ``.toml``, ``.mp.json``, ``.urdf``, a map ``.yaml``) or a shipped scene:
+        :func:`scenes` lists them. To make a scene in code, use :meth:`rigid`, :meth:`arm`, :meth:`plane` or
+        :meth:`from_dict`.
+
+    Raises
+    ------
+    Error
+        When there is no such scene, or a file is not valid: with file, line and remedy.
+
+    Examples
+    --------
+    >>> scene = mp.Scene("easy")
+    >>> scene.space, [c.name for c in scene.columns]
+    ('SE3', ['x', 'y', 'z', 'alpha', 'beta', 'gamma'])
+    >>> report = scene.plan(seed=7)
+    >>> report.solved, report.path.shape[1]
+    (True, 6)
+    """
+
+    __slots__ = ("_native",)
+    _native: _mp.Scene
+
+    def __init__(self, name: File) -> None:
+        self._native = _mp.Scene.find(os.fspath(name))
+
+    # --- other ways to make one -------------------------------------------------------------------------------------
+
+    @classmethod
+    def _from(cls, native: _mp.Scene) -> Scene:
+        scene = cls.__new__(cls)
+        scene._native = native
+        return scene
+
+    @classmethod
+    def from_dict(
+        cls,
+        document: Mapping[str, Any],
+        *,
+        files: Mapping[str, bytes | str] | None = None,
+        name: str = "scene",
+        folder: File = "",
+    ) -> Scene:
+        """Make a scene of what a scene file (``.toml``) holds, as a dictionary.
+
+        Parameters
+        ----------
+        document : mapping
+            The tables of the file: ``robot``, ``motion``, ``obstacle``, ``moving``, ``world``. Values may be arrays.
+        files : mapping, optional
+            Contents of files that the document names. Others are read from the disk.
+        name : str
+            What reports call the scene.
+        folder : path
+            The folder to which names of files are relative.
+
+        Raises
+        ------
+        Error
+            When the scene is not valid: with the line of the text that the dictionary makes.
+
+        Examples
+        --------
+        >>> scene = mp.Scene.from_dict({
+        ...     "world": {"walls": [[0, 0], [4, 3]]},
+        ...     "robot": {"disc": 0.1},
+        ...     "motion": {"start": [0.5, 0.5], "goal": [3.5, 2.5]},
+        ...     "obstacle": [{"rectangle": [[1.5, 0], [2, 2]]}],
+        ... })
+        >>> scene.plan().solved
+        True
+        """
+        folder = os.fspath(folder)
+        contents = {
+            os.path.join(folder, key): value.encode() if isinstance(value, str) else bytes(value)
+            for key, value in (files or {}).items()
+        }
+        main = os.path.join(folder, f"{name}.toml")
+        contents[main] = tomli_w.dumps(plain(dict(document))).encode()
+        return cls._from(_mp.Scene.from_files(main, contents, True))
+
+    @classmethod
+    def rigid(
+        cls,
+        robot: Shape,
+        start: ArrayLike,
+        goal: ArrayLike | FreeGoal | None = None,
+        obstacles: Iterable[Body | Shape] = (),
+        *,
+        goals: Sequence[ArrayLike | FreeGoal] | None = None,
+        bounds: ArrayLike | None = None,
+        planar: bool = False,
+        name: str = "scene",
+    ) -> Scene:
+        """Make a scene of a rigid body that flies freely among obstacles.
+
+        Parameters
+        ----------
+        robot : Mesh, Box, Sphere or Cylinder
+            The body, about its origin.
+        start : array_like, shape (6,) or (4, 4)
+            ``x y z α β γ`` (m, rad), or a matrix. With `planar`, the same: ``z β γ`` are zero.
+        goal : array_like or mapping
+            Such a pose; or a mapping of some of ``x``, ``y``, ``z``, ``alpha``, ``beta``, ``gamma`` to a number or an interval:
+            the others are free.
+        obstacles : iterable of Body or shapes
+            What stands still.
+        goals : sequence, optional
+            In place of `goal`: any one of them.
+        bounds : array_like, shape (2, 3), optional
+            The lowest and the highest corner of where the origin of the robot may be, metres. By default around everything.
+        planar : bool
+            Whether the body moves in the plane z = 0: configurations then are x, y and the angle.
+        name : str
+            What reports call the scene.
+
+        Examples
+        --------
+        >>> post = mp.Body(mp.Box(0.2, 1, 4), name="post")
+        >>> scene = mp.Scene.rigid(mp.Box(0.5, 0.1, 0.1), [-1, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0], [post])
+        >>> scene.plan(seed=1).solved
+        True
+        """
+        files: dict[str, bytes] = {}
+        members: dict[str, Any] = shape_members(robot, files)
+        if bounds is not None:
+            members["bounds"] = np.asarray(bounds, dtype=np.float64)
+        if planar:
+            members["planar"] = True
+        document = {
+            "robot": members,
+            "motion": {"start": pose_numbers(start)} | _ends(goal, goals, pose_numbers),
+            "obstacle": [body_members(body, files) for body in obstacles],
+        }
+        return cls.from_dict(document, files=files, name=name)
+
+    @classmethod
+    def arm(
+        cls,
+        urdf: File,
+        start: ArrayLike,
+        goal: ArrayLike | FreeGoal | None = None,
+        obstacles: Iterable[Body | Shape] = (),
+        *,
+        goals: Sequence[ArrayLike | FreeGoal] | None = None,
+        srdf: File | None = None,
+        packages: File | None = None,
+        base: ArrayLike | None = None,
+        floating_within: ArrayLike | None = None,
+        limits: Mapping[str, tuple[float, float]] | None = None,
+        name: str = "scene",
+    ) -> Scene:
+        """Make a scene of an arm, or of a body with joints that flies freely, among obstacles.
+
+        Parameters
+        ----------
+        urdf : path or str
+            The robot: a file, or the text of a URDF.
+        start : array_like, shape (joints,)
+            Radians, or metres for prismatic joints, in the order of the URDF; of a floating base, its pose comes first.
+        goal : array_like or mapping
+            All joint values; or a mapping of some to a number or an interval: the others are free.
+        obstacles : iterable of Body or shapes
+            What stands still.
+        goals : sequence, optional
+            In place of `goal`: any one of them.
+        srdf : path or str, optional
+            Which links may touch: a file, or its text.
+        packages : path, optional
+            The folder that ``package://`` means.
+        base : array_like, shape (6,) or (4, 4), optional
+            The pose of the root link.
+        floating_within : array_like, shape (2, 3), optional
+            The base floats: the lowest and the highest corner of where its origin may be, metres.
+        limits : mapping, optional
+            Limits of joints in place of those of the URDF.
+        name : str
+            What reports call the scene.
+        """
+        files: dict[str, bytes] = {}
+        robot: dict[str, Any] = {"urdf": _text_or_file(urdf, "robot.urdf", files)}
+        if srdf is not None:
+            robot["srdf"] = _text_or_file(srdf, "robot.srdf", files)
+        if packages is not None:
+            robot["packages"] = os.fspath(packages)
+        if limits is not None:
+            robot["limits"] = dict(limits)
+        if floating_within is not None:
+            if base is not None:
+                raise Error("a base that floats has no pose", remedy="leave out `base`")
+            robot |= {"base": "floating", "bounds": np.asarray(floating_within, dtype=np.float64)}
+        elif base is not None:
+            robot["base"] = pose_numbers(base)
+        document = {
+            "robot": robot,
+            "motion": {"start": np.asarray(start, dtype=np.float64)} | _ends(goal, goals, plain),
+            "obstacle": [body_members(body, files) for body in obstacles],
+        }
+        return cls.from_dict(document, files=files, name=name)
+
+    @classmethod
+    def plane(
+        cls,
+        robot: Disc | Polygon,
+        start: ArrayLike,
+        goal: ArrayLike | FreeGoal | None = None,
+        obstacles: Iterable[Rectangle | Circle | Polygon] = (),
+        *,
+        goals: Sequence[ArrayLike | FreeGoal] | None = None,
+        walls: ArrayLike | None = None,
+        bounds: ArrayLike | None = None,
+        image: ArrayLike | None = None,
+        scale: float | None = None,
+        origin: ArrayLike | None = None,
+        threshold: float | None = None,
+        name: str = "scene",
+    ) -> Scene:
+        """Make a scene of a robot in the plane, among areas or on a map.
+
+        Parameters
+        ----------
+        robot : Disc or Polygon
+            A polygon turns about its origin.
+        start : array_like, shape (2,) or (3,)
+            x and y (m); of a polygon also the angle (rad).
+        goal : array_like or mapping
+            Such a configuration; or a mapping of some of ``x``, ``y``, ``yaw`` to a number or an interval: the others are free.
+        obstacles : iterable of Rectangle, Circle or Polygon
+            What stands still.
+        goals : sequence, optional
+            In place of `goal`: any one of them.
+        walls : array_like, shape (2, 2), optional
+            Lower left and upper right corner of walls around everything, metres.
+        bounds : array_like, shape (2, 2), optional
+            Where the origin of the robot may be, metres.
+        image : array_like, shape (rows, columns), optional
+            A map as a picture, the first row the highest: dark pixels are obstacles. Brightness from 0 to 255 (integers), or
+            from 0 to 1 (floats).
+        scale : float, optional
+            Metres per pixel of the image.
+        origin : array_like, shape (2,), optional
+            The lower left corner of the image, metres.
+        threshold : float, optional
+            What is darker, 0 being black and 1 white, is obstacle.
+        name : str
+            What reports call the scene.
+
+        Examples
+        --------
+        >>> room = np.full((30, 40), 255, dtype=np.uint8)
+        >>> room[10:, 20] = 0
+        >>> scene = mp.Scene.plane(mp.Disc(0.1), [0.5, 0.5], [3.5, 0.5], image=room, scale=0.1)
+        >>> scene.plan().solved
+        True
+        """
+        files: dict[str, bytes] = {}
+        world = {"walls": walls, "bounds": bounds, "scale": scale, "origin": origin, "threshold": threshold}
+        world = {key: np.asarray(value).tolist() for key, value in world.items() if value is not None}
+        if image is not None:
+            files["image.pgm"] = _pgm(np.asarray(image))
+            world["image"] = "image.pgm"
+        match robot:
+            case Disc(radius):
+                members: dict[str, Any] = {"disc": float(radius)}
+            case Polygon(corners, holes) if not len(holes):
+                members = {"polygon": plain(corners)}
+            case _:
+                raise Error(f"{robot!r} is no robot of the plane", remedy="give a Disc, or a Polygon without holes")
+        document = {
+            "world": world,
+            "robot": members,
+            "motion": {"start": np.asarray(start, dtype=np.float64)} | _ends(goal, goals, plain),
+            "obstacle": [planar_members(shape) for shape in obstacles],
+        }
+        return cls.from_dict(document, files=files, name=name)
+
+    def with_ends(self, start: ArrayLike | None = None, goal: ArrayLike | None = None) -> Scene:
+        """Return the same scene with another start, or with other goals.
+
+        Parameters
+        ----------
+        start : array_like, shape (columns,), optional
+            The configuration to start from.
+        goal : array_like, shape (columns,) or (n, columns), optional
+            The goal, or several, any one of which is reached. Goals that leave something free become those of :attr:`goals`.
+
+        Examples
+        --------
+        >>> scene = mp.Scene("easy")
+        >>> back = scene.with_ends(scene.goals[0], scene.start)
+        >>> bool((back.start == scene.goals[0]).all())
+        True
+        """
+        starts = self.start if start is None else np.asarray(start, dtype=np.float64).ravel()
+        goals = self.goals if goal is None else np.atleast_2d(np.asarray(goal, dtype=np.float64))
+        return self._from(self._native.with_ends(starts.tolist(), goals.tolist()))
+
+    # --- what it is ------------------------------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self._native.name
+
+    @property
+    def space(self) -> str:
+        """The configuration space: ``SE3``, ``SE2``, ``R2``, ``6 joints``."""
+        return self._native.space
+
+    @property
+    def file(self) -> str | None:
+        """The file that it was read from."""
+        file = self._native.file
+        return None if file is None else str(file)
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """The meaning of each number of a configuration."""
+        return tuple(Column(name, unit) for name, unit in self._native.columns())
+
+    @property
+    def limits(self) -> Array:
+        """The least and the largest value of each number, shape (columns, 2); infinite for angles without limits."""
+        free = (-np.inf, np.inf)
+        return np.array([free if pair is None else pair for pair in self._native.limits()])
+
+    @property
+    def start(self) -> Array:
+        """The start configuration, shape (columns,)."""
+        return self._native.start()
+
+    @property
+    def goals(self) -> Array:
+        """The goal configurations, shape (n, columns)."""
+        return self._native.goals()
+
+    @property
+    def notes(self) -> list[str]:
+        """What was chosen for a scene whose file is a robot or a map alone."""
+        return self._native.notes
+
+    @property
+    def details(self) -> dict[str, str]:
+        """Further facts, for people."""
+        return dict(self._native.details())
+
+    @property
+    def default_planner(self) -> str:
+        """The planner that is taken when none is named."""
+        return self._native.default_planner
+
+    def planners_that_cannot(self) -> dict[str, str]:
+        """Return the planners that cannot plan for this robot, each with the reason."""
+        return dict(self._native.planners_that_cannot())
+
+    def lint(self) -> list[str]:
+        """Return what is wrong or odd about the scene, in sentences."""
+        return self._native.lint()
+
+    def free_share(self, samples: int = 1000) -> float:
+        """Estimate the fraction of the space in which the robot is free.
+
+        Parameters
+        ----------
+        samples : int
+            How many configurations are tried. The same number gives the same result.
+        """
+        return self._native.free_share(samples)
+
+    def poses(self, configuration: ArrayLike) -> Array:
+        """Return the poses of the bodies of the robot at a configuration, shape (bodies, 4, 4)."""
+        return self._native.poses(_row(configuration))
+
+    def __repr__(self) -> str:
+        return f"<Scene {self.name}: {self.space}>"
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _restored, self._native.state()
+
+    # --- planning --------------------------------------------------------------------------------------------------
+
+    def plan(
+        self,
+        planner: PlannerName | str | None = None,
+        *,
+        seed: int = 1,
+        time: float | None = 60.0,
+        iterations: int | None = None,
+        queries: int | None = None,
+        nodes: int | None = None,
+        settings: Mapping[str, object] | None = None,
+        metric: MetricName | str = "default",
+        motion: str = "certified",
+        threads: int = 1,
+        finish: Finish = "shorten",
+        field: str = "clearance",
+        first_only: bool = False,
+        roadmap: File | None = None,
+        progress: bool | Callable[[Progress], object] = False,
+        cancel: Cancel | None = None,
+    ) -> Report:
+        """Plan a path: search for it, shorten it, and verify it with code that shares nothing with the search.
+
+        The same scene and options give the same path, to the bit, on any machine and number of threads, and the same as ``mp
+        plan`` gives. Other threads of Python run meanwhile.
+
+        Parameters
+        ----------
+        planner : str, optional
+            Its name: :func:`planners` lists them. With the prefix ``or-`` independent runs race on all threads; with
+            ``restart-`` it starts again when it takes too long. By default one that suits the robot.
+        seed : int
+            The seed of all randomness.
+        time : float or None
+            The budget of time, seconds. It ends a run, and changes nothing that was computed before.
+        iterations, queries, nodes : int, optional
+            Budgets of iterations, of collision and clearance queries, and of nodes.
+        settings : mapping, optional
+            Parameters of the planner by name, such as ``{"step": "10%"}``.
+        metric : str
+            How far apart two configurations are: :func:`metrics` lists them.
+        motion : str
+            How motions are checked while planning: ``certified``, or ``discrete:1%``.
+        threads : int
+            Threads that the planner may use. Results do not depend on it.
+        finish : str
+            ``shorten`` the path found, leave it ``as-found``, or ``relax`` it with a snake.
+        field : str
+            What pushes the path if it is relaxed: ``clearance``, ``paper``, ``risk``, ``image:FILE``.
+        first_only : bool
+            Whether to stop at the first path, also with an anytime planner.
+        roadmap : path, optional
+            The file of a roadmap, for planners that build one: read if it exists, grown, and written at the end.
+        progress : bool or callable
+            Called with :class:`Progress` at most ten times a second, in the calling thread; ``True`` shows a bar of ``tqdm``.
+        cancel : Cancel, optional
+            Ends the run when it is cancelled in another thread.
+
+        Returns
+        -------
+        Report
+            Not finding a path is no error: see ``report.solved`` and ``report.why``.
+
+        Raises
+        ------
+        Error
+            When start or goal is not free (what touches, how deep, the nearest free configuration), or an option is not valid.
+        Interrupted
+            After Ctrl-C; a ``KeyboardInterrupt`` with the report of what was found.
+
+        Examples
+        --------
+        >>> report = mp.Scene("easy").plan("rrt-connect", seed=3, settings={"step": "10%"})
+        >>> report.solved and report.clearance > 0
+        True
+        """
+        options = Options(
+            planner, seed, time, iterations, queries, nodes, settings, metric, motion, threads, finish, field,
+            first_only, roadmap,
+        )  # fmt: skip
+        return self.plan_by(options, progress=progress, cancel=cancel)
+
+    def plan_by(
+        self,
+        options: Options,
+        *,
+        progress: bool | Callable[[Progress], object] = False,
+        cancel: Cancel | None = None,
+    ) -> Report:
+        """Plan as :meth:`plan` does, with options that are kept."""
+        with reporter(progress) as tell:
+            parts, raised = self._native.plan(options.to_json(self), cancel, tell)
+        report = Report._of(*parts, scene=self)
+        if raised is None:
+            return report
+        if isinstance(raised, KeyboardInterrupt):
+            raise Interrupted(report) from raised
+        raise raised
+
+    async def plan_async(
+        self, options: Options | None = None, *, progress: bool | Callable[[Progress], object] = False
+    ) -> Report:
+        """Plan in a thread, while other tasks of the event loop run. Cancelling the task ends the run.
+
+        Parameters
+        ----------
+        options : Options, optional
+            How to plan.
+        progress : bool or callable
+            As of :meth:`plan`, but called in the thread that plans.
+        """
+        cancel = Cancel()
+        run = asyncio.to_thread(self.plan_by, options or Options(), progress=progress, cancel=cancel)
+        task = asyncio.ensure_future(run)
+        try:
+            return await asyncio.shield(task)
+        except asyncio.CancelledError:
+            cancel.cancel()
+            await asyncio.wait([task])
+            raise
+
+    def routes(
+        self,
+        count: int,
+        apart: float | str = "5%",
+        options: Options | None = None,
+        *,
+        progress: bool | Callable[[Progress], object] = False,
+        cancel: Cancel | None = None,
+    ) -> list[Report]:
+        """Plan several routes, each of which is somewhere far from the others, the shortest first.
+
+        Parameters
+        ----------
+        count : int
+            How many, at most.
+        apart : float or str
+            How far apart, in the metric, or as a share of the extent of the space.
+        options : Options, optional
+            How to plan; the planner must be ``cyclic-rrt``, which is taken unless another is named, or build roadmaps
+            with cycles.
+        progress, cancel
+            As of :meth:`plan`.
+
+        Returns
+        -------
+        list of Report
+            Without any route, one report that says why.
+        """
+        options = options or Options(planner="cyclic-rrt")
+        with reporter(progress) as tell:
+            reports, raised = self._native.routes(options.to_json(self), count, str(apart), cancel, tell)
+        if raised is not None:
+            raise raised
+        return [Report._of(*parts, scene=self) for parts in reports]
+
+    def roadmap(
+        self,
+        options: Options | None = None,
+        *,
+        progress: bool | Callable[[Progress], object] = False,
+        cancel: Cancel | None = None,
+    ) -> Roadmap:
+        """Build a roadmap for many queries, until its budget is used up.
+
+        Parameters
+        ----------
+        options : Options, optional
+            How to build it: a planner that builds roadmaps (``prm``, unless another is named) and a budget, best of nodes.
+        progress, cancel
+            As of :meth:`plan`.
+
+        Examples
+        --------
+        >>> scene = mp.Scene("easy")
+        >>> roadmap = scene.roadmap(mp.Options("prm", seed=3, nodes=3000))
+        >>> roadmap.query(scene.goals[0], scene.start).solved
+        True
+        """
+        options = options or Options(planner="prm", nodes=2000)
+        with reporter(progress) as tell:
+            native = self._native.roadmap(options.to_json(self), cancel, tell)
+        return Roadmap._from(native, self)
+
+    # --- checking --------------------------------------------------------------------------------------------------
+
+    def check(self, path: ArrayLike | Report) -> Verdict:
+        """Verify a path from the start to a goal, with code that shares nothing with the planners.
+
+        Parameters
+        ----------
+        path : array_like, shape (n, columns), or Report
+            One configuration in each row.
+
+        Returns
+        -------
+        Verdict
+            True when the path is free all along.
+
+        Examples
+        --------
+        >>> scene = mp.Scene("easy")
+        >>> bool(scene.check(scene.plan())), bool(scene.check([scene.start, scene.goals[0]]))
+        (True, False)
+        """
+        return verdict(self._native.check(self._path(path)))
+
+    def explain(self, configuration: ArrayLike) -> Explanation:
+        """Explain a configuration: whether it is free, how near to contact, what touches, where it would be free.
+
+        Parameters
+        ----------
+        configuration : array_like, shape (columns,)
+        """
+        return explanation(self._native.explain(_row(configuration)))
+
+    def is_free(self, configuration: ArrayLike) -> bool:
+        """Return whether a configuration is in bounds and free of contact."""
+        return self.explain(configuration).free
+
+    def check_ends(self) -> list[str]:
+        """Check that start and goals are free, and return what is odd about them.
+
+        Raises
+        ------
+        Error
+            When one is not free.
+        """
+        return self._native.check_ends()
+
+    def certificate(self, path: ArrayLike | Report) -> str:
+        """Return the proof that a path is free, as JSON, which ``mp-verify-certificate`` replays.
+
+        Parameters
+        ----------
+        path : array_like, shape (n, columns), or Report
+            Of a report the clearance is used, half of which is proved.
+        """
+        clearance = path.clearance or 0.0 if isinstance(path, Report) else 0.0
+        return self._native.certificate(self._path(path), clearance)
+
+    def read_path(self, file: File) -> Array:
+        """Read a path from a text, CSV or JSON file, shape (n, columns)."""
+        return self._native.read_path(os.fspath(file))
+
+    def _path(self, path: ArrayLike | Report) -> Array:
+        if isinstance(path, Report):
+            if path.path is None:
+                raise Error(f"the report has no path: {path.why}", remedy="plan with a larger budget, or another seed")
+            path = path.path
+        rows = np.ascontiguousarray(path, dtype=np.float64)
+        if rows.ndim != 2:
+            raise Error(f"an array of shape {rows.shape} is no path", remedy="give one configuration in each row")
+        return rows
+
+    # --- looking at it ---------------------------------------------------------------------------------------------
+
+    def show(self, path: ArrayLike | Report | None = None) -> None:
+        """Open the scene in the browser, with a path if one is given. In a notebook, its last line shows it as well.
+
+        Parameters
+        ----------
+        path : array_like, shape (n, columns), or Report, optional
+        """
+        _view.show(self, path)
+
+    def save(
+        self,
+        file: File,
+        path: ArrayLike | Report | None = None,
+        *,
+        size: tuple[int, int] | None = None,
+        mode: str | None = None,
+        camera: str | None = None,
+        at: float | None = None,
+        seconds: float | None = None,
+    ) -> None:
+        """Write the scene with a path to a file, whose ending says what it is.
+
+        Parameters
+        ----------
+        file : path
+            ``.html`` (a page that opens in any browser), ``.png``, ``.svg``, ``.gif``, ``.mp4``, ``.glb`` (for Blender),
+            ``.mpv``; or the path alone: ``.txt``, ``.csv``, ``.json``.
+        path : array_like, shape (n, columns), or Report, optional
+            The path.
+        size : (int, int), optional
+            Width and height of a picture or film, pixels.
+        mode : str, optional
+            ``solid`` or ``wire``, of a picture or film.
+        camera : str, optional
+            From where it is seen: ``best``, ``top``, ``front``, …
+        at : float, optional
+            The moment of the path that a picture shows, from 0 to 1.
+        seconds : float, optional
+            The length of a film.
+        """
+        _view.save(self, file, path, (size, mode, camera, at, seconds))
+
+    def to_bytes(self, ending: str, path: ArrayLike | Report | None = None) -> bytes:
+        """Return what :meth:`save` would write to a file with this ending, such as ``html`` or ``png``."""
+        return _view.content(self, f"x.{ending}", path, (None, None, None, None, None))
+
+    def _frame(self, path: ArrayLike | Report | None) -> str:
+        return _view.frame(self, path)
+
+    def _repr_html_(self) -> str:
+        return self._frame(None)
+
+
+def _restored(
+    shipped: str | None,
+    main: str | None,
+    files: dict[str, bytes],
+    ends: tuple[list[float], list[list[float]]] | None,
+) -> Scene:
+    """Make a scene from a pickle."""
+    if shipped is not None:
+        native = _mp.Scene.find(shipped)
+    elif main is not None:
+        native = _mp.Scene.from_files(main, files, False)
+    else:
+        raise Error("the scene was not made from files, and cannot be read back")
+    return Scene._from(native if ends is None else native.with_ends(*ends))
+
+
+def _row(configuration: ArrayLike) -> list[float]:
+    a: Array = np.asarray(configuration, dtype=np.float64)
+    if a.ndim != 1:
+        raise Error(f"an array of shape {a.shape} is no configuration", remedy="give one number for each column")
+    row: list[float] = a.tolist()
+    return row
+
+
+def _ends(
+    goal: ArrayLike | FreeGoal | None,
+    goals: Sequence[ArrayLike | FreeGoal] | None,
+    numbers: Callable[[Any], Any],
+) -> dict[str, Any]:
+    """Return the members of `motion` for one goal or several."""
+
+    def one(given: ArrayLike | FreeGoal) -> Any:
+        return dict(given) if isinstance(given, Mapping) else numbers(given)
+
+    if (goal is None) == (goals is None):
+        raise Error("there must be either `goal` or `goals`", remedy="give one of them")
+    if goals is not None:
+        return {"goals": [one(given) for given in goals]}
+    assert goal is not None
+    return {"goal": one(goal)}
+
+
+def _text_or_file(given: File, name: str, files: dict[str, bytes]) -> str:
+    """Return the name of a file; a text becomes a file in memory."""
+    if isinstance(given, str) and given.lstrip().startswith("<"):
+        files[name] = given.encode()
+        return name
+    return os.fspath(given)
+
+
+def _pgm(image: NDArray[Any]) -> bytes:
+    """Return an array of brightness as the content of a PGM file."""
+    if image.ndim != 2:
+        raise Error(f"an image of shape {image.shape} is no map", remedy="give one brightness for each pixel")
+    if image.dtype == np.bool_:
+        raise Error("an image of truth values could mean either", remedy="give brightness: `255 * free`")
+    if np.issubdtype(image.dtype, np.floating):
+        if not np.all((image >= 0) & (image <= 1)):
+            raise Error("brightness as floats must be from 0 to 1", remedy="divide by the largest value")
+        image = np.rint(255 * image)
+    elif not np.all((image >= 0) & (image <= 255)):
+        raise Error("brightness as integers must be from 0 to 255", remedy="scale it")
+    rows, columns = image.shape
+    return f"P5\n{columns} {rows}\n255\n".encode() + image.astype(np.uint8).tobytes()

@@ -1,0 +1,78 @@
+"""Scenes as pages, pictures and films."""
+
+from __future__ import annotations
+
+import atexit
+import html
+import os
+import tempfile
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+from numpy.typing import ArrayLike
+
+from ._errors import Error
+from ._report import Report
+
+if TYPE_CHECKING:
+    from ._scene import File, Scene
+
+#: Size, mode, camera, moment, seconds.
+Wanted: TypeAlias = tuple[tuple[int, int] | None, str | None, str | None, float | None, float | None]
+NOTHING: Wanted = (None, None, None, None, None)
+
+
+def content(scene: Scene, file: File, path: ArrayLike | Report | None, wanted: Wanted) -> bytes:
+    """Return the bytes of a file whose kind is that of its ending."""
+    file = os.fspath(file)
+    ending = Path(file).suffix.lower().removeprefix(".")
+    found = path is not None and not (isinstance(path, Report) and path.path is None)
+    rows = scene._path(path) if found and path is not None else None
+    if ending in ("txt", "csv", "json"):
+        if rows is None:
+            raise Error("there is no path to write", remedy="give a path, or a report of a run that was solved")
+        return scene._native.path_text(file, rows).encode()
+    if ending in ("html", "htm", "mpv", "glb"):
+        report = None
+        if isinstance(path, Report):
+            members = path.to_dict()
+            members["path"] = members["first_path"] = None
+            import json
+
+            report = json.dumps(members)
+        kind = "html" if ending == "htm" else ending
+        return scene._native.view(kind, report, rows, 8.0 if wanted[4] is None else wanted[4])
+    caption = str(path) if isinstance(path, Report) else ""
+    caption = caption.removeprefix(f"{scene.name}: ")
+    drawn = scene._native.draw(file, rows, caption, wanted)
+    if drawn is None:
+        raise Error("the film was cancelled")
+    return drawn
+
+
+def save(scene: Scene, file: File, path: ArrayLike | Report | None, wanted: Wanted) -> None:
+    """Write such a file, whole or not at all."""
+    scene._native.write(os.fspath(file), content(scene, file, path, wanted))
+
+
+def show(scene: Scene, path: ArrayLike | Report | None) -> None:
+    """Open the page in the browser; where there is none, say where it is."""
+    page = content(scene, "x.html", path, NOTHING)
+    with tempfile.NamedTemporaryFile(prefix=f"{scene.name}-", suffix=".html", delete=False) as file:
+        file.write(page)
+    atexit.register(lambda: Path(file.name).unlink(missing_ok=True))
+    if not webbrowser.open(Path(file.name).as_uri()):
+        raise Error(
+            "there is no browser here",
+            remedy='write a page with scene.save("scene.html", path) or a picture with scene.save("scene.png", path)',
+        )
+
+
+def frame(scene: Scene, path: ArrayLike | Report | None) -> str:
+    """Return the page in a frame, for notebooks."""
+    page = content(scene, "x.html", path, NOTHING).decode()
+    return (
+        f'<iframe title="{html.escape(scene.name)}" srcdoc="{html.escape(page)}" '
+        'style="width: 100%; height: 480px; border: 0" sandbox="allow-scripts allow-downloads"></iframe>'
+    )

@@ -1,0 +1,23 @@
+//! The native half of the Python package `mp_motion`: thin bindings of `mp-plan` and `mp-view`. Names that users see, defaults, units
+//! and documentation are in the Python half, `python/mp_motion`.
+
+mod error;
+mod interrupt;
+mod render;
+mod report;
+mod roadmap;
+mod scene;
+mod tables;
+
+/// The native module.
+#[pyo3::pymodule]
+mod _mp {
+    #[pymodule_export]
+    use crate::interrupt::{Cancel, panic};
+    #[pymodule_export]
+    use crate::roadmap::Roadmap;
+    #[pymodule_export]
+    use crate::scene::{Scene, mesh_off, read_mesh};
+    #[pymodule_export]
+    use crate::tables::{meta_planners, metrics, planners, shipped};
+}

@@ -1,0 +1,385 @@
+//! Scenes: loading, planning, checking.
+
+use crate::error::{ToPython, to_python};
+use crate::interrupt::{Cancel, work};
+use crate::render::Wanted;
+use crate::report::{ReportParts, array, parts, rows};
+use crate::roadmap::Roadmap;
+use mp_geom::TriMesh;
+use mp_io::{Disk, Files, Until};
+use mp_plan::{Control, Interrupt, Length, PathFileKind, Request};
+use mp_store::FileId;
+use nalgebra::Point3;
+use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Files in memory, and for names that are not there, on the disk if that is wanted.
+#[derive(Clone, Debug, Default)]
+struct Given {
+    files: Arc<BTreeMap<PathBuf, Vec<u8>>>,
+    disk: bool,
+}
+
+impl Files for Given {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
+        match self.files.get(path) {
+            Some(bytes) if bytes.len() as u64 <= limit => Ok(bytes.clone()),
+            None if self.disk => Disk.read(path, limit),
+            // What errors say of files in memory is in one place.
+            found => mp_io::InMemory(|_: &str| found).read(path, limit),
+        }
+    }
+    fn holds(&self, path: &Path) -> bool {
+        self.files.contains_key(path) || (self.disk && Disk.holds(path))
+    }
+    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
+        if self.disk { Disk.absolute(folder) } else { Ok(folder.to_owned()) }
+    }
+}
+
+/// A scene of `mp-plan`, and where its files are.
+#[pyclass(frozen, module = "mp_motion._mp")]
+#[derive(Clone, Debug)]
+pub(crate) struct Scene {
+    pub(crate) scene: mp_plan::Scene,
+    given: Given,
+    /// The name of a shipped scene.
+    shipped: Option<String>,
+    /// Start and goals in place of those of the files, as they were given.
+    ends: Option<Ends>,
+}
+
+/// Start and goals.
+type Ends = (Vec<f64>, Vec<Vec<f64>>);
+
+/// A request from its JSON form.
+pub(crate) fn request(json: &str) -> PyResult<Request> {
+    serde_json::from_str(json).map_err(|e| {
+        to_python(
+            &mp_plan::Error::new(format!("the request is not valid: {e}"))
+                .help("see help(mp_motion.Scene.plan) for its options"),
+        )
+    })
+}
+
+/// Loads by `job`, which gets what to ask whether to end.
+fn loaded(
+    py: Python<'_>,
+    job: impl FnOnce(Interrupt) -> Result<mp_plan::Scene, mp_plan::Error> + Send,
+) -> PyResult<mp_plan::Scene> {
+    let cancel = mp_plan::Cancel::new();
+    let interrupt = Interrupt::new(cancel.clone());
+    let (scene, raised) = work(py, &cancel, None, move |_| job(interrupt))?;
+    raised.map_or(Ok(()), Err)?;
+    scene.to_python()
+}
+
+#[pymethods]
+impl Scene {
+    /// The scene that `given` names: a file or a shipped scene.
+    #[staticmethod]
+    fn find(py: Python<'_>, given: PathBuf) -> PyResult<Self> {
+        let scene = loaded(py, |interrupt| mp_plan::Scene::find_until(&given, &interrupt))?;
+        let on_disk = !scene.inputs_on_disk().is_empty();
+        let shipped = (!on_disk).then(|| given.to_string_lossy().into_owned());
+        Ok(Self { scene, given: Given { disk: on_disk, ..Given::default() }, shipped, ends: None })
+    }
+
+    /// The scene in the file `main` of `files`. Files that are not among them are read from the disk, if `disk` says so.
+    #[staticmethod]
+    fn from_files(
+        py: Python<'_>,
+        main: PathBuf,
+        files: BTreeMap<PathBuf, Vec<u8>>,
+        disk: bool,
+    ) -> PyResult<Self> {
+        let given = Given { files: Arc::new(files), disk };
+        let scene = loaded(py, |interrupt| {
+            let scene = mp_plan::Scene::load_from(&Until { files: &given, interrupt }, &main)?;
+            Ok(scene)
+        })?;
+        Ok(Self { scene, given, shipped: None, ends: None })
+    }
+
+    /// With another start and other goals.
+    fn with_ends(&self, start: Vec<f64>, goals: Vec<Vec<f64>>) -> PyResult<Self> {
+        let scene = self.scene.with_ends(&start, &goals).to_python()?;
+        Ok(Self { scene, ends: Some((start, goals)), ..self.clone() })
+    }
+
+    /// What makes the scene again: the name of a shipped scene or of the main file, the contents of all files, other start and goals.
+    #[expect(clippy::type_complexity, reason = "the state of a pickle, which only `mp_motion` reads")]
+    fn state<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Option<String>, Option<PathBuf>, Bound<'py, PyDict>, Option<Ends>)> {
+        let files = PyDict::new(py);
+        if self.shipped.is_none() {
+            for path in self.scene.inputs() {
+                let bytes = self.given.read(path, mp_io::MAX_MESH_BYTES).to_python()?;
+                files.set_item(path, PyBytes::new(py, &bytes))?;
+            }
+        }
+        let main = self.scene.file().map(Path::to_owned);
+        Ok((self.shipped.clone(), main, files, self.ends.clone()))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        self.scene.name()
+    }
+
+    #[getter]
+    fn space(&self) -> String {
+        self.scene.space()
+    }
+
+    #[getter]
+    fn file(&self) -> Option<PathBuf> {
+        self.scene.file().map(Path::to_owned)
+    }
+
+    #[getter]
+    fn default_planner(&self) -> &'static str {
+        self.scene.default_planner()
+    }
+
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.scene.notes().to_vec()
+    }
+
+    /// Name and unit of each number of a configuration.
+    fn columns(&self) -> Vec<(String, String)> {
+        self.scene.columns().into_iter().map(|column| (column.name, column.unit)).collect()
+    }
+
+    /// The least and the largest value of each number; `None` for an angle without limits.
+    fn limits(&self) -> Vec<Option<(f64, f64)>> {
+        self.scene.limits().into_iter().map(|limits| limits.map(|[low, high]| (low, high))).collect()
+    }
+
+    fn details(&self) -> Vec<(String, String)> {
+        self.scene.details()
+    }
+
+    fn start<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, self.scene.start())
+    }
+
+    fn goals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        array(py, &self.scene.goals(), self.scene.columns().len())
+    }
+
+    fn planners_that_cannot(&self) -> Vec<(&'static str, &'static str)> {
+        self.scene.planners_that_cannot()
+    }
+
+    fn lint(&self, py: Python<'_>) -> Vec<String> {
+        py.detach(|| self.scene.lint())
+    }
+
+    fn free_share(&self, py: Python<'_>, samples: u32) -> f64 {
+        py.detach(|| self.scene.free_share(samples))
+    }
+
+    /// The poses (4×4) of the bodies of the robot at a configuration, shape (bodies, 4, 4).
+    fn poses<'py>(&self, py: Python<'py>, row: Vec<f64>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let poses = self.scene.poses(&row).to_python()?;
+        let matrices: Vec<Vec<Vec<f64>>> = poses
+            .iter()
+            .map(|pose| pose.to_homogeneous().row_iter().map(|row| row.iter().copied().collect()).collect())
+            .collect();
+        if matrices.is_empty() {
+            return Ok(PyArray3::zeros(py, [0, 4, 4], false));
+        }
+        PyArray3::from_vec3(py, &matrices).map_err(|e| PyValueError::new_err(e.to_string()))
+    }
+
+    /// Plans: a report in parts, and the exception that ended it, if one did.
+    #[pyo3(signature = (json, cancel=None, progress=None))]
+    fn plan<'py>(
+        &self,
+        py: Python<'py>,
+        json: &str,
+        cancel: Option<&Cancel>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(ReportParts<'py>, Option<Py<PyAny>>)> {
+        let request = request(json)?;
+        let cancel = cancel.map(|c| c.0.clone()).unwrap_or_default();
+        let raised = cancel.clone();
+        let (report, error) = work(py, &cancel, progress.as_ref(), |mut reporter| {
+            self.scene.plan_with(&request, &mut Control::new(raised, &mut reporter))
+        })?;
+        Ok((parts(py, report.to_python()?)?, error.map(|e| e.into_value(py).into_any())))
+    }
+
+    /// Plans several routes.
+    #[pyo3(signature = (json, count, apart, cancel=None, progress=None))]
+    fn routes<'py>(
+        &self,
+        py: Python<'py>,
+        json: &str,
+        count: usize,
+        apart: &str,
+        cancel: Option<&Cancel>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(Vec<ReportParts<'py>>, Option<Py<PyAny>>)> {
+        let request = request(json)?;
+        let apart: Length = apart.parse().to_python()?;
+        let cancel = cancel.map(|c| c.0.clone()).unwrap_or_default();
+        let raised = cancel.clone();
+        let (reports, error) = work(py, &cancel, progress.as_ref(), |mut reporter| {
+            self.scene.routes(&request, count, apart, &mut Control::new(raised, &mut reporter))
+        })?;
+        let reports = reports.to_python()?.into_iter().map(|report| parts(py, report));
+        Ok((reports.collect::<PyResult<_>>()?, error.map(|e| e.into_value(py).into_any())))
+    }
+
+    /// Builds a roadmap.
+    #[pyo3(signature = (json, cancel=None, progress=None))]
+    fn roadmap(
+        &self,
+        py: Python<'_>,
+        json: &str,
+        cancel: Option<&Cancel>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Roadmap> {
+        let request = request(json)?;
+        let cancel = cancel.map(|c| c.0.clone()).unwrap_or_default();
+        let raised = cancel.clone();
+        let (roadmap, error) = work(py, &cancel, progress.as_ref(), |mut reporter| {
+            self.scene.roadmap_with(&request, &mut Control::new(raised, &mut reporter))
+        })?;
+        error.map_or(Ok(()), Err)?;
+        roadmap.to_python().map(Roadmap::new)
+    }
+
+    /// Verifies a path: the JSON form of a verdict.
+    fn check(&self, py: Python<'_>, path: PyReadonlyArray2<'_, f64>) -> PyResult<String> {
+        let path = self.rows(rows(&path));
+        let (verdict, raised) = work(py, &mp_plan::Cancel::new(), None, |_| self.scene.check(&path))?;
+        raised.map_or(Ok(()), Err)?;
+        json(&verdict.to_python()?)
+    }
+
+    /// The certificate of a path as JSON.
+    fn certificate(
+        &self,
+        py: Python<'_>,
+        path: PyReadonlyArray2<'_, f64>,
+        clearance: f64,
+    ) -> PyResult<String> {
+        let path = self.rows(rows(&path));
+        let cancel = mp_plan::Cancel::new();
+        let interrupt = Interrupt::new(cancel.clone());
+        let (certificate, raised) =
+            work(py, &cancel, None, |_| self.scene.certificate(&path, clearance, &interrupt))?;
+        raised.map_or(Ok(()), Err)?;
+        Ok(certificate.to_python()?.to_json().to_owned())
+    }
+
+    /// Explains a configuration, as JSON.
+    fn explain(&self, py: Python<'_>, row: Vec<f64>) -> PyResult<String> {
+        let (explanation, raised) = work(py, &mp_plan::Cancel::new(), None, |_| self.scene.explain(&row))?;
+        raised.map_or(Ok(()), Err)?;
+        json(&explanation.to_python()?)
+    }
+
+    /// What is odd about start and goals; an error when one is not free.
+    fn check_ends(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let (odd, raised) = work(py, &mp_plan::Cancel::new(), None, |_| self.scene.check_ends())?;
+        raised.map_or(Ok(()), Err)?;
+        odd.to_python()
+    }
+
+    /// The text of a path as a file whose kind is that of the ending of `file`.
+    fn path_text(&self, file: PathBuf, path: PyReadonlyArray2<'_, f64>) -> PyResult<String> {
+        Ok(self.rows(rows(&path)).to_file(PathFileKind::of(&file).to_python()?))
+    }
+
+    /// The bytes of a picture or film.
+    fn draw(
+        &self,
+        py: Python<'_>,
+        file: PathBuf,
+        path: Option<PyReadonlyArray2<'_, f64>>,
+        caption: &str,
+        wanted: Wanted,
+    ) -> PyResult<Option<Vec<u8>>> {
+        self.drawn(py, &file, path, caption, &wanted)
+    }
+
+    /// The scene for viewers.
+    fn view(
+        &self,
+        py: Python<'_>,
+        ending: &str,
+        report: Option<&str>,
+        path: Option<PyReadonlyArray2<'_, f64>>,
+        seconds: f64,
+    ) -> PyResult<Vec<u8>> {
+        self.viewed(py, ending, report, path, seconds)
+    }
+
+    /// Writes a file whole or not at all. It must be none of the files of the scene.
+    fn write(&self, py: Python<'_>, file: PathBuf, content: &[u8]) -> PyResult<()> {
+        let id = FileId::of(&file);
+        if self.scene.inputs_on_disk().iter().any(|input| FileId::of(input) == id) {
+            let what = format!("{} is a file of the scene", file.display());
+            return Err(to_python(&mp_plan::Error::new(what).help("write to another file")));
+        }
+        py.detach(|| mp_plan::write_file(&file, content)).to_python()
+    }
+
+    /// Reads a path from a file.
+    fn read_path<'py>(&self, py: Python<'py>, file: PathBuf) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let format = self.scene.path_format();
+        let path = py.detach(|| mp_plan::PathRows::read(&file, format)).to_python()?;
+        array(py, &path.rows, self.scene.columns().len())
+    }
+}
+
+/// The JSON form of a result.
+fn json(value: &impl serde::Serialize) -> PyResult<String> {
+    serde_json::to_string(value).map_err(|e| PyValueError::new_err(e.to_string()))
+}
+
+/// A mesh as the text of an OFF file, with numbers that read back to the same bits.
+#[pyfunction]
+pub(crate) fn mesh_off<'py>(
+    py: Python<'py>,
+    vertices: PyReadonlyArray2<'_, f64>,
+    triangles: PyReadonlyArray2<'_, u32>,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let points = |row: numpy::ndarray::ArrayView1<'_, f64>| Point3::new(row[0], row[1], row[2]);
+    let vertices = vertices.as_array().rows().into_iter().map(points).collect();
+    let triangles = triangles.as_array().rows().into_iter().map(|row| [row[0], row[1], row[2]]).collect();
+    let text = py.detach(|| TriMesh::new(vertices, triangles).map(|mesh| mp_io::off_text(&mesh)));
+    let text = text.map_err(|e| {
+        to_python(&mp_plan::Error::new(format!("the mesh is not valid: {e}")).help("see mp_motion.Mesh"))
+    })?;
+    Ok(PyBytes::new(py, text.as_bytes()))
+}
+
+/// Vertices and triangles of a mesh.
+type MeshArrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
+
+/// Vertices and triangles of a mesh file.
+#[pyfunction]
+pub(crate) fn read_mesh<'py>(py: Python<'py>, file: PathBuf) -> PyResult<MeshArrays<'py>> {
+    let mesh = py.detach(|| mp_io::read_mesh(&file)).to_python()?;
+    let vertices = mesh.vertices().iter().flat_map(|v| [v.x, v.y, v.z]).collect();
+    let triangles = mesh.triangles().iter().flatten().copied().collect();
+    let shape = |e: numpy::ndarray::ShapeError| PyValueError::new_err(e.to_string());
+    let vertices =
+        numpy::ndarray::Array2::from_shape_vec((mesh.vertices().len(), 3), vertices).map_err(shape)?;
+    let triangles =
+        numpy::ndarray::Array2::from_shape_vec((mesh.triangles().len(), 3), triangles).map_err(shape)?;
+    Ok((PyArray2::from_owned_array(py, vertices), PyArray2::from_owned_array(py, triangles)))
+}

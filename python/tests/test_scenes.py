@@ -1,0 +1,218 @@
+from __future__ import annotations
+
+import math
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import mp_motion as mp
+
+from .names import FILE, text
+
+POST = mp.Body(mp.Box(0.2, 1, 4), name="post")
+
+
+def test_the_names_are_those_of_the_registry() -> None:
+    assert text() == FILE.read_text(), "run python python/tests/names.py"
+
+
+def test_poses_are_converted_both_ways() -> None:
+    rng = np.random.default_rng(1)
+    for _ in range(200):
+        rotation, position = Rotation.random(rng=rng), rng.normal(size=3)
+        pose = mp.pose_from_rotation(position, rotation)
+        matrix = mp.matrix_from_pose(pose)
+        assert np.allclose(matrix[:3, :3], rotation.as_matrix()) and np.allclose(matrix[:3, 3], position)
+        assert np.allclose(pose[3:], rotation.as_euler("ZYX"))
+        assert np.allclose(mp.pose_from_xyz_qxyzw([*position, *rotation.as_quat()]), pose)
+        assert np.allclose(mp.matrix_from_pose(mp.pose_from_matrix(matrix)), matrix)
+    up = mp.matrix_from_pose([0, 0, 0, 0.3, math.pi / 2, 0.2])
+    assert np.allclose(mp.matrix_from_pose(mp.pose_from_matrix(up)), up)
+
+
+def test_poses_are_those_of_the_engine() -> None:
+    scene = mp.Scene("easy")
+    row = [0.1, -0.2, 0.3, 0.4, -0.5, 0.6]
+    assert np.allclose(scene.poses(row)[0], mp.matrix_from_pose(row))
+
+
+@pytest.mark.parametrize("pose", [np.eye(3), np.zeros((4, 4)), np.diag([1, 1, -1, 1]), np.diag([2, 2, 2, 1])])
+def test_what_is_no_pose_is_refused(pose: np.ndarray) -> None:
+    with pytest.raises(mp.Error, match=r"pose|rigid"):
+        mp.Scene.rigid(mp.Box(1, 1, 1), pose, pose)
+
+
+def test_meshes_have_the_same_bits() -> None:
+    rng = np.random.default_rng(2)
+    vertices = rng.normal(size=(4, 3))
+    mesh = mp.Mesh(vertices, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
+    start, goal = [-9, 0, 0, 0, 0, 0], [9, 0, 0, 1, 0, 0]
+    scene = mp.Scene.rigid(mesh, start, goal, [mp.Body(mesh, name="rock")])
+    report = scene.plan(seed=4)
+    assert report.solved and scene.check(report)
+    again = mp.Scene.rigid(mp.Mesh(mesh.vertices, mesh.triangles), start, goal, [mp.Body(mesh, np.eye(4), "rock")])
+    assert again.plan(seed=4).fingerprint == report.fingerprint
+
+
+@pytest.mark.parametrize(
+    ("vertices", "triangles"),
+    [
+        ([[0, 0, 0]], [[0, 0, 1]]),
+        ([[0, 0, 0]], [[-1, 0, 0]]),
+        ([[0, 0]], [[0, 0, 0]]),
+        ([[0, 0, 0]], [[0, 0]]),
+        ([[math.nan, 0, 0]] * 3, [[0, 1, 2]]),
+    ],
+)
+def test_what_is_no_mesh_is_refused(vertices: list[list[float]], triangles: list[list[int]]) -> None:
+    with pytest.raises(mp.Error) as raised:
+        mp.Scene.rigid(mp.Mesh(vertices, triangles), [0, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0])
+    assert raised.value.remedy
+
+
+def test_shapes_goals_and_bounds() -> None:
+    shapes: list[mp.Shape | mp.Body] = [mp.Sphere(0.2), mp.Body(mp.Cylinder(0.1, 1), [0, 1, 0, 0, 0, 0]), POST]
+    bounds = [[-2, -2, -2], [2, 2, 2]]
+    scene = mp.Scene.rigid(
+        mp.Sphere(0.1),
+        [-1, 0, 0, 0, 0, 0],
+        goals=[{"x": 1.5, "y": (-1, 1)}, [1, 1, 1, 0, 0, 0]],
+        obstacles=shapes,
+        bounds=bounds,
+    )
+    assert scene.limits[:3].tolist() == np.transpose(bounds).tolist()
+    report = scene.plan(seed=1)
+    assert report.path is not None and scene.check(report)
+    end = report.path[-1]
+    assert abs(end[0] - 1.5) < 1e-6 or np.allclose(end, [1, 1, 1, 0, 0, 0], atol=1e-6)
+
+
+def test_worlds_of_the_plane() -> None:
+    square = mp.Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)])
+    obstacles: list[mp.Rectangle | mp.Circle | mp.Polygon] = [
+        mp.Rectangle((1, 0), (1.2, 1.5)),
+        mp.Circle(2, 1.5, 0.3),
+        mp.Polygon([(3, 0), (3.2, 0), (3.1, 1)], name="spike"),
+    ]
+    scene = mp.Scene.plane(square, [0.5, 0.5, 0], [3.5, 0.5, 1], obstacles, walls=[[0, 0], [4, 2]])
+    report = scene.plan(seed=1)
+    assert report.solved
+    assert any("spike" in touch.other for touch in scene.explain([3.1, 0.2, 0]).touching)
+
+
+def test_images_are_read_as_they_are_seen() -> None:
+    dark = np.full((20, 40), 1.0)
+    dark[:10, 20] = 0
+    scene = mp.Scene.plane(mp.Disc(0.05), [0.5, 1.5], [3.5, 1.5], image=dark, scale=0.1)
+    assert not scene.is_free([2.05, 1.5]) and scene.is_free([2.05, 0.5])
+    assert (
+        mp.Scene.plane(mp.Disc(0.05), [0.5, 1.5], [3.5, 1.5], image=np.uint8(255 * dark), scale=0.1).plan(seed=1).fingerprint
+        == scene.plan(seed=1).fingerprint
+    )
+    for image in (dark > 0, 300 * dark, np.int64(300 * dark), np.zeros((2, 2, 3))):
+        with pytest.raises(mp.Error):
+            mp.Scene.plane(mp.Disc(0.05), [0.5, 1.5], [3.5, 1.5], image=image, scale=0.1)
+
+
+URDF = """<robot name="two">
+  <link name="base"/><link name="upper"><collision><geometry><box size="0.1 0.1 1"/></geometry>
+    <origin xyz="0 0 0.5"/></collision></link>
+  <link name="lower"><collision><geometry><box size="0.1 0.1 1"/></geometry><origin xyz="0 0 0.5"/></collision></link>
+  <joint name="a" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+  <joint name="b" type="continuous"><parent link="upper"/><child link="lower"/><origin xyz="0 0 1"/><axis xyz="0 1 0"/></joint>
+</robot>"""
+
+
+def test_arms_from_text_and_from_files(folder: Path) -> None:
+    table = mp.Body(mp.Box(0.3, 0.3, 0.3), [1.2, 0, 1.2, 0, 0, 0], "table")
+    scene = mp.Scene.arm(URDF, [0, 0], [1.2, 0.4], [table], limits={"a": (-1.5, 1.5)})
+    assert [c.name for c in scene.columns] == ["a", "b"] and scene.limits.tolist() == [[-1.5, 1.5], [-math.inf, math.inf]]
+    report = scene.plan(seed=1)
+    assert report.solved
+    (folder / "two.urdf").write_text(URDF)
+    other = mp.Scene.arm(folder / "two.urdf", [0, 0], [1.2, 0.4], [table], limits={"a": (-1.5, 1.5)})
+    assert other.plan(seed=1).fingerprint == report.fingerprint
+    free = mp.Scene.arm(URDF, [0, 0], {"a": 1.2}, [table])
+    assert free.plan(seed=1).solved
+    high = mp.Scene.arm(URDF, [0, 0], [1.2, 0.4], base=[0, 0, 5, 0, 0, 0])
+    assert np.allclose(high.poses([0, 0])[:, 2, 3].max(), 6)
+    floating = mp.Scene.arm(
+        URDF,
+        [0] * 8,
+        [1, 0, 0, 0, 0, 0, 0.1, 0.1],
+        floating_within=[[-3] * 3, [3] * 3],
+        obstacles=[mp.Body(mp.Box(0.1, 0.1, 0.1), [0.5, 0, 3, 0, 0, 0])],
+    )
+    assert floating.plan(seed=1).solved
+
+
+@pytest.mark.parametrize("name", ["easy", "arm", "rrs-low", "wrench", "parking", "crossing"])
+def test_scenes_and_reports_pickle(name: str) -> None:
+    scene = mp.Scene(name)
+    report = scene.plan(seed=5, iterations=2000)
+    again = pickle.loads(pickle.dumps(scene))
+    assert again.plan(seed=5, iterations=2000).fingerprint == report.fingerprint
+    read = pickle.loads(pickle.dumps(report))
+    assert read.to_json() == report.to_json()
+    turned = scene.with_ends(scene.goals[0], scene.start) if name != "parking" else scene
+    assert (pickle.loads(pickle.dumps(turned)).start == turned.start).all()
+
+
+def test_scenes_from_files_pickle_with_their_files(folder: Path) -> None:
+    (folder / "sub").mkdir()
+    (folder / "two.urdf").write_text(URDF)
+    (folder / "sub" / "scene.toml").write_text('[robot]\nurdf = "../two.urdf"\n[motion]\nstart = [0, 0]\ngoal = [1, 1]\n')
+    scene = mp.Scene("sub/scene.toml")
+    pickled = pickle.dumps(scene)
+    made = pickle.dumps(mp.Scene.arm(folder / "two.urdf", [0, 0], [1, 1]))
+    (folder / "two.urdf").unlink()
+    (folder / "sub" / "scene.toml").unlink()
+    assert pickle.loads(pickled).plan(seed=1).fingerprint == scene.plan(seed=1).fingerprint
+    assert pickle.loads(made).plan(seed=1).solved
+    with pytest.raises(mp.Error, match="no scene"):
+        mp.Scene("sub/scene.toml")
+
+
+def test_errors_say_where_and_what_to_do(folder: Path) -> None:
+    with pytest.raises(mp.Error) as raised:
+        mp.Scene("cubicels")
+    assert "did you mean `cubicles`?" in str(raised.value.remedy)
+    (folder / "bad.toml").write_text('[world]\nwalls = [[0, 0], [4, 3]]\n[robot]\ndisc = "big"\n')
+    with pytest.raises(mp.Error) as raised:
+        mp.Scene("bad.toml")
+    error = pickle.loads(pickle.dumps(raised.value))
+    assert (error.file, error.line) == ("bad.toml", 4) and str(error) == str(raised.value)
+    with pytest.raises(mp.Error, match="rrt-conect"):
+        mp.Scene("easy").plan("rrt-conect")
+    with pytest.raises(mp.Error, match="stepp"):
+        mp.Scene("easy").plan(settings={"stepp": 1})
+    blocked = mp.Scene.rigid(mp.Box(0.5, 0.1, 0.1), [0, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0], [POST])
+    with pytest.raises(mp.Error, match="post") as raised:
+        blocked.plan()
+    assert "free" in str(raised.value.remedy)
+    explained = blocked.explain([0, 0, 0, 0, 0, 0])
+    assert not explained and explained.touching[0].other == "post" and explained.nearest_free is not None
+    assert blocked.explain(explained.nearest_free).free
+
+
+def test_no_input_is_overwritten(folder: Path) -> None:
+    (folder / "two.urdf").write_text(URDF)
+    (folder / "scene.toml").write_text('[robot]\nurdf = "two.urdf"\n[motion]\nstart = [0, 0]\ngoal = [1, 1]\n')
+    (folder / "link.png").symlink_to(folder / "two.urdf")
+    scene = mp.Scene("scene.toml")
+    with pytest.raises(mp.Error, match="file of the scene"):
+        scene.save("link.png", scene.plan())
+    assert (folder / "two.urdf").read_text() == URDF
+
+
+def test_what_may_hold_is_shown() -> None:
+    scene = mp.Scene("easy")
+    assert scene.notes == [] and "touch each other" in scene.lint()[0] and 0.5 < scene.free_share(200) < 1
+    assert "inputs" in mp.Scene("parking").planners_that_cannot()["rrt-connect"]
+    page = scene.plan()._repr_html_()
+    assert page is not None and page.startswith("<iframe") and "easy" in page
+    assert repr(scene) == "<Scene easy: SE3>" and repr(scene.plan()).startswith("<Report easy: solved")
