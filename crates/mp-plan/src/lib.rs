@@ -36,6 +36,7 @@
 //! | load a scene, or make one in code | [`Scene::find`], [`Scene::load`], [`Scene::parse`], [`Scene::from_problem`], [`Scene::from_world`], [`ArmScene`], [`Scene::new`] |
 //! | say how to plan | [`Request`]: planner, settings, metric, motion check, budgets, seed, what is done to the path found |
 //! | plan | [`Scene::plan`]; with progress reports and a stop: [`Scene::plan_with`], [`Control`], [`Watch`] |
+//! | plan thousands of problems on all cores | [`plan_many`] |
 //! | plan in pieces, between the events of a program | [`Scene::prepare`], [`Run`] |
 //! | move start and goal | [`Scene::with_ends`] |
 //! | build a roadmap once for many queries | [`Scene::roadmap`], [`SceneRoadmap`] |
@@ -67,10 +68,12 @@ mod finish;
 #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
 pub mod fuzz;
 mod goals;
+mod in_order;
 pub mod info;
 mod inputs;
 mod kinds;
 mod load;
+mod many;
 #[cfg(feature = "pictures")]
 mod mp4;
 mod numbers;
@@ -107,6 +110,8 @@ pub use film::{Film, FilmKind};
 pub use find::find_problem;
 pub use finish::shorten;
 pub use goals::GoalPart;
+pub use in_order::in_order;
+pub use many::plan_many;
 pub use numbers::{brief, count, plain, positive_number};
 pub use output::{make_folder, write_file};
 pub use parallel::in_parallel;
