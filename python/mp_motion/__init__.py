@@ -11,10 +11,12 @@ bit, and other threads of Python run while it works.
 """
 
 from ._errors import Error, InternalError, Interrupted
+from ._many import plan_many
 from ._mp import Cancel
+from ._own import Robot, Space
 from ._planners import Parameter, PlannerInfo, meta_planners, metrics, planners, scenes
 from ._progress import Progress
-from ._report import Column, Explanation, Report, StageTime, Touch, Verdict
+from ._report import Column, Explanation, Finished, Report, StageTime, Touch, Verdict
 from ._roadmap import Roadmap
 from ._scene import Options, Scene
 from ._shapes import (
@@ -44,6 +46,7 @@ __all__ = [
     "Disc",
     "Error",
     "Explanation",
+    "Finished",
     "InternalError",
     "Interrupted",
     "Mesh",
@@ -55,8 +58,10 @@ __all__ = [
     "Rectangle",
     "Report",
     "Roadmap",
+    "Robot",
     "Scene",
     "Shape",
+    "Space",
     "Sphere",
     "StageTime",
     "Touch",
@@ -64,6 +69,7 @@ __all__ = [
     "matrix_from_pose",
     "meta_planners",
     "metrics",
+    "plan_many",
     "planners",
     "pose_from_matrix",
     "pose_from_rotation",

@@ -224,6 +224,28 @@ class Report:
         return self._scene
 
 
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """A path that was shortened and verified.
+
+    Attributes
+    ----------
+    path : ndarray, shape (n, columns)
+        The path.
+    path_length : float
+        In the metric of the space.
+    clearance : float or None
+        A lower bound along the path, metres, where one is known.
+    shortened : bool
+        Whether it is another path than the given one.
+    """
+
+    path: Array
+    path_length: float
+    clearance: float | None
+    shortened: bool
+
+
 @dataclass(frozen=True)
 class Verdict:
     """The result of checking a path.
@@ -239,7 +261,7 @@ class Verdict:
     path_length : float
         In the metric of the space.
     clearance : float
-        A lower bound along the path, metres; 0 when it is not free, ``inf`` where there is nothing to hit.
+        A lower bound along the path, metres; 0 when it is not free, or none is known, ``inf`` where there is nothing to hit.
     faults : tuple of str
         What is wrong. Empty when the path is free.
     """
@@ -288,7 +310,7 @@ class Explanation:
     in_bounds : bool
         Whether it is within the bounds of the space.
     clearance : float
-        A lower bound on the distance to contact, metres; zero in collision, ``inf`` where there is nothing to hit.
+        A lower bound on the distance to contact, metres; zero in collision, and where none is known, ``inf`` where there is nothing to hit.
     touching : tuple of Touch
         What touches what.
     fault : str or None

@@ -17,8 +17,9 @@ from . import _mp, _view
 from ._errors import Error, Interrupted
 from ._mp import Cancel
 from ._names import MetricName, PlannerName
+from ._own import Robot, native
 from ._progress import Progress, reporter
-from ._report import Column, Explanation, Report, Verdict, explanation, verdict
+from ._report import Column, Explanation, Finished, Report, Verdict, explanation, verdict
 from ._roadmap import Roadmap
 from ._shapes import (
     Array,
@@ -128,18 +129,20 @@ class Scene:
     (True, 6)
     """
 
-    __slots__ = ("_native",)
+    __slots__ = ("_native", "_robot")
     _native: _mp.Scene
+    _robot: Robot | None
 
     def __init__(self, name: File) -> None:
         self._native = _mp.Scene.find(os.fspath(name))
+        self._robot = None
 
     # --- other ways to make one -------------------------------------------------------------------------------------
 
     @classmethod
-    def _from(cls, native: _mp.Scene) -> Scene:
+    def _from(cls, native: _mp.Scene, robot: Robot | None = None) -> Scene:
         scene = cls.__new__(cls)
-        scene._native = native
+        scene._native, scene._robot = native, robot
         return scene
 
     @classmethod
@@ -384,6 +387,45 @@ class Scene:
         }
         return cls.from_dict(document, files=files, name=name)
 
+    @classmethod
+    def own(
+        cls,
+        robot: Robot,
+        start: ArrayLike,
+        goal: ArrayLike | None = None,
+        *,
+        goals: Sequence[ArrayLike] | None = None,
+    ) -> Scene:
+        """Make a scene of a robot of yours, whose checks are functions.
+
+        All planners work but those that need meshes or a gradient; paths are shortened and verified as those of others. Such scenes have no
+        pictures and no certificates, and pickle if their functions do.
+
+        Parameters
+        ----------
+        robot : Robot
+            The robot with its space.
+        start, goal : array_like, shape (n,)
+            Configurations.
+        goals : sequence, optional
+            In place of `goal`: any one of them.
+
+        Examples
+        --------
+        >>> def clearance(q):
+        ...     return np.hypot(*(q - 2)) - 1  # a disc of radius 1 m
+        >>> def displacement(a, b):
+        ...     return np.hypot(*(b - a))
+        >>> robot = mp.Robot(mp.Space([0, 0], [4, 4]), clearance=clearance, displacement=displacement)
+        >>> report = mp.Scene.own(robot, [0.5, 2], [3.5, 2]).plan("rrt-star", iterations=500)
+        >>> report.solved, report.motion, report.clearance > 0
+        (True, 'certified', True)
+        """
+        if (goal is None) == (goals is None):
+            raise Error("there must be either `goal` or `goals`", remedy="give one of them")
+        ends = [_row(given) for given in (goals if goals is not None else [goal])]
+        return cls._from(_mp.Scene.own(native(robot), _row(start), ends), robot)
+
     def with_ends(self, start: ArrayLike | None = None, goal: ArrayLike | None = None) -> Scene:
         """Return the same scene with another start, or with other goals.
 
@@ -403,7 +445,7 @@ class Scene:
         """
         starts = self.start if start is None else np.asarray(start, dtype=np.float64).ravel()
         goals = self.goals if goal is None else np.atleast_2d(np.asarray(goal, dtype=np.float64))
-        return self._from(self._native.with_ends(starts.tolist(), goals.tolist()))
+        return self._from(self._native.with_ends(starts.tolist(), goals.tolist()), self._robot)
 
     # --- what it is ------------------------------------------------------------------------------------------------
 
@@ -485,6 +527,8 @@ class Scene:
         return f"<Scene {self.name}: {self.space}>"
 
     def __reduce__(self) -> tuple[object, ...]:
+        if self._robot is not None:
+            return _own_again, (self._robot, self.start, self.goals)
         return _restored, self._native.state()
 
     # --- planning --------------------------------------------------------------------------------------------------
@@ -672,6 +716,42 @@ class Scene:
             native = self._native.roadmap(options.to_json(self), cancel, tell)
         return Roadmap._from(native, self)
 
+    def shorten(
+        self,
+        path: ArrayLike | Report,
+        *,
+        seed: int = 1,
+        time: float | None = 60.0,
+        finish: Finish = "shorten",
+        field: str = "clearance",
+        progress: bool | Callable[[Progress], object] = False,
+        cancel: Cancel | None = None,
+    ) -> Finished:
+        """Shorten or relax a path from elsewhere, between any two configurations, and verify the result.
+
+        Parameters
+        ----------
+        path : array_like, shape (n, columns), or Report
+            One configuration in each row.
+        seed, time, finish, field, progress, cancel
+            As of :meth:`plan`.
+
+        Raises
+        ------
+        Error
+            When the path is not free: what it hits, and where; and when it was not verified in time.
+
+        Examples
+        --------
+        >>> scene = mp.Scene("easy")
+        >>> found = scene.plan(finish="as-found")
+        >>> scene.shorten(found).path_length < found.path_length
+        True
+        """
+        options = Options(seed=seed, time=time, finish=finish, field=field)
+        with reporter(progress) as tell:
+            return Finished(*self._native.finish(options.to_json(self), self._path(path), cancel, tell))
+
     # --- checking --------------------------------------------------------------------------------------------------
 
     def check(self, path: ArrayLike | Report) -> Verdict:
@@ -791,11 +871,16 @@ class Scene:
         """Return what :meth:`save` would write to a file with this ending, such as ``html`` or ``png``."""
         return _view.content(self, f"x.{ending}", path, (None, None, None, None, None))
 
-    def _frame(self, path: ArrayLike | Report | None) -> str:
-        return _view.frame(self, path)
+    def _frame(self, path: ArrayLike | Report | None) -> str | None:
+        return None if self._robot is not None else _view.frame(self, path)
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> str | None:
         return self._frame(None)
+
+
+def _own_again(robot: Robot, start: Array, goals: Array) -> Scene:
+    """Make a scene of an own robot from a pickle."""
+    return Scene.own(robot, start, goals=list(goals))
 
 
 def _restored(

@@ -33,6 +33,8 @@ def content(scene: Scene, file: File, path: ArrayLike | Report | None, wanted: W
         if rows is None:
             raise Error("there is no path to write", remedy="give a path, or a report of a run that was solved")
         return scene._native.path_text(file, rows).encode()
+    if scene._robot is not None:
+        raise Error("a robot of your own has no picture", remedy="plot `report.path`, or save it as .txt, .csv or .json")
     if ending in ("html", "htm", "mpv", "glb"):
         report = None
         if isinstance(path, Report):

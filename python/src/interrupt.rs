@@ -3,6 +3,7 @@
 //! Python runs the handlers of signals in its main thread only, between its own instructions. So the work is done in a thread of its own,
 //! and the calling thread looks for signals meanwhile, and passes on reports of progress.
 
+use crate::callback::{Failure, known_to_python};
 use crate::error::internal;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,7 +13,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// How often signals are looked for.
-const INTERVAL: Duration = Duration::from_millis(20);
+pub(crate) const INTERVAL: Duration = Duration::from_millis(20);
 
 /// Stops work from another thread. `cancel()` ends all work that it was given to; what was found until then is kept.
 #[pyclass(frozen, module = "mp_motion._mp")]
@@ -73,11 +74,12 @@ impl mp_plan::Watch for Reporter {
 /// does, `cancel` is raised; the job ends soon, and the exception comes with its result.
 ///
 /// # Errors
-/// When the job panics.
+/// When the job panics, or a function of an own robot raises an exception, which is kept in `failure` and ends the job as well.
 pub(crate) fn work<T: Send>(
     py: Python<'_>,
     cancel: &mp_plan::Cancel,
     progress: Option<&Py<PyAny>>,
+    failure: Option<&Failure>,
     job: impl FnOnce(Reporter) -> T + Send,
 ) -> PyResult<(T, Option<PyErr>)> {
     let (sender, receiver) = channel();
@@ -87,16 +89,23 @@ pub(crate) fn work<T: Send>(
     let done = py.detach(|| {
         std::thread::scope(|scope| {
             let worker = scope.spawn(move || {
-                let result = catch_unwind(AssertUnwindSafe(|| job(Reporter(sender))));
+                let result = catch_unwind(AssertUnwindSafe(|| match failure {
+                    Some(_) => known_to_python(|| job(Reporter(sender))),
+                    None => job(Reporter(sender)),
+                }));
                 let _ = ended.send(News::Done);
                 result
             });
-            let raised = attend(&receiver.lock().unwrap_or_else(PoisonError::into_inner), cancel, progress);
+            let raised =
+                attend(&receiver.lock().unwrap_or_else(PoisonError::into_inner), cancel, progress, failure);
             (worker.join().unwrap_or_else(|panic| resume_unwind(panic)), raised)
         })
     });
     match done {
-        (Ok(result), raised) => Ok((result, raised)),
+        (Ok(result), raised) => match failure.and_then(Failure::take) {
+            Some(e) => Err(e),
+            None => Ok((result, raised)),
+        },
         (Err(panic), _) => Err(internal(&*panic)),
     }
 }
@@ -104,11 +113,16 @@ pub(crate) fn work<T: Send>(
 /// Panics as a fault in the work would: tests look at what becomes of it.
 #[pyfunction]
 pub(crate) fn panic(py: Python<'_>, message: String) -> PyResult<()> {
-    work(py, &mp_plan::Cancel::new(), None, |_| std::panic::panic_any(message)).map(|((), _)| ())
+    work(py, &mp_plan::Cancel::new(), None, None, |_| std::panic::panic_any(message)).map(|((), _)| ())
 }
 
 /// Waits for the end of the work, and says why it was cancelled, if it was here.
-fn attend(news: &Receiver<News>, cancel: &mp_plan::Cancel, progress: Option<&Py<PyAny>>) -> Option<PyErr> {
+fn attend(
+    news: &Receiver<News>,
+    cancel: &mp_plan::Cancel,
+    progress: Option<&Py<PyAny>>,
+    failure: Option<&Failure>,
+) -> Option<PyErr> {
     let mut raised = None;
     let mut now = Shown::default();
     loop {
@@ -117,6 +131,10 @@ fn attend(news: &Receiver<News>, cancel: &mp_plan::Cancel, progress: Option<&Py<
             Ok(News::Done) | Err(RecvTimeoutError::Disconnected) => return raised,
             _ if raised.is_some() => continue,
             _ => {}
+        }
+        if failure.is_some_and(Failure::is_raised) {
+            cancel.cancel();
+            continue;
         }
         let outcome = Python::attach(|py| {
             py.check_signals()?;

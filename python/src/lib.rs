@@ -1,8 +1,11 @@
 //! The native half of the Python package `mp_motion`: thin bindings of `mp-plan` and `mp-view`. Names that users see, defaults, units
 //! and documentation are in the Python half, `python/mp_motion`.
 
+mod callback;
 mod error;
 mod interrupt;
+mod many;
+mod own;
 mod render;
 mod report;
 mod roadmap;
@@ -14,6 +17,8 @@ mod tables;
 mod _mp {
     #[pymodule_export]
     use crate::interrupt::{Cancel, panic};
+    #[pymodule_export]
+    use crate::many::Many;
     #[pymodule_export]
     use crate::roadmap::Roadmap;
     #[pymodule_export]

@@ -1,7 +1,6 @@
 //! Scenes as pictures, films and pages.
 
 use crate::error::ToPython;
-use crate::interrupt::work;
 use crate::report::rows;
 use crate::scene::Scene;
 use mp_plan::{Film, FilmKind, Look, PICTURE_SIZE, PathRows};
@@ -54,11 +53,11 @@ impl Scene {
             film.look = Look { at: None, ..look(film.look.size, wanted)? };
             film.seconds = wanted.4.unwrap_or(film.seconds);
             film.threads = std::thread::available_parallelism().map_or(1, usize::from);
-            work(py, &cancel, None, |_| scene.film(path.as_ref(), caption, &film, &cancel, &mut |_| ()))?
+            self.work(py, &cancel, None, |_| scene.film(path.as_ref(), caption, &film, &cancel, &mut |_| ()))?
         } else {
             let kind = scene.picture_kind(file).to_python()?;
             let look = look(PICTURE_SIZE, wanted)?;
-            work(py, &cancel, None, |_| scene.picture(path.as_ref(), caption, kind, &look).map(Some))?
+            self.work(py, &cancel, None, |_| scene.picture(path.as_ref(), caption, kind, &look).map(Some))?
         };
         raised.map_or(Ok(()), Err)?;
         bytes.to_python()
@@ -77,7 +76,7 @@ impl Scene {
         let report = report.map(mp_plan::Report::from_json).transpose().to_python()?;
         let scene = &self.scene;
         let cancel = mp_plan::Cancel::new();
-        let (bytes, raised) = work(py, &cancel, None, |_| {
+        let (bytes, raised) = self.work(py, &cancel, None, |_| {
             let mut file = SceneFile::of(scene)?;
             match (report, path) {
                 (Some(report), path) => {

@@ -1,5 +1,6 @@
 //! Roadmaps that answer many queries.
 
+use crate::callback::Failure;
 use crate::error::{ToPython, to_python};
 use crate::interrupt::{Cancel, work};
 use crate::report::{ReportParts, parts};
@@ -12,11 +13,14 @@ use std::sync::{Mutex, PoisonError};
 /// A roadmap of a scene. One query at a time: others wait.
 #[pyclass(frozen, module = "mp_motion._mp")]
 #[derive(Debug)]
-pub(crate) struct Roadmap(Mutex<SceneRoadmap>);
+pub(crate) struct Roadmap {
+    roadmap: Mutex<SceneRoadmap>,
+    failure: Option<Failure>,
+}
 
 impl Roadmap {
-    pub(crate) fn new(roadmap: SceneRoadmap) -> Self {
-        Self(Mutex::new(roadmap))
+    pub(crate) fn new(roadmap: SceneRoadmap, failure: Option<Failure>) -> Self {
+        Self { roadmap: Mutex::new(roadmap), failure }
     }
 
     /// Does something with the roadmap, without the lock of the interpreter.
@@ -29,8 +33,8 @@ impl Roadmap {
     ) -> PyResult<(T, Option<PyErr>)> {
         let cancel = cancel.map(|c| c.0.clone()).unwrap_or_default();
         let raised = cancel.clone();
-        work(py, &cancel, progress, move |mut reporter| {
-            let mut roadmap = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        work(py, &cancel, progress, self.failure.as_ref(), move |mut reporter| {
+            let mut roadmap = self.roadmap.lock().unwrap_or_else(PoisonError::into_inner);
             job(&mut roadmap, &mut Control::new(raised, &mut reporter))
         })
     }
@@ -81,7 +85,7 @@ impl Roadmap {
     /// The numbers of nodes, edges and components.
     fn size(&self, py: Python<'_>) -> [usize; 3] {
         py.detach(|| {
-            let mut map = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut map = self.roadmap.lock().unwrap_or_else(PoisonError::into_inner);
             [map.nodes(), map.edges(), map.components()]
         })
     }

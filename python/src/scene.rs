@@ -1,7 +1,9 @@
 //! Scenes: loading, planning, checking.
 
+use crate::callback::Failure;
 use crate::error::{ToPython, to_python};
-use crate::interrupt::{Cancel, work};
+use crate::interrupt::{Cancel, Reporter, work};
+use crate::own::{self, Own};
 use crate::render::Wanted;
 use crate::report::{ReportParts, array, parts, rows};
 use crate::roadmap::Roadmap;
@@ -52,10 +54,15 @@ pub(crate) struct Scene {
     shipped: Option<String>,
     /// Start and goals in place of those of the files, as they were given.
     ends: Option<Ends>,
+    /// Of an own robot, the exception that one of its functions raised.
+    failure: Option<Failure>,
 }
 
 /// Start and goals.
 type Ends = (Vec<f64>, Vec<Vec<f64>>);
+
+/// A finished path: its rows, its length, its clearance, whether it was shortened.
+type FinishedParts<'py> = (Bound<'py, PyArray2<f64>>, f64, Option<f64>, bool);
 
 /// A request from its JSON form.
 pub(crate) fn request(json: &str) -> PyResult<Request> {
@@ -74,9 +81,26 @@ fn loaded(
 ) -> PyResult<mp_plan::Scene> {
     let cancel = mp_plan::Cancel::new();
     let interrupt = Interrupt::new(cancel.clone());
-    let (scene, raised) = work(py, &cancel, None, move |_| job(interrupt))?;
+    let (scene, raised) = work(py, &cancel, None, None, move |_| job(interrupt))?;
     raised.map_or(Ok(()), Err)?;
     scene.to_python()
+}
+
+impl Scene {
+    /// Does `job`, as [`work`] says.
+    pub(crate) fn work<T: Send>(
+        &self,
+        py: Python<'_>,
+        cancel: &mp_plan::Cancel,
+        progress: Option<&Py<PyAny>>,
+        job: impl FnOnce(Reporter) -> T + Send,
+    ) -> PyResult<(T, Option<PyErr>)> {
+        work(py, cancel, progress, self.failure.as_ref(), job)
+    }
+
+    pub(crate) fn failure(&self) -> Option<&Failure> {
+        self.failure.as_ref()
+    }
 }
 
 #[pymethods]
@@ -87,7 +111,13 @@ impl Scene {
         let scene = loaded(py, |interrupt| mp_plan::Scene::find_until(&given, &interrupt))?;
         let on_disk = !scene.inputs_on_disk().is_empty();
         let shipped = (!on_disk).then(|| given.to_string_lossy().into_owned());
-        Ok(Self { scene, given: Given { disk: on_disk, ..Given::default() }, shipped, ends: None })
+        Ok(Self {
+            scene,
+            given: Given { disk: on_disk, ..Given::default() },
+            shipped,
+            ends: None,
+            failure: None,
+        })
     }
 
     /// The scene in the file `main` of `files`. Files that are not among them are read from the disk, if `disk` says so.
@@ -103,7 +133,15 @@ impl Scene {
             let scene = mp_plan::Scene::load_from(&Until { files: &given, interrupt }, &main)?;
             Ok(scene)
         })?;
-        Ok(Self { scene, given, shipped: None, ends: None })
+        Ok(Self { scene, given, shipped: None, ends: None, failure: None })
+    }
+
+    /// The scene of an own robot.
+    #[staticmethod]
+    fn own(robot: own::Given, start: Vec<f64>, goals: Vec<Vec<f64>>) -> PyResult<Self> {
+        let (robot, failure) = Own::new(robot, &start, &goals).to_python()?;
+        let scene = mp_plan::Scene::new(robot);
+        Ok(Self { scene, given: Given::default(), shipped: None, ends: None, failure: Some(failure) })
     }
 
     /// With another start and other goals.
@@ -180,12 +218,15 @@ impl Scene {
         self.scene.planners_that_cannot()
     }
 
-    fn lint(&self, py: Python<'_>) -> Vec<String> {
-        py.detach(|| self.scene.lint())
+    fn lint(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let (lint, raised) = self.work(py, &mp_plan::Cancel::new(), None, |_| self.scene.lint())?;
+        raised.map_or(Ok(lint), Err)
     }
 
-    fn free_share(&self, py: Python<'_>, samples: u32) -> f64 {
-        py.detach(|| self.scene.free_share(samples))
+    fn free_share(&self, py: Python<'_>, samples: u32) -> PyResult<f64> {
+        let (share, raised) =
+            self.work(py, &mp_plan::Cancel::new(), None, |_| self.scene.free_share(samples))?;
+        raised.map_or(Ok(share), Err)
     }
 
     /// The poses (4×4) of the bodies of the robot at a configuration, shape (bodies, 4, 4).
@@ -213,7 +254,7 @@ impl Scene {
         let request = request(json)?;
         let cancel = cancel.map(|c| c.0.clone()).unwrap_or_default();
         let raised = cancel.clone();
-        let (report, error) = work(py, &cancel, progress.as_ref(), |mut reporter| {
+        let (report, error) = self.work(py, &cancel, progress.as_ref(), |mut reporter| {
             self.scene.plan_with(&request, &mut Control::new(raised, &mut reporter))
         })?;
         Ok((parts(py, report.to_python()?)?, error.map(|e| e.into_value(py).into_any())))
@@ -234,7 +275,7 @@ impl Scene {
         let apart: Length = apart.parse().to_python()?;
         let cancel = cancel.map(|c| c.0.clone()).unwrap_or_default();
         let raised = cancel.clone();
-        let (reports, error) = work(py, &cancel, progress.as_ref(), |mut reporter| {
+        let (reports, error) = self.work(py, &cancel, progress.as_ref(), |mut reporter| {
             self.scene.routes(&request, count, apart, &mut Control::new(raised, &mut reporter))
         })?;
         let reports = reports.to_python()?.into_iter().map(|report| parts(py, report));
@@ -253,17 +294,39 @@ impl Scene {
         let request = request(json)?;
         let cancel = cancel.map(|c| c.0.clone()).unwrap_or_default();
         let raised = cancel.clone();
-        let (roadmap, error) = work(py, &cancel, progress.as_ref(), |mut reporter| {
+        let (roadmap, error) = self.work(py, &cancel, progress.as_ref(), |mut reporter| {
             self.scene.roadmap_with(&request, &mut Control::new(raised, &mut reporter))
         })?;
         error.map_or(Ok(()), Err)?;
-        roadmap.to_python().map(Roadmap::new)
+        roadmap.to_python().map(|roadmap| Roadmap::new(roadmap, self.failure.clone()))
+    }
+
+    /// Finishes a path from elsewhere: the path, its length, its clearance, whether it was shortened; and the exception that ended it.
+    #[pyo3(signature = (json, path, cancel=None, progress=None))]
+    fn finish<'py>(
+        &self,
+        py: Python<'py>,
+        json: &str,
+        path: PyReadonlyArray2<'_, f64>,
+        cancel: Option<&Cancel>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<FinishedParts<'py>> {
+        let (request, path) = (request(json)?, self.rows(rows(&path)));
+        let cancel = cancel.map(|c| c.0.clone()).unwrap_or_default();
+        let raised = cancel.clone();
+        let (finished, error) = self.work(py, &cancel, progress.as_ref(), |mut reporter| {
+            self.scene.finish(&path, &request, &mut Control::new(raised, &mut reporter))
+        })?;
+        error.map_or(Ok(()), Err)?;
+        let finished = finished.to_python()?;
+        let path = array(py, &finished.path.rows, self.scene.columns().len())?;
+        Ok((path, finished.length, finished.clearance, finished.shortened))
     }
 
     /// Verifies a path: the JSON form of a verdict.
     fn check(&self, py: Python<'_>, path: PyReadonlyArray2<'_, f64>) -> PyResult<String> {
         let path = self.rows(rows(&path));
-        let (verdict, raised) = work(py, &mp_plan::Cancel::new(), None, |_| self.scene.check(&path))?;
+        let (verdict, raised) = self.work(py, &mp_plan::Cancel::new(), None, |_| self.scene.check(&path))?;
         raised.map_or(Ok(()), Err)?;
         json(&verdict.to_python()?)
     }
@@ -279,21 +342,22 @@ impl Scene {
         let cancel = mp_plan::Cancel::new();
         let interrupt = Interrupt::new(cancel.clone());
         let (certificate, raised) =
-            work(py, &cancel, None, |_| self.scene.certificate(&path, clearance, &interrupt))?;
+            self.work(py, &cancel, None, |_| self.scene.certificate(&path, clearance, &interrupt))?;
         raised.map_or(Ok(()), Err)?;
         Ok(certificate.to_python()?.to_json().to_owned())
     }
 
     /// Explains a configuration, as JSON.
     fn explain(&self, py: Python<'_>, row: Vec<f64>) -> PyResult<String> {
-        let (explanation, raised) = work(py, &mp_plan::Cancel::new(), None, |_| self.scene.explain(&row))?;
+        let (explanation, raised) =
+            self.work(py, &mp_plan::Cancel::new(), None, |_| self.scene.explain(&row))?;
         raised.map_or(Ok(()), Err)?;
         json(&explanation.to_python()?)
     }
 
     /// What is odd about start and goals; an error when one is not free.
     fn check_ends(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        let (odd, raised) = work(py, &mp_plan::Cancel::new(), None, |_| self.scene.check_ends())?;
+        let (odd, raised) = self.work(py, &mp_plan::Cancel::new(), None, |_| self.scene.check_ends())?;
         raised.map_or(Ok(()), Err)?;
         odd.to_python()
     }

@@ -10,8 +10,8 @@ use crate::run::AnyPrepared;
 use crate::scene_roadmap::AnySceneRoadmap;
 use crate::sweep::{sweep, track};
 use crate::{
-    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, Report, Request, RobotKind,
-    Sweep, Track, Verdict,
+    Body, Column, Control, Error, Explanation, Finished, Length, PathFormat, PathRows, Report, Request,
+    RobotKind, Sweep, Track, Verdict,
 };
 use mp_cspace::{Demand, Interrupt, Rng, Space, Validity};
 use mp_geom::Aabb;
@@ -52,6 +52,12 @@ pub(crate) trait AnyRobot: Send + Sync {
         request: &Request,
         control: &mut Control<'_>,
     ) -> Result<Box<dyn AnySceneRoadmap>, Error>;
+    fn finish(
+        &self,
+        path: &PathRows,
+        request: &Request,
+        control: &mut Control<'_>,
+    ) -> Result<Finished, Error>;
     fn check(&self, path: &PathRows) -> Result<Verdict, Error>;
     fn certificate(
         &self,
@@ -154,6 +160,14 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         control: &mut Control<'_>,
     ) -> Result<Box<dyn AnySceneRoadmap>, Error> {
         crate::scene_roadmap::build(self, request, control)
+    }
+    fn finish(
+        &self,
+        path: &PathRows,
+        request: &Request,
+        control: &mut Control<'_>,
+    ) -> Result<Finished, Error> {
+        crate::finish::finish_given(self, path, request, control)
     }
     fn check(&self, path: &PathRows) -> Result<Verdict, Error> {
         check(self, path)

@@ -28,7 +28,7 @@ pub struct Verdict {
     pub configurations: usize,
     /// The length of the path, in the metric of the space.
     pub path_length: f64,
-    /// A lower bound (m) on the clearance along the path; 0 when it is not free.
+    /// A lower bound (m) on the clearance along the path; 0 when it is not free, or none is known.
     pub clearance: f64,
     /// What is wrong. Empty when the path is free.
     pub faults: Vec<String>,
@@ -40,11 +40,13 @@ impl Verdict {
     pub fn summary(&self) -> String {
         if self.free {
             let clearance = match self.clearance.is_finite() {
+                true if self.clearance == 0.0 => "clearance not known".to_owned(),
                 true => format!("clearance at least {} m", brief(self.clearance)),
                 false => "there is nothing to hit".to_owned(),
             };
+            let how = if self.clearance > 0.0 { "certified free" } else { "free wherever it was tested" };
             return format!(
-                "{}: certified free in {}\n  {} configurations, length {}, {clearance}",
+                "{}: {how} in {}\n  {} configurations, length {}, {clearance}",
                 self.path,
                 self.scene,
                 self.configurations,
@@ -66,13 +68,17 @@ pub(crate) fn verified<K: RobotKind>(
     Ok(verify_path(kind.space(), path, &mut verifier))
 }
 
-/// A lower bound on the clearance (m) along a free path, to within `accuracy` (m); `None` where `interrupt` says to end.
+/// A lower bound on the clearance (m) along a free path, to within `accuracy` (m); `None` where none is known, or `interrupt` says
+/// to end.
 pub(crate) fn clearance<K: RobotKind>(
     kind: &K,
     path: &Path<K::State>,
     accuracy: f64,
     interrupt: &Interrupt,
 ) -> Option<f64> {
+    if kind.sampled().is_some() {
+        return None;
+    }
     let unused = AtomicU64::new(0);
     let mut checker = Counted::new(kind.checker().clone(), &unused).with_interrupt(interrupt.clone());
     let tightest = least_clearance(kind.space(), &mut checker, path, accuracy)?;
@@ -122,7 +128,7 @@ pub(crate) fn check<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Verdict, 
 }
 
 /// A fault as text, with the configuration at which it occurs and what touches there.
-fn fault_text<K: RobotKind>(kind: &K, path: &Path<K::State>, fault: PathFault) -> String {
+pub(crate) fn fault_text<K: RobotKind>(kind: &K, path: &Path<K::State>, fault: PathFault) -> String {
     let (edge, check) = match fault {
         PathFault::Motion { edge, check } => (edge, check),
         PathFault::OutOfBounds { state } => {
@@ -138,6 +144,7 @@ fn fault_text<K: RobotKind>(kind: &K, path: &Path<K::State>, fault: PathFault) -
     let at: Vec<_> = kind.row(&state).into_iter().map(brief).collect();
     let touching = kind.touching(&state);
     let what = match (check, touching.is_empty()) {
+        _ if kind.sampled().is_some() => "collides".to_owned(),
         (MotionCheck::Unproven { .. }, _) | (_, true) => {
             format!("comes nearer to contact than {} m", brief(kind.tolerance()))
         }

@@ -2,7 +2,7 @@
 
 use crate::numbers::brief;
 use crate::{End, Error, RobotKind, Touch};
-use mp_cspace::{Clearance, Space};
+use mp_cspace::{Clearance, Space, Validity};
 use serde::{Deserialize, Serialize};
 
 /// Why a configuration is free or not.
@@ -12,7 +12,7 @@ pub struct Explanation {
     pub free: bool,
     /// Whether it is within the bounds of the space.
     pub in_bounds: bool,
-    /// A lower bound (m) on the distance to contact; zero in collision.
+    /// A lower bound (m) on the distance to contact; zero in collision, and where none is known.
     pub clearance: f64,
     /// What touches what.
     pub touching: Vec<Touch>,
@@ -44,6 +44,9 @@ pub(crate) fn explain<K: RobotKind>(kind: &K, q: &K::State) -> Explanation {
 fn fault<K: RobotKind>(kind: &K, q: &K::State) -> Option<String> {
     if !kind.space().contains(q) {
         return Some(kind.out_of_bounds(q));
+    }
+    if kind.sampled().is_some() {
+        return (!kind.checker().clone().is_valid(q)).then(|| "in collision".to_owned());
     }
     let tolerance = kind.tolerance();
     let clearance = kind.checker().clone().clearance(q, tolerance);
@@ -98,7 +101,8 @@ pub(crate) fn lint<K: RobotKind>(kind: &K) -> Vec<String> {
     let mut found: Vec<String> =
         ends(kind).filter_map(|(_, name, q)| Some(format!("{name} is {}", fault(kind, q)?))).collect();
     found.extend(kind.lint());
-    if kind.bodies().iter().all(|body| body.pose.is_none()) {
+    let bodies = kind.bodies();
+    if !bodies.is_empty() && bodies.iter().all(|body| body.pose.is_none()) {
         found.push("there are no obstacles".to_owned());
     }
     if kind.goals().contains(kind.start()) {

@@ -1,12 +1,16 @@
 //! Finishing a path: shortens it, writes it as text, and verifies what the text says.
 
-use crate::check::{clearance, verified};
-use crate::prepared::Possible;
+use crate::check::{clearance, fault_text, verified};
+use crate::counted::Counted;
+use crate::path::states;
+use crate::prepared::{Possible, resolution};
+use crate::relax::relax_if_requested;
 use crate::report::{RunStage, StageTime};
 use crate::{Control, Error, Finish, PathRows, Request, RobotKind, Stage, StoppedBy};
-use mp_cspace::erased::AnyCheck;
+use mp_cspace::erased::{AnyCheck, AnySpace};
 use mp_cspace::shorten::{Effort, simplify};
-use mp_cspace::{Certified, Factored, Interrupt, Path, Rng};
+use mp_cspace::{Certified, Discrete, Factored, Interrupt, MotionCheck, MotionValidity, Path, Rng};
+use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
 /// The stream of random numbers for shortening. Planning uses another one.
@@ -18,14 +22,50 @@ const SHORTENING_PART: f64 = 0.25;
 const SHORT_PART: f64 = 0.5;
 
 /// A path that passed the verifier after it was written as text and read again.
-#[derive(Clone, Debug)]
-pub(crate) struct Finished {
-    pub(crate) path: PathRows,
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finished {
+    /// The path.
+    pub path: PathRows,
     /// Its length, in the metric of the space.
-    pub(crate) length: f64,
-    /// A lower bound (m) on the clearance along it; `None` where there was no time to compute one.
-    pub(crate) clearance: Option<f64>,
-    pub(crate) shortened: bool,
+    pub length: f64,
+    /// A lower bound (m) on the clearance along it; `None` where none is known, or there was no time to compute one.
+    pub clearance: Option<f64>,
+    /// Whether it was shortened.
+    pub shortened: bool,
+}
+
+/// Finishes a path from elsewhere, between any two configurations.
+pub(crate) fn finish_given<K: RobotKind>(
+    kind: &K,
+    path: &PathRows,
+    request: &Request,
+    control: &mut Control<'_>,
+) -> Result<Finished, Error> {
+    let _span = tracing::info_span!("finish", scene = kind.name()).entered();
+    crate::relax::check(kind, request)?;
+    let began = control.clock.now();
+    let time = request.budget.time_s.and_then(|time| Duration::try_from_secs_f64(time).ok());
+    let left = |control: &Control<'_>| {
+        time.map(|time| time.saturating_sub(control.clock.now().saturating_sub(began)))
+    };
+    let ended =
+        |by: StoppedBy| Error::new(format!("the path was not verified: {by}")).help("give it more time");
+    let given = Path::straight(states(kind, path)?);
+    let interrupt = match time {
+        None => Interrupt::new(control.cancel.clone()),
+        Some(time) => control.interrupt_within(time),
+    };
+    if let Some(fault) = verified(kind, &given, &interrupt)?.fault {
+        return Err(match interrupt.raised() {
+            Some(reason) => ended(reason.into()),
+            None => Error::new(format!("the path is not free: it {}", fault_text(kind, &given, fault)))
+                .help("only free paths are shortened: plan from one of its configurations to another"),
+        });
+    }
+    let rest = left(control);
+    let relaxed = relax_if_requested(kind, request, given, control, rest)?;
+    let rest = left(control);
+    finish(kind, &relaxed, request, control, rest, &mut Vec::new())?.map_err(ended)
 }
 
 /// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](RobotKind::shortcut_clearance) or is an
@@ -41,13 +81,41 @@ pub fn shorten<K: RobotKind>(
     interrupt: &Interrupt,
 ) -> Result<Path<K::State>, Error> {
     let _span = tracing::info_span!("shorten").entered();
-    let check = Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())?;
-    let mut check: AnyCheck<'_, K::State> = Box::new(Possible { kind, check, interrupt: interrupt.clone() });
+    let (space, unused) = (AnySpace::new(kind.space()), AtomicU64::new(0));
+    let (checker, interrupt) = (kind.checker().clone(), interrupt.clone());
+    let mut check: AnyCheck<'_, K::State> = match kind.sampled() {
+        None => {
+            let check = Certified::new(kind.space(), checker, kind.shortcut_clearance())?;
+            Box::new(Possible { kind, check, interrupt })
+        }
+        Some(length) => {
+            let checker = Counted::new(checker, &unused).with_interrupt(interrupt.clone());
+            let check: AnyCheck<'_, K::State> = Box::new(Discrete::new(&space, checker, resolution(length))?);
+            let verifier: AnyCheck<'_, K::State> = Box::new(kind.verifier()?);
+            let check = Both { check, verifier };
+            Box::new(Possible { kind, check, interrupt })
+        }
+    };
     let mut rng = Rng::stream(seed, STREAM);
     Ok(match kind.shortened(path, &mut check, Effort::default(), &mut rng) {
         Some(short) => short,
         None => shorten_by(kind.space(), check, path, rng),
     })
+}
+
+/// A sampled check, and the verifier of what it finds free: a path made short by samples alone would graze what is between them.
+struct Both<'a, S> {
+    check: AnyCheck<'a, S>,
+    verifier: AnyCheck<'a, S>,
+}
+
+impl<S> MotionValidity<S> for Both<'_, S> {
+    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
+        match self.check.check_motion(from, to) {
+            MotionCheck::Free { .. } => self.verifier.check_motion(from, to),
+            hit => hit,
+        }
+    }
 }
 
 /// [`shorten`] with a check behind a pointer: compiled for each space instead of each robot.
@@ -179,5 +247,6 @@ fn verified_as_written<K: RobotKind>(
     }
     let clearance = clearance(kind, &read, kind.accuracy(), interrupt)
         .map_or(report.clearance, |c| c.max(report.clearance));
-    Ok(Ok(Finished { path: rows, length, clearance: Some(clearance), shortened }))
+    let clearance = kind.sampled().is_none().then_some(clearance);
+    Ok(Ok(Finished { path: rows, length, clearance, shortened }))
 }

@@ -41,6 +41,7 @@
 //! | move start and goal | [`Scene::with_ends`] |
 //! | build a roadmap once for many queries | [`Scene::roadmap`], [`SceneRoadmap`] |
 //! | read the result | [`Report`], with a documented JSON form |
+//! | shorten a path from elsewhere | [`Scene::finish`] |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
 //! | give others the means to prove it again | [`Scene::certificate`], [`Certificate`] |
 //! | find out why a configuration is not free | [`Scene::explain`] |
@@ -108,7 +109,7 @@ pub use field::FieldImage;
 #[cfg(feature = "pictures")]
 pub use film::{Film, FilmKind};
 pub use find::find_problem;
-pub use finish::shorten;
+pub use finish::{Finished, shorten};
 pub use goals::GoalPart;
 pub use in_order::in_order;
 pub use many::plan_many;

@@ -46,7 +46,7 @@ pub(crate) fn reported<K: RobotKind>(
         why: None,
         planner: crate::planners::PlannerKind::new(&request.planner)?.to_string(),
         metric: request.metric.to_string(),
-        motion: request.motion.to_string(),
+        motion: crate::prepared::motion(kind, request).to_string(),
         seed: request.seed,
         iterations: found.progress.iterations,
         nodes: found.progress.nodes,

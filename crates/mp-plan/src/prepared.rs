@@ -70,7 +70,7 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
             let counted = counted.with_interrupt(interrupt.clone());
             if self.counts_exactly { counted.exactly() } else { counted }
         };
-        let check: AnyCheck<'_, K::State> = match self.request.motion {
+        let check: AnyCheck<'_, K::State> = match motion(kind, self.request) {
             MotionValidator::Certified => {
                 Box::new(build_error(Certified::new(kind.space(), counted(), kind.tolerance()))?)
             }
@@ -201,11 +201,19 @@ impl<K: RobotKind, M: MotionValidity<K::State>> MotionValidity<K::State> for Pos
     }
 }
 
+/// How motions are checked while planning.
+pub(crate) fn motion<K: RobotKind>(kind: &K, request: &Request) -> MotionValidator {
+    match (request.motion, kind.sampled()) {
+        (MotionValidator::Certified, Some(length)) => MotionValidator::Discrete(length),
+        (motion, _) => motion,
+    }
+}
+
 fn build_error<T>(made: Result<T, ParameterError>) -> Result<T, BuildError> {
     made.map_err(|e| BuildError::Unmade { reason: e.to_string() })
 }
 
-fn resolution(length: Length) -> Resolution {
+pub(crate) fn resolution(length: Length) -> Resolution {
     match length {
         Length::Absolute(v) => Resolution::Length(v),
         Length::Fraction(f) => Resolution::Fraction(f),

@@ -18,7 +18,7 @@ pub use rigid::{RigidScene, RigidSpace};
 
 use crate::numbers::plain;
 use crate::roadmaps::RoadmapState;
-use crate::{Error, MetricName};
+use crate::{Error, Length, MetricName};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
     DefaultNn, Demand, Factored, InputSystem, MotionClearance, MotionValidity, ObstacleKnowledge, Space as _,
@@ -259,6 +259,12 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     fn verifier(&self) -> Result<Self::Verifier<'_>, Error>;
     /// The clearance (m) that certified checks resolve: a motion that comes nearer to contact is not free.
     fn tolerance(&self) -> f64;
+    /// How far apart configurations are tested along motions, where no clearance is known that could certify them: then only
+    /// [`Validity`] is asked, a request for `certified` motions means this, and reports give no clearance. By default motions are
+    /// certified.
+    fn sampled(&self) -> Option<Length> {
+        None
+    }
     /// The accuracy of the clearance reported for a path, metres.
     fn accuracy(&self) -> f64 {
         self.tolerance()

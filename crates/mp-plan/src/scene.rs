@@ -4,8 +4,8 @@ use crate::any_robot::AnyRobot;
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
-    Body, Certificate, Column, Control, Error, Explanation, Length, PathFormat, PathRows, PreparedRun,
-    RelaxField, Report, Request, RobotKind, Sweep, Track, Verdict,
+    Body, Certificate, Column, Control, Error, Explanation, Finished, Length, PathFormat, PathRows,
+    PreparedRun, RelaxField, Report, Request, RobotKind, Sweep, Track, Verdict,
 };
 use mp_cspace::Interrupt;
 use mp_cspace::registry::PlannerInfo;
@@ -343,6 +343,30 @@ impl Scene {
     pub fn roadmap_with(&self, request: &Request, control: &mut Control<'_>) -> Result<SceneRoadmap, Error> {
         let roadmap = Arc::clone(&self.robot).roadmap(request, control)?;
         Ok(SceneRoadmap { roadmap, file: self.file.as_ref().map(|file| file.display().to_string()) })
+    }
+
+    /// Finishes a path from elsewhere, between any two configurations: verifies it, shortens or relaxes it as the request says, and
+    /// verifies the result as it will be written. Of the request, the finish, its field, the seed and the budget of time count.
+    ///
+    /// ```
+    /// use mp_plan::{Control, Finish, PathRows, Request, Scene};
+    /// let scene = Scene::find("easy")?;
+    /// let found = scene.plan(&Request::new("rrt-connect").finish(Finish::AsFound))?;
+    /// let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows: found.path.unwrap_or_default() };
+    /// let finished = scene.finish(&path, &Request::default(), &mut Control::default())?;
+    /// assert!(finished.shortened && Some(finished.length) < found.path_length);
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the path is of another robot or not free: what it hits, and where; and when it was not verified in time.
+    pub fn finish(
+        &self,
+        path: &PathRows,
+        request: &Request,
+        control: &mut Control<'_>,
+    ) -> Result<Finished, Error> {
+        self.robot.finish(path, request, control)
     }
 
     /// Verifies a path from the start to a goal, with a verifier that shares no code with the planners' checks.

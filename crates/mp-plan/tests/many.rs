@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Problems, some of which have an end in collision or a planner that does not exist.
 fn problems() -> Vec<(Scene, Request)> {
-    let (easy, maze) = (Scene::find("easy").unwrap(), Scene::find("alpha-2.0").unwrap());
+    let (easy, maze) = (Scene::find("easy").unwrap(), Scene::find("alpha-1.2").unwrap());
     let inside = easy.with_ends(&easy.start(), &[vec![0.0; 6]]).unwrap();
     (0..60)
         .map(|i| match i % 6 {

@@ -4,7 +4,8 @@ use mp_cspace::{
     Clearance, JointRange, Joints, KnownFree, MotionCheck, MotionClearance, MotionValidity, Validity,
 };
 use mp_plan::{
-    Body, BodyShape, Column, Error, Measured, MetricName, PathRows, Queries, Request, RobotKind, Scene, Touch,
+    Body, BodyShape, Column, Control, Error, Finish, Length, Measured, MetricName, PathRows, Queries,
+    Request, RobotKind, Scene, Touch,
 };
 use nalgebra::{DVector, Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 
@@ -22,12 +23,23 @@ struct Crane {
     space: Joints<Configuration>,
     ends: [Configuration; 2],
     check: Load,
+    sampled: Option<Length>,
 }
 
 #[derive(Clone, Debug)]
 struct Load {
     posts: Vec<Vector2<f64>>,
+    /// Whether only collisions are known.
+    blind: bool,
     queries: u64,
+}
+
+impl Load {
+    fn least(&mut self, q: &Configuration) -> f64 {
+        self.queries += 1;
+        let load = place(q);
+        self.posts.iter().map(|post| (post - load).norm() - LOAD).fold(f64::INFINITY, f64::min)
+    }
 }
 
 fn place(q: &Configuration) -> Vector2<f64> {
@@ -37,14 +49,12 @@ fn place(q: &Configuration) -> Vector2<f64> {
 
 impl Validity<Configuration> for Load {
     fn is_valid(&mut self, q: &Configuration) -> bool {
-        self.clearance(q, f64::MIN_POSITIVE) > 0.0
+        self.least(q) > 0.0
     }
 }
 impl Clearance<Configuration> for Load {
     fn clearance(&mut self, q: &Configuration, _: f64) -> f64 {
-        self.queries += 1;
-        let load = place(q);
-        self.posts.iter().map(|post| (post - load).norm() - LOAD).fold(f64::INFINITY, f64::min)
+        if self.blind { 0.0 } else { self.least(q) }
     }
 }
 impl MotionClearance<Configuration> for Load {
@@ -114,6 +124,9 @@ impl RobotKind for Crane {
     fn tolerance(&self) -> f64 {
         TOLERANCE
     }
+    fn sampled(&self) -> Option<Length> {
+        self.sampled
+    }
     fn measured(&self, _: MetricName) -> Result<Measured<'_, Configuration>, Error> {
         Ok(Measured::new(&self.space))
     }
@@ -169,8 +182,10 @@ fn crane(goal: [f64; 2]) -> Crane {
         ends: [DVector::from_vec(vec![-1.0, 4.0]), DVector::from_vec(goal.to_vec())],
         check: Load {
             posts: (0..8).map(|i| Vector2::new(1.6 + 0.4 * f64::from(i), 0.0)).collect(),
+            blind: false,
             queries: 0,
         },
+        sampled: None,
     }
 }
 
@@ -208,4 +223,63 @@ fn what_is_wrong_is_explained() {
     assert!(scene.explain(&[9.0, 4.0]).unwrap().fault.unwrap().contains("out of bounds"));
     assert!(scene.explain(&[9.0]).unwrap_err().remedy().unwrap().contains("turn [rad]"));
     assert!(scene.lint().is_empty(), "{:?}", scene.lint());
+}
+
+/// The same crane without clearance: motions are sampled.
+fn sampled(goal: [f64; 2]) -> Scene {
+    let mut crane = crane(goal);
+    (crane.check.blind, crane.sampled) = (true, Some(Length::Fraction(0.01)));
+    Scene::new(crane)
+}
+
+#[test]
+fn where_no_clearance_is_known_motions_are_sampled() {
+    let scene = sampled([1.0, 4.0]);
+    for planner in ["rrt-connect", "rrt-star", "prm", "visibility-prm"] {
+        let report = scene.plan(&Request::new(planner).iterations(5_000)).unwrap_or_else(|e| panic!("{e}"));
+        assert!(report.solved && report.motion == "discrete:1%", "{planner}: {report:?}");
+        assert!(report.clearance.is_none() && report.shortened, "{planner}: {report:?}");
+        let rows = report.path.unwrap();
+        let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+        let verdict = scene.check(&path).unwrap();
+        assert!(verdict.free, "{planner}: {verdict:?}");
+        assert!(path.rows.iter().any(|row| row[1] < 1.6 || row[1] > 4.4), "{planner}");
+    }
+    assert!(scene.explain(&[-1.0, 4.0]).unwrap().free);
+    let error = sampled([0.0, 4.0]).plan(&Request::default()).unwrap_err();
+    assert_eq!(error.message(), "the goal is in collision");
+    let error = scene.plan(&Request::default().finish(Finish::Relax)).unwrap_err();
+    assert!(error.message().contains("gradient"), "{error}");
+}
+
+#[test]
+fn paths_from_elsewhere_are_finished() {
+    for scene in [Scene::new(crane([1.0, 4.0])), sampled([1.0, 4.0])] {
+        let path =
+            |rows: Vec<Vec<f64>>| PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+        // Its ends are not those of the scene.
+        let detour = [[-0.5, 3.0], [-2.0, 4.9], [-0.9, 4.95], [0.9, 4.95], [2.0, 4.9], [0.5, 3.0]];
+        let detour = path(detour.map(|row| row.to_vec()).to_vec());
+        let finished = scene.finish(&detour, &Request::default(), &mut Control::default()).unwrap();
+        assert!(finished.shortened && finished.length < 5.0, "{finished:?}");
+        assert_eq!(
+            (finished.path.rows.first(), finished.path.rows.last()),
+            (detour.rows.first(), detour.rows.last())
+        );
+        let faults = scene.check(&finished.path).unwrap().faults;
+        assert!(faults.iter().all(|fault| fault.contains("does not")), "{faults:?}");
+        let kept = Request::default().finish(Finish::AsFound);
+        assert_eq!(scene.finish(&detour, &kept, &mut Control::default()).unwrap().path.rows, detour.rows);
+
+        let through = path(vec![vec![-0.5, 3.0], vec![0.5, 3.0]]);
+        let error = scene.finish(&through, &Request::default(), &mut Control::default()).unwrap_err();
+        assert!(error.message().contains("between configurations 1 and 2"), "{error}");
+    }
+    let scene = Scene::find("easy").unwrap();
+    let rows = scene.plan(&Request::default()).unwrap().path.unwrap();
+    let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+    let mut stopped = Control::default();
+    stopped.cancel.cancel();
+    let error = scene.finish(&path, &Request::default(), &mut stopped).unwrap_err();
+    assert!(error.message().contains("not verified"), "{error}");
 }

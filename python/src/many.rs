@@ -1,0 +1,178 @@
+//! Many problems at once, as an iterator.
+
+use crate::callback::{Failure, known_to_python};
+use crate::error::to_python;
+use crate::interrupt::{Cancel, INTERVAL};
+use crate::report::parts;
+use crate::scene::{Scene, request};
+use mp_plan::{Control, Error, Report, Request, in_order};
+use pyo3::prelude::*;
+use std::ops::ControlFlow;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+/// So many results wait for who takes them.
+const WAITING: usize = 64;
+
+/// What a worker has to say.
+type Planned = Result<Report, Error>;
+
+/// Results in the order of problems. Problems are drawn and planned by threads of their own.
+#[pyclass(frozen, module = "mp_motion._mp")]
+#[derive(Debug)]
+pub(crate) struct Many {
+    results: Mutex<Option<Receiver<Planned>>>,
+    thread: Mutex<Option<JoinHandle<()>>>,
+    /// Ends the work; and what the user gave, which is not ours to raise.
+    cancel: mp_plan::Cancel,
+    theirs: Option<mp_plan::Cancel>,
+    /// What drawing a problem, or a function of an own robot, raised.
+    failures: Failures,
+}
+
+/// The iterator of problems, and the failures of the robots that it gave.
+#[derive(Clone, Debug, Default)]
+struct Failures(Arc<Mutex<Raised>>);
+
+#[derive(Debug, Default)]
+struct Raised {
+    error: Option<PyErr>,
+    robots: Vec<Failure>,
+}
+
+impl Failures {
+    fn with<T>(&self, use_it: impl FnOnce(&mut Raised) -> T) -> T {
+        use_it(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn of_robots(&self) -> bool {
+        self.with(|raised| raised.robots.iter().any(Failure::is_raised))
+    }
+
+    fn take(&self) -> Option<PyErr> {
+        self.with(|raised| raised.robots.iter().find_map(Failure::take).or_else(|| raised.error.take()))
+    }
+}
+
+/// Draws problems, `(Scene, request as JSON)`, from an iterator of Python.
+struct Drawn {
+    iterator: Py<PyAny>,
+    failures: Failures,
+}
+
+impl Iterator for Drawn {
+    type Item = (mp_plan::Scene, Request);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let drawn = Python::attach(|py| {
+            let mut iterator = self.iterator.bind(py).try_iter()?;
+            let Some(item) = iterator.next() else { return Ok(None) };
+            let (scene, json): (PyRef<'_, Scene>, String) = item?.extract()?;
+            if let Some(failure) = scene.failure() {
+                self.failures.with(|raised| {
+                    if !raised.robots.iter().any(|known| known.is(failure)) {
+                        raised.robots.push(failure.clone());
+                    }
+                });
+            }
+            Ok(Some((scene.scene.clone(), request(&json)?)))
+        });
+        drawn.unwrap_or_else(|e: PyErr| {
+            self.failures.with(|raised| raised.error = Some(e));
+            None
+        })
+    }
+}
+
+#[pymethods]
+impl Many {
+    #[new]
+    #[pyo3(signature = (problems, threads, cancel=None))]
+    fn new(problems: Py<PyAny>, threads: usize, cancel: Option<&Cancel>) -> Self {
+        let failures = Failures::default();
+        let drawn = Drawn { iterator: problems, failures: failures.clone() };
+        let ours = mp_plan::Cancel::new();
+        let (sender, receiver) = sync_channel(WAITING);
+        let raised = ours.clone();
+        let work = move || {
+            // As `plan_many`, in threads that the interpreter knows, and with functions that may fail.
+            let plan = |_, (scene, request): (mp_plan::Scene, Request)| {
+                known_to_python(|| {
+                    let mut control = Control { cancel: raised.clone(), ..Control::default() };
+                    scene.plan_with(&request, &mut control)
+                })
+            };
+            in_order(drawn, threads, &raised, plan, |_, result| match sender.send(result) {
+                Ok(()) => ControlFlow::Continue(()),
+                // Nobody takes them any more.
+                Err(_) => ControlFlow::Break(()),
+            });
+        };
+        Self {
+            results: Mutex::new(Some(receiver)),
+            thread: Mutex::new(Some(std::thread::spawn(work))),
+            cancel: ours,
+            theirs: cancel.map(|cancel| cancel.0.clone()),
+            failures,
+        }
+    }
+
+    fn __iter__(this: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        this
+    }
+
+    /// The next report in parts, or the error of a problem that cannot be planned.
+    fn __next__(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
+        loop {
+            let taken = py.detach(|| {
+                let results = self.results.lock().unwrap_or_else(PoisonError::into_inner);
+                results.as_ref().map(|results| results.recv_timeout(INTERVAL))
+            });
+            py.check_signals()?;
+            if self.theirs.as_ref().is_some_and(mp_plan::Cancel::is_raised) {
+                self.cancel.cancel();
+            }
+            if self.failures.of_robots()
+                && let Some(e) = self.failures.take()
+            {
+                return Err(e);
+            }
+            match taken {
+                Some(Ok(Ok(report))) => {
+                    return Ok(Some(parts(py, report)?.into_pyobject(py)?.into_any().unbind()));
+                }
+                Some(Ok(Err(e))) => return Ok(Some(to_python(&e).into_value(py).into_any())),
+                Some(Err(RecvTimeoutError::Timeout)) => {}
+                None | Some(Err(RecvTimeoutError::Disconnected)) => {
+                    self.close(py)?;
+                    return self.failures.take().map_or(Ok(None), Err);
+                }
+            }
+        }
+    }
+
+    /// Ends the work, and waits for its end.
+    fn close(&self, py: Python<'_>) -> PyResult<()> {
+        let of = |mutex: &Mutex<Option<JoinHandle<()>>>| {
+            mutex.lock().unwrap_or_else(PoisonError::into_inner).take()
+        };
+        let ended = py.detach(|| {
+            // Without a receiver nothing waits for room.
+            let results = self.results.lock().unwrap_or_else(PoisonError::into_inner).take();
+            let thread = of(&self.thread);
+            if results.is_some() {
+                self.cancel.cancel();
+            }
+            drop(results);
+            thread.map_or(Ok(()), JoinHandle::join)
+        });
+        ended.map_err(|panic| crate::error::internal(&*panic))
+    }
+}
+
+impl Drop for Many {
+    fn drop(&mut self) {
+        self.cancel.cancel();
+    }
+}
