@@ -28,8 +28,8 @@ def plan_many(
 ) -> Generator[Report | Error, None, None]:
     """Plan many problems on all cores, and yield their results in order.
 
-    Problems are drawn as they are needed, results are yielded as soon as those before them are: memory does not grow with their number.
-    Results are the same for any number of threads, to the bit, as long as no budget of time ends a run.
+    Problems are drawn as they are needed, results are yielded as soon as those before them are: memory does not grow with their
+    number. Results are the same for any number of threads, to the bit, as long as no budget of time ends a run.
 
     Parameters
     ----------

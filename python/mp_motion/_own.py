@@ -55,7 +55,8 @@ class Space:
         low, high = (np.atleast_1d(np.asarray(end, dtype=np.float64)) for end in (self.low, self.high))
         if low.ndim != 1 or low.shape != high.shape:
             raise Error(
-                f"the bounds of a space have shapes {low.shape} and {high.shape}", remedy="give as many highest as lowest values"
+                f"the bounds of a space have shapes {low.shape} and {high.shape}",
+                remedy="give as many highest as lowest values",
             )
         if not (np.all(np.isfinite(low)) and np.all(np.isfinite(high)) and np.all(low < high)):
             raise Error("a bound of a space is not finite, or not below the other", remedy="give finite `low` < `high`")
@@ -73,8 +74,8 @@ class Space:
 class Robot:
     """A robot of yours: a space, and functions that say when a configuration is free.
 
-    The functions are called from threads of the engine, one at a time, with arrays of shape (n,). An exception that one raises ends the
-    run, and comes out of the method that was called.
+    The functions are called from threads of the engine, one at a time, with arrays of shape (n,). An exception that one raises
+    ends the run, and comes out of the method that was called.
 
     Parameters
     ----------
@@ -83,23 +84,23 @@ class Robot:
     valid : callable, optional
         ``valid(q) -> bool``: whether a configuration is free. Motions are tested every `resolution`.
     valid_many : callable, optional
-        ``valid_many(qs) -> array of bool``: which of many configurations, shape (m, n), are free. In place of `valid`; much faster with
-        numpy.
+        ``valid_many(qs) -> array of bool``: which of many configurations, shape (m, n), are free. In place of `valid`; much
+        faster with numpy.
     clearance : callable, optional
-        ``clearance(q) -> float``: a lower bound on the distance (m) to the nearest obstacle, not above zero in contact. In place of
-        `valid`, together with `displacement`: then motions are proved free, however thin a wall is.
+        ``clearance(q) -> float``: a lower bound on the distance (m) to the nearest obstacle, not above zero in contact. In
+        place of `valid`, together with `displacement`: then motions are proved free, however thin a wall is.
     displacement : callable, optional
         ``displacement(a, b) -> float``: an upper bound on the length (m) of the way of any point of the robot from one
         configuration to another.
     distance : callable, optional
-        ``distance(a, b) -> float``: what planners take for near, in place of the distance of the space. Neighbours are then found by a
-        linear search. Lengths of paths in reports are those of the space.
+        ``distance(a, b) -> float``: what planners take for near, in place of the distance of the space. Neighbours are then
+        found by a linear search. Lengths of paths in reports are those of the space.
     verify : callable, optional
-        ``verify(q) -> bool``: a second check, that shares no code with the first, with which finished paths are verified. By default
-        they are verified with the first one, by other code.
+        ``verify(q) -> bool``: a second check, that shares no code with the first, with which finished paths are verified. By
+        default they are verified with the first one, by other code.
     resolution : float or str
-        How far apart configurations are tested while planning, in the distance of the space or as a part of its extent; finished paths are
-        tested at a twentieth of that.
+        How far apart configurations are tested while planning, in the distance of the space or as a part of its extent;
+        finished paths are tested at a twentieth of that.
     tolerance : float
         The clearance (m) that is told from contact.
     name : str
@@ -166,7 +167,9 @@ def native(robot: Robot) -> NativeRobot:
         periodic: list[bool] = np.broadcast_to(np.asarray(robot.space.periodic, dtype=np.bool_), low.shape).tolist()
         weights: list[float] = np.broadcast_to(np.asarray(robot.space.weights, dtype=np.float64), low.shape).tolist()
     except ValueError as e:
-        raise Error(f"`periodic` or `weights` do not fit {len(low)} numbers: {e}", remedy="give one for each, or one for all") from e
+        raise Error(
+            f"`periodic` or `weights` do not fit {len(low)} numbers: {e}", remedy="give one for each, or one for all"
+        ) from e
     return NativeRobot(
         robot.name, robot.space._columns(len(low)), low.tolist(), high.tolist(), periodic, weights,
         robot.valid, robot.valid_many, robot.clearance, robot.displacement, robot.distance, robot.verify,

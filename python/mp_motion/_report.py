@@ -310,7 +310,8 @@ class Explanation:
     in_bounds : bool
         Whether it is within the bounds of the space.
     clearance : float
-        A lower bound on the distance to contact, metres; zero in collision, and where none is known, ``inf`` where there is nothing to hit.
+        A lower bound on the distance to contact, metres; zero in collision, and where none is known, ``inf`` where there is
+        nothing to hit.
     touching : tuple of Touch
         What touches what.
     fault : str or None

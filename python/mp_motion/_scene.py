@@ -398,8 +398,8 @@ class Scene:
     ) -> Scene:
         """Make a scene of a robot of yours, whose checks are functions.
 
-        All planners work but those that need meshes or a gradient; paths are shortened and verified as those of others. Such scenes have no
-        pictures and no certificates, and pickle if their functions do.
+        All planners work but those that need meshes or a gradient; paths are shortened and verified as those of others. Such
+        scenes have no pictures and no certificates, and pickle if their functions do.
 
         Parameters
         ----------
@@ -421,9 +421,11 @@ class Scene:
         >>> report.solved, report.motion, report.clearance > 0
         (True, 'certified', True)
         """
-        if (goal is None) == (goals is None):
+        if goals is None and goal is not None:
+            goals = [goal]
+        elif goals is None or goal is not None:
             raise Error("there must be either `goal` or `goals`", remedy="give one of them")
-        ends = [_row(given) for given in (goals if goals is not None else [goal])]
+        ends = [_row(given) for given in goals]
         return cls._from(_mp.Scene.own(native(robot), _row(start), ends), robot)
 
     def with_ends(self, start: ArrayLike | None = None, goal: ArrayLike | None = None) -> Scene:

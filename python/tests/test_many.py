@@ -10,6 +10,7 @@ import textwrap
 import threading
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 
@@ -37,12 +38,12 @@ def test_results_do_not_depend_on_threads() -> None:
 
 def test_they_are_those_of_plan() -> None:
     scene, options = mp.Scene("maze"), mp.Options("rrt", iterations=20_000)
-    problems = [scene, (scene, mp.Options("prm", nodes=500)), mp.Scene("arm")]
-    results = list(mp.plan_many(problems, options, seeds=[5, 6]))
+    prm, arm = mp.Options("prm", nodes=500), mp.Scene("arm")
+    results = list(mp.plan_many([scene, (scene, prm), arm], options, seeds=[5, 6]))
     alone = [
-        problem.plan_by(how)
-        for problem, base in [(scene, options), (scene, mp.Options("prm", nodes=500)), (problems[2], options)]
-        for how in [mp.Options(base.planner, seed, iterations=base.iterations, nodes=base.nodes) for seed in (5, 6)]
+        problem.plan_by(replace(how, seed=seed))
+        for problem, how in [(scene, options), (scene, prm), (arm, options)]
+        for seed in (5, 6)
     ]
     assert [(r.planner, r.seed, r.fingerprint) for r in results if isinstance(r, mp.Report)] == [
         (r.planner, r.seed, r.fingerprint) for r in alone

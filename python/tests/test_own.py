@@ -7,6 +7,7 @@ import pickle
 import threading
 import time
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -59,7 +60,7 @@ def is_free_between(path: Array, graze: float) -> bool:
         x, y = qs.T
         return bool(((x >= 1.9 + graze) & (x <= 2.1 - graze) & (y <= 3 - graze)).any())
 
-    return not any(hits(a + steps * (b - a)) for a, b in zip(path[:-1], path[1:], strict=True))
+    return not any(hits(a + steps * (b - a)) for a, b in pairwise(path))
 
 
 @pytest.mark.parametrize("which", ROBOTS)
@@ -168,8 +169,8 @@ def raising(*_: object) -> bool:
         (mp.Robot(SPACE, valid_many=lambda qs: free_many(qs)[:0]), ValueError, "0 truth values"),
         (mp.Robot(SPACE, valid_many=lambda qs: qs), TypeError, "array of truth values"),  # type: ignore[arg-type, return-value]
         (mp.Robot(SPACE, clearance=lambda _: np.nan, displacement=displacement), ValueError, "nan"),
-        (mp.Robot(SPACE, clearance=clearance, displacement=lambda *_: -1.0), ValueError, "not negative"),
-        (mp.Robot(SPACE, valid=free, distance=lambda *_: np.nan), ValueError, "not negative"),
+        (mp.Robot(SPACE, clearance=clearance, displacement=lambda a, b: -1.0), ValueError, "not negative"),
+        (mp.Robot(SPACE, valid=free, distance=lambda a, b: np.nan), ValueError, "not negative"),
     ],
 )
 def test_an_error_of_a_function_ends_the_run(robot: mp.Robot, error: type[Exception], message: str) -> None:

@@ -212,7 +212,7 @@ def test_no_input_is_overwritten(folder: Path) -> None:
 def test_what_may_hold_is_shown() -> None:
     scene = mp.Scene("easy")
     assert scene.notes == [] and "touch each other" in scene.lint()[0] and 0.5 < scene.free_share(200) < 1
-    assert "inputs" in mp.Scene("parking").planners_that_cannot()["rrt-connect"]
+    assert "backward" in mp.Scene("parking").planners_that_cannot()["rrt-connect"]
     page = scene.plan()._repr_html_()
     assert page is not None and page.startswith("<iframe") and "easy" in page
     assert repr(scene) == "<Scene easy: SE3>" and repr(scene.plan()).startswith("<Report easy: solved")
