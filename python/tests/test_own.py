@@ -129,6 +129,9 @@ def test_what_is_not_free_is_said() -> None:
     with pytest.raises(mp.Error, match="between configurations 1 and 2"):
         scene.shorten([[1, 1], [3, 1]])
     assert "hits" in (fault := scene.check([[1, 1], [3, 1]]).faults[0]) or "comes nearer" in fault
+    refuses = mp.Robot(SPACE, valid=free, verify=lambda _: False)
+    with pytest.raises(mp.Error, match=r"the start is not free .*: \[1, 1\]"):
+        scene_of(refuses).plan()
     with pytest.raises(mp.Error, match="no metric"):
         scene.plan(metric="manhattan")
 

@@ -83,7 +83,8 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         let mut verifier: AnyCheck<'_, K::State> = Box::new(self.verifier.clone());
         verifier.interrupt_by(&interrupt);
         let verifier = Verifying { verifier, interrupt: interrupt.clone(), unverified: &self.unverified };
-        let problem = Problem::new(&self.space, local, verifier, kind.start().clone(), goals::of_kind(kind))?;
+        let problem = Problem::new(&self.space, local, verifier, kind.start().clone(), goals::of_kind(kind));
+        let problem = problem.map_err(|e| written(kind, e))?;
         let problem = problem.with_obstacles(kind.obstacles(&counted)).with_interrupt(interrupt);
         Ok(match kind.input_system() {
             Some(system) => problem.with_inputs(system),
@@ -199,6 +200,20 @@ impl<K: RobotKind, M: MotionValidity<K::State>> MotionValidity<K::State> for Pos
     fn is_interrupted(&mut self) -> bool {
         self.interrupt.ask()
     }
+}
+
+/// The error, with the state as messages write it.
+fn written<K: RobotKind>(kind: &K, mut error: BuildError) -> BuildError {
+    if let BuildError::Outside { state, .. }
+    | BuildError::NotFree { state, .. }
+    | BuildError::Refused { state, .. } = &mut error
+    {
+        let mut ends = std::iter::once(kind.start()).chain(kind.goals());
+        if let Some(end) = ends.find(|end| format!("{end:?}") == *state) {
+            *state = kind.written(end);
+        }
+    }
+    error
 }
 
 /// How motions are checked while planning.

@@ -1,0 +1,351 @@
+//! The master and the others.
+
+use crate::link::MASTER;
+use crate::{Error, Job, Link};
+use mp_stop::Cancel;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+/// How often messages are looked for.
+const POLL: Duration = Duration::from_millis(1);
+/// While there are so many items for each thread, each rank has one more than it works on, and never waits for the next.
+const PLENTY: u64 = 8;
+
+/// How a job is run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// How many items each rank works on at a time. The same on all ranks.
+    pub threads: usize,
+    /// Ends the job, when it is raised on the master: no further item is handed out, and those that are worked on are dropped.
+    pub cancel: Cancel,
+}
+
+/// One item at a time.
+impl Default for Options {
+    fn default() -> Self {
+        Self { threads: 1, cancel: Cancel::new() }
+    }
+}
+
+/// What the work on an item knows of the whole.
+#[derive(Debug)]
+pub struct Hand {
+    /// Raised when the result is not wanted any more.
+    pub cancel: Cancel,
+    bound: AtomicU64,
+}
+
+impl Hand {
+    /// The [bound](Job::bound) of the job, as far as it is known here.
+    #[must_use]
+    pub fn bound(&self) -> u64 {
+        self.bound.load(Ordering::Relaxed)
+    }
+}
+
+/// How a job ended, on the master; elsewhere there are no numbers.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ran {
+    /// Whether it was cancelled. Then some items have no result.
+    pub cancelled: bool,
+    /// How many items each rank has done.
+    pub items: Vec<u64>,
+}
+
+/// What messages say, by their first byte.
+mod kind {
+    /// To a rank: work on this item.
+    pub(super) const WORK: u8 = b'w';
+    /// To a rank: the bound has fallen.
+    pub(super) const BOUND: u8 = b'b';
+    /// To a rank: drop everything.
+    pub(super) const STOP: u8 = b's';
+    /// To a rank: everything is done.
+    pub(super) const END: u8 = b'e';
+    /// To the master: the result of an item.
+    pub(super) const DONE: u8 = b'd';
+    /// To the master: an item cannot be done.
+    pub(super) const FAILED: u8 = b'f';
+    /// To the master: nothing is worked on any more.
+    pub(super) const IDLE: u8 = b'i';
+    /// To a rank: what all must know.
+    pub(super) const SHARED: u8 = b'a';
+}
+
+fn message(kind: u8, number: u64, rest: &[u8]) -> Vec<u8> {
+    let mut message = Vec::with_capacity(9 + rest.len());
+    message.push(kind);
+    message.extend(number.to_le_bytes());
+    message.extend(rest);
+    message
+}
+
+/// The kind, the number and the rest of a message.
+fn parts(from: usize, message: &[u8]) -> Result<(u8, u64, &[u8]), Error> {
+    let split = message.split_first_chunk::<9>();
+    let Some(([kind, number @ ..], rest)) = split else { return Err(Error::OutOfStep { rank: from }) };
+    Ok((*kind, u64::from_le_bytes(*number), rest))
+}
+
+/// Does an item: its result, or why there is none. The result must depend on the item alone.
+pub type Work<'a> = dyn Fn(u64, &Hand) -> Result<Vec<u8>, String> + Sync + 'a;
+
+/// The result of an item, or why there is none.
+type Outcome = Result<Vec<u8>, String>;
+
+/// Threads that work on items.
+struct Crew<'s> {
+    queue: Sender<u64>,
+    results: Receiver<(u64, Outcome)>,
+    hand: &'s Hand,
+    /// How many items were given and have not come back.
+    busy: usize,
+}
+
+impl Crew<'_> {
+    fn give(&mut self, item: u64) {
+        // The threads live as long as the crew.
+        let _ = self.queue.send(item);
+        self.busy += 1;
+    }
+
+    /// A result, if there is one soon.
+    fn result(&mut self) -> Option<(u64, Outcome)> {
+        match self.results.recv_timeout(POLL) {
+            Ok(done) => {
+                self.busy -= 1;
+                Some(done)
+            }
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => {
+                std::thread::sleep(POLL);
+                None
+            }
+        }
+    }
+
+    /// Drops all work.
+    fn stop(&mut self) {
+        self.hand.cancel.cancel();
+        while self.busy > 0 {
+            let _ = self.result();
+        }
+    }
+
+    fn lower(&self, bound: u64) {
+        self.hand.bound.fetch_min(bound, Ordering::Relaxed);
+    }
+}
+
+/// Calls `with` with so many threads that `work`.
+fn with_crew<T>(threads: usize, work: &Work<'_>, with: impl FnOnce(Crew<'_>) -> T) -> T {
+    let hand = Hand { cancel: Cancel::new(), bound: AtomicU64::new(u64::MAX) };
+    let (queue, items) = channel::<u64>();
+    let (sender, results) = channel();
+    let items = Mutex::new(items);
+    std::thread::scope(|scope| {
+        for _ in 0..threads.max(1) {
+            let (items, sender, hand) = (&items, sender.clone(), &hand);
+            scope.spawn(move || {
+                loop {
+                    let item = items.lock().unwrap_or_else(PoisonError::into_inner).recv();
+                    let Ok(item) = item else { return };
+                    let result = match hand.cancel.is_raised() {
+                        true => Err("cancelled".to_owned()),
+                        false => {
+                            let work = std::panic::AssertUnwindSafe(|| work(item, hand));
+                            std::panic::catch_unwind(work).unwrap_or_else(|panic| Err(said(&*panic)))
+                        }
+                    };
+                    if sender.send((item, result)).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        with(Crew { queue, results, hand: &hand, busy: 0 })
+    })
+}
+
+/// What a panic said.
+fn said(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+    format!("a fault of the program: {}", text.unwrap_or("no message"))
+}
+
+/// Does a job on all ranks: each of them calls this, the master with the job.
+///
+/// # Errors
+/// When an item fails, a result cannot be taken, or a rank cannot be reached. All ranks end then, the others without an error.
+pub fn run(
+    link: &dyn Link,
+    options: &Options,
+    job: Option<&mut dyn Job>,
+    work: &Work<'_>,
+) -> Result<Ran, Error> {
+    with_crew(options.threads, work, |crew| match job {
+        Some(job) if link.is_master() => {
+            let mut master = Master::new(link, options, job, crew);
+            let ran = master.hand_out();
+            master.end(ran)
+        }
+        _ => other(link, crew).map(|()| Ran::default()),
+    })
+}
+
+struct Master<'a, 'c> {
+    link: &'a dyn Link,
+    options: &'a Options,
+    job: &'a mut dyn Job,
+    crew: Crew<'c>,
+    /// How many items each rank has that are not done.
+    busy: Vec<usize>,
+    done: Vec<u64>,
+    bound: u64,
+}
+
+impl<'a, 'c> Master<'a, 'c> {
+    fn new(link: &'a dyn Link, options: &'a Options, job: &'a mut dyn Job, crew: Crew<'c>) -> Self {
+        let ranks = link.ranks();
+        Self { link, options, job, crew, busy: vec![0; ranks], done: vec![0; ranks], bound: u64::MAX }
+    }
+
+    /// Hands out items until there are none. False when it was cancelled.
+    fn hand_out(&mut self) -> Result<bool, Error> {
+        loop {
+            if self.options.cancel.is_raised() {
+                return Ok(false);
+            }
+            self.fill()?;
+            if self.busy.iter().all(|busy| *busy == 0) {
+                return Ok(true);
+            }
+            while let Some((from, message)) = self.link.poll()? {
+                self.received(from, &message)?;
+            }
+            if let Some((item, result)) = self.crew.result() {
+                self.took(item, MASTER, result)?;
+            }
+        }
+    }
+
+    /// Gives each rank as many items as it works on at a time, in turn, and while there are plenty one more.
+    fn fill(&mut self) -> Result<(), Error> {
+        let threads = self.options.threads.max(1);
+        let plenty = PLENTY * (threads * self.link.ranks()) as u64;
+        for wanted in 1..=threads + 1 {
+            for rank in 0..self.busy.len() {
+                let more = wanted <= threads || self.job.left() > plenty;
+                if self.busy[rank] >= wanted || !more {
+                    continue;
+                }
+                let Some(item) = self.job.next() else { return Ok(()) };
+                self.busy[rank] += 1;
+                match rank {
+                    MASTER => self.crew.give(item),
+                    rank => self.link.send(rank, message(kind::WORK, item, &[]))?,
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn received(&mut self, from: usize, message: &[u8]) -> Result<(), Error> {
+        let (kind, item, rest) = parts(from, message)?;
+        match kind {
+            kind::DONE => self.took(item, from, Ok(rest.to_vec())),
+            kind::FAILED => self.took(item, from, Err(String::from_utf8_lossy(rest).into_owned())),
+            _ => Err(Error::OutOfStep { rank: from }),
+        }
+    }
+
+    fn took(&mut self, item: u64, rank: usize, result: Outcome) -> Result<(), Error> {
+        let failed = |message| Error::Item { item, rank, message };
+        self.busy[rank] = self.busy[rank].checked_sub(1).ok_or(Error::OutOfStep { rank })?;
+        self.job.take(item, rank, result.map_err(failed)?).map_err(failed)?;
+        self.done[rank] += 1;
+        let bound = self.job.bound();
+        if bound < self.bound {
+            self.bound = bound;
+            self.crew.lower(bound);
+            self.to_others(kind::BOUND, bound)?;
+        }
+        Ok(())
+    }
+
+    fn to_others(&self, kind: u8, number: u64) -> Result<(), Error> {
+        (1..self.link.ranks()).try_for_each(|rank| self.link.send(rank, message(kind, number, &[])))
+    }
+
+    /// Ends the job on all ranks, and waits until none of them works any more.
+    fn end(mut self, ran: Result<bool, Error>) -> Result<Ran, Error> {
+        if let Err(e @ Error::Link(_)) = ran {
+            self.crew.stop();
+            return Err(e);
+        }
+        let complete = matches!(ran, Ok(true));
+        self.to_others(if complete { kind::END } else { kind::STOP }, 0)?;
+        self.crew.stop();
+        let mut idle = 1;
+        while idle < self.link.ranks() {
+            match self.link.poll()? {
+                // Results that nobody wants any more come before.
+                Some((from, message)) => idle += usize::from(parts(from, &message)?.0 == kind::IDLE),
+                None => std::thread::sleep(POLL),
+            }
+        }
+        Ok(Ran { cancelled: !ran?, items: self.done })
+    }
+}
+
+/// Works on what the master says.
+fn other(link: &dyn Link, mut crew: Crew<'_>) -> Result<(), Error> {
+    let send = |item, result: Outcome| match result {
+        Ok(result) => link.send(MASTER, message(kind::DONE, item, &result)),
+        Err(text) => link.send(MASTER, message(kind::FAILED, item, text.as_bytes())),
+    };
+    loop {
+        while let Some((from, received)) = link.poll()? {
+            match parts(from, &received)? {
+                (kind::WORK, item, _) => crew.give(item),
+                (kind::BOUND, bound, _) => crew.lower(bound),
+                (kind::STOP | kind::END, ..) => {
+                    crew.stop();
+                    return link.send(MASTER, message(kind::IDLE, 0, &[]));
+                }
+                _ => return Err(Error::OutOfStep { rank: from }),
+            }
+        }
+        if crew.busy == 0 {
+            std::thread::sleep(POLL);
+        } else if let Some((item, result)) = crew.result() {
+            send(item, result)?;
+        }
+    }
+}
+
+/// What the master has, on all ranks: each of them calls this. The others' `bytes` are dropped.
+///
+/// # Errors
+/// When a rank cannot be reached, or is at another call.
+pub fn broadcast(link: &dyn Link, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
+    if link.is_master() {
+        let all = message(kind::SHARED, 0, &bytes);
+        (1..link.ranks()).try_for_each(|rank| link.send(rank, all.clone()))?;
+        return Ok(bytes);
+    }
+    loop {
+        match link.poll()? {
+            Some((from, message)) => {
+                return match parts(from, &message)? {
+                    (kind::SHARED, _, rest) => Ok(rest.to_vec()),
+                    _ => Err(Error::OutOfStep { rank: from }),
+                };
+            }
+            None => std::thread::sleep(POLL),
+        }
+    }
+}

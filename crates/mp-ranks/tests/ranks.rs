@@ -1,0 +1,234 @@
+//! The same results for any number of ranks, whoever is fast or slow; cancelled and gone on with; failing.
+
+use mp_ranks::{
+    Checkpoint, Error, Hand, Items, Job, Link, Options, Policy, Ran, Work, broadcast, run, simulate, threads,
+};
+use mp_stop::Cancel;
+use proptest::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+/// Runs a job on so many ranks; the master's answer.
+fn on(ranks: usize, options: &Options, job: &mut (dyn Job + Send), work: &Work<'_>) -> Result<Ran, Error> {
+    std::thread::scope(|scope| {
+        let mut links = threads(ranks).into_iter();
+        let master = links.next().unwrap();
+        for link in links {
+            scope.spawn(move || run(&link, options, None, work).unwrap());
+        }
+        run(&master, options, Some(job), work)
+    })
+}
+
+/// Takes longer for some items, which differ from rank to rank and time to time.
+fn square(item: u64, _: &Hand) -> Result<Vec<u8>, String> {
+    static CALLS: AtomicU64 = AtomicU64::new(0);
+    let call = CALLS.fetch_add(1, Ordering::Relaxed);
+    std::thread::sleep(Duration::from_micros(200 * (call % 7)));
+    Ok((item * item).to_le_bytes().to_vec())
+}
+
+#[test]
+fn results_do_not_depend_on_ranks_and_threads() {
+    for ranks in [1, 2, 3, 4, 7] {
+        for threads in [1, 3] {
+            let mut results = vec![None; 200];
+            let mut of_rank = vec![0; ranks];
+            let mut job = Items::dearest_first(
+                0..200,
+                |item| (item % 5) as f64,
+                |item, rank, result| {
+                    of_rank[rank] += 1;
+                    assert!(results[item as usize].replace(result).is_none(), "{item} twice");
+                    Ok(())
+                },
+            );
+            let options = Options { threads, ..Options::default() };
+            let ran = on(ranks, &options, &mut job, &square).unwrap();
+            assert_eq!((ran.cancelled, &ran.items), (false, &of_rank));
+            assert!(ranks * threads > 60 || of_rank.iter().all(|items| *items > 0), "{of_rank:?}");
+            for (item, result) in results.into_iter().enumerate() {
+                assert_eq!(result, Some(((item * item) as u64).to_le_bytes().to_vec()));
+            }
+        }
+    }
+}
+
+#[test]
+fn what_was_cancelled_goes_on_from_its_checkpoint() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("squares");
+    let done = AtomicU64::new(0);
+    let work = |item: u64, hand: &Hand| {
+        done.fetch_add(1, Ordering::Relaxed);
+        square(item, hand)
+    };
+    let mut results = std::collections::BTreeMap::new();
+    for stop_at in [30, 70, 1000] {
+        let checkpoint = Checkpoint::open(&file, "100 squares").unwrap();
+        results.extend(checkpoint.known().clone());
+        let open: Vec<u64> = (0..100).filter(|item| !checkpoint.known().contains_key(item)).collect();
+        let options = Options::default();
+        let mut job = Items::new(open, |item, _, result: Vec<u8>| {
+            checkpoint.keep(item, &result).map_err(|e| e.to_string())?;
+            results.insert(item, result);
+            if results.len() == stop_at {
+                options.cancel.cancel();
+            }
+            Ok(())
+        });
+        let ran = on(3, &options, &mut job, &work).unwrap();
+        assert_eq!(ran.cancelled, stop_at < 100);
+    }
+    assert!(results.iter().map(|(item, result)| (*item, result)).eq((0..100).map(|i| (i, &results[&i]))));
+    // Those that were worked on when it was cancelled are done again.
+    assert!(done.load(Ordering::Relaxed) <= 100 + 2 * 6);
+}
+
+#[test]
+fn long_items_hear_of_a_cancel() {
+    let options = Options::default();
+    let waits = |_: u64, hand: &Hand| {
+        options.cancel.cancel();
+        while !hand.cancel.is_raised() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        Ok(Vec::new())
+    };
+    let ran = on(3, &options, &mut Items::new(0..10, |_, _, _| Ok(())), &waits).unwrap();
+    assert!(ran.cancelled && ran.items == [0, 0, 0]);
+}
+
+#[test]
+fn an_item_that_fails_is_named_and_ends_all_ranks() {
+    for bad in [0, 17, 49] {
+        let fails = |item: u64, hand: &Hand| match item == bad {
+            true => Err("no map".to_owned()),
+            false => square(item, hand),
+        };
+        let e = on(3, &Options::default(), &mut Items::new(0..50, |_, _, _| Ok(())), &fails).unwrap_err();
+        assert!(
+            matches!(&e, Error::Item { item, message, .. } if *item == bad && message == "no map"),
+            "{e}"
+        );
+        let panics = |item: u64, hand: &Hand| {
+            assert!(item != bad, "a fault");
+            square(item, hand)
+        };
+        let e = on(2, &Options::default(), &mut Items::new(0..50, |_, _, _| Ok(())), &panics).unwrap_err();
+        assert!(e.to_string().contains("a fault"), "{e}");
+        let mut untaken = Items::new(0..50, |item, _, _| (item != bad).then_some(()).ok_or("odd".to_owned()));
+        let e = on(2, &Options::default(), &mut untaken, &square).unwrap_err();
+        assert!(e.to_string().contains(&format!("item {bad},")), "{e}");
+    }
+}
+
+/// A search of the least number, which ends others that are worse already.
+struct Least {
+    next: u64,
+    best: u64,
+}
+
+impl Job for Least {
+    fn next(&mut self) -> Option<u64> {
+        self.next += 1;
+        (self.next <= 40).then_some(self.next)
+    }
+    fn left(&self) -> u64 {
+        40 - self.next.min(40)
+    }
+    fn take(&mut self, _: u64, _: usize, result: Vec<u8>) -> Result<(), String> {
+        let value = u64::from_le_bytes(result.try_into().map_err(|_| "eight bytes")?);
+        self.best = self.best.min(value);
+        Ok(())
+    }
+    fn bound(&self) -> u64 {
+        self.best
+    }
+}
+
+#[test]
+fn the_bound_reaches_those_that_work() {
+    for ranks in [1, 3] {
+        let ended_early = AtomicU64::new(0);
+        // Item 2 counts to 2, the others never end by themselves.
+        let counts = |item: u64, hand: &Hand| {
+            let mut n = 0_u64;
+            while n < if item == 2 { 2 } else { u64::MAX } {
+                if n > hand.bound() {
+                    ended_early.fetch_add(1, Ordering::Relaxed);
+                    return Ok(u64::MAX.to_le_bytes().to_vec());
+                }
+                n += 1;
+                std::thread::sleep(Duration::from_micros(100));
+            }
+            Ok(n.to_le_bytes().to_vec())
+        };
+        let mut job = Least { next: 0, best: u64::MAX };
+        on(ranks, &Options { threads: 2, ..Options::default() }, &mut job, &counts).unwrap();
+        assert_eq!((job.best, ended_early.into_inner()), (2, 39));
+    }
+}
+
+#[test]
+fn several_jobs_one_after_the_other_with_what_all_must_know() {
+    let sum_of = |link: &dyn Link, cancel: &Cancel| {
+        let (mut total, options) = (0, Options { cancel: cancel.clone(), ..Options::default() });
+        for round in 0..5_u64 {
+            let work = move |item: u64, _: &Hand| Ok((item + round).to_le_bytes().to_vec());
+            let mut sum = total;
+            let mut job = Items::new(0..20, |_, _, result: Vec<u8>| {
+                sum += u64::from_le_bytes(result.try_into().map_err(|_| "eight bytes")?);
+                Ok(())
+            });
+            let job: Option<&mut dyn Job> = if link.is_master() { Some(&mut job) } else { None };
+            run(link, &options, job, &work).unwrap();
+            let bytes = broadcast(link, sum.to_le_bytes().to_vec()).unwrap();
+            total = u64::from_le_bytes(bytes.try_into().unwrap());
+        }
+        total
+    };
+    let cancel = Cancel::new();
+    std::thread::scope(|scope| {
+        let all: Vec<_> =
+            threads(4).into_iter().map(|link| scope.spawn(|| (link, &cancel)).join().unwrap()).collect();
+        let all: Vec<_> =
+            all.into_iter().map(|(link, cancel)| scope.spawn(move || sum_of(&link, cancel))).collect();
+        for rank in all {
+            assert_eq!(rank.join().unwrap(), 5 * 190 + 20 * 10);
+        }
+    });
+}
+
+proptest! {
+    /// Nothing takes longer than one rank, or less than its share; nothing gets lost.
+    #[test]
+    fn simulated_jobs_are_possible(costs in prop::collection::vec(0.001..10.0_f64, 1..300), ranks in 1_usize..40) {
+        let total: f64 = costs.iter().sum();
+        let longest = costs.iter().copied().fold(0.0, f64::max);
+        for policy in [Policy::Blocks, Policy::Shards, Policy::InOrder, Policy::DearestFirst] {
+            let s = simulate(&costs, policy, ranks, 1e-5, 1e-6);
+            prop_assert!(s.makespan_s >= longest.max(total / ranks as f64) * (1.0 - 1e-9), "{policy:?} {s:?}");
+            prop_assert!(s.makespan_s <= total + 1e-3 * costs.len() as f64, "{policy:?} {s:?}");
+            prop_assert!(s.efficiency <= 1.0 + 1e-9 && s.master_load < 0.5, "{policy:?} {s:?}");
+        }
+        // Graham 1969: items handed out in any order end within twice the best, and the dearest first within four thirds. With one more
+        // item in hand than is worked on, that holds for the items without.
+        let best = longest.max(total / ranks as f64);
+        let in_order = simulate(&costs, Policy::InOrder, ranks, 0.0, 0.0).makespan_s;
+        prop_assert!(in_order <= 2.0 * best + longest + 1e-9, "{in_order} {best}");
+    }
+}
+
+#[test]
+fn simulated_jobs_are_those_done_by_hand() {
+    let hand = |costs: &[f64], policy, ranks| simulate(costs, policy, ranks, 0.0, 0.0).makespan_s;
+    let costs = [1.0, 1.0, 1.0, 5.0];
+    assert_eq!(hand(&costs, Policy::Blocks, 2), 6.0);
+    assert_eq!(hand(&costs, Policy::Shards, 2), 6.0);
+    assert_eq!(hand(&costs, Policy::InOrder, 2), 6.0);
+    assert_eq!(hand(&costs, Policy::DearestFirst, 2), 5.0);
+    let slow = simulate(&[1.0; 4], Policy::InOrder, 2, 0.5, 0.25);
+    // Sent at 0.25 and 0.5, there at 0.75 and 1, done at 1.75 and 2, known at 2.25 and 2.5, the next ones sent at 2.5 and 2.75 …
+    assert_eq!((slow.makespan_s, slow.master_load), (4.25, 1.0 / 4.25));
+}
