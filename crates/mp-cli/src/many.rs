@@ -94,7 +94,8 @@ fn not_standard(what: &str, file: &Path) -> Result<(), Error> {
 /// How many were solved.
 fn summary(tally: Tally) -> String {
     let Tally { items, solved, unsolved, failed, timed } = tally;
-    let mut text = format!("{items} problems: {solved} solved, {unsolved} unsolved, {failed} failed");
+    let problems = count(usize::try_from(items).unwrap_or(usize::MAX), "problem");
+    let mut text = format!("{problems}: {solved} solved, {unsolved} unsolved, {failed} failed");
     if timed > 0 {
         text += &format!("; the time was up for {timed}: their results depend on the machine");
     }

@@ -173,8 +173,7 @@ fn ctrl_c_keeps_what_was_done() {
     let dir = dir();
     // What is last takes long, so that the signal comes before the end.
     let first = "{\"scene\": \"window\", \"seeds\": {\"from\": 1, \"count\": 30}}";
-    let last =
-        "{\"scene\": \"closed\", \"request\": {\"budget\": {\"iterations\": 2500}}, \"seeds\": [1, 2, 3, 4]}";
+    let last = "{\"scene\": \"closed\", \"request\": {\"budget\": {\"iterations\": 20000}}, \"seeds\": [1, 2, 3, 4]}";
     dir.write("list.jsonl", format!("{first}\n{last}\n"));
     assert_eq!(mp(&dir, &many("all.jsonl", &["--threads", "2"])).code, 0);
     let all = dir.bytes("all.jsonl");
