@@ -6,7 +6,7 @@ use crate::interrupt;
 use crate::output::{Claims, note, print};
 use crate::progress::Line;
 use mp_plan::{
-    Cancel, Error, Interrupt, ListedProblems, ManyOptions, ManyOutcome, ProblemList, Shard, Tally,
+    Cancel, Error, Interrupt, ListedProblems, ManyOptions, ManyOutcome, ProblemList, Shard, Tally, count,
     merge_results,
 };
 use std::path::Path;

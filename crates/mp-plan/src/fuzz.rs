@@ -221,7 +221,7 @@ pub fn many_results(bytes: &[u8]) -> Result<(), Error> {
         match reader.read()? {
             Next::Item(result) => {
                 let again = serde_json::to_vec(&result).unwrap_or_default();
-                assert_eq!(serde_json::from_slice::<ItemResult>(&again).ok(), Some(result));
+                assert_eq!(serde_json::from_slice::<ItemResult>(&again).ok(), Some(*result));
             }
             Next::Cut => return Ok(()),
             Next::End => break,

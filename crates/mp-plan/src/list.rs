@@ -1,6 +1,7 @@
 //! Lists of planning problems: their items are numbered, and their results are logs that go on where they ended.
 
 mod merge;
+mod reader;
 mod results;
 mod run;
 mod scenes;
@@ -9,9 +10,11 @@ mod shard;
 pub use merge::merge_results;
 #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
 pub(crate) use merge::merged;
-pub use results::{ItemError, ItemResult, RESULTS_VERSION, ResultsHeader, SceneFingerprint, Tally};
 #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
-pub(crate) use results::{Next, ResultsReader, checksum};
+pub(crate) use reader::{Next, ResultsReader};
+#[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
+pub(crate) use results::checksum;
+pub use results::{ItemError, ItemResult, RESULTS_VERSION, ResultsHeader, SceneFingerprint, Tally};
 pub use run::{ManyOptions, ManyOutcome};
 pub use scenes::ListedProblems;
 pub use shard::Shard;

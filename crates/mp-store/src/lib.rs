@@ -2,7 +2,8 @@
 //!
 //! - [`read`] and [`open`] accept regular files up to a limit. A pipe, a device or a file that is too large is an error
 //!   before anything is read.
-//! - [`write`](fn@write) replaces a file in one step, [`write_parts`] one that is large, and [`writable`] says before a long run whether that will work.
+//! - [`write`](fn@write) replaces a file in one step, [`write_parts`] one that is large, and [`writable`] says before a
+//!   long run whether that will work.
 //! - [`FileId`] tells whether two names lead to the same file.
 //! - [`Lock`] keeps other processes from growing the same file or folder.
 //! - [`Journal`] is a file that grows by whole lines.

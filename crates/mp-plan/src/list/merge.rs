@@ -1,6 +1,7 @@
 //! Results of all shards of a list, merged to those of the whole.
 
-use super::results::{Next, ResultsReader, end_line, line};
+use super::reader::{Next, ResultsReader};
+use super::results::{end_line, line};
 use super::run::open;
 use super::{ResultsHeader, Shard, Tally};
 use crate::Error;
@@ -13,8 +14,8 @@ use xxhash_rust::xxh3::Xxh3;
 /// Merges the results of all shards of a list, given in any order, into the file `out`: it has the bytes of a run of all items.
 ///
 /// # Errors
-/// When a shard is missing, is there twice, is not complete or damaged, or is of another list, version, scene or options than the others: with
-/// its name, and the command that makes it again. When a file cannot be read, or `out` cannot be written; it is then as before.
+/// When a shard is missing, is there twice, is not complete or damaged, or is of another list, version, scene or options than the
+/// others: with its name, and the command that makes it again. When a file cannot be read, or `out` cannot be written; it is then as before.
 pub fn merge_results<P: AsRef<Path>>(out: &Path, shards: &[P]) -> Result<Tally, Error> {
     let readers = shards.iter().map(|file| open(file.as_ref())).collect::<Result<_, _>>()?;
     mp_store::make_folder(mp_store::folder_of(out))?;

@@ -1,6 +1,7 @@
 //! Plans the items of a list, and appends their results to a log.
 
-use super::results::{Next, ResultsReader, end_line, line};
+use super::reader::{Next, ResultsReader};
+use super::results::{end_line, line};
 use super::{ItemResult, ListedProblems, ResultsHeader, Shard, Tally};
 use crate::{Cancel, Control, Error, in_order};
 use mp_io::shortened;
