@@ -2,7 +2,9 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use mp_plan::{Length, MetricName, Mode, MotionValidator, PlannerInfo, RelaxField, Request, positive_number};
+use mp_plan::{
+    Length, MetricName, Mode, MotionValidator, PlannerInfo, RelaxField, Request, Shard, positive_number,
+};
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -22,6 +24,10 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Plan on a scene: solve, shorten, verify, and write the path and a picture.
     Plan(Box<Plan>),
+    /// Plan all problems of a list, thousands of them, and go on where that ended before.
+    Many(Many),
+    /// Merge the results of all shards of a list.
+    Merge(Merge),
     /// Verify a path with the independent checker: exit 0 only if it is certified free. Or explain one configuration.
     Check(Check),
     /// Describe a mesh, scene or path file.
@@ -136,6 +142,39 @@ pub(crate) struct Plan {
     /// Also write each scene to this folder as one JSON and two OFF files, for other planners.
     #[arg(long, value_name = "DIR")]
     pub(crate) export: Option<PathBuf>,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Many {
+    /// The list: a text file with one JSON object a line, such as {"scene": "cubicles", "seeds": {"from": 1, "count": 100}}. Scenes
+    /// are shipped ones, or files relative to the list. docs/formats/many.md describes it.
+    pub(crate) list: PathBuf,
+    /// The file for the results, JSON lines: a report for each problem and seed, in order, or the error for which there is none. If it
+    /// is there already, from a run that was interrupted or killed, this one goes on with it.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// How many problems at once [default: one for each core]. Results do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Plan only the part I of N of the list, I from 1. `mp merge` puts the results of all parts together.
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = parsed::<Shard>)]
+    pub(crate) shard: Shard,
+    /// The budget of time of each problem that names none, seconds [default: 60]. Where time ends a run, results depend on the
+    /// machine: name budgets of iterations or nodes in the list, and give enough time.
+    #[arg(long, value_name = "S", value_parser = positive_number)]
+    pub(crate) time: Option<f64>,
+    /// Write times into the reports. Results are then not the same twice.
+    #[arg(long)]
+    pub(crate) times: bool,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Merge {
+    /// The file for the merged results: the bytes of a run of the whole list.
+    pub(crate) out: PathBuf,
+    /// The results of all shards, in any order.
+    #[arg(required = true)]
+    pub(crate) shards: Vec<PathBuf>,
 }
 
 #[derive(Clone, Debug, Args)]

@@ -1,4 +1,4 @@
-//! The program `mp`: plan, check, info, render, view on the command line.
+//! The program `mp`: plan, many, merge, check, info, render, view on the command line.
 //!
 //! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input, 141 when the reader of standard output has
 //! gone.
@@ -11,6 +11,7 @@ mod info;
 mod input;
 mod interrupt;
 mod log;
+mod many;
 mod memory;
 mod output;
 mod page_planner;
@@ -33,6 +34,8 @@ fn main() -> ExitCode {
     log::init();
     let outcome = match &cli.command {
         Command::Plan(args) => plan::run(args),
+        Command::Many(args) => many::run(args),
+        Command::Merge(args) => many::merge(args),
         Command::Check(args) => check::run(args),
         Command::Info(args) => info::run(args),
         Command::Render(args) => render::run(args),

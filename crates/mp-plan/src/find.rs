@@ -2,7 +2,7 @@
 
 use crate::{Error, Scene};
 use mp_cspace::Interrupt;
-use mp_io::{Disk, Until};
+use mp_io::{Disk, Files, Until};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
@@ -24,9 +24,14 @@ impl Scene {
     /// # Errors
     /// As [`find`](Self::find), and when it was told to end.
     pub fn find_until(given: impl AsRef<Path>, interrupt: &Interrupt) -> Result<Self, Error> {
+        Self::find_in(Path::new(""), given.as_ref(), interrupt)
+    }
+
+    /// As [`find_until`](Self::find_until), where files are relative to `folder`. The scene names its files so too.
+    pub(crate) fn find_in(folder: &Path, given: &Path, interrupt: &Interrupt) -> Result<Self, Error> {
         let until = |files| Until { files, interrupt: interrupt.clone() };
-        match locate(given.as_ref())? {
-            Location::Disk(file) => Self::load_from(&until(&Disk), &file),
+        match locate(folder, given)? {
+            Location::Disk(file) => Self::load_from(&until(&InFolder(folder)), &file),
             #[cfg(feature = "scenes")]
             Location::Memory(file) => {
                 let mut scene = Self::load_from(&until(&shipped_files()), Path::new(file))?;
@@ -51,7 +56,7 @@ impl Scene {
 /// # Errors
 /// When there is no such scene, or its robot is not a rigid body among meshes.
 pub fn find_problem(given: impl AsRef<Path>) -> Result<mp_io::RigidProblem, Error> {
-    Ok(match locate(given.as_ref())? {
+    Ok(match locate(Path::new(""), given.as_ref())? {
         Location::Disk(file) => mp_io::RigidProblem::load(file)?,
         #[cfg(feature = "scenes")]
         Location::Memory(file) => mp_io::RigidProblem::load_from(&shipped_files(), Path::new(file))?,
@@ -70,14 +75,32 @@ pub(crate) fn shipped_files() -> impl mp_io::Files {
     mp_io::InMemory(|name: &str| mp_scenes::file(name).map(|file| file.bytes))
 }
 
-fn locate(given: &Path) -> Result<Location, Error> {
-    if let Some(file) = file_of(given) {
+/// The files of a folder.
+#[derive(Debug)]
+pub(crate) struct InFolder<'f>(pub(crate) &'f Path);
+
+impl Files for InFolder<'_> {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
+        Disk.read(&self.0.join(path), limit)
+    }
+    fn holds(&self, path: &Path) -> bool {
+        Disk.holds(&self.0.join(path))
+    }
+    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
+        Disk.absolute(&self.0.join(folder))
+    }
+}
+
+/// Where the scene `given` is, if files are relative to `folder`; so is the file that it returns.
+fn locate(folder: &Path, given: &Path) -> Result<Location, Error> {
+    if let Some(file) = file_of(folder, given) {
         return Ok(Location::Disk(file));
     }
     #[cfg(feature = "scenes")]
     if let Some(scene) = given.to_str().and_then(mp_scenes::scene) {
         return Ok(Location::Memory(scene.path));
     }
+    let given = &folder.join(given);
     if given.is_dir() {
         return Err(Error::new(format!("{} is a folder, not a scene file", given.display()))
             .help("name a file in it"));
@@ -97,9 +120,9 @@ fn locate(given: &Path) -> Result<Location, Error> {
     Err(Error::new(format!("there is no scene {}", given.display())).help(help))
 }
 
-/// The file that `given` names, with or without its ending.
-fn file_of(given: &Path) -> Option<PathBuf> {
-    if given.is_file() {
+/// The file in `folder` that `given` names, with or without its ending.
+fn file_of(folder: &Path, given: &Path) -> Option<PathBuf> {
+    if folder.join(given).is_file() {
         return Some(given.to_owned());
     }
     let with = |ending: &&str| {
@@ -108,7 +131,8 @@ fn file_of(given: &Path) -> Option<PathBuf> {
         name.push(ending);
         PathBuf::from(name)
     };
-    ENDINGS.iter().map(with).find(|path| path.is_file() && !is_path(path))
+    let is_scene = |path: &Path| path.is_file() && !is_path(path);
+    ENDINGS.iter().map(with).find(|path| is_scene(&folder.join(path)))
 }
 
 /// Whether a text file holds a path: its first line has only numbers, and that of a scene has not.

@@ -1,6 +1,7 @@
 //! The files that a scene was read from. An output must not overwrite them.
 
 use crate::Scene;
+use crate::find::InFolder;
 use mp_io::{Error, Files};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -49,18 +50,34 @@ impl Scene {
             return Err(crate::Error::new(format!("{} was not read from a file", self.name())));
         }
         let folder = common_folder(self.inputs.iter().map(PathBuf::as_path));
-        let content = |path: &Path| {
-            #[cfg(feature = "scenes")]
-            if self.shipped {
-                return crate::find::shipped_files().read(path, mp_io::MAX_MESH_BYTES);
-            }
-            mp_io::Disk.read(path, mp_io::MAX_MESH_BYTES)
-        };
         let file = |path: &PathBuf| {
             let inside = path.strip_prefix(&folder).unwrap_or(path);
-            Ok((inside.to_string_lossy().replace('\\', "/"), content(path)?))
+            Ok((inside.to_string_lossy().replace('\\', "/"), self.content(Path::new(""), path)?))
         };
         self.inputs.iter().map(file).collect()
+    }
+
+    /// A hash of the content of all files that the scene was read from, which are relative to `from` (XXH3).
+    ///
+    /// # Errors
+    /// When one cannot be read any more.
+    pub(crate) fn input_fingerprint(&self, from: &Path) -> Result<u64, crate::Error> {
+        let mut hash = xxhash_rust::xxh3::Xxh3::new();
+        for path in &*self.inputs {
+            let bytes = self.content(from, path)?;
+            hash.update(&(bytes.len() as u64).to_le_bytes());
+            hash.update(&bytes);
+        }
+        Ok(hash.digest())
+    }
+
+    /// The content of one of the files that the scene was read from, which are relative to `from`.
+    fn content(&self, from: &Path, path: &Path) -> Result<Vec<u8>, Error> {
+        #[cfg(feature = "scenes")]
+        if self.shipped {
+            return crate::find::shipped_files().read(path, mp_io::MAX_MESH_BYTES);
+        }
+        InFolder(from).read(path, mp_io::MAX_MESH_BYTES)
     }
 
     /// The input files that are on the disk: an output must be none of them. Empty for a shipped scene, which is in memory.

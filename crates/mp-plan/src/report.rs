@@ -217,6 +217,23 @@ impl From<mp_cspace::StopReason> for StoppedBy {
 }
 
 impl Report {
+    /// The report without what the clock says: the same on every machine, unless a budget of time has ended a stage. All times are 0,
+    /// `first_s` is `None`, and there is no stage of loading.
+    #[must_use]
+    pub fn without_times(mut self) -> Self {
+        (self.time_s, self.finish_s, self.first_s) = (0.0, 0.0, None);
+        self.stages.retain(|stage| stage.stage != RunStage::Loading);
+        self.stages.iter_mut().for_each(|stage| stage.time_s = 0.0);
+        self
+    }
+
+    /// Whether it has what [`without_times`](Self::without_times) takes away.
+    pub(crate) fn has_times(&self) -> bool {
+        let times = [self.time_s, self.finish_s];
+        let timed = |stage: &StageTime| stage.stage == RunStage::Loading || stage.time_s != 0.0;
+        times != [0.0; 2] || self.first_s.is_some() || self.stages.iter().any(timed)
+    }
+
     /// The report as one line of JSON.
     ///
     /// # Errors

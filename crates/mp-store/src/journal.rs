@@ -34,7 +34,23 @@ impl Journal {
     /// When the file cannot be written.
     pub fn create(path: &Path, lines: &str) -> Result<Self, Error> {
         write(path, lines.as_bytes())?;
-        let file = File::options().append(true).open(path).map_err(|e| failed(path, &e))?;
+        Self::resume(path, lines.len() as u64)
+    }
+
+    /// The journal at `path`, which exists, with its first `length` bytes: what is behind them, such as a line that is not whole, is
+    /// cut off.
+    ///
+    /// # Errors
+    /// When the file cannot be opened or cut.
+    pub fn resume(path: &Path, length: u64) -> Result<Self, Error> {
+        let open = || {
+            let file = File::options().append(true).open(path)?;
+            if file.metadata()?.len() > length {
+                file.set_len(length)?;
+            }
+            Ok(file)
+        };
+        let file = open().map_err(|e| failed(path, &e))?;
         Ok(Self { path: path.to_owned(), open: Mutex::new(Open { file, synced: Instant::now() }) })
     }
 
@@ -97,6 +113,17 @@ mod tests {
         lines.dedup();
         assert_eq!(lines.len(), 400);
         assert!(lines.iter().all(|line| line.split(' ').count() == 2));
+    }
+
+    #[test]
+    fn a_line_that_is_not_whole_is_cut_off() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("runs");
+        std::fs::write(&path, "one\ntwo\nthr").unwrap();
+        Journal::resume(&path, 8).unwrap().append("three").unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "one\ntwo\nthree\n");
+        let e = Journal::resume(&dir.path().join("missing"), 0).unwrap_err();
+        assert!(e.message().starts_with("cannot append"), "{e}");
     }
 
     /// A disk that is always full.

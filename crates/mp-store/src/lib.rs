@@ -2,7 +2,8 @@
 //!
 //! - [`read`] and [`open`] accept regular files up to a limit. A pipe, a device or a file that is too large is an error
 //!   before anything is read.
-//! - [`write`](fn@write) replaces a file in one step, and [`writable`] says before a long run whether that will work.
+//! - [`write`](fn@write) replaces a file in one step, [`write_parts`] one that is large, and [`writable`] says before a
+//!   long run whether that will work.
 //! - [`FileId`] tells whether two names lead to the same file.
 //! - [`Lock`] keeps other processes from growing the same file or folder.
 //! - [`Journal`] is a file that grows by whole lines.
@@ -34,4 +35,4 @@ pub use id::FileId;
 pub use journal::Journal;
 pub use lock::Lock;
 pub use read::{open, read, read_stream};
-pub use write::{folder_of, make_folder, writable, write};
+pub use write::{folder_of, make_folder, writable, write, write_parts};

@@ -3,11 +3,14 @@
 use crate::error::{Error, ErrorKind};
 use crate::temporary::{Temporary, sweep};
 use std::fs::{Metadata, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// So many links are followed to the file that they lead to.
 const LINKS: usize = 40;
+
+/// So many bytes of small parts are written at once.
+const BUFFER: usize = 1 << 16;
 
 /// The folder of a file; the current one for a bare name.
 #[must_use]
@@ -52,6 +55,18 @@ pub fn make_folder(folder: &Path) -> Result<(), Error> {
 /// # Errors
 /// When the folder is missing or not writable, the file is write-protected or not a regular file, or the disk is full.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    write_parts(path, [Ok::<_, Error>(bytes)])
+}
+
+/// As [`write`](fn@write), of a file that is made part by part, as it may be too large for memory. An error among the parts is returned,
+/// and leaves the old file as it was.
+///
+/// # Errors
+/// As [`write`](fn@write), and the first among the parts.
+pub fn write_parts<B: AsRef<[u8]>, E: From<Error>>(
+    path: &Path,
+    parts: impl IntoIterator<Item = Result<B, E>>,
+) -> Result<(), E> {
     let (target, old) = target(path)?;
     let folder = folder_of(&target);
     let failed = |e: io::Error| write_failed(path, folder, &e);
@@ -60,11 +75,19 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     if let Some(old) = &old {
         keep_access(&new, old).map_err(failed)?;
     }
-    new.file.write_all(bytes).map_err(failed)?;
+    let mut bytes = 0;
+    let mut file = BufWriter::with_capacity(BUFFER, &mut new.file);
+    for part in parts {
+        let part = part?;
+        bytes += part.as_ref().len();
+        file.write_all(part.as_ref()).map_err(failed)?;
+    }
+    file.flush().map_err(failed)?;
+    drop(file);
     new.file.sync_all().map_err(failed)?;
     new.rename(&target).map_err(failed)?;
     sync_folder(folder);
-    tracing::debug!(file = %path.display(), bytes = bytes.len(), "written");
+    tracing::debug!(file = %path.display(), bytes, "written");
     Ok(())
 }
 
@@ -182,6 +205,19 @@ mod tests {
         let e = write(&dir.path().join("missing/a.txt"), b"x").unwrap_err();
         assert!(e.remedy().starts_with("create the folder"), "{}", e.remedy());
         assert_eq!(write(dir.path(), b"x").unwrap_err().kind(), ErrorKind::Io);
+        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn parts_that_end_with_an_error_change_nothing() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.txt");
+        write_parts(&path, ["one", " and ", "two"].map(Ok::<_, Error>)).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"one and two");
+        let bad = || Error::new(ErrorKind::Io, Path::new("x"), "no more", "wait");
+        let e = write_parts(&path, [Ok(vec![b'x'; 2 * BUFFER]), Err(bad())]).unwrap_err();
+        assert_eq!(e.message(), "no more");
+        assert_eq!(std::fs::read(&path).unwrap(), b"one and two");
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1);
     }
 

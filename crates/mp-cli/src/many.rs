@@ -1,0 +1,103 @@
+//! `many` and `merge`: lists of problems, and their results.
+
+use crate::cli::{Many, Merge};
+use crate::input::is_standard;
+use crate::interrupt;
+use crate::output::{Claims, note, print};
+use crate::progress::Line;
+use mp_plan::{
+    Cancel, Error, Interrupt, ListedProblems, ManyOptions, ManyOutcome, ProblemList, Shard, Tally, count,
+    merge_results,
+};
+use std::path::Path;
+
+/// Plans the problems of a list. True when all are planned, solved or not.
+pub(crate) fn run(args: &Many) -> Result<bool, Error> {
+    not_standard("the list", &args.list)?;
+    not_standard("--out", &args.out)?;
+    let cancel = interrupt::flag();
+    let problems = loaded(&args.list, &cancel)?;
+    let mut claims = Claims::default();
+    problems.inputs().iter().for_each(|file| claims.input(file));
+    claims.output("--out", &args.out)?;
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let options = ManyOptions {
+        shard: args.shard,
+        threads: args.threads.map_or_else(cores, usize::from),
+        times: args.times,
+        time_s: args.time,
+    };
+    let outcome = {
+        let line = Line::new("problems", None, true);
+        let mut told = false;
+        let progress = |now: &ManyOutcome| {
+            if !told && now.before > 0 {
+                note(&format!("going on after {} of {} items", now.before, now.items));
+            }
+            told = true;
+            let Tally { items, solved, unsolved, failed, .. } = now.tally;
+            line.say(&format!(
+                "{items} of {} done: {solved} solved, {unsolved} unsolved, {failed} failed",
+                now.items
+            ));
+        };
+        problems.run(&args.out, &options, &cancel, progress)?
+    };
+    let (tally, items) = (outcome.tally, outcome.items);
+    if !outcome.is_complete() {
+        note(&format!("interrupted after {} of {items} items; the same command goes on", tally.items));
+        return Ok(false);
+    }
+    print(&match args.shard {
+        Shard::WHOLE => summary(tally),
+        shard => format!("shard {shard}: {}", summary(tally)),
+    })?;
+    Ok(true)
+}
+
+/// Merges the results of all shards of a list.
+pub(crate) fn merge(args: &Merge) -> Result<bool, Error> {
+    let mut claims = Claims::default();
+    for file in &args.shards {
+        not_standard("a shard", file)?;
+        claims.input(file);
+    }
+    not_standard("the merged results", &args.out)?;
+    claims.output("the output", &args.out)?;
+    let tally = merge_results(&args.out, &args.shards)?;
+    print(&summary(tally))?;
+    note(&format!("wrote {}", args.out.display()));
+    Ok(true)
+}
+
+/// The list with its scenes. What was chosen for a robot or a map alone is said to the person watching.
+fn loaded(file: &Path, cancel: &Cancel) -> Result<ListedProblems, Error> {
+    let list = ProblemList::load(file)?;
+    let problems = match list.with_scenes(&Interrupt::new(cancel.clone())) {
+        Err(_) if cancel.is_raised() => {
+            return Err(Error::new("interrupted while the scenes of the list were loaded"));
+        }
+        loaded => loaded?,
+    };
+    problems.scenes().iter().flat_map(|scene| scene.notes()).for_each(|line| note(&format!("note: {line}")));
+    Ok(problems)
+}
+
+/// Refuses standard input and output, with which nobody can go on.
+fn not_standard(what: &str, file: &Path) -> Result<(), Error> {
+    match is_standard(file) {
+        true => Err(Error::new(format!("{what} must be a file, not `-`")).help("name a file")),
+        false => Ok(()),
+    }
+}
+
+/// How many were solved.
+fn summary(tally: Tally) -> String {
+    let Tally { items, solved, unsolved, failed, timed } = tally;
+    let problems = count(usize::try_from(items).unwrap_or(usize::MAX), "problem");
+    let mut text = format!("{problems}: {solved} solved, {unsolved} unsolved, {failed} failed");
+    if timed > 0 {
+        text += &format!("; the time was up for {timed}: their results depend on the machine");
+    }
+    text
+}

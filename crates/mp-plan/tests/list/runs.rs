@@ -1,0 +1,215 @@
+//! Runs: what they write, and how they go on.
+
+use crate::{Dir, LIST, WALL, whole};
+use mp_plan::{Cancel, Interrupt, ManyOptions, ManyOutcome, ProblemList, Report, Shard};
+use serde_json::Value;
+
+#[test]
+fn results_are_lines_in_order() {
+    let dir = Dir::new();
+    let mut steps = Vec::new();
+    let outcome =
+        dir.problems().run(&dir.at("r.jsonl"), &whole(), &Cancel::new(), |now| steps.push(*now)).unwrap();
+    assert_eq!((outcome.items, outcome.before, outcome.is_complete()), (14, 0, true));
+    assert_eq!(steps.iter().map(|step| step.tally.items).collect::<Vec<_>>(), (0..=14).collect::<Vec<_>>());
+    let tally = outcome.tally;
+    assert_eq!([tally.items, tally.solved, tally.unsolved, tally.failed, tally.timed], [14, 10, 1, 3, 0]);
+
+    let text = dir.read("r.jsonl");
+    let lines: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let (header, items, end) = (&lines[0], &lines[1..15], &lines[15]);
+    assert_eq!(
+        (&header["format"], &header["items"], &header["shard"]),
+        (&"mp-many".into(), &14.into(), &"1/1".into())
+    );
+    assert_eq!(header["list"], "problems.jsonl");
+    let files: Vec<_> = header["scenes"].as_array().unwrap().iter().map(|scene| &scene["file"]).collect();
+    assert_eq!(files[1..], ["wall.env", "wall.env"]);
+    assert_eq!(end["end"]["solved"], 10);
+    for (i, item) in items.iter().enumerate() {
+        assert_eq!(item["item"], i);
+        let Some(report) = item.get("report") else { continue };
+        let report = Report::from_json(&report.to_string()).unwrap();
+        assert_eq!((report.time_s, report.finish_s, report.first_s), (0.0, 0.0, None));
+        assert!(!report.stages.is_empty() && report.stages.iter().all(|stage| stage.time_s == 0.0));
+    }
+    let seeds: Vec<_> = items.iter().map(|item| item["report"]["seed"].as_u64()).collect();
+    let expected = [5, 6, 7, 8, 9, 10, 11, 3, 1, 9].map(Some);
+    assert_eq!(seeds, [&expected[..], &[None, None, None, Some(1)]].concat());
+    assert_eq!(items[9]["report"]["stopped_by"], "iterations");
+    for (item, words) in
+        [(10, "the goal is in collision"), (11, "has 6 finite numbers"), (12, "no-such-planner")]
+    {
+        let error = &items[item]["error"];
+        assert!(error["message"].as_str().unwrap().contains(words) && error["help"].is_string(), "{error}");
+    }
+
+    // The same as without a list.
+    let scene = mp_plan::Scene::find("easy").unwrap();
+    let report = scene.plan(&mp_plan::Request::new("rrt-connect").seed(8)).unwrap();
+    assert_eq!(items[3]["report"]["fingerprint"].as_str(), report.fingerprint.as_deref());
+}
+
+#[test]
+fn threads_do_not_matter() {
+    let dir = Dir::new();
+    for threads in 1..=3 {
+        dir.run(&format!("{threads}.jsonl"), &ManyOptions { threads, ..whole() }).unwrap();
+    }
+    assert!(dir.read("1.jsonl") == dir.read("2.jsonl") && dir.read("1.jsonl") == dir.read("3.jsonl"));
+}
+
+/// The list is named in another way, from another folder.
+#[test]
+fn folders_do_not_matter() {
+    let (one, other) = (Dir::new(), Dir::new());
+    one.run("r.jsonl", &whole()).unwrap();
+    std::fs::create_dir(other.at("in")).unwrap();
+    let list = ProblemList::load(other.at("in/../problems.jsonl")).unwrap();
+    let problems = list.with_scenes(&Interrupt::never()).unwrap();
+    problems.run(&other.at("deep/er/r.jsonl"), &whole(), &Cancel::new(), |_| ()).unwrap();
+    assert_eq!(one.read("r.jsonl"), other.read("deep/er/r.jsonl"));
+    let inputs: Vec<_> = problems.inputs().iter().map(|file| mp_store::FileId::of(file)).collect();
+    for name in ["problems.jsonl", "wall.env", "wall.off", "stick.off"] {
+        assert!(inputs.contains(&mp_store::FileId::of(&other.at(name))), "{name}");
+    }
+}
+
+/// All places at which a run can be cut off.
+#[test]
+fn what_was_cut_off_goes_on() {
+    let dir = Dir::new();
+    dir.run("all.jsonl", &whole()).unwrap();
+    let all = dir.read("all.jsonl");
+    let header = all.find('\n').unwrap() + 1;
+    let ends: Vec<usize> = all.match_indices('\n').map(|(at, _)| at + 1).collect();
+    // Each line whole, without its line break, with a byte of it, with half of it.
+    let mut cuts = ends.clone();
+    cuts.extend(ends.iter().flat_map(|end| [end - 1, end + 1]));
+    cuts.extend(ends.windows(2).map(|pair| pair[0].midpoint(pair[1])));
+    cuts.retain(|cut| (header..=all.len()).contains(cut));
+    assert_eq!(cuts.len(), 15 + 1 + 15 + 15 + 15);
+    let (problems, options) = (dir.problems(), ManyOptions { threads: 2, ..whole() });
+    for cut in cuts {
+        dir.write("cut.jsonl", &all[..cut]);
+        let outcome = problems.run(&dir.at("cut.jsonl"), &options, &Cancel::new(), |_| ()).unwrap();
+        let lines = ends.iter().filter(|end| **end <= cut).count();
+        assert_eq!(outcome.before, (lines as u64 - 1).min(14), "{cut}");
+        assert!(outcome.is_complete() && dir.read("cut.jsonl") == all, "cut after {cut} bytes");
+    }
+    dir.write("cut.jsonl", "");
+    assert_eq!(dir.run("cut.jsonl", &whole()).unwrap().before, 0);
+    assert_eq!(dir.read("cut.jsonl"), all);
+}
+
+/// Items that were at work when they were told to end leave nothing.
+#[test]
+fn a_cancelled_run_goes_on() {
+    let dir = Dir::new();
+    dir.run("all.jsonl", &whole()).unwrap();
+    for threads in [1, 3] {
+        for after in [0, 1, 4, 13] {
+            let cancel = Cancel::new();
+            let out = format!("{threads}-{after}.jsonl");
+            let options = ManyOptions { threads, ..whole() };
+            let stop = |now: &ManyOutcome| {
+                if now.tally.items == after {
+                    cancel.cancel();
+                }
+            };
+            let outcome = dir.problems().run(&dir.at(&out), &options, &cancel, stop).unwrap();
+            // Other threads may have done what is left by then.
+            assert!(threads > 1 && after > 0 || !outcome.is_complete(), "{outcome:?}");
+            assert!(outcome.tally.items >= after, "{outcome:?}");
+            let begun = dir.read(&out);
+            assert!(dir.read("all.jsonl").starts_with(&begun), "{begun}");
+            let outcome = dir.run(&out, &options).unwrap();
+            assert!(outcome.before >= after && outcome.is_complete(), "{outcome:?}");
+            assert!(dir.read("all.jsonl") == dir.read(&out));
+        }
+    }
+}
+
+#[test]
+fn times_are_there_when_they_are_asked_for() {
+    let dir = Dir::new();
+    dir.write("problems.jsonl", r#"{"scene": "easy", "seeds": [1, 2]}"#);
+    dir.run("r.jsonl", &ManyOptions { times: true, ..whole() }).unwrap();
+    for line in dir.read("r.jsonl").lines().skip(1).take(2) {
+        let line: Value = serde_json::from_str(line).unwrap();
+        assert!(line["report"]["time_s"].as_f64().unwrap() > 0.0, "{line}");
+    }
+    // A header that says that there are none is wrong.
+    let lie = dir.read("r.jsonl").replacen("\"times\":true", "\"times\":false", 1);
+    dir.write("lie.jsonl", &lie);
+    let e = dir.merge("out.jsonl", &["lie.jsonl"]).unwrap_err();
+    assert!(e.message().contains("line 2: it has times"), "{e}");
+}
+
+/// A budget of time for problems that name none; those that it ends are counted.
+#[test]
+fn a_budget_of_time_is_for_those_without() {
+    let dir = Dir::new();
+    dir.write(
+        "problems.jsonl",
+        r#"{"scene": "easy"}
+{"scene": "easy", "request": {"budget": {"time_s": 50}}}
+{"scene": "easy", "request": {"budget": {"time_s": null}}}
+{"scene": "crossing"}"#,
+    );
+    let problems = dir.problems();
+    let time = |item| problems.problem(item, Some(1e-9)).unwrap().1.budget.time_s;
+    assert_eq!([0, 1, 2].map(time), [Some(1e-9), Some(50.0), None]);
+    assert_eq!(problems.problem(0, None).unwrap().1.budget.time_s, Some(60.0));
+    assert_eq!(problems.problem(3, None).unwrap().1.planner, "rrt");
+    assert!(problems.problem(4, None).is_err());
+    let tally = dir.run("r.jsonl", &ManyOptions { time_s: Some(1e-9), ..whole() }).unwrap().tally;
+    assert_eq!([tally.solved, tally.unsolved, tally.timed], [2, 2, 2]);
+}
+
+#[test]
+fn other_results_are_not_gone_on_with() {
+    let dir = Dir::new();
+    dir.run("r.jsonl", &whole()).unwrap();
+    let whole_text = dir.read("r.jsonl");
+    let half = &whole_text[..whole_text.len() / 2];
+    let refuse = |options: &ManyOptions, words: &str| {
+        for text in [half, &whole_text] {
+            dir.write("r.jsonl", text);
+            let e = dir.run("r.jsonl", options).unwrap_err();
+            assert!(e.message().contains("cannot be gone on with") && e.message().contains(words), "{e}");
+            assert!(e.remedy().unwrap().contains("delete it"), "{e}");
+            assert_eq!(dir.read("r.jsonl"), text);
+        }
+    };
+    refuse(&ManyOptions { shard: Shard::new(2, 3).unwrap(), ..whole() }, "shard 1/1, not 2/3");
+    refuse(&ManyOptions { times: true, ..whole() }, "without --times, not with --times");
+    refuse(&ManyOptions { time_s: Some(5.0), ..whole() }, "no --time, not --time 5");
+    // Another byte of a mesh, and of the list.
+    dir.write("wall.off", WALL.replace("0.1 -1 -1", "0.2 -1 -1"));
+    refuse(&whole(), "another scene wall: a file has changed");
+    dir.write("wall.off", WALL);
+    dir.write("problems.jsonl", LIST.replace("20000", "20001"));
+    refuse(&whole(), "the list has changed");
+    dir.write("problems.jsonl", LIST);
+    let other =
+        half.replacen(&format!("\"program\":\"{}\"", env!("CARGO_PKG_VERSION")), "\"program\":\"9.9.9\"", 1);
+    dir.write("r.jsonl", &other);
+    assert!(dir.run("r.jsonl", &whole()).unwrap_err().message().contains("version 9.9.9 of the program"));
+    dir.write("r.jsonl", half.replacen("\"version\":1", "\"version\":2", 1));
+    assert!(dir.run("r.jsonl", &whole()).unwrap_err().message().contains("version 2 of results"));
+    for text in ["hello\n", "hello", "{}\n", "\n", "{\"format\":\"mp-many\"}\n"] {
+        dir.write("r.jsonl", text);
+        let e = dir.run("r.jsonl", &whole()).unwrap_err();
+        assert!(e.message().contains("is no file of results"), "{e}");
+        assert_eq!(dir.read("r.jsonl"), text);
+    }
+}
+
+#[test]
+fn one_process_at_a_time_writes_results() {
+    let dir = Dir::new();
+    let _lock = mp_store::Lock::of_file(&dir.at("r.jsonl")).unwrap();
+    assert!(dir.run("r.jsonl", &whole()).unwrap_err().to_string().contains("in use"));
+    assert!(!dir.at("r.jsonl").exists());
+}
