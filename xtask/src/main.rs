@@ -18,7 +18,7 @@ use std::process::{Command, ExitCode};
 const HELP: &str = "\
 Builds and starts the programs of the workspace:
 
-  cargo xtask plan | view | check | info | render | scenes | completions | man …   the program `mp`: see `cargo xtask plan --help`
+  cargo xtask plan | many | merge | view | check | info | render | scenes | completions | man …   the program `mp`: see `cargo xtask plan --help`
   cargo xtask bench SUITE …     measurements, the program `mp-bench`: see `cargo xtask bench --help`
   cargo xtask verify-certificate FILE   replays a certificate, with the program `mp-verify-certificate`
   cargo xtask soak --out DIR …  random problems for every planner under an oracle: see `cargo xtask soak --help`
@@ -35,9 +35,8 @@ fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
     let command = arguments.first().map(|c| c.to_string_lossy().into_owned()).unwrap_or_default();
     match command.as_str() {
-        "plan" | "view" | "check" | "info" | "render" | "scenes" | "completions" | "man" | "--version" => {
-            start("mp-motion-cli", "mp", &arguments)
-        }
+        "plan" | "many" | "merge" | "view" | "check" | "info" | "render" | "scenes" | "completions"
+        | "man" | "--version" => start("mp-motion-cli", "mp", &arguments),
         "bench" => start("mp-bench", "mp-bench", &arguments[1..]),
         "verify-certificate" => start("mp-verify-certificate", "mp-verify-certificate", &arguments[1..]),
         "soak" => start("mp-soak", "mp-soak", &arguments[1..]),

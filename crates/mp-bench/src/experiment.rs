@@ -2,10 +2,12 @@
 
 mod lab;
 mod log;
+pub(crate) mod ranks;
+pub(crate) mod shards;
 mod stats;
 mod table;
 
-pub(crate) use lab::Lab;
+pub(crate) use lab::{Lab, interrupted};
 pub(crate) use log::{Group, Log};
 pub(crate) use stats::{
     Median, bootstrap, geometric_mean, mean, paired_ratio, ratio, restricted_mean, seconds, short, survival,

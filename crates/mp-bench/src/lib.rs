@@ -22,8 +22,11 @@ mod rrs;
 mod rsrt;
 mod scaling;
 mod scenes;
+#[cfg(test)]
+mod spread;
 
 use clap::{Parser, ValueEnum};
+use experiment::shards;
 pub use mp_plan::Error;
 use std::io::Write;
 
@@ -80,12 +83,45 @@ enum Suite {
     Assets,
 }
 
+impl Options {
+    /// What is measured, and how, in a line: the same for all shards.
+    fn identity(&self) -> String {
+        let mut same = self.clone();
+        let c = &mut same.common;
+        (c.shard, c.threads, c.fresh) = (mp_plan::Shard::WHOLE, None, false);
+        (c.out, c.merge, c.peer) = Default::default();
+        format!("{:?} {:?} {:?} {:?} {:?}", same.suite, c, same.rsrt, same.roadmaps, same.rrs)
+    }
+}
+
+/// Runs a suite on all ranks: each of them calls this, with the same options. The first one writes and prints; the others do a part of the
+/// runs.
+///
+/// # Errors
+/// As [`run`], and when the ranks cannot reach each other.
+pub fn run_on(options: &Options, link: std::rc::Rc<dyn mp_ranks::Link>) -> Result<bool, Error> {
+    if !link.is_master() {
+        output::silence();
+    }
+    experiment::ranks::with(link, || run(options))
+}
+
 /// Runs a suite. True when it was measured completely, and all of what it printed was read.
 ///
 /// # Errors
 /// When a scene or a file is not valid, cannot be read or cannot be written.
 pub fn run(options: &Options) -> Result<bool, Error> {
     let common = &options.common;
+    if common.counted_time {
+        clock::count();
+    }
+    let (whole, command) = (common.shard == mp_plan::Shard::WHOLE, options.identity());
+    if !common.merge.is_empty() {
+        shards::begin(&common.out, &shards::merged(&common.merge, &command)?)?;
+    }
+    if !whole {
+        shards::ShardFile::begin(&common.out, &command, common.shard)?;
+    }
     let complete = match options.suite {
         Suite::Collide => collide::run(common, &options.collide),
         Suite::Planners => planners::run(common),
@@ -97,7 +133,16 @@ pub fn run(options: &Options) -> Result<bool, Error> {
         Suite::Certificates => certificates::run(common),
         Suite::Assets => assets::run(&options.assets),
     };
-    Ok(complete? && !output::is_closed())
+    let complete = complete?;
+    if !whole && !experiment::interrupted() {
+        shards::ShardFile::new(&command, common.shard, true).write(&common.out)?;
+        output::note(&format!(
+            "shard {} is measured; --merge with the folders of all shards goes on",
+            common.shard
+        ));
+        return Ok(true);
+    }
+    Ok(complete && !output::is_closed())
 }
 
 /// The program `mp-bench`: [`run`], with what it logs and its error on standard error. Returns the exit code.

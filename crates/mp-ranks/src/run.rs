@@ -18,7 +18,8 @@ const PLENTY: u64 = 8;
 pub struct Options {
     /// How many items each rank works on at a time. The same on all ranks.
     pub threads: usize,
-    /// Ends the job, when it is raised on the master: no further item is handed out, and those that are worked on are dropped.
+    /// Ends the job, when it is raised on the master: no further item is handed out, and those that are worked on are dropped. On the
+    /// other ranks it is raised when the job ends early.
     pub cancel: Cancel,
 }
 
@@ -140,13 +141,13 @@ impl Crew<'_> {
 }
 
 /// Calls `with` with so many threads that `work`.
-fn with_crew<T>(threads: usize, work: &Work<'_>, with: impl FnOnce(Crew<'_>) -> T) -> T {
-    let hand = Hand { cancel: Cancel::new(), bound: AtomicU64::new(u64::MAX) };
+fn with_crew<T>(options: &Options, work: &Work<'_>, with: impl FnOnce(Crew<'_>) -> T) -> T {
+    let hand = Hand { cancel: options.cancel.clone(), bound: AtomicU64::new(u64::MAX) };
     let (queue, items) = channel::<u64>();
     let (sender, results) = channel();
     let items = Mutex::new(items);
     std::thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
+        for _ in 0..options.threads.max(1) {
             let (items, sender, hand) = (&items, sender.clone(), &hand);
             scope.spawn(move || {
                 loop {
@@ -186,7 +187,7 @@ pub fn run(
     job: Option<&mut dyn Job>,
     work: &Work<'_>,
 ) -> Result<Ran, Error> {
-    with_crew(options.threads, work, |crew| match job {
+    with_crew(options, work, |crew| match job {
         Some(job) if link.is_master() => {
             let mut master = Master::new(link, options, job, crew);
             let ran = master.hand_out();
@@ -288,7 +289,9 @@ impl<'a, 'c> Master<'a, 'c> {
         }
         let complete = matches!(ran, Ok(true));
         self.to_others(if complete { kind::END } else { kind::STOP }, 0)?;
-        self.crew.stop();
+        if !complete {
+            self.crew.stop();
+        }
         let mut idle = 1;
         while idle < self.link.ranks() {
             match self.link.poll()? {
@@ -312,8 +315,10 @@ fn other(link: &dyn Link, mut crew: Crew<'_>) -> Result<(), Error> {
             match parts(from, &received)? {
                 (kind::WORK, item, _) => crew.give(item),
                 (kind::BOUND, bound, _) => crew.lower(bound),
-                (kind::STOP | kind::END, ..) => {
-                    crew.stop();
+                (ended @ (kind::STOP | kind::END), ..) => {
+                    if ended == kind::STOP {
+                        crew.stop();
+                    }
                     return link.send(MASTER, message(kind::IDLE, 0, &[]));
                 }
                 _ => return Err(Error::OutOfStep { rank: from }),

@@ -14,7 +14,9 @@ fn on(ranks: usize, options: &Options, job: &mut (dyn Job + Send), work: &Work<'
         let mut links = threads(ranks).into_iter();
         let master = links.next().unwrap();
         for link in links {
-            scope.spawn(move || run(&link, options, None, work).unwrap());
+            // Of their own: they hear of a cancel from the master.
+            let options = Options { cancel: Cancel::new(), ..options.clone() };
+            scope.spawn(move || run(&link, &options, None, work).unwrap());
         }
         run(&master, options, Some(job), work)
     })

@@ -1,16 +1,17 @@
 //! Running the cases of experiments, and writing their results.
 
 use super::log::{CaseKey, Log, RunRecord};
+use super::ranks;
 use super::table::Table;
 use crate::error::{IntoError, Result};
 use crate::options::Common;
 use crate::output::{note, print};
 use indicatif::{ProgressBar, ProgressStyle};
 use mp_cspace::Cancel;
-use mp_plan::write_file;
+use mp_plan::{Error, Shard, write_file};
 use mp_store::Lock;
 use rayon::prelude::*;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::OnceLock;
 
 /// Runs experiments: the folder for results, the threads, and cancellation.
@@ -20,45 +21,61 @@ pub(crate) struct Lab {
     quick: bool,
     fresh: bool,
     pool: rayon::ThreadPool,
+    shard: Shard,
+    /// Whether the first of several ranks measures, or there is one alone. Others write nothing.
+    is_master: bool,
     /// Two processes that measure into one folder would overwrite each other's results.
-    _lock: Lock,
+    _lock: Option<Lock>,
     /// Cancels all runs; finished ones are kept.
     pub(crate) cancel: Cancel,
 }
 
 impl Lab {
-    /// A lab with as many runs at once as the options say. Ctrl-C cancels them.
+    /// A lab with as many runs at once as the options say: on each rank, if there are several. Ctrl-C cancels them.
     pub(crate) fn new(options: &Common) -> Result<Self> {
-        Self::with(options, options.threads.map_or(0, usize::from), interrupt())
+        let threads = options.threads.map_or_else(|| usize::from(ranks::link().is_some()), usize::from);
+        let is_master = ranks::link().is_none_or(|link| link.is_master());
+        Self::with(options, threads, is_master, if is_master { interrupt() } else { Cancel::new() })
     }
 
     /// A lab with one run at a time, for measurements of time that other runs would disturb.
     pub(crate) fn one_at_a_time(options: &Common) -> Result<Self> {
-        Self::with(options, 1, interrupt())
+        if options.shard != Shard::WHOLE || !options.merge.is_empty() || ranks::link().is_some() {
+            let message =
+                "this suite measures the time of one run at a time, and cannot be spread over machines";
+            return Err(
+                Error::new(message).help("leave out --shard and --merge; of one rank, run mp-bench itself")
+            );
+        }
+        Self::with(options, 1, true, interrupt())
     }
 
-    fn with(options: &Common, threads: usize, cancel: Cancel) -> Result<Self> {
+    fn with(options: &Common, threads: usize, is_master: bool, cancel: Cancel) -> Result<Self> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().into_error()?;
-        Self::in_folder(&options.out, options.quick, options.fresh, pool, cancel)
-    }
-
-    fn in_folder(
-        out: &Path,
-        quick: bool,
-        fresh: bool,
-        pool: rayon::ThreadPool,
-        cancel: Cancel,
-    ) -> Result<Self> {
-        mp_store::make_folder(out)?;
-        let lock = Lock::of_folder(out)?;
-        Ok(Self { out: out.to_owned(), quick, fresh, pool, _lock: lock, cancel })
+        let (out, shard) = (options.out.clone(), options.shard);
+        let mut lab = Self {
+            out,
+            quick: options.quick,
+            fresh: options.fresh,
+            pool,
+            shard,
+            is_master,
+            _lock: None,
+            cancel,
+        };
+        if is_master {
+            mp_store::make_folder(&lab.out)?;
+            lab._lock = Some(Lock::of_folder(&lab.out)?);
+        }
+        Ok(lab)
     }
 
     /// A lab for tests, without Ctrl-C.
     #[cfg(test)]
-    pub(crate) fn test(out: &Path, threads: usize) -> Self {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        Self::in_folder(out, true, false, pool, Cancel::new()).unwrap()
+    pub(crate) fn test(out: &std::path::Path, threads: usize) -> Self {
+        let threads = u16::try_from(threads).unwrap();
+        let options = Common { quick: true, threads: Some(threads), out: out.to_owned(), ..Common::test() };
+        Self::with(&options, threads.into(), true, Cancel::new()).unwrap()
     }
 
     /// The name of an experiment in files; a short run has its own.
@@ -73,7 +90,20 @@ impl Lab {
 
     /// The log of the experiment called `name`, whose runs have the limit `cap`.
     pub(crate) fn log<K: CaseKey, R: RunRecord>(&self, name: &str, cap: f64) -> Result<Log<K, R>> {
-        Log::open(&self.file(&format!("{name}-runs.jsonl")), cap, self.fresh)
+        let file = self.file(&format!("{name}-runs.jsonl"));
+        match ranks::link() {
+            None => Log::open(&file, cap, self.fresh),
+            Some(link) if self.is_master => {
+                let log = Log::open(&file, cap, self.fresh)?;
+                ranks::shared(&*link, &log.all().into_iter().collect::<Vec<_>>())?;
+                Ok(log)
+            }
+            Some(link) => {
+                let mut log = Log::in_memory(cap);
+                log.learn(ranks::learned(&*link)?);
+                Ok(log)
+            }
+        }
     }
 
     fn interrupted(&self) -> bool {
@@ -120,38 +150,52 @@ impl Lab {
         set_up: impl Fn(&K) -> Result<P> + Sync,
         run: impl Fn(&P, &K) -> Result<Option<R>> + Sync,
     ) -> Result<bool> {
-        let open: Vec<K> = cases.iter().filter(|case| log.get(case).is_none()).cloned().collect();
-        let known = cases.len() - open.len();
+        let all = cases.chunk_by(&together).enumerate().filter(|(nth, _)| self.shard.has(*nth as u64));
+        let mine: Vec<&[K]> = all.map(|(_, group)| group).collect();
+        let open = |group: &&[K]| group.iter().filter(|case| log.get(case).is_none()).cloned().collect();
+        let groups: Vec<Vec<K>> = mine.iter().map(open).filter(|group: &Vec<K>| !group.is_empty()).collect();
+        let count: usize = mine.iter().map(|group| group.len()).sum();
+        let known = count - groups.iter().map(Vec::len).sum::<usize>();
         if known > 0 {
-            note(&format!(
-                "{what}: {known} of {} runs are known already; --fresh measures anew",
-                cases.len()
-            ));
+            note(&format!("{what}: {known} of {count} runs are known already; --fresh measures anew"));
         }
-        let groups: Vec<&[K]> = open.chunk_by(together).collect();
-        let bar = bar(what, cases.len(), known);
-        let shared = &*log;
-        let group = |cases: &&[K]| -> Result<Option<Vec<(K, R)>>> {
+        let bar = bar(what, count, known);
+        // The runs of a group, each given to `done` as well.
+        let group = |cases: &Vec<K>, done: &dyn Fn(&K, &R) -> Result<()>| -> Result<Vec<(K, R)>> {
             let setup = set_up(&cases[0])?;
-            let mut done = Vec::new();
-            for case in *cases {
+            let mut runs = Vec::new();
+            for case in cases {
                 if self.interrupted() {
                     break;
                 }
                 let Some(run) = run(&setup, case)? else { break };
-                shared.write(case, &run)?;
-                done.push((case.clone(), run));
+                done(case, &run)?;
+                runs.push((case.clone(), run));
                 bar.inc(1);
             }
-            Ok(Some(done))
+            Ok(runs)
         };
-        let done = self.parallel(&groups, group);
+        let done = match ranks::link() {
+            Some(link) => {
+                let options = mp_ranks::Options {
+                    threads: self.pool.current_num_threads(),
+                    cancel: self.cancel.clone(),
+                };
+                ranks::measured(&*link, &options, log, &groups, |cases| group(cases, &|_, _| Ok(())))
+            }
+            None => {
+                let shared = &*log;
+                self.parallel(&groups, |cases| group(cases, &|case, run| shared.write(case, run)).map(Some))
+                    .map(|done| done.into_iter().flatten().flatten().collect())
+            }
+        };
         bar.finish_and_clear();
-        log.learn(done?.into_iter().flatten().flatten());
+        log.learn(done?);
         if self.interrupted() {
             note("interrupted: the same command goes on from here");
         }
-        Ok(!self.interrupted())
+        // A shard is complete without being all.
+        Ok(!self.interrupted() && self.shard == Shard::WHOLE)
     }
 
     /// Does jobs in parallel; `None` for those that were interrupted or not started.
@@ -166,7 +210,10 @@ impl Lab {
 
     /// Writes a file in the folder for results.
     pub(crate) fn write(&self, name: &str, text: &str) -> Result<()> {
-        write_file(&self.file(name), text.as_bytes())
+        match self.is_master && self.shard == Shard::WHOLE {
+            true => write_file(&self.file(name), text.as_bytes()),
+            false => Ok(()),
+        }
     }
 
     /// Prints `text`, the comparison with the paper; writes it with a summary, all runs and charts.
@@ -177,6 +224,9 @@ impl Lab {
         [summary, each]: [&Table; 2],
         charts: Vec<(String, Result<String>)>,
     ) -> Result<()> {
+        if self.shard != Shard::WHOLE {
+            return Ok(());
+        }
         print(text)?;
         self.write(&format!("{name}.md"), text)?;
         self.report(&format!("{name}-summary"), summary, each)?;
@@ -203,6 +253,9 @@ impl Lab {
 
     /// As [`report`](Self::report), with a summary that is a text.
     pub(crate) fn report_text(&self, name: &str, text: &str, each: &Table) -> Result<()> {
+        if self.shard != Shard::WHOLE {
+            return Ok(());
+        }
         print(text.trim_end())?;
         let (markdown, csv) = (format!("{name}.md"), format!("{name}.csv"));
         self.write(&markdown, text)?;
@@ -219,6 +272,11 @@ fn bar(what: &str, total: usize, known: usize) -> ProgressBar {
         bar.set_style(style);
     }
     bar
+}
+
+/// Whether Ctrl-C was pressed.
+pub(crate) fn interrupted() -> bool {
+    interrupt().is_raised()
 }
 
 /// A flag that is set by the first Ctrl-C. The second one ends the program at once.

@@ -27,7 +27,8 @@ struct Line<K, R> {
 pub(crate) struct Log<K, R> {
     cap: f64,
     runs: HashMap<K, R>,
-    journal: Journal,
+    /// The file; `None` where another process keeps it.
+    journal: Option<Journal>,
 }
 
 /// Runs whose cases have a key in common.
@@ -87,7 +88,12 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
                 }
             }
         }
-        Ok(Self { cap, runs, journal: Journal::create(path, &kept)? })
+        Ok(Self { cap, runs, journal: Some(Journal::create(path, &kept)?) })
+    }
+
+    /// A log without a file.
+    pub(crate) fn in_memory(cap: f64) -> Self {
+        Self { cap, runs: HashMap::new(), journal: None }
     }
 
     /// The result of `case`, if it was run.
@@ -98,7 +104,8 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
     /// Appends a finished run to the file; [`learn`](Self::learn) adds it to the runs in memory.
     pub(crate) fn write(&self, case: &K, run: &R) -> Result<()> {
         let line = Line { cap: self.cap, case: case.clone(), run: run.clone() };
-        Ok(self.journal.append(&serde_json::to_string(&line).into_error()?)?)
+        let text = serde_json::to_string(&line).into_error()?;
+        self.journal.as_ref().map_or(Ok(()), |journal| Ok(journal.append(&text)?))
     }
 
     /// Adds finished runs to those in memory.

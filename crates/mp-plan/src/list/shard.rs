@@ -46,6 +46,12 @@ impl Shard {
         self.of
     }
 
+    /// Whether an item is in it.
+    #[must_use]
+    pub fn has(self, item: u64) -> bool {
+        item % u64::from(self.of) == u64::from(self.index - 1)
+    }
+
     /// How many of `items` items are in it.
     #[must_use]
     pub fn count(self, items: u64) -> u64 {
