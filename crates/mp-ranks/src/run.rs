@@ -18,8 +18,8 @@ const PLENTY: u64 = 8;
 pub struct Options {
     /// How many items each rank works on at a time. The same on all ranks.
     pub threads: usize,
-    /// Ends the job, when it is raised on the master: no further item is handed out, and those that are worked on are dropped. On the
-    /// other ranks it is raised when the job ends early.
+    /// Ends the job, on whichever rank it is raised: no further item is handed out, and those that are worked on are dropped. On the
+    /// ranks other than the master it is also raised when the job ends early.
     pub cancel: Cancel,
 }
 
@@ -69,6 +69,8 @@ mod kind {
     pub(super) const DONE: u8 = b'd';
     /// To the master: an item cannot be done.
     pub(super) const FAILED: u8 = b'f';
+    /// To the master: an item was dropped, as this rank was cancelled.
+    pub(super) const DROPPED: u8 = b'x';
     /// To the master: nothing is worked on any more.
     pub(super) const IDLE: u8 = b'i';
     /// To a rank: what all must know.
@@ -93,8 +95,13 @@ fn parts(from: usize, message: &[u8]) -> Result<(u8, u64, &[u8]), Error> {
 /// Does an item: its result, or why there is none. The result must depend on the item alone.
 pub type Work<'a> = dyn Fn(u64, &Hand) -> Result<Vec<u8>, String> + Sync + 'a;
 
-/// The result of an item, or why there is none.
-type Outcome = Result<Vec<u8>, String>;
+/// What became of an item.
+enum Outcome {
+    Done(Vec<u8>),
+    Failed(String),
+    /// It was cancelled before its end.
+    Dropped,
+}
 
 /// Threads that work on items.
 struct Crew<'s> {
@@ -153,14 +160,7 @@ fn with_crew<T>(options: &Options, work: &Work<'_>, with: impl FnOnce(Crew<'_>) 
                 loop {
                     let item = items.lock().unwrap_or_else(PoisonError::into_inner).recv();
                     let Ok(item) = item else { return };
-                    let result = match hand.cancel.is_raised() {
-                        true => Err("cancelled".to_owned()),
-                        false => {
-                            let work = std::panic::AssertUnwindSafe(|| work(item, hand));
-                            std::panic::catch_unwind(work).unwrap_or_else(|panic| Err(said(&*panic)))
-                        }
-                    };
-                    if sender.send((item, result)).is_err() {
+                    if sender.send((item, outcome(item, hand, work))).is_err() {
                         return;
                     }
                 }
@@ -169,6 +169,19 @@ fn with_crew<T>(options: &Options, work: &Work<'_>, with: impl FnOnce(Crew<'_>) 
         drop(sender);
         with(Crew { queue, results, hand: &hand, busy: 0 })
     })
+}
+
+/// Works on an item. What was made under a cancel may be less than the whole, so it is dropped.
+fn outcome(item: u64, hand: &Hand, work: &Work<'_>) -> Outcome {
+    if hand.cancel.is_raised() {
+        return Outcome::Dropped;
+    }
+    match std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| work(item, hand))) {
+        Err(panic) => Outcome::Failed(said(&*panic)),
+        Ok(_) if hand.cancel.is_raised() => Outcome::Dropped,
+        Ok(Ok(result)) => Outcome::Done(result),
+        Ok(Err(message)) => Outcome::Failed(message),
+    }
 }
 
 /// What a panic said.
@@ -206,18 +219,21 @@ struct Master<'a, 'c> {
     busy: Vec<usize>,
     done: Vec<u64>,
     bound: u64,
+    /// Whether an item was dropped.
+    dropped: bool,
 }
 
 impl<'a, 'c> Master<'a, 'c> {
     fn new(link: &'a dyn Link, options: &'a Options, job: &'a mut dyn Job, crew: Crew<'c>) -> Self {
         let ranks = link.ranks();
-        Self { link, options, job, crew, busy: vec![0; ranks], done: vec![0; ranks], bound: u64::MAX }
+        let (busy, done) = (vec![0; ranks], vec![0; ranks]);
+        Self { link, options, job, crew, busy, done, bound: u64::MAX, dropped: false }
     }
 
     /// Hands out items until there are none. False when it was cancelled.
     fn hand_out(&mut self) -> Result<bool, Error> {
         loop {
-            if self.options.cancel.is_raised() {
+            if self.dropped || self.options.cancel.is_raised() {
                 return Ok(false);
             }
             self.fill()?;
@@ -257,8 +273,11 @@ impl<'a, 'c> Master<'a, 'c> {
     fn received(&mut self, from: usize, message: &[u8]) -> Result<(), Error> {
         let (kind, item, rest) = parts(from, message)?;
         match kind {
-            kind::DONE => self.took(item, from, Ok(rest.to_vec())),
-            kind::FAILED => self.took(item, from, Err(String::from_utf8_lossy(rest).into_owned())),
+            kind::DONE => self.took(item, from, Outcome::Done(rest.to_vec())),
+            kind::FAILED => {
+                self.took(item, from, Outcome::Failed(String::from_utf8_lossy(rest).into_owned()))
+            }
+            kind::DROPPED => self.took(item, from, Outcome::Dropped),
             _ => Err(Error::OutOfStep { rank: from }),
         }
     }
@@ -266,7 +285,14 @@ impl<'a, 'c> Master<'a, 'c> {
     fn took(&mut self, item: u64, rank: usize, result: Outcome) -> Result<(), Error> {
         let failed = |message| Error::Item { item, rank, message };
         self.busy[rank] = self.busy[rank].checked_sub(1).ok_or(Error::OutOfStep { rank })?;
-        self.job.take(item, rank, result.map_err(failed)?).map_err(failed)?;
+        match result {
+            Outcome::Done(result) => self.job.take(item, rank, result).map_err(failed)?,
+            Outcome::Failed(message) => return Err(failed(message)),
+            Outcome::Dropped => {
+                self.dropped = true;
+                return Ok(());
+            }
+        }
         self.done[rank] += 1;
         let bound = self.job.bound();
         if bound < self.bound {
@@ -307,8 +333,9 @@ impl<'a, 'c> Master<'a, 'c> {
 /// Works on what the master says.
 fn other(link: &dyn Link, mut crew: Crew<'_>) -> Result<(), Error> {
     let send = |item, result: Outcome| match result {
-        Ok(result) => link.send(MASTER, message(kind::DONE, item, &result)),
-        Err(text) => link.send(MASTER, message(kind::FAILED, item, text.as_bytes())),
+        Outcome::Done(result) => link.send(MASTER, message(kind::DONE, item, &result)),
+        Outcome::Failed(text) => link.send(MASTER, message(kind::FAILED, item, text.as_bytes())),
+        Outcome::Dropped => link.send(MASTER, message(kind::DROPPED, item, &[])),
     };
     loop {
         while let Some((from, received)) = link.poll()? {

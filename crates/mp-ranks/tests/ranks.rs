@@ -87,17 +87,40 @@ fn what_was_cancelled_goes_on_from_its_checkpoint() {
     assert!(done.load(Ordering::Relaxed) <= 100 + 2 * 6);
 }
 
+/// Waits until it is cancelled.
+fn wait(hand: &Hand) -> Result<Vec<u8>, String> {
+    while !hand.cancel.is_raised() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    Ok(Vec::new())
+}
+
 #[test]
 fn long_items_hear_of_a_cancel() {
-    let options = Options::default();
-    let waits = |_: u64, hand: &Hand| {
-        options.cancel.cancel();
-        while !hand.cancel.is_raised() {
-            std::thread::sleep(Duration::from_millis(1));
+    // Again and again: the cancel comes at any moment of the master's loop.
+    for _ in 0..100 {
+        let options = Options::default();
+        let waits = |_: u64, hand: &Hand| {
+            options.cancel.cancel();
+            wait(hand)
+        };
+        let ran = on(3, &options, &mut Items::new(0..10, |_, _, _| Ok(())), &waits).unwrap();
+        assert!(ran.cancelled && ran.items == [0, 0, 0]);
+    }
+}
+
+#[test]
+fn a_cancel_on_any_rank_ends_the_job() {
+    // An item that fails because it was cancelled is no failure.
+    let cancelled_on_its_rank = |item: u64, hand: &Hand| match item {
+        5 => {
+            hand.cancel.cancel();
+            Err("no time".to_owned())
         }
-        Ok(Vec::new())
+        _ => wait(hand),
     };
-    let ran = on(3, &options, &mut Items::new(0..10, |_, _, _| Ok(())), &waits).unwrap();
+    let options = Options { threads: 2, ..Options::default() };
+    let ran = on(3, &options, &mut Items::new(0..20, |_, _, _| Ok(())), &cancelled_on_its_rank).unwrap();
     assert!(ran.cancelled && ran.items == [0, 0, 0]);
 }
 
