@@ -3,6 +3,8 @@
 //! Here and not in `tests`, and the test program itself is what is killed: another one would compile the whole library a second
 //! time.
 
+#![cfg(test)]
+
 use crate::{Options, program};
 use clap::Parser;
 use std::ops::Range;

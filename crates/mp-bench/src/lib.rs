@@ -10,7 +10,6 @@ mod clock;
 mod collide;
 mod error;
 mod experiment;
-#[cfg(test)]
 mod killed;
 mod options;
 mod output;
@@ -22,7 +21,6 @@ mod rrs;
 mod rsrt;
 mod scaling;
 mod scenes;
-#[cfg(test)]
 mod spread;
 
 use clap::{Parser, ValueEnum};

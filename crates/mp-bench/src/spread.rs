@@ -2,6 +2,8 @@
 //!
 //! Each is run by the test program itself, as another process: how time passes and what is printed is one for a process.
 
+#![cfg(test)]
+
 use crate::{Options, program, run_on};
 use clap::Parser;
 use mp_ranks::{Link, ThreadLink, threads};

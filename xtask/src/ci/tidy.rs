@@ -207,7 +207,9 @@ fn file_calls(path: &Path, text: &str) -> Vec<String> {
     {
         return Vec::new();
     }
-    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let code = ["#[cfg(test)]\nmod tests", "#![cfg(test)]"]
+        .iter()
+        .fold(text, |code, tests| code.split(tests).next().unwrap_or_default());
     let lines = code.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//"));
     let found =
         lines.filter_map(|(i, line)| Some((i, FILE_CALLS.iter().find(|call| line.contains(**call))?)));
@@ -307,6 +309,8 @@ mod tests {
         let found = |path: &str| file_calls(Path::new(path), text);
         assert_eq!(found("crates/mp-x/src/a.rs").len(), 1);
         assert!(found("crates/mp-x/src/a.rs")[0].contains("a.rs, line 3: "));
+        let only_tests = "//! Tests.\n#![cfg(test)]\nfn f() {\n    std::fs::write(a, b);\n}\n";
+        assert!(file_calls(Path::new("crates/mp-x/src/a.rs"), only_tests).is_empty());
         for path in [
             "crates/mp-store/src/a.rs",
             "crates/mp-x/tests/a.rs",
