@@ -92,16 +92,30 @@ impl Options {
     }
 }
 
+/// How a suite ended that all ranks ran.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ran {
+    /// Whether it was measured completely.
+    pub complete: bool,
+    /// What each rank did; on the first one. A piece of work is its processor time, seconds, also where that is counted.
+    pub shares: mp_ranks::Shares,
+}
+
 /// Runs a suite on all ranks: each of them calls this, with the same options. The first one writes and prints; the others do a part of the
-/// runs.
+/// runs. `cancel` ends it, on whichever rank it is raised; runs that are done are kept.
 ///
 /// # Errors
-/// As [`run`], and when the ranks cannot reach each other.
-pub fn run_on(options: &Options, link: std::rc::Rc<dyn mp_ranks::Link>) -> Result<bool, Error> {
+/// As [`run`], and when the ranks cannot reach each other. Others may still wait for a rank that has an error.
+pub fn run_on(
+    options: &Options,
+    link: std::rc::Rc<dyn mp_ranks::Link>,
+    cancel: &mp_cspace::Cancel,
+) -> Result<Ran, Error> {
     if !link.is_master() {
         output::silence();
     }
-    experiment::ranks::with(link, || run(options))
+    let (complete, shares) = experiment::ranks::with(link, cancel.clone(), || run(options));
+    Ok(Ran { complete: complete?, shares })
 }
 
 /// Runs a suite. True when it was measured completely, and all of what it printed was read.

@@ -6,6 +6,7 @@
 
 use crate::{Options, program, run_on};
 use clap::Parser;
+use mp_cspace::Cancel;
 use mp_ranks::{Link, ThreadLink, threads};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -42,7 +43,7 @@ fn the_program() {
     }
     let run = |link: ThreadLink| {
         let is_master = link.is_master();
-        let ran = run_on(&options, Rc::new(link));
+        let ran = run_on(&options, Rc::new(link), &Cancel::new()).map(|ran| ran.complete);
         (is_master, ran)
     };
     // Here all ranks share one standard output: nobody prints.

@@ -6,7 +6,7 @@ use crate::interrupt;
 use crate::output::{Claims, note, print};
 use crate::progress::Line;
 use mp_plan::{
-    Cancel, Error, Interrupt, ListedProblems, ManyOptions, ManyOutcome, ProblemList, Shard, Tally, count,
+    Cancel, Error, Interrupt, ListedProblems, ManyOptions, ManyOutcome, ProblemList, Shard, Tally,
     merge_results,
 };
 use std::path::Path;
@@ -49,8 +49,8 @@ pub(crate) fn run(args: &Many) -> Result<bool, Error> {
         return Ok(false);
     }
     print(&match args.shard {
-        Shard::WHOLE => summary(tally),
-        shard => format!("shard {shard}: {}", summary(tally)),
+        Shard::WHOLE => tally.to_string(),
+        shard => format!("shard {shard}: {tally}"),
     })?;
     Ok(true)
 }
@@ -65,7 +65,7 @@ pub(crate) fn merge(args: &Merge) -> Result<bool, Error> {
     not_standard("the merged results", &args.out)?;
     claims.output("the output", &args.out)?;
     let tally = merge_results(&args.out, &args.shards)?;
-    print(&summary(tally))?;
+    print(&tally.to_string())?;
     note(&format!("wrote {}", args.out.display()));
     Ok(true)
 }
@@ -89,15 +89,4 @@ fn not_standard(what: &str, file: &Path) -> Result<(), Error> {
         true => Err(Error::new(format!("{what} must be a file, not `-`")).help("name a file")),
         false => Ok(()),
     }
-}
-
-/// How many were solved.
-fn summary(tally: Tally) -> String {
-    let Tally { items, solved, unsolved, failed, timed } = tally;
-    let problems = count(usize::try_from(items).unwrap_or(usize::MAX), "problem");
-    let mut text = format!("{problems}: {solved} solved, {unsolved} unsolved, {failed} failed");
-    if timed > 0 {
-        text += &format!("; the time was up for {timed}: their results depend on the machine");
-    }
-    text
 }

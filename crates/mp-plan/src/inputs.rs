@@ -11,6 +11,8 @@ use std::sync::Mutex;
 pub(crate) struct Recording<'a> {
     pub(crate) files: &'a dyn Files,
     pub(crate) read: Mutex<Vec<PathBuf>>,
+    /// Folders whose absolute names were asked for, with these.
+    pub(crate) folders: Mutex<Vec<(PathBuf, PathBuf)>>,
 }
 
 impl Files for Recording<'_> {
@@ -29,7 +31,13 @@ impl Files for Recording<'_> {
         self.files.holds(path)
     }
     fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
-        self.files.absolute(folder)
+        let absolute = self.files.absolute(folder)?;
+        if let Ok(mut folders) = self.folders.lock()
+            && !folders.iter().any(|(known, _)| known == folder)
+        {
+            folders.push((folder.to_owned(), absolute.clone()));
+        }
+        Ok(absolute)
     }
 }
 
@@ -62,17 +70,11 @@ impl Scene {
     /// # Errors
     /// When one cannot be read any more.
     pub(crate) fn input_fingerprint(&self, from: &Path) -> Result<u64, crate::Error> {
-        let mut hash = xxhash_rust::xxh3::Xxh3::new();
-        for path in &*self.inputs {
-            let bytes = self.content(from, path)?;
-            hash.update(&(bytes.len() as u64).to_le_bytes());
-            hash.update(&bytes);
-        }
-        Ok(hash.digest())
+        fingerprint_of(self.inputs.iter().map(|path| Ok(self.content(from, path)?)))
     }
 
     /// The content of one of the files that the scene was read from, which are relative to `from`.
-    fn content(&self, from: &Path, path: &Path) -> Result<Vec<u8>, Error> {
+    pub(crate) fn content(&self, from: &Path, path: &Path) -> Result<Vec<u8>, Error> {
         #[cfg(feature = "scenes")]
         if self.shipped {
             return crate::find::shipped_files().read(path, mp_io::MAX_MESH_BYTES);
@@ -85,6 +87,23 @@ impl Scene {
     pub fn inputs_on_disk(&self) -> &[PathBuf] {
         if self.shipped { &[] } else { &self.inputs }
     }
+}
+
+/// A hash of the content of files in their order (XXH3).
+///
+/// # Errors
+/// The first one among them.
+pub(crate) fn fingerprint_of<B: AsRef<[u8]>>(
+    files: impl Iterator<Item = Result<B, crate::Error>>,
+) -> Result<u64, crate::Error> {
+    let mut hash = xxhash_rust::xxh3::Xxh3::new();
+    for bytes in files {
+        let bytes = bytes?;
+        let bytes = bytes.as_ref();
+        hash.update(&(bytes.len() as u64).to_le_bytes());
+        hash.update(bytes);
+    }
+    Ok(hash.digest())
 }
 
 /// The innermost folder that holds all files.

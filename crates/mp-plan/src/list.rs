@@ -1,6 +1,9 @@
 //! Lists of planning problems: their items are numbered, and their results are logs that go on where they ended.
 
 mod merge;
+mod order;
+mod parcel;
+mod ranks;
 mod reader;
 mod results;
 mod run;
@@ -10,6 +13,7 @@ mod shard;
 pub use merge::merge_results;
 #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
 pub(crate) use merge::merged;
+pub use ranks::RanksOutcome;
 #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
 pub(crate) use reader::{Next, ResultsReader};
 #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]

@@ -6,7 +6,7 @@ use crate::kinds::of_kind;
 use crate::{Error, Scene, alone};
 use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RigidTask, RobotProblem, SceneDocument};
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 impl Scene {
     /// Reads a scene: a GEMPA environment (`.env`, `.txt`), an OMPL.app problem (`.cfg`), a robot problem, a rigid body or
@@ -31,7 +31,7 @@ impl Scene {
             Some(_) => e,
             None => e.context(format!("cannot plan in {}", file.display())),
         };
-        let recording = Recording { files, read: Mutex::default() };
+        let recording = Recording { files, read: Mutex::default(), folders: Mutex::default() };
         let files: &dyn Files = &recording;
         let scene = match alone::scene(files, file, &ending).map_err(of)? {
             Some(scene) => scene,
@@ -53,9 +53,10 @@ impl Scene {
             }
         };
         tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
-        let inputs = recording.read.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let Recording { read, folders, .. } = recording;
         let mut scene = scene.with_file(file);
-        scene.inputs = inputs.into();
+        scene.inputs = read.into_inner().unwrap_or_else(PoisonError::into_inner).into();
+        scene.folders = folders.into_inner().unwrap_or_else(PoisonError::into_inner).into();
         Ok(scene)
     }
 

@@ -32,6 +32,8 @@ pub struct Scene {
     robot: Arc<dyn AnyRobot>,
     file: Option<PathBuf>,
     pub(crate) inputs: Arc<[PathBuf]>,
+    /// Folders in which files were sought, with their absolute names.
+    pub(crate) folders: Arc<[(PathBuf, PathBuf)]>,
     /// Whether its files are those that come with the program.
     pub(crate) shipped: bool,
     /// What it was made from, if that is a document of an editor.
@@ -63,6 +65,7 @@ impl Scene {
             robot: Arc::new(robot),
             file: None,
             inputs: Arc::default(),
+            folders: Arc::default(),
             shipped: false,
             document: None,
             notes: Arc::default(),

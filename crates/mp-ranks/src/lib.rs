@@ -6,6 +6,7 @@
 //!
 //! - A [`Link`] carries messages. [`threads`] makes links between threads; that of MPI is elsewhere.
 //! - A [`Checkpoint`] keeps results, so that a job that was killed goes on.
+//! - [`Shares`] says what each rank did.
 //! - [`simulate`] replays measured costs for any number of ranks.
 //!
 //! ```
@@ -34,12 +35,14 @@ mod checkpoint;
 mod job;
 mod link;
 mod run;
+mod shares;
 mod simulate;
 
 pub use checkpoint::Checkpoint;
 pub use job::{Items, Job};
 pub use link::{Link, ThreadLink, threads};
 pub use run::{Hand, Options, Ran, Work, broadcast, run};
+pub use shares::Shares;
 pub use simulate::{Policy, Simulated, simulate};
 
 /// What ends a job on all ranks.

@@ -13,6 +13,10 @@ use mp_store::Lock;
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+/// How often ranks tell how far they are.
+const TELL: Duration = Duration::from_secs(10);
 
 /// Runs experiments: the folder for results, the threads, and cancellation.
 #[derive(Debug)]
@@ -35,7 +39,7 @@ impl Lab {
     pub(crate) fn new(options: &Common) -> Result<Self> {
         let threads = options.threads.map_or_else(|| usize::from(ranks::link().is_some()), usize::from);
         let is_master = ranks::link().is_none_or(|link| link.is_master());
-        Self::with(options, threads, is_master, if is_master { interrupt() } else { Cancel::new() })
+        Self::with(options, threads, is_master, interrupt())
     }
 
     /// A lab with one run at a time, for measurements of time that other runs would disturb.
@@ -171,7 +175,6 @@ impl Lab {
                 let Some(run) = run(&setup, case)? else { break };
                 done(case, &run)?;
                 runs.push((case.clone(), run));
-                bar.inc(1);
             }
             Ok(runs)
         };
@@ -181,11 +184,24 @@ impl Lab {
                     threads: self.pool.current_num_threads(),
                     cancel: self.cancel.clone(),
                 };
-                ranks::measured(&*link, &options, log, &groups, |cases| group(cases, &|_, _| Ok(())))
+                let mut told = Instant::now();
+                let took = |runs: usize| {
+                    bar.inc(runs as u64);
+                    // Ranks have no terminal.
+                    if bar.is_hidden() && told.elapsed() >= TELL {
+                        told = Instant::now();
+                        note(&format!("{what}: {} of {count} runs", bar.position()));
+                    }
+                };
+                ranks::measured(&*link, &options, log, &groups, |cases| group(cases, &|_, _| Ok(())), took)
             }
             None => {
                 let shared = &*log;
-                self.parallel(&groups, |cases| group(cases, &|case, run| shared.write(case, run)).map(Some))
+                let done = |case: &K, run: &R| {
+                    bar.inc(1);
+                    shared.write(case, run)
+                };
+                self.parallel(&groups, |cases| group(cases, &done).map(Some))
                     .map(|done| done.into_iter().flatten().flatten().collect())
             }
         };
@@ -274,13 +290,16 @@ fn bar(what: &str, total: usize, known: usize) -> ProgressBar {
     bar
 }
 
-/// Whether Ctrl-C was pressed.
+/// Whether Ctrl-C was pressed, or the work of all ranks was cancelled.
 pub(crate) fn interrupted() -> bool {
     interrupt().is_raised()
 }
 
-/// A flag that is set by the first Ctrl-C. The second one ends the program at once.
+/// A flag that is set by the first Ctrl-C. The second one ends the program at once. Among other ranks, that of who began the measurement.
 fn interrupt() -> Cancel {
+    if let Some(cancel) = ranks::cancel() {
+        return cancel;
+    }
     static RAISED: OnceLock<Cancel> = OnceLock::new();
     let raised = RAISED.get_or_init(|| {
         let raised = Cancel::new();

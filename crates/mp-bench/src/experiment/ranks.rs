@@ -1,26 +1,41 @@
 //! Experiments on several ranks: each comes to the same calls, the master keeps the log, and all learn what was measured.
 
 use super::log::{CaseKey, Log, RunRecord};
+use crate::clock;
 use crate::error::{IntoError, Result};
-use mp_ranks::{Hand, Items, Link, Options, broadcast, run};
+use mp_cspace::Cancel;
+use mp_ranks::{Hand, Items, Link, Options, Shares, broadcast, run};
 use std::cell::RefCell;
 use std::rc::Rc;
 
+/// What a thread that measures has to do with other ranks.
+struct Among {
+    link: Rc<dyn Link>,
+    cancel: Cancel,
+    /// What each rank did so far; on the master.
+    shares: Shares,
+}
+
 thread_local! {
-    static LINK: RefCell<Option<Rc<dyn Link>>> = const { RefCell::new(None) };
+    static AMONG: RefCell<Option<Among>> = const { RefCell::new(None) };
 }
 
 /// The link to the other ranks of the thread that measures, if there are any.
 pub(crate) fn link() -> Option<Rc<dyn Link>> {
-    LINK.with_borrow(Clone::clone)
+    AMONG.with_borrow(|among| among.as_ref().map(|among| among.link.clone()))
 }
 
-/// Does `job` with this link.
-pub(crate) fn with<T>(link: Rc<dyn Link>, job: impl FnOnce() -> T) -> T {
-    LINK.set(Some(link));
+/// What ends the work of the thread that measures, if there are other ranks.
+pub(crate) fn cancel() -> Option<Cancel> {
+    AMONG.with_borrow(|among| among.as_ref().map(|among| among.cancel.clone()))
+}
+
+/// Does `job` with this link, until `cancel` is raised. Also returns what each rank did.
+pub(crate) fn with<T>(link: Rc<dyn Link>, cancel: Cancel, job: impl FnOnce() -> T) -> (T, Shares) {
+    let shares = Shares::new(link.ranks());
+    AMONG.set(Some(Among { link, cancel, shares }));
     let result = job();
-    LINK.set(None);
-    result
+    (result, AMONG.take().map(|among| among.shares).unwrap_or_default())
 }
 
 /// Tells all ranks what is known; the master calls it.
@@ -33,20 +48,22 @@ pub(crate) fn learned<K: CaseKey, R: RunRecord>(link: &dyn Link) -> Result<Vec<(
     serde_json::from_slice(&broadcast(link, Vec::new()).into_error()?).into_error()
 }
 
-/// Runs groups of cases, each on some rank, and appends them to the log of the master. Returns all runs, on all ranks; none when it was
-/// cancelled.
+/// Runs groups of cases, each on some rank, and appends them to the log of the master. `took` learns how many runs a group had, on the master.
+/// Returns all runs, on all ranks; none when it was cancelled.
 pub(crate) fn measured<K: CaseKey, R: RunRecord>(
     link: &dyn Link,
     options: &Options,
     log: &Log<K, R>,
     groups: &[Vec<K>],
     group: impl Fn(&Vec<K>) -> Result<Vec<(K, R)>> + Sync,
+    mut took: impl FnMut(usize),
 ) -> Result<Vec<(K, R)>> {
     let work = |item: u64, hand: &Hand| {
+        let began = clock::nanoseconds();
         let runs = group(&groups[item as usize]).map_err(|e| e.to_string())?;
         match hand.cancel.is_raised() {
             true => Err("interrupted".to_owned()),
-            false => serde_json::to_vec(&runs).map_err(|e| e.to_string()),
+            false => serde_json::to_vec(&(clock::seconds_since(began), runs)).map_err(|e| e.to_string()),
         }
     };
     if !link.is_master() {
@@ -54,13 +71,18 @@ pub(crate) fn measured<K: CaseKey, R: RunRecord>(
         return if options.cancel.is_raised() { Ok(Vec::new()) } else { learned(link) };
     }
     let mut all: Vec<(K, R)> = Vec::new();
-    let take = |_, _, result: Vec<u8>| {
-        let runs: Vec<(K, R)> = serde_json::from_slice(&result).map_err(|e| e.to_string())?;
+    let take = |_, rank, result: Vec<u8>| {
+        let (work, runs): (f64, Vec<(K, R)>) = serde_json::from_slice(&result).map_err(|e| e.to_string())?;
+        AMONG.with_borrow_mut(|among| among.as_mut().map(|among| among.shares.add(rank, work)));
         runs.iter().try_for_each(|(case, run)| log.write(case, run)).map_err(|e| e.to_string())?;
+        took(runs.len());
         all.extend(runs);
         Ok(())
     };
-    let ran = run(link, options, Some(&mut Items::new(0..groups.len() as u64, take)), &work).into_error()?;
+    // What a run costs is not known before. A group of more runs probably takes longer.
+    let runs = |item: u64| groups[item as usize].len() as f64;
+    let mut job = Items::dearest_first(0..groups.len() as u64, runs, take);
+    let ran = run(link, options, Some(&mut job), &work).into_error()?;
     if !ran.cancelled {
         shared(link, &all.iter().map(|(case, run)| (case, run)).collect::<Vec<_>>())?;
     }

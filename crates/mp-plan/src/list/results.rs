@@ -4,6 +4,7 @@ use super::Shard;
 use crate::{Error, Report, StoppedBy};
 use mp_io::one_line;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use xxhash_rust::xxh3::Xxh3;
 
 /// The version of results that this program writes. It grows when a member changes its meaning or is removed.
@@ -214,6 +215,19 @@ impl std::ops::AddAssign for Tally {
         self.unsolved += other.unsolved;
         self.failed += other.failed;
         self.timed += other.timed;
+    }
+}
+
+/// As a sentence: `3 problems: 2 solved, 1 unsolved, 0 failed`.
+impl fmt::Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { items, solved, unsolved, failed, timed } = self;
+        let problems = crate::count(usize::try_from(*items).unwrap_or(usize::MAX), "problem");
+        write!(f, "{problems}: {solved} solved, {unsolved} unsolved, {failed} failed")?;
+        match timed {
+            0 => Ok(()),
+            _ => write!(f, "; the time was up for {timed}: their results depend on the machine"),
+        }
     }
 }
 

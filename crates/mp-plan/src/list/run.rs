@@ -3,7 +3,7 @@
 use super::reader::{Next, ResultsReader};
 use super::results::{end_line, line};
 use super::{ItemResult, ListedProblems, ResultsHeader, Shard, Tally};
-use crate::{Cancel, Control, Error, in_order};
+use crate::{Cancel, Control, Error, Report, in_order};
 use mp_io::shortened;
 use mp_store::{Journal, Lock};
 use std::fs::File;
@@ -42,7 +42,7 @@ pub struct ManyOutcome {
     pub items: u64,
     /// How many results were in the file before.
     pub before: u64,
-    /// Those that are in the file now.
+    /// Those that are in the file now; while it is written by several ranks, also those that are kept until their place in it comes.
     pub tally: Tally,
 }
 
@@ -102,7 +102,7 @@ impl ListedProblems {
             |_, item| self.planned(item, options, cancel),
             |_, result| {
                 written = match result {
-                    Some(result) => result.and_then(|(text, tally)| log.append(&text, tally)),
+                    Some(result) => result.and_then(|done| log.append(&done.line, done.tally)),
                     None => return ControlFlow::Break(()),
                 };
                 outcome.tally = log.tally;
@@ -127,33 +127,54 @@ impl ListedProblems {
     }
 
     /// The line of an item, and how it counts; `None` when planning was cancelled before it was done.
-    fn planned(
+    pub(super) fn planned(
         &self,
         item: u64,
         options: &ManyOptions,
         cancel: &Cancel,
-    ) -> Option<Result<(String, Tally), Error>> {
+    ) -> Option<Result<Planned, Error>> {
         let plan = || {
             let (scene, request) = self.problem(item, options.time_s)?;
             scene.plan_with(&request, &mut Control { cancel: cancel.clone(), ..Control::default() })
         };
-        let result = ItemResult::new(item, plan(), options.times);
+        let report = plan();
         // A run that was cut short found less than it would have.
-        (!cancel.is_raised()).then(|| Ok((line(&result)?, result.tally())))
+        if cancel.is_raised() {
+            return None;
+        }
+        let of = |report: &Report| (report.time_s + report.finish_s, report.collision_checks);
+        let (seconds, checks) = report.as_ref().map_or((0.0, 0), of);
+        let result = ItemResult::new(item, report, options.times);
+        let tally = result.tally();
+        Some(line(&result).map(|line| Planned { line, tally, seconds, checks }))
     }
 }
 
+/// An item that is planned.
+pub(super) struct Planned {
+    /// Its line of the results.
+    pub(super) line: String,
+    /// How it counts.
+    pub(super) tally: Tally,
+    /// How long it took.
+    pub(super) seconds: f64,
+    /// Its collision queries.
+    pub(super) checks: u64,
+}
+
 /// Results that grow.
-struct Log {
+pub(super) struct Log {
     journal: Journal,
     hash: Xxh3,
-    tally: Tally,
-    is_ended: bool,
+    /// How many are there.
+    pub(super) tally: Tally,
+    /// Whether they are complete.
+    pub(super) is_ended: bool,
 }
 
 impl Log {
     /// Goes on with the file, which must have this header, or begins it.
-    fn open(out: &Path, header: &ResultsHeader) -> Result<Self, Error> {
+    pub(super) fn open(out: &Path, header: &ResultsHeader) -> Result<Self, Error> {
         let is_new = std::fs::metadata(out).map_or_else(
             |e| e.kind() == std::io::ErrorKind::NotFound,
             |meta| meta.is_file() && meta.len() == 0,
@@ -188,7 +209,7 @@ impl Log {
     }
 
     /// Appends a line, which ends with a line break.
-    fn append(&mut self, line: &str, tally: Tally) -> Result<(), Error> {
+    pub(super) fn append(&mut self, line: &str, tally: Tally) -> Result<(), Error> {
         self.journal.append(line.trim_end_matches('\n'))?;
         self.hash.update(line.as_bytes());
         self.tally += tally;
@@ -196,9 +217,11 @@ impl Log {
     }
 
     /// Appends the last line.
-    fn end(self) -> Result<(), Error> {
+    pub(super) fn end(&mut self) -> Result<(), Error> {
         let line = end_line(self.tally, &self.hash)?;
-        Ok(self.journal.append(line.trim_end_matches('\n'))?)
+        self.journal.append(line.trim_end_matches('\n'))?;
+        self.is_ended = true;
+        Ok(())
     }
 }
 

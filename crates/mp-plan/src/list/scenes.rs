@@ -1,5 +1,6 @@
 //! The scenes of a list, loaded once.
 
+use super::parcel::hexadecimal;
 use super::{ProblemList, SceneFingerprint};
 use crate::{Error, Request, Scene};
 use mp_cspace::Interrupt;
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug)]
 pub struct ListedProblems {
     pub(super) list: ProblemList,
-    scenes: Vec<Scene>,
+    pub(super) scenes: Vec<Scene>,
     pub(super) fingerprints: Vec<SceneFingerprint>,
 }
 
@@ -26,7 +27,7 @@ impl ProblemList {
             fingerprints.push(SceneFingerprint {
                 scene: name.clone(),
                 file: scene.file().map(|file| file.display().to_string()).unwrap_or_default(),
-                fingerprint: format!("{:016x}", scene.input_fingerprint(self.folder()).map_err(of)?),
+                fingerprint: hexadecimal(scene.input_fingerprint(self.folder()).map_err(of)?),
             });
             scenes.push(scene);
         }
@@ -40,7 +41,7 @@ impl ProblemList {
         ListedProblems { list: self.clone(), scenes, fingerprints: Vec::new() }
     }
 
-    fn folder(&self) -> &Path {
+    pub(super) fn folder(&self) -> &Path {
         self.file.parent().unwrap_or(Path::new(""))
     }
 }

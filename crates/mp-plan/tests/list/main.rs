@@ -2,6 +2,7 @@
 #![cfg(not(target_family = "wasm"))]
 
 mod lists;
+mod ranks;
 mod runs;
 mod shards;
 
