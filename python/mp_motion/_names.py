@@ -20,6 +20,7 @@ PlannerName: TypeAlias = Literal[
     "prm",
     "prm-star",
     "rc-rrt",
+    "regional-prm",
     "rrs",
     "rrs-connect",
     "rrt",

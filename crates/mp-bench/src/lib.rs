@@ -15,6 +15,7 @@ mod options;
 mod output;
 mod planners;
 mod plot;
+mod regions;
 mod rigid;
 mod roadmaps;
 mod rrs;
@@ -73,6 +74,8 @@ enum Suite {
     Rsrt,
     /// Roadmaps: corridors of decreasing width, shipped scenes, many queries, growth, pictures.
     Roadmaps,
+    /// Roadmaps by regions: what they answer, and how evenly their work is spread over ranks.
+    Regions,
     /// The speed of growth of an RRT without obstacles, against its size.
     Scaling,
     /// What proofs of paths cost: certifying, and replaying by `mp-verify-certificate`.
@@ -141,6 +144,7 @@ pub fn run(options: &Options) -> Result<bool, Error> {
         Suite::Rrs => rrs::run(common, &options.rrs),
         Suite::Rsrt => rsrt::run(common, &options.rsrt),
         Suite::Roadmaps => roadmaps::run(common, &options.roadmaps),
+        Suite::Regions => regions::run(common),
         Suite::Scaling => scaling::run(common),
         Suite::Certificates => certificates::run(common),
         Suite::Assets => assets::run(&options.assets),

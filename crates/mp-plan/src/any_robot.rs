@@ -5,6 +5,8 @@ use crate::check::check;
 use crate::explain::{check_ends, explain, lint};
 use crate::path::state;
 use crate::plan::plan;
+#[cfg(feature = "ranks")]
+use crate::regional::AnyRegional;
 use crate::run::AnyPrepared;
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::AnySceneRoadmap;
@@ -51,6 +53,14 @@ pub(crate) trait AnyRobot: Send + Sync {
         self: Arc<Self>,
         request: &Request,
         control: &mut Control<'_>,
+    ) -> Result<Box<dyn AnySceneRoadmap>, Error>;
+    #[cfg(feature = "ranks")]
+    fn regional<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyRegional + 's>, Error>;
+    #[cfg(feature = "ranks")]
+    fn roadmap_of(
+        self: Arc<Self>,
+        request: &Request,
+        map: Box<dyn Any + Send>,
     ) -> Result<Box<dyn AnySceneRoadmap>, Error>;
     fn finish(
         &self,
@@ -160,6 +170,18 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         control: &mut Control<'_>,
     ) -> Result<Box<dyn AnySceneRoadmap>, Error> {
         crate::scene_roadmap::build(self, request, control)
+    }
+    #[cfg(feature = "ranks")]
+    fn regional<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyRegional + 's>, Error> {
+        crate::regional::regional(self, request)
+    }
+    #[cfg(feature = "ranks")]
+    fn roadmap_of(
+        self: Arc<Self>,
+        request: &Request,
+        map: Box<dyn Any + Send>,
+    ) -> Result<Box<dyn AnySceneRoadmap>, Error> {
+        crate::scene_roadmap::of_map(self, request, map)
     }
     fn finish(
         &self,

@@ -42,6 +42,7 @@
 //! | plan in pieces, between the events of a program | [`Scene::prepare`], [`Run`] |
 //! | move start and goal | [`Scene::with_ends`] |
 //! | build a roadmap once for many queries | [`Scene::roadmap`], [`SceneRoadmap`] |
+//! | build a roadmap by regions, on the ranks of a cluster | `Scene::regions`, `RegionalWork` (feature `ranks`) |
 //! | read the result | [`Report`], with a documented JSON form |
 //! | shorten a path from elsewhere | [`Scene::finish`] |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
@@ -89,6 +90,8 @@ mod picture;
 mod plan;
 mod planners;
 mod prepared;
+#[cfg(feature = "ranks")]
+mod regional;
 mod relax;
 mod report;
 mod request;
@@ -127,6 +130,8 @@ pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
 pub use planners::{meta_planners, planners, roadmap_planners};
+#[cfg(feature = "ranks")]
+pub use regional::{RegionalTally, RegionalWork};
 pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, RelaxField, Request};
 pub use roadmaps::{Roadmap, RoadmapState};

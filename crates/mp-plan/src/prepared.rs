@@ -64,7 +64,12 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
 
     /// The problem of the scene. Each thread makes its own.
     pub(crate) fn problem(&self) -> Result<AnyProblem<'_, K::State>, BuildError> {
-        let (kind, interrupt) = (self.kind, self.interrupt());
+        self.problem_until(self.interrupt())
+    }
+
+    /// The problem of the scene, which asks this token whether to end.
+    pub(crate) fn problem_until(&self, interrupt: Interrupt) -> Result<AnyProblem<'_, K::State>, BuildError> {
+        let kind = self.kind;
         let counted = || {
             let counted = Counted::new(kind.checker().clone(), &self.queries);
             let counted = counted.with_interrupt(interrupt.clone());

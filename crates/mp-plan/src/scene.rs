@@ -348,6 +348,18 @@ impl Scene {
         Ok(SceneRoadmap { roadmap, file: self.file.as_ref().map(|file| file.display().to_string()) })
     }
 
+    /// The work on a roadmap by regions, for the ranks of a cluster: one round of the planner `regional-prm`. Its parameters say how large
+    /// the roadmap is. The request has no budget but that of time, which is for the caller to watch.
+    ///
+    /// # Errors
+    /// When the request is not valid, for this scene or for such work.
+    #[cfg(feature = "ranks")]
+    pub fn regions<'s>(&'s self, request: &'s Request) -> Result<crate::RegionalWork<'s>, Error> {
+        self.check_ends()?;
+        let file = self.file.as_ref().map(|file| file.display().to_string());
+        crate::RegionalWork::new(&self.robot, file, request)
+    }
+
     /// Finishes a path from elsewhere, between any two configurations: verifies it, shortens or relaxes it as the request says, and
     /// verifies the result as it will be written. Of the request, the finish, its field, the seed and the budget of time count.
     ///

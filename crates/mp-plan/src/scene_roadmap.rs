@@ -134,6 +134,21 @@ pub(crate) fn build<K: RobotKind + 'static>(
     Ok(Box::new(RobotRoadmap { kind, request: request.clone(), roadmap }))
 }
 
+/// A roadmap that was built elsewhere, for this robot: a [`Roadmap`].
+#[cfg(feature = "ranks")]
+pub(crate) fn of_map<K: RobotKind + 'static>(
+    kind: Arc<K>,
+    request: &Request,
+    map: Box<dyn std::any::Any + Send>,
+) -> Result<Box<dyn AnySceneRoadmap>, Error> {
+    let map = map.downcast::<Roadmap<K::State>>();
+    let map = map.map_err(|_| Error::new("the roadmap is one for robots of another kind"))?;
+    let crate::Measured { space, index } = kind.measured(request.metric)?;
+    let roadmap = AnyRoadmap::new(&space, *map, index, NEIGHBOURS)?;
+    drop(space);
+    Ok(Box::new(RobotRoadmap { kind, request: request.clone(), roadmap }))
+}
+
 /// The planner of the request, which must build roadmaps.
 fn planner(request: &Request) -> Result<&'static PlannerInfo, Error> {
     match PlannerKind::new(&request.planner)? {

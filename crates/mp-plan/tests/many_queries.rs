@@ -1,7 +1,11 @@
 //! One roadmap of a scene, asked many times.
 
 use mp_cspace::{Clock, Progress};
-use mp_plan::{Budget, Control, PathRows, Report, Request, Scene, SceneRoadmap, StoppedBy, Watch};
+use mp_plan::{
+    Budget, Cancel, Control, Interrupt, PathRows, RegionalWork, Report, Request, Scene, SceneRoadmap,
+    StoppedBy, Watch,
+};
+use mp_ranks::{Checkpoint, Options, threads};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -255,4 +259,187 @@ fn trees_from_the_ends_solve_the_alpha_puzzle() {
         (1..=4).filter(|&seed| scene.plan(&request(seed)).unwrap().verified).count()
     };
     assert_eq!([solved("0"), solved("0.5")], [0, 4]);
+}
+
+/// A roadmap by regions, on so many ranks, which here are threads; the ranks' own answers are `None`.
+fn on_ranks(
+    scene: &Scene,
+    request: &Request,
+    ranks: usize,
+    checkpoint: Option<&Checkpoint>,
+) -> Option<SceneRoadmap> {
+    std::thread::scope(|scope| {
+        let mut links = threads(ranks).into_iter();
+        let master = links.next().unwrap();
+        let others: Vec<_> = links
+            .map(|link| {
+                scope.spawn(move || scene.regions(request).unwrap().over(&link, &Options::default(), None))
+            })
+            .collect();
+        let options = Options { threads: 1 + ranks % 2, ..Options::default() };
+        let made = scene.regions(request).unwrap().over(&master, &options, checkpoint).unwrap();
+        others.into_iter().for_each(|other| assert!(other.join().unwrap().unwrap().is_none()));
+        made
+    })
+}
+
+#[test]
+fn a_roadmap_by_regions_is_the_same_on_any_number_of_ranks_and_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, regions, samples) in [("easy", 8, 60), ("planar-bugtrap", 9, 80)] {
+        let scene = Scene::find(name).unwrap();
+        let request = Request::new("regional-prm")
+            .seed(4)
+            .set("regions", regions)
+            .set("samples", samples)
+            .set("cycles", "yes");
+        let file = folder.path().join(name);
+        let bytes = |roadmap: &SceneRoadmap| {
+            roadmap.save(&file).unwrap();
+            std::fs::read(&file).unwrap()
+        };
+        let mut alone = on_ranks(&scene, &request, 1, None).unwrap();
+        let whole = bytes(&alone);
+        assert!(alone.nodes() > regions * 10 && alone.edges() > alone.nodes(), "{alone:?}");
+        for ranks in [2, 3, 4, 7] {
+            assert!(
+                bytes(&on_ranks(&scene, &request, ranks, None).unwrap()) == whole,
+                "{name}, {ranks} ranks"
+            );
+        }
+        // The same as in one process, on any number of threads.
+        let items = scene.regions(&request).unwrap().items();
+        for threads in 1..=3 {
+            let built = scene.roadmap(&request.clone().iterations(items).threads(threads)).unwrap();
+            assert!(bytes(&built) == whole, "{name}, {threads} threads");
+        }
+        // All edges are free, as code says that found none of them.
+        assert_eq!(alone.verify().unwrap(), 0, "{name}");
+        // The file is one that a planner goes on with: start and goal, and no more nodes than it must.
+        let kept = Request { roadmap: Some(file.clone()), ..request.clone() };
+        let report = scene.plan(&kept).unwrap();
+        assert!(report.solved && report.nodes >= alone.nodes() + 2, "{name}: {}", report.nodes);
+    }
+}
+
+#[test]
+fn a_roadmap_by_regions_goes_on_from_its_checkpoint() {
+    let scene = Scene::find("easy").unwrap();
+    let request = Request::new("regional-prm").seed(4).set("regions", 6).set("samples", 40);
+    let folder = tempfile::tempdir().unwrap();
+    let (file, map) = (folder.path().join("checkpoint"), folder.path().join("map"));
+    let bytes = |roadmap: SceneRoadmap| {
+        roadmap.save(&map).unwrap();
+        std::fs::read(&map).unwrap()
+    };
+    let whole = bytes(on_ranks(&scene, &request, 1, None).unwrap());
+    let work = scene.regions(&request).unwrap();
+    let never = Interrupt::never();
+    // Ended in the first phase, then in the second.
+    let mut left = work.items();
+    for known in [2, work.regions() + 2] {
+        let checkpoint = Checkpoint::open(&file, "a roadmap").unwrap();
+        for item in 0..known {
+            let built = |region: u64| work.build(region, &never).unwrap();
+            let result = match work.pair(item) {
+                None => built(item),
+                Some(pair) => {
+                    let [one, other] = pair.map(built);
+                    work.connect(item, [&one, &other], &never).unwrap()
+                }
+            };
+            checkpoint.keep(item, &result).unwrap();
+        }
+        drop(checkpoint);
+        let checkpoint = Checkpoint::open(&file, "a roadmap").unwrap();
+        assert!(bytes(on_ranks(&scene, &request, 3, Some(&checkpoint)).unwrap()) == whole);
+        left = left.min(work.items() - known);
+        // All that was made is in it now: nothing is done again.
+        drop(checkpoint);
+        let all = Checkpoint::open(&file, "a roadmap").unwrap();
+        assert_eq!(all.known().len() as u64, work.items());
+        std::fs::remove_file(&file).unwrap();
+    }
+    assert!(left > 0);
+    // Cancelled before it begins: no roadmap, and nobody waits for ever.
+    let cancel = Cancel::new();
+    cancel.cancel();
+    let mut links = threads(2);
+    let (other, scene, request) = (links.remove(1), &scene, &request);
+    std::thread::scope(|scope| {
+        let waiting = scope
+            .spawn(move || scene.regions(request).unwrap().over(&other, &Options::default(), None).unwrap());
+        let options = Options { cancel, ..Options::default() };
+        assert!(work.over(&links[0], &options, None).unwrap().is_none());
+        assert!(waiting.join().unwrap().is_none());
+    });
+}
+
+#[test]
+fn work_by_regions_is_checked() {
+    let scene = Scene::find("easy").unwrap();
+    let refused = |request: &Request| scene.regions(request).map(|_| ()).unwrap_err();
+    let e = refused(&Request::new("prm"));
+    assert!(
+        e.to_string().contains("prm builds no roadmap by regions")
+            && e.remedy().unwrap().contains("regional-prm")
+    );
+    let e = refused(&Request::new("regional-prm").nodes(10));
+    assert!(e.remedy().unwrap().contains("samples"), "{e}");
+    let e = refused(&Request::new("regional-prm").set("regions", 0));
+    assert!(e.to_string().contains("regions is 0"), "{e}");
+    let request = Request::new("regional-prm").set("regions", 2).set("samples", 10);
+    let work = scene.regions(&request).unwrap();
+    assert_eq!((work.regions(), work.items(), work.pair(1), work.pair(2)), (2, 3, None, Some([0, 1])));
+    let never = Interrupt::never();
+    let built: Vec<_> = (0..2).map(|region| work.build(region, &never).unwrap()).collect();
+    assert!(built.iter().all(|result| RegionalWork::tally(result).queries > 10));
+    let connected = vec![work.connect(2, [&built[0], &built[1]], &never).unwrap()];
+    assert!(work.finish(&built, &connected).is_ok());
+    assert!(work.finish(&built[1..], &connected).is_err());
+    let e = work.finish(&[connected.clone(), connected.clone()].concat(), &connected).unwrap_err();
+    assert!(e.to_string().contains("not what it should be"), "{e}");
+    assert!(work.connect(2, [&built[0], b"no"], &never).is_err());
+    // What was told to end has no result.
+    let cancel = Cancel::new();
+    cancel.cancel();
+    assert!(work.build(0, &Interrupt::new(cancel)).is_err());
+    let tally = RegionalWork::tally(&built[0]);
+    assert!(tally.nodes > 0 && tally.edges < tally.nodes && tally.queries > tally.nodes, "{tally:?}");
+    assert!(RegionalWork::estimate_pair([&built[0], &built[1]]) >= 2.0);
+    let share = |region| work.estimate(region, &never).unwrap();
+    assert!((1.0..=26.0).contains(&share(0)) && share(0) == share(0));
+}
+
+/// A roadmap by regions answers about what a roadmap of as many uniform samples does.
+#[test]
+fn regions_answer_what_uniform_samples_answer() {
+    let mut tally = [[0; 2]; 2];
+    for (i, (name, regions, samples)) in [("easy", 8, 150), ("maze", 9, 600)].into_iter().enumerate() {
+        let scene = Scene::find(name).unwrap();
+        let ends = free(&scene, 6);
+        for seed in 1..=4 {
+            let request =
+                Request::new("regional-prm").seed(seed).set("regions", regions).set("samples", samples);
+            let items = scene.regions(&request).unwrap().items();
+            let by_regions = scene.roadmap(&request.iterations(items)).unwrap();
+            let plain = Request::new("prm").seed(seed).set("expand", 0).nodes(by_regions.nodes());
+            let plain = scene.roadmap(&plain).unwrap();
+            for (of, mut roadmap) in tally[i].iter_mut().zip([by_regions, plain]) {
+                *of += ends
+                    .windows(2)
+                    .filter(|pair| {
+                        let report = roadmap.query(&pair[0], &pair[1]).unwrap();
+                        if report.solved {
+                            assert_free(&scene, &report, &pair[0], &pair[1]);
+                        }
+                        report.solved
+                    })
+                    .count();
+            }
+        }
+    }
+    for [by_regions, plain] in tally {
+        assert!(by_regions >= 15 && by_regions + 2 >= plain, "by regions, plain: {tally:?} of 20");
+    }
 }

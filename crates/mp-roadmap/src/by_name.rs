@@ -94,14 +94,14 @@ pub(crate) trait Types<'c> {
     type Edge: Clone + Reversible + Send + Sync + 'c;
     type Space: Space<State = Self::State> + Clone + 'c;
     type Local: LocalPlanner<Self::State, Edge = Self::Edge> + Send + 'c;
-    type Index: NearestNeighbors<Self::Space> + Send + Sync + 'c;
+    type Index: NearestNeighbors<Self::Space> + Clone + Send + Sync + 'c;
 }
 
 impl<'c, C, L, N> Types<'c> for (C, L, N)
 where
     C: Space<State: 'c> + Clone + 'c,
     L: LocalPlanner<C::State, Edge: Reversible + 'c> + Send + 'c,
-    N: NearestNeighbors<C> + Send + Sync + 'c,
+    N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
     type State = C::State;
     type Edge = L::Edge;
@@ -146,6 +146,11 @@ impl<'c, 's, T: Types<'c>> BuildArgs<'c, 's, T> {
     /// When the problem does not have it.
     pub(crate) fn geometry(&self, planner: &'static str) -> Result<AnyGeometry<'c, T::State>, BuildError> {
         self.geometry.clone().ok_or(BuildError::NoGeometry { planner })
+    }
+
+    /// An empty index.
+    pub(crate) fn index(&self) -> T::Index {
+        self.index.clone()
     }
 
     /// The planner with these parts.

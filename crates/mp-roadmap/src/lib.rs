@@ -30,7 +30,7 @@
 //!
 //! | slot | trait | here |
 //! |---|---|---|
-//! | which configurations are tried as nodes | [`NodeGenerator`] | [`Free`], [`Learn`], [`AroundRemoved`], [`Pairs`] of [`NearObstacles`] or [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`] |
+//! | which configurations are tried as nodes | [`NodeGenerator`] | [`Free`], [`Learn`], [`AroundRemoved`], [`Pairs`] of [`NearObstacles`] or [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`]; whole pieces: [`InRegions`] |
 //! | which of them become nodes, with which edges | [`Connector`] | [`NearestConnector`], [`Star`], [`Visibility`], [`StagedConnector`] |
 //! | how a path is searched for | [`Query`] | [`AStar`] |
 //! | how one state is connected to another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you; its edges are [`Reversible`](mp_cspace::Reversible) |
@@ -57,10 +57,10 @@ pub use engine::{
     AStar, Builder, CYCLES, Candidate, ConnectionStages, Connector, ENDS, ENDS_STEP, EdgeChecker, EdgeId,
     EndGrowth, Entry, Free, GraphPath, Growing, HasRoadmap, IndexedRoadmap, Link, LinkState, Listed,
     MAX_ROADMAP_BYTES, MilestoneKind, Mixing, NEIGHBOURS, NearestConnector, NeighborSet, NodeGenerator,
-    PATIENCE, Pace, PairRule, Pairs, PairsPlanner, ParentMotion, Prefetching, Query, QueryMeter, RADIUS,
-    Reachable, Roadmap, RoadmapError, RoadmapFileError, RoadmapPlanner, RoadmapPlannerParts, RoadmapQueries,
-    StagedConnector, Tag, Turns, UNDIRECTED, Unanswered, fingerprint, length, reachable, yes,
+    PATIENCE, Pace, PairRule, Pairs, PairsPlanner, ParentMotion, Piece, Prefetching, Query, QueryMeter,
+    RADIUS, Reachable, Roadmap, RoadmapError, RoadmapFileError, RoadmapPlanner, RoadmapPlannerParts,
+    RoadmapQueries, StagedConnector, Tag, Turns, UNDIRECTED, Unanswered, fingerprint, length, reachable, yes,
 };
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{BuildError, Path, registry::Settings};
-pub use registry::{AnyRoadmap, RoadmapState, build, build_with, planner, planners};
+pub use registry::{AnyRegions, AnyRoadmap, RoadmapState, build, build_with, planner, planners};

@@ -67,10 +67,11 @@ pub(super) const BESIDE: &str = "rrt-connect";
 const OBPRM: [&str; 4] = ["obprm prototype", "obprm contact", "obprm free", "obprm shells"];
 
 /// The planners, some with their way to make nodes: those that build roadmaps, and one tree planner. PRM* is left out as it
-/// aims at short paths, not at narrow passages, and LazyPRM as most of its cost is graph search, not queries.
+/// aims at short paths, not at narrow passages, LazyPRM as most of its cost is graph search, not queries, and regional PRM as its
+/// samples are those of PRM: the suite `regions` measures it.
 pub(super) fn planners() -> Vec<&'static str> {
     let roadmaps = mp_roadmap::planners().iter();
-    let other = ["obprm", "prm-star", "lazy-prm"];
+    let other = ["obprm", "prm-star", "lazy-prm", "regional-prm"];
     let names = roadmaps.map(|info| info.name).filter(|name| !other.contains(name));
     names.chain(OBPRM).chain([BESIDE]).collect()
 }

@@ -10,6 +10,7 @@
 //! | [`BridgePrm`](crate::BridgePrm) | [`bridge_prm`] | between obstacles, and uniform | as PRM |
 //! | [`Obprm`](crate::Obprm) | [`obprm`] | on and near the surfaces of obstacles | as PRM, or to near nodes of each obstacle; then by turns in place |
 //! | [`ObstacleGeometryPrm`](crate::ObstacleGeometryPrm) | [`obstacle_geometry_prm`] | far from obstacles, by spheres; near them, by their direction and volume | as PRM; then by turns in place far from obstacles |
+//! | [`RegionalPrm`](crate::RegionalPrm) | [`regional_prm`] | uniform, region by region | as PRM within each region, then between adjacent regions |
 
 pub mod bridge_prm;
 pub mod gaussian_prm;
@@ -18,6 +19,7 @@ pub mod obprm;
 pub mod obstacle_geometry_prm;
 pub mod prm;
 pub mod prm_star;
+pub mod regional_prm;
 pub mod visibility_prm;
 
 use crate::by_name::{BuildFn, Types};
@@ -54,4 +56,5 @@ planners! {
     bridge_prm: BetweenObstacles, BridgePrm;
     obprm: Obprm, OnObstacles, OnSurfaces, Strategy;
     obstacle_geometry_prm: AroundObstacles, ByGeometry, ObstacleGeometryPrm;
+    regional_prm: InRegions, RegionalPrm, Regions, Subdivision;
 }

@@ -1,10 +1,10 @@
 //! The one loop that builds roadmaps.
 
 use super::prefetch::{PrefetchJob, Prefetched, Prefetcher, QueryMeter};
-use super::{Candidate, Connector, EdgeChecker, Growing, NodeGenerator, Roadmap};
+use super::{Candidate, Connector, EdgeChecker, Growing, NodeGenerator, Piece, Roadmap};
 use mp_cspace::{
-    BuildError, Event, LocalPlanner, NearestNeighbors, NodeId, Observer, Progress, Reversible, Rng, Space,
-    Stop, StopReason,
+    BuildError, Event, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer, Progress, Reversible, Rng,
+    Space, Stop, StopReason,
 };
 use rand::RngExt;
 use std::ops::Range;
@@ -140,6 +140,7 @@ where
     pub fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Range<NodeId> {
         let seed = *self.seed.get_or_insert_with(|| rng.random());
         let before = self.map.len() as NodeId;
+        self.generator.begin(self.attempts, &self.map, self.checker.space());
         self.prefetch(seed);
         if let Some(prefetched) = self.prefetcher.ready.pop_front() {
             self.attempts += 1;
@@ -151,11 +152,13 @@ where
                 observer.on(Event::Sampled(&candidate.state));
                 last = self.take(candidate, answers, last, observer);
             }
+            self.insert(prefetched.piece, observer);
             return before..self.map.len() as NodeId;
         }
         let mut candidates = std::mem::take(&mut self.candidates);
         let mut stream = Rng::stream(seed, self.attempts);
         self.generator.generate(self.attempts, &self.map, &mut self.checker, &mut stream, &mut candidates);
+        let piece = self.generator.piece(self.attempts, &self.map, &mut self.checker, &mut stream);
         self.attempts += 1;
         let mut last = None;
         for candidate in candidates.drain(..) {
@@ -163,6 +166,7 @@ where
             last = self.take(candidate, Vec::new(), last, observer);
         }
         self.candidates = candidates;
+        self.insert(piece, observer);
         before..self.map.len() as NodeId
     }
 
@@ -203,6 +207,29 @@ where
         connector.connect(candidate, &mut growing)
     }
 
+    /// Adds a piece of the roadmap. Its motions count now; where the local planner is not trusted any more, its edges are verified.
+    fn insert(&mut self, piece: Option<Piece<C::State, L::Edge>>, observer: &mut dyn Observer<C::State>) {
+        let Some(piece) = piece else { return };
+        let Self { map, index, checker, .. } = self;
+        let (nodes, edges) = (map.len() as NodeId, map.all_edges().len());
+        let blocked = piece.motions() - piece.edges() as u64;
+        piece.insert(map, |from, link, to| {
+            let motion = link.edge.clone().map(|edge| Motion { end: to.clone(), edge, cost: link.length });
+            checker.replay(from, motion, to).is_some()
+        });
+        for id in nodes..map.len() as NodeId {
+            index.inserted(checker.space(), map.states(), id);
+            let kind = Some(map.tag(id).kind.name());
+            observer.on(Event::Rooted { tree: 0, id, state: map.state(id), kind });
+        }
+        for (_, [from, to], _) in map.all_edges().skip(edges) {
+            observer.on(Event::Linked { from, to });
+        }
+        if let Some(q) = map.states().first() {
+            (0..blocked).for_each(|_| drop(checker.replay(q, None, q)));
+        }
+    }
+
     /// The connector, and what it works with.
     fn growing<'a>(
         &'a mut self,
@@ -211,7 +238,7 @@ where
     ) -> (&'a mut K, Growing<'a, 'c, C, L, N>) {
         let Self { checker, map, index, connector, prefetcher, .. } = self;
         let meter = prefetcher.meter;
-        (connector, Growing { map, index, checker, observer, answers, meter })
+        (connector, Growing { map, index, checker, observer, answers, meter, uncounted: false })
     }
 
     /// Adds a configuration that the connector may not refuse: an end of a path.

@@ -3,8 +3,8 @@
 use super::prefetch::{Prefetched, Prefetching, QueryMeter};
 use super::{Candidate, EdgeChecker, ParentMotion, Roadmap, Tag};
 use mp_cspace::{
-    BuildError, Direction, Event, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer, Reversible,
-    Space,
+    BuildError, Direction, Event, Extension, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer,
+    Reach, Reversible, Space,
 };
 
 /// What a connector works with: the roadmap, the neighbours of a configuration, the local planner.
@@ -17,6 +17,8 @@ pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     /// Motions to the candidate that were prefetched.
     pub(crate) answers: Prefetched<C::State, L::Edge>,
     pub(crate) meter: Option<QueryMeter<'c>>,
+    /// Whether motions are taken from the local planner without being counted or verified: those of a [piece](super::Piece).
+    pub(crate) uncounted: bool,
 }
 
 impl<'c, C, L, N> Growing<'_, 'c, C, L, N>
@@ -25,6 +27,16 @@ where
     L: LocalPlanner<C::State, Edge: Reversible>,
     N: NearestNeighbors<C>,
 {
+    /// For a [piece](super::Piece) of a roadmap.
+    pub(crate) fn of_piece<'a>(
+        map: &'a mut Roadmap<C::State, L::Edge>,
+        index: &'a mut N,
+        checker: &'a mut EdgeChecker<'c, C, L>,
+        observer: &'a mut dyn Observer<C::State>,
+    ) -> Growing<'a, 'c, C, L, N> {
+        Growing { map, index, checker, observer, answers: Vec::new(), meter: None, uncounted: true }
+    }
+
     /// The space.
     #[must_use]
     pub fn space(&self) -> &'c C {
@@ -67,6 +79,13 @@ where
                     meter.used(std::mem::take(&mut answer.queries));
                 }
                 self.checker.replay(self.map.state(from), motion, q)
+            }
+            None if self.uncounted => {
+                let local = self.checker.local();
+                match local.extend(self.map.state(from), q, Direction::Forward, Reach::Full) {
+                    Extension::Reached(motion) => Some(motion),
+                    _ => None,
+                }
             }
             None => self.checker.reach(self.map.state(from), q, Direction::Forward),
         }

@@ -98,34 +98,11 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
         for count in [self.len(), self.all_edges().len(), numbers.len()] {
             bytes.extend((count as u32).to_le_bytes());
         }
-        let put = |bytes: &mut Vec<u8>, numbers: &[f64]| {
-            bytes.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
-        };
         for (state, tag) in self.states().iter().zip(self.tags()) {
-            numbers.clear();
-            state.write(&mut numbers);
-            put(&mut bytes, &numbers);
-            let kind = MilestoneKind::ALL.iter().position(|kind| *kind == tag.kind).unwrap_or(0);
-            bytes.push(kind as u8);
-            for number in [tag.obstacle.unwrap_or(NONE), tag.tried, tag.failed] {
-                bytes.extend(number.to_le_bytes());
-            }
+            put_node(&mut bytes, state, tag);
         }
         for (_, ends, link) in self.all_edges() {
-            ends.iter().for_each(|end| bytes.extend(end.to_le_bytes()));
-            bytes.extend(link.length.to_le_bytes());
-            bytes.push(match link.state {
-                LinkState::Unchecked => 0,
-                LinkState::Free => 1,
-                LinkState::Blocked => 2,
-            });
-            numbers.clear();
-            let count = link.edge.as_ref().map_or(NONE, |motion| {
-                motion.write(&mut numbers);
-                numbers.len() as u32
-            });
-            bytes.extend(count.to_le_bytes());
-            put(&mut bytes, &numbers);
+            put_link(&mut bytes, ends, link);
         }
         bytes.extend(xxh3_64(&bytes).to_le_bytes());
         bytes
@@ -153,13 +130,8 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
         let [nodes, edges, width] = [reader.u32()?, reader.u32()?, reader.u32()?];
         let mut map = Self::new();
         for _ in 0..nodes {
-            let at = reader.at;
-            let state = S::read(&reader.f64s(width)?);
-            let state = state.ok_or(RoadmapError::Invalid { at, expected: "a state of this space" })?;
-            let kind = MilestoneKind::ALL.get(usize::from(reader.u8()?)).copied();
-            let kind = kind.ok_or(RoadmapError::Invalid { at: reader.at - 1, expected: "a kind of node" })?;
-            let obstacle = Some(reader.u32()?).filter(|obstacle| *obstacle != NONE);
-            map.add(state, Tag { kind, obstacle, tried: reader.u32()?, failed: reader.u32()? });
+            let (state, tag) = reader.node(width)?;
+            map.add(state, tag);
         }
         for _ in 0..edges {
             let (ends, link) = reader.link(nodes)?;
@@ -191,6 +163,40 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
         let path = path.as_ref();
         let loaded = checked_bytes(path).and_then(|bytes| Self::from_bytes(&bytes, fingerprint));
         loaded.map_err(|error| RoadmapFileError { path: path.to_owned(), error })
+    }
+}
+
+fn put_numbers(bytes: &mut Vec<u8>, value: &impl StateVector) -> u32 {
+    let mut numbers = Vec::new();
+    value.write(&mut numbers);
+    bytes.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
+    numbers.len() as u32
+}
+
+/// Appends a node; its state has as many numbers as those of all others.
+pub(super) fn put_node(bytes: &mut Vec<u8>, state: &impl StateVector, tag: &Tag) {
+    put_numbers(bytes, state);
+    let kind = MilestoneKind::ALL.iter().position(|kind| *kind == tag.kind).unwrap_or(0);
+    bytes.push(kind as u8);
+    for number in [tag.obstacle.unwrap_or(NONE), tag.tried, tag.failed] {
+        bytes.extend(number.to_le_bytes());
+    }
+}
+
+/// Appends an edge.
+pub(super) fn put_link(bytes: &mut Vec<u8>, ends: [NodeId; 2], link: &Link<impl StateVector>) {
+    ends.iter().for_each(|end| bytes.extend(end.to_le_bytes()));
+    bytes.extend(link.length.to_le_bytes());
+    bytes.push(match link.state {
+        LinkState::Unchecked => 0,
+        LinkState::Free => 1,
+        LinkState::Blocked => 2,
+    });
+    let at = bytes.len();
+    bytes.extend(NONE.to_le_bytes());
+    if let Some(motion) = &link.edge {
+        let count = put_numbers(bytes, motion);
+        bytes[at..at + size_of::<u32>()].copy_from_slice(&count.to_le_bytes());
     }
 }
 
@@ -229,9 +235,9 @@ fn checked_bytes(path: &Path) -> Result<Vec<u8>, RoadmapError> {
 }
 
 /// Reads little-endian numbers one after another.
-struct Reader<'b> {
-    bytes: &'b [u8],
-    at: usize,
+pub(super) struct Reader<'b> {
+    pub(super) bytes: &'b [u8],
+    pub(super) at: usize,
 }
 
 impl Reader<'_> {
@@ -248,11 +254,11 @@ impl Reader<'_> {
         Ok(self.take::<1>()?[0])
     }
 
-    fn u32(&mut self) -> Result<u32, RoadmapError> {
+    pub(super) fn u32(&mut self) -> Result<u32, RoadmapError> {
         Ok(u32::from_le_bytes(self.take()?))
     }
 
-    fn u64(&mut self) -> Result<u64, RoadmapError> {
+    pub(super) fn u64(&mut self) -> Result<u64, RoadmapError> {
         Ok(u64::from_le_bytes(self.take()?))
     }
 
@@ -270,7 +276,22 @@ impl Reader<'_> {
         Ok(numbers)
     }
 
-    fn link<E: StateVector>(&mut self, nodes: u32) -> Result<([NodeId; 2], Link<E>), RoadmapError> {
+    /// A node whose state has `width` numbers.
+    pub(super) fn node<S: StateVector>(&mut self, width: u32) -> Result<(S, Tag), RoadmapError> {
+        let at = self.at;
+        let state = S::read(&self.f64s(width)?);
+        let state = state.ok_or(RoadmapError::Invalid { at, expected: "a state of this space" })?;
+        let kind = MilestoneKind::ALL.get(usize::from(self.u8()?)).copied();
+        let kind = kind.ok_or(RoadmapError::Invalid { at: self.at - 1, expected: "a kind of node" })?;
+        let obstacle = Some(self.u32()?).filter(|obstacle| *obstacle != NONE);
+        Ok((state, Tag { kind, obstacle, tried: self.u32()?, failed: self.u32()? }))
+    }
+
+    /// An edge between two of so many nodes.
+    pub(super) fn link<E: StateVector>(
+        &mut self,
+        nodes: u32,
+    ) -> Result<([NodeId; 2], Link<E>), RoadmapError> {
         let at = self.at;
         let wrong = |expected| RoadmapError::Invalid { at, expected };
         let ends = [self.u32()?, self.u32()?];

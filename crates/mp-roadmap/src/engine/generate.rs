@@ -1,6 +1,6 @@
 //! Slot: which configurations are tried as nodes.
 
-use super::{EdgeChecker, MilestoneKind, Roadmap};
+use super::{EdgeChecker, MilestoneKind, Piece, Roadmap};
 use mp_cspace::{LocalPlanner, Motion, NodeId, Reversible, Rng, Sampler, Space, Uniform};
 
 /// A configuration that may become a node.
@@ -10,7 +10,7 @@ pub struct Candidate<S, E> {
     pub state: S,
     /// Its kind.
     pub kind: MilestoneKind,
-    /// The obstacle it belongs to, if any.
+    /// The obstacle or region it belongs to, if any.
     pub obstacle: Option<u32>,
     /// The motion to it from another node, if it was found by one; the edge is kept.
     pub parent: Option<ParentMotion<S, E>>,
@@ -31,7 +31,7 @@ impl<S, E> Candidate<S, E> {
         Self { state, kind, obstacle: None, parent: None }
     }
 
-    /// The same candidate, belonging to an obstacle.
+    /// The same candidate, belonging to an obstacle or a region.
     #[must_use]
     pub fn of(self, obstacle: u32) -> Self {
         Self { obstacle: Some(obstacle), ..self }
@@ -53,8 +53,23 @@ pub trait NodeGenerator<C: Space, L: LocalPlanner<C::State>> {
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     );
 
-    /// How many of the next attempts neither depend on the roadmap nor change the generator, so that clones of it may make
-    /// them beforehand and at the same time.
+    /// Called before attempt number `attempt` is made, with the roadmap as it is; on one thread, also where others make attempts.
+    fn begin(&mut self, _attempt: u64, _map: &Roadmap<C::State, L::Edge>, _space: &C) {}
+
+    /// A whole piece of the roadmap that attempt number `attempt` makes, beside its candidates. `checker` need not be the one that
+    /// counts motions: those of the piece count when it joins the roadmap.
+    fn piece(
+        &mut self,
+        _attempt: u64,
+        _map: &Roadmap<C::State, L::Edge>,
+        _checker: &mut EdgeChecker<'_, C, L>,
+        _rng: &mut Rng,
+    ) -> Option<Piece<C::State, L::Edge>> {
+        None
+    }
+
+    /// How many of the next attempts neither depend on what the others add to the roadmap nor change the generator, so that clones
+    /// of it may make them beforehand and at the same time.
     fn independent(&self, _map: &Roadmap<C::State, L::Edge>) -> u64 {
         0
     }

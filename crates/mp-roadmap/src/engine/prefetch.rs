@@ -4,7 +4,7 @@
 //! the motions that the next attempts will probably need, given the roadmap as it is, and keep them. The attempts are
 //! then made one after the other as usual, and use the motions that were prefetched.
 
-use super::{Builder, Candidate, Connector, EdgeChecker, NodeGenerator, Reachable, Roadmap};
+use super::{Builder, Candidate, Connector, EdgeChecker, NodeGenerator, Piece, Reachable, Roadmap};
 use mp_cspace::{
     Direction, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Reversible, Rng, Space, Workers,
 };
@@ -38,6 +38,8 @@ pub(crate) type Prefetched<S, E> = Vec<PrefetchedMotion<S, E>>;
 pub(crate) struct PrefetchedAttempt<S, E> {
     /// The candidates, with the motions prefetched for each.
     pub(crate) candidates: Vec<(Candidate<S, E>, Prefetched<S, E>)>,
+    /// The piece that it made.
+    pub(crate) piece: Option<Piece<S, E>>,
     /// How many queries it took to generate them.
     pub(crate) queries: u64,
 }
@@ -177,7 +179,7 @@ struct PrefetchTask<'c, C: Space, L: LocalPlanner<C::State>, G> {
     prefetched: Vec<PrefetchedAttempt<C::State, L::Edge>>,
 }
 
-/// Attempts that one edge checker prefetches at a time.
+/// The most attempts that one edge checker prefetches at a time.
 const SHARE: u64 = 16;
 
 impl<'c, C, L, G, K, N> Builder<'c, C, L, G, K, N>
@@ -206,8 +208,9 @@ where
         self.prefetcher.most = SHARE * tasks.len() as u64;
         self.prefetcher.work = Some(Box::new(move |job: PrefetchJob<'_, 'c, C, L, G, K, N>| {
             let mut next = job.attempts.start;
+            let share = (job.attempts.end - next).div_ceil(tasks.len().max(1) as u64);
             for task in &mut tasks {
-                let end = (next + SHARE).min(job.attempts.end);
+                let end = (next + share).min(job.attempts.end);
                 task.attempts = next..end;
                 task.generator = Some(job.generator.clone());
                 next = end;
@@ -240,8 +243,15 @@ where
             let mut rng = Rng::stream(job.seed, attempt);
             let mut candidates = Vec::new();
             let (checker, meter) = (&mut self.checker, job.meter);
-            let generate = || generator.generate(attempt, job.map, checker, &mut rng, &mut candidates);
-            let ((), queries) = QueryMeter::during(meter, generate);
+            let generate = || {
+                generator.generate(attempt, job.map, checker, &mut rng, &mut candidates);
+                generator.piece(attempt, job.map, checker, &mut rng)
+            };
+            let (piece, queries) = QueryMeter::during(meter, generate);
+            // A piece that was cut short is less than the whole.
+            if piece.is_some() && self.checker.interrupt().raised().is_some() {
+                return;
+            }
             let prefetched = candidates.into_iter().map(|candidate| {
                 let (map, index) = (job.map, job.index);
                 let q = &candidate.state;
@@ -252,7 +262,7 @@ where
                 (candidate, answers)
             });
             let candidates = prefetched.collect();
-            self.prefetched.push(PrefetchedAttempt { candidates, queries });
+            self.prefetched.push(PrefetchedAttempt { candidates, piece, queries });
         }
     }
 }

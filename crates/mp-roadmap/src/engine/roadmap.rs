@@ -66,7 +66,7 @@ impl MilestoneKind {
 pub struct Tag {
     /// Its kind.
     pub kind: MilestoneKind,
-    /// The obstacle it belongs to, if any.
+    /// The obstacle it belongs to, or of a [roadmap by regions](crate::algo::regional_prm) the region, if any.
     pub obstacle: Option<u32>,
     /// How often a connection to another node was tried.
     pub tried: u32,
@@ -240,10 +240,13 @@ impl<S, E> Roadmap<S, E> {
 
     /// The edges of a node that are not blocked, each with its other end.
     pub fn links(&self, id: NodeId) -> impl Iterator<Item = (EdgeId, NodeId, &Link<E>)> {
+        self.links_and_blocked(id).filter(|(_, _, link)| link.state != LinkState::Blocked)
+    }
+
+    /// All edges of a node, also blocked ones.
+    pub(crate) fn links_and_blocked(&self, id: NodeId) -> impl Iterator<Item = (EdgeId, NodeId, &Link<E>)> {
         let edges = self.graph.edges(NodeIndex::from(id));
-        edges
-            .filter(|edge| edge.weight().state != LinkState::Blocked)
-            .map(|edge| (EdgeId::of(edge.id()), edge.target().index() as NodeId, edge.weight()))
+        edges.map(|edge| (EdgeId::of(edge.id()), edge.target().index() as NodeId, edge.weight()))
     }
 
     /// Adds a node, which is a component of its own.
@@ -320,10 +323,15 @@ impl<S, E> Roadmap<S, E> {
 
     /// Counts an attempt to connect two nodes, or one node to something not in the roadmap.
     pub(crate) fn tried(&mut self, id: NodeId, failed: bool) {
+        self.tried_often(id, 1, u32::from(failed));
+    }
+
+    /// Counts so many attempts, of which so many failed.
+    pub(crate) fn tried_often(&mut self, id: NodeId, tried: u32, failed: u32) {
         let tag = &mut self.graph[NodeIndex::from(id)];
         let before = *tag;
-        tag.tried = tag.tried.saturating_add(1);
-        tag.failed = tag.failed.saturating_add(u32::from(failed));
+        tag.tried = tag.tried.saturating_add(tried);
+        tag.failed = tag.failed.saturating_add(failed);
         self.note(Change::Tag(id, before));
     }
 

@@ -2,7 +2,7 @@
 
 mod state;
 
-pub use state::{AnyRoadmap, RoadmapState};
+pub use state::{AnyRegions, AnyRoadmap, RoadmapState};
 
 use crate::algo;
 use crate::by_name::{AnyPlanner, BuildArgs, ParallelProblem};
@@ -59,7 +59,7 @@ pub fn build_with<'c, C, L, N>(
 where
     C: Space<State: 'c> + Clone + 'c,
     L: LocalPlanner<C::State, Edge: Reversible + 'c> + Send + 'c,
-    N: NearestNeighbors<C> + Send + Sync + 'c,
+    N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
     let (info, make) =
         algo::find::<(C, L, N)>(name).ok_or_else(|| BuildError::unknown_planner(name, planners()))?;

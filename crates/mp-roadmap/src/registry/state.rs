@@ -1,14 +1,17 @@
 //! Planners of erased problems, made by name: compiled here for the kinds of state that robots have.
 
 use crate::{
-    AnyEdgeChecker, AnyIndex, AnyParallelProblem, AnyPlanner, BuildError, IndexedRoadmap, Settings,
-    Unanswered,
+    AnyEdgeChecker, AnyIndex, AnyParallelProblem, AnyPlanner, BuildError, InRegions, IndexedRoadmap, Piece,
+    Roadmap, Settings, Unanswered,
 };
 use mp_cspace::Path;
 use std::fmt::Debug;
 
 /// A roadmap of an erased problem, ready to answer queries.
 pub type AnyRoadmap<S> = IndexedRoadmap<S, (), AnyIndex<S>>;
+
+/// The regions of an erased space.
+pub type AnyRegions<S> = InRegions<S, AnyIndex<S>>;
 
 /// A kind of state for which the planners are compiled: here those of SE(3), SE(2), the plane, and joints; others where
 /// [`compile_for`](crate::compile_for) is called. Calling the methods compiles no planner.
@@ -76,6 +79,15 @@ pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
 
     /// As [`IndexedRoadmap::verify`].
     fn verify_roadmap(roadmap: &mut AnyRoadmap<Self>, checker: &mut AnyEdgeChecker<'_, Self>) -> usize;
+
+    /// As [`InRegions::piece_of`].
+    fn regional_piece(
+        regions: &AnyRegions<Self>,
+        item: u64,
+        map: &Roadmap<Self>,
+        checker: &mut AnyEdgeChecker<'_, Self>,
+        seed: u64,
+    ) -> Piece<Self, ()>;
 }
 
 /// Compiles the planners for states of your own: implements [`RoadmapState`] for them.
@@ -123,6 +135,15 @@ macro_rules! compile_for {
                 checker: &mut $crate::AnyEdgeChecker<'_, Self>,
             ) -> usize {
                 roadmap.verify(checker)
+            }
+            fn regional_piece(
+                regions: &$crate::AnyRegions<Self>,
+                item: u64,
+                map: &$crate::Roadmap<Self>,
+                checker: &mut $crate::AnyEdgeChecker<'_, Self>,
+                seed: u64,
+            ) -> $crate::Piece<Self, ()> {
+                regions.piece_of(item, map, checker, seed)
             }
         }
     )+};

@@ -28,6 +28,8 @@ struct World<'c, C: Space, V> {
 fn settings(name: &str) -> Settings {
     let set: &[&str] = match name {
         "visibility-prm" => &["failures=20000"],
+        // An iteration makes as many attempts.
+        "regional-prm" => &["regions=4", "samples=8"],
         _ => &[],
     };
     Settings::parse(set).unwrap()

@@ -6,6 +6,7 @@ mod common;
 mod conformance;
 mod engine;
 mod keep;
+mod regions;
 
 use mp_cspace::registry::PlannerInfo;
 

@@ -1,0 +1,446 @@
+//! A roadmap by regions, in numbered items that the ranks of a cluster may do.
+
+use crate::any_robot::AnyRobot;
+use crate::counted::queries_of_thread;
+use crate::planners::PlannerKind;
+use crate::prepared::Prepared;
+use crate::{Error, Request, RobotKind, SceneRoadmap};
+use mp_cspace::{Interrupt, NodeId, Rng};
+use mp_ranks::{Checkpoint, Hand, Items, Job, Link, Options, Work, broadcast, run};
+use mp_roadmap::{AnyEdgeChecker, AnyRegions, InRegions, PATIENCE, Piece, Roadmap, RoadmapState};
+use rand::RngExt;
+use std::any::Any;
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The planner whose roadmaps are made by regions.
+pub(crate) const PLANNER: &str = "regional-prm";
+/// With so many samples the cost of a region is estimated.
+const SAMPLES: u32 = 64;
+/// A free sample costs about so many times as much as another: it is connected to others.
+const NODE: f64 = 25.0;
+
+/// The work on a roadmap by regions: an item for each region, then one for each pair of adjacent regions. Each item can be done anywhere, in
+/// any order but that the two regions of a pair come first. The roadmap is the one that [`Scene::roadmap`](crate::Scene::roadmap) builds in
+/// as many iterations as there are items, bit for bit.
+///
+/// [`Scene::regions`](crate::Scene::regions) makes it; [`over`](Self::over) does all of it, on the ranks of a cluster.
+///
+/// ```
+/// use mp_plan::{Interrupt, Request, Scene};
+/// let scene = Scene::find("easy")?;
+/// let request = Request::new("regional-prm").set("regions", 4).set("samples", 200);
+/// let (work, never) = (scene.regions(&request)?, Interrupt::never());
+/// let built = (0..work.regions()).map(|region| work.build(region, &never)).collect::<Result<Vec<_>, _>>()?;
+/// let connect = |item| {
+///     let [one, other] = work.pair(item).unwrap_or_default();
+///     work.connect(item, [&built[one as usize], &built[other as usize]], &never)
+/// };
+/// let connected = (work.regions()..work.items()).map(connect).collect::<Result<Vec<_>, _>>()?;
+/// let mut roadmap = work.finish(&built, &connected)?;
+/// assert!(roadmap.query(&scene.start(), &scene.goals()[0])?.solved);
+/// # Ok::<(), mp_plan::Error>(())
+/// ```
+pub struct RegionalWork<'s> {
+    work: Box<dyn AnyRegional + 's>,
+    robot: &'s Arc<dyn AnyRobot>,
+    file: Option<String>,
+    request: &'s Request,
+}
+
+impl fmt::Debug for RegionalWork<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (regions, items) = (self.regions(), self.items());
+        f.debug_struct("RegionalWork")
+            .field("regions", &regions)
+            .field("items", &items)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'s> RegionalWork<'s> {
+    pub(crate) fn new(
+        robot: &'s Arc<dyn AnyRobot>,
+        file: Option<String>,
+        request: &'s Request,
+    ) -> Result<Self, Error> {
+        Ok(Self { work: robot.regional(request)?, robot, file, request })
+    }
+
+    /// How many regions there are. Items below are regions.
+    #[must_use]
+    pub fn regions(&self) -> u64 {
+        self.work.regions()
+    }
+
+    /// How many items there are: regions, and pairs of adjacent ones behind them.
+    #[must_use]
+    pub fn items(&self) -> u64 {
+        self.work.items()
+    }
+
+    /// The regions that an item connects, the lower first; `None` for an item that is a region.
+    #[must_use]
+    pub fn pair(&self, item: u64) -> Option<[u64; 2]> {
+        self.work.pair(item)
+    }
+
+    /// An estimate of the cost of a region, right in proportion: by the part of it that is free, of 64 samples. The same on every machine;
+    /// no result depends on it.
+    ///
+    /// # Errors
+    /// As [`build`](Self::build).
+    pub fn estimate(&self, region: u64, interrupt: &Interrupt) -> Result<f64, Error> {
+        Ok(1.0 + NODE * self.work.free_share(region, interrupt)?)
+    }
+
+    /// An estimate of the cost of connecting two regions, given their results: by the number of components, up to cycles. Right in proportion
+    /// to those of other pairs.
+    #[must_use]
+    pub fn estimate_pair(built: [&[u8]; 2]) -> f64 {
+        let components = |result| {
+            let RegionalTally { nodes, edges, .. } = Self::tally(result);
+            nodes.saturating_sub(edges).max(1) as f64
+        };
+        built.into_iter().map(components).sum()
+    }
+
+    /// Builds the roadmap of a region: its result.
+    ///
+    /// # Errors
+    /// When it was told to end, or start or goal of the scene are not free.
+    pub fn build(&self, region: u64, interrupt: &Interrupt) -> Result<Vec<u8>, Error> {
+        self.work.piece(region, &[], interrupt)
+    }
+
+    /// Connects the two regions of an item, given their results: its result.
+    ///
+    /// # Errors
+    /// As [`build`](Self::build), and when the results are not those of regions.
+    pub fn connect(&self, item: u64, built: [&[u8]; 2], interrupt: &Interrupt) -> Result<Vec<u8>, Error> {
+        self.work.piece(item, &built, interrupt)
+    }
+
+    /// What an item took and made, by its result.
+    #[must_use]
+    pub fn tally(result: &[u8]) -> RegionalTally {
+        let number = |i: usize| {
+            let bytes = result.get(i * size_of::<u64>()..).and_then(<[u8]>::first_chunk);
+            bytes.map_or(0, |number| u64::from_le_bytes(*number))
+        };
+        RegionalTally { queries: number(0), nodes: number(1), edges: number(2) }
+    }
+
+    /// The roadmap, of the results of all regions and of all pairs, in order.
+    ///
+    /// # Errors
+    /// When there are more or fewer results than items, or they are not those of this work.
+    pub fn finish(&self, built: &[Vec<u8>], connected: &[Vec<u8>]) -> Result<SceneRoadmap, Error> {
+        let map = self.work.assemble(built, connected)?;
+        let roadmap = Arc::clone(self.robot).roadmap_of(self.request, map)?;
+        Ok(SceneRoadmap { roadmap, file: self.file.clone() })
+    }
+
+    /// Does all of the work on the ranks of `link`, the dearest items first. All ranks call this, with the same scene and request; the
+    /// results of items are kept in the `checkpoint` of the master, and those in it are not done again. The roadmap is the same for any
+    /// number of ranks and threads. `None` on all ranks but the master, and when the job was cancelled.
+    ///
+    /// # Errors
+    /// On the master, when an item fails or a rank cannot be reached.
+    pub fn over(
+        &self,
+        link: &dyn Link,
+        options: &Options,
+        checkpoint: Option<&Checkpoint>,
+    ) -> Result<Option<SceneRoadmap>, Error> {
+        let (regions, items) = (self.regions(), self.items());
+        let mut job = Phases { link, options, checkpoint, results: Vec::new() };
+        // Whatever happens on the master, the others wait for its messages.
+        let begun = if link.is_master() { job.begin(items) } else { Ok(()) };
+        if !together(link, begun.is_ok())? {
+            return begun.map(|()| None);
+        }
+        let estimated = job.estimate(self);
+        if !link.is_master() && estimated.is_err() || !together(link, matches!(estimated, Ok(Some(_))))? {
+            return estimated.map(|_| None);
+        }
+        let estimates = estimated?.unwrap_or_default();
+        let build = |region: u64, hand: &Hand| {
+            self.build(region, &Interrupt::new(hand.cancel.clone())).map_err(|e| e.to_string())
+        };
+        let complete = job.run(0..regions, &|region| estimates[region as usize], &build);
+        if !link.is_master() && complete.is_err() {
+            return complete.map(|_| None);
+        }
+        let all = broadcast(link, if let Ok(true) = complete { job.joined(regions) } else { Vec::new() });
+        let all = all.map_err(failed)?;
+        if !complete? || all.is_empty() {
+            return Ok(None);
+        }
+        let built = split(&all);
+        let of_pair = |item: u64| {
+            let pair = self.pair(item).unwrap_or_default();
+            pair.map(|region| built.get(region as usize).copied().unwrap_or_default())
+        };
+        let connect = |item: u64, hand: &Hand| {
+            let interrupt = Interrupt::new(hand.cancel.clone());
+            self.connect(item, of_pair(item), &interrupt).map_err(|e| e.to_string())
+        };
+        let estimate = |item: u64| Self::estimate_pair(of_pair(item));
+        if !job.run(regions..items, &estimate, &connect)? || !link.is_master() {
+            return Ok(None);
+        }
+        let results: Vec<Vec<u8>> = job.results.into_iter().flatten().collect();
+        let (built, connected) = results.split_at(regions as usize);
+        self.finish(built, connected).map(Some)
+    }
+}
+
+/// Whether the master says that all go on.
+fn together(link: &dyn Link, go_on: bool) -> Result<bool, Error> {
+    Ok(broadcast(link, vec![u8::from(go_on)]).map_err(failed)? == [1])
+}
+
+/// What an item of a [`RegionalWork`] took and made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RegionalTally {
+    /// Collision and clearance queries.
+    pub queries: u64,
+    /// Nodes of a region.
+    pub nodes: u64,
+    /// Edges within a region, or between two.
+    pub edges: u64,
+}
+
+/// The length of a tally in a result, bytes.
+const TALLY: usize = 3 * size_of::<u64>();
+
+/// Items that are done in phases, one after the other.
+struct Phases<'a> {
+    link: &'a dyn Link,
+    options: &'a Options,
+    checkpoint: Option<&'a Checkpoint>,
+    /// On the master, for each item.
+    results: Vec<Option<Vec<u8>>>,
+}
+
+impl Phases<'_> {
+    fn begin(&mut self, items: u64) -> Result<(), Error> {
+        self.results = vec![None; items as usize];
+        for (item, result) in self.checkpoint.iter().flat_map(|checkpoint| checkpoint.known()) {
+            let Some(slot) = self.results.get_mut(*item as usize) else {
+                let message = format!("the checkpoint has a result of item {item}, of {items}");
+                return Err(Error::new(message).help("delete it: it belongs to another roadmap"));
+            };
+            *slot = Some(result.clone());
+        }
+        Ok(())
+    }
+
+    /// Estimates of all regions, made by all ranks; `None` when cancelled.
+    fn estimate(&self, work: &RegionalWork<'_>) -> Result<Option<Vec<f64>>, Error> {
+        let mut estimates = vec![0.0; work.regions() as usize];
+        let estimate = |region: u64, hand: &Hand| {
+            let estimate = work.estimate(region, &Interrupt::new(hand.cancel.clone()));
+            estimate.map(|estimate| estimate.to_le_bytes().to_vec()).map_err(|e| e.to_string())
+        };
+        let mut job = Items::new(0..work.regions(), |region, _, estimate: Vec<u8>| {
+            let estimate = estimate.try_into().map_err(|_| "eight bytes were expected")?;
+            estimates[region as usize] = f64::from_le_bytes(estimate);
+            Ok(())
+        });
+        let job: Option<&mut dyn Job> = if self.link.is_master() { Some(&mut job) } else { None };
+        let ran = run(self.link, self.options, job, &estimate).map_err(failed)?;
+        Ok((!ran.cancelled).then_some(estimates))
+    }
+
+    /// Does these items, but for those whose results are known, the dearest first. Whether all were done.
+    fn run(&mut self, items: Range<u64>, cost: &dyn Fn(u64) -> f64, work: &Work<'_>) -> Result<bool, Error> {
+        if !self.link.is_master() {
+            run(self.link, self.options, None, work).map_err(failed)?;
+            return Ok(true);
+        }
+        let open: Vec<u64> = items.filter(|item| self.results[*item as usize].is_none()).collect();
+        let Self { checkpoint, results, .. } = self;
+        let take = |item: u64, _, result: Vec<u8>| {
+            checkpoint
+                .map_or(Ok(()), |checkpoint| checkpoint.keep(item, &result))
+                .map_err(|e| e.to_string())?;
+            results[item as usize] = Some(result);
+            Ok(())
+        };
+        let mut job = Items::dearest_first(open, cost, take);
+        Ok(!run(self.link, self.options, Some(&mut job), work).map_err(failed)?.cancelled)
+    }
+
+    /// The results of the first items, for [`split`]. Not empty.
+    fn joined(&self, items: u64) -> Vec<u8> {
+        let mut joined = items.to_le_bytes().to_vec();
+        for result in self.results.iter().take(items as usize).flatten() {
+            joined.extend((result.len() as u64).to_le_bytes());
+            joined.extend(result);
+        }
+        joined
+    }
+}
+
+/// The results in what the master has joined.
+fn split(joined: &[u8]) -> Vec<&[u8]> {
+    let (mut results, mut rest) = (Vec::new(), joined.get(size_of::<u64>()..).unwrap_or_default());
+    while let Some((length, after)) = rest.split_first_chunk() {
+        let Some((result, after)) = after.split_at_checked(u64::from_le_bytes(*length) as usize) else {
+            break;
+        };
+        results.push(result);
+        rest = after;
+    }
+    results
+}
+
+fn failed(error: mp_ranks::Error) -> Error {
+    match error {
+        mp_ranks::Error::Checkpoint { file, message, remedy } => {
+            Error::new(format!("{file}: {message}")).help(remedy)
+        }
+        other => Error::new(other.to_string()),
+    }
+}
+
+/// The work for a robot of some kind.
+pub(crate) trait AnyRegional: Send + Sync {
+    fn regions(&self) -> u64;
+    fn items(&self) -> u64;
+    fn pair(&self, item: u64) -> Option<[u64; 2]>;
+    fn free_share(&self, region: u64, interrupt: &Interrupt) -> Result<f64, Error>;
+    fn piece(&self, item: u64, built: &[&[u8]], interrupt: &Interrupt) -> Result<Vec<u8>, Error>;
+    fn assemble(&self, built: &[Vec<u8>], connected: &[Vec<u8>]) -> Result<Box<dyn Any + Send>, Error>;
+}
+
+struct RobotRegional<'s, K: RobotKind> {
+    prepared: Prepared<'s, K>,
+    regions: AnyRegions<K::State>,
+    /// That of the builder of a roadmap with this request.
+    seed: u64,
+}
+
+/// The work of a request.
+pub(crate) fn regional<'s, K: RobotKind>(
+    kind: &'s K,
+    request: &'s Request,
+) -> Result<Box<dyn AnyRegional + 's>, Error> {
+    request.check()?;
+    let planner = PlannerKind::new(&request.planner)?;
+    if !matches!(&planner, PlannerKind::Roadmap(info) if info.name == PLANNER) {
+        return Err(
+            Error::new(format!("{planner} builds no roadmap by regions")).help(format!("take {PLANNER}"))
+        );
+    }
+    let budget = &request.budget;
+    if budget.iterations.is_some() || budget.nodes.is_some() || budget.queries.is_some() {
+        let help = "leave out the budgets of iterations, nodes and queries; say how large the roadmap shall be by the \
+                    parameters `regions` and `samples`";
+        return Err(
+            Error::new("a roadmap by regions is one round of all regions, with no other budget").help(help)
+        );
+    }
+    let prepared = Prepared::new(kind, request)?;
+    let regions = InRegions::read(&prepared.space, prepared.index.clone(), &request.settings())?;
+    let seed = Rng::seed(request.seed).random();
+    Ok(Box::new(RobotRegional { prepared, regions, seed }))
+}
+
+/// The piece in a result, of so many members.
+fn piece<S: mp_cspace::StateVector>(result: &[u8], members: Vec<NodeId>) -> Result<Piece<S, ()>, Error> {
+    let bytes = result.get(TALLY..).unwrap_or_default();
+    Piece::from_bytes(bytes, members).map_err(|e| {
+        Error::new(format!("a result of an item is not what it should be: {e}"))
+            .help("give all ranks the same program, scene and request, and begin anew")
+    })
+}
+
+/// Adds the roadmap of a region.
+fn add_region<S: mp_cspace::StateVector>(
+    map: &mut Roadmap<S>,
+    result: &[u8],
+) -> Result<Range<NodeId>, Error> {
+    let before = map.len() as NodeId;
+    piece(result, Vec::new())?.insert(map, |_, _, _| true);
+    Ok(before..map.len() as NodeId)
+}
+
+impl<K: RobotKind> RobotRegional<'_, K> {
+    fn checker(&self, interrupt: &Interrupt) -> Result<AnyEdgeChecker<'_, K::State>, Error> {
+        match (self.prepared.problem_until(interrupt.clone()), interrupt.raised()) {
+            // Once it is told to end, start and goal count as not free.
+            (_, Some(_)) => Err(Error::new("told to end")),
+            (problem, None) => Ok(AnyEdgeChecker::of(problem?, PATIENCE).0),
+        }
+    }
+}
+
+impl<K: RobotKind> AnyRegional for RobotRegional<'_, K> {
+    fn regions(&self) -> u64 {
+        u64::from(self.regions.subdivision().regions())
+    }
+
+    fn items(&self) -> u64 {
+        self.regions.items()
+    }
+
+    fn pair(&self, item: u64) -> Option<[u64; 2]> {
+        self.regions.pair(item).map(|pair| pair.map(u64::from))
+    }
+
+    fn free_share(&self, region: u64, interrupt: &Interrupt) -> Result<f64, Error> {
+        // Other random numbers than those of the roadmap.
+        let (mut checker, mut rng) = (self.checker(interrupt)?, Rng::stream(!self.seed, region));
+        let sample =
+            |rng: &mut Rng| self.regions.subdivision().sample(&self.prepared.space, region as u32, rng);
+        let free = (0..SAMPLES).filter(|_| checker.admits(&sample(&mut rng))).count();
+        if interrupt.raised().is_some() {
+            return Err(Error::new("told to end"));
+        }
+        Ok(free as f64 / f64::from(SAMPLES))
+    }
+
+    fn piece(&self, item: u64, built: &[&[u8]], interrupt: &Interrupt) -> Result<Vec<u8>, Error> {
+        let mut map = Roadmap::new();
+        for result in built {
+            add_region(&mut map, result)?;
+        }
+        let mut checker = self.checker(interrupt)?;
+        let before = queries_of_thread();
+        let piece = K::State::regional_piece(&self.regions, item, &map, &mut checker, self.seed);
+        if interrupt.raised().is_some() {
+            return Err(Error::new("told to end"));
+        }
+        let queries = queries_of_thread() - before;
+        let tally = [queries, piece.nodes() as u64, piece.edges() as u64];
+        let mut bytes: Vec<u8> = tally.iter().flat_map(|number| number.to_le_bytes()).collect();
+        bytes.extend(piece.to_bytes());
+        Ok(bytes)
+    }
+
+    fn assemble(&self, built: &[Vec<u8>], connected: &[Vec<u8>]) -> Result<Box<dyn Any + Send>, Error> {
+        let results = [built.len() as u64, (built.len() + connected.len()) as u64];
+        let items = [self.regions(), self.items()];
+        if results != items {
+            return Err(Error::new(format!(
+                "expected {} results of regions and {} of pairs, found {} and {}",
+                items[0],
+                items[1] - items[0],
+                built.len(),
+                connected.len()
+            )));
+        }
+        let mut map: Roadmap<K::State> = Roadmap::new();
+        let nodes = built.iter().map(|result| add_region(&mut map, result)).collect::<Result<Vec<_>, _>>()?;
+        for (result, item) in connected.iter().zip(items[0]..) {
+            let pair = self.regions.pair(item).unwrap_or_default();
+            let members = pair.iter().flat_map(|&region| nodes[region as usize].clone()).collect();
+            piece(result, members)?.insert(&mut map, |_, _, _| true);
+        }
+        Ok(Box::new(map))
+    }
+}

@@ -1,0 +1,623 @@
+//! Regional PRM: roadmaps of regions, built independently and connected at their borders.
+//!
+//! S. A. Jacobs, K. Manavi, J. Burgos, J. Denny, S. Thomas and N. M. Amato, *A scalable method for parallelizing sampling-based motion
+//! planning algorithms*, ICRA 2012.
+//!
+//! Once:
+//! 1. cut the space into `regions`, a grid of boxes of equal measure. Only numbers that run straight from a lower to an upper bound are
+//!    cut: positions, joints with limits. Rotations, and joints that turn without end, are whole in each region;
+//! 2. regions that share a face are adjacent.
+//!
+//! A round, in iterations that are independent of each other within each of the two steps:
+//! 1. for each region: make `samples` attempts of [PRM](super::prm) without expansion. Draw a sample, uniform in the region and
+//!    somewhat beyond its faces (`overlap`); if it is free, it becomes a node, and is connected to the nearest nodes of this region;
+//! 2. for each pair of adjacent regions: pair each node of one with its nearest nodes of the other. In order of distance, ask the local
+//!    planner for a motion between the two of each pair, unless they are in the same component of these two regions by now, at most
+//!    `connections` times. From the second round on at least one of the two is new.
+//!
+//! Rounds follow each other until there is a path. The path found is verified; an edge that fails is blocked. Start and goal are nodes of
+//! their regions. Nodes of a roadmap that is gone on with belong to the regions where they are.
+//!
+//! The region with number r draws from stream (seed, r) in the first round. So the work may be done in any order, by threads, or by the
+//! ranks of a cluster with [`InRegions::piece_of`]: the roadmap is the same to the bit.
+//!
+//! Three things differ from the paper:
+//! - Each region makes as many attempts, so that the roadmap is as dense everywhere as one of uniform samples. How many nodes come of
+//!   them, and so how long they take, differs: A. Fidel, S. A. Jacobs, S. Sharma, N. M. Amato and L. Rauchwerger (*Using load balancing to
+//!   scalably parallelize sampling-based motion planning algorithms*, IPDPS 2014) estimate it by the free volume of the region and
+//!   move regions between processors. Here regions are handed out one by one, the dearest first by that estimate
+//!   ([`Subdivision::sample`]).
+//! - The paper connects the nearest nodes, or the largest components, of adjacent regions. Here the nearest pairs of different
+//!   components are connected, large or small.
+//! - The paper has one round.
+//!
+//! **When to use it.** For roadmaps too large for one machine, on the ranks of a cluster. On one machine, for single paths,
+//! [PRM](super::prm) does as well.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `regions`: into how many regions the space is cut; numbers with small factors give compact ones | 1, 2, … 10⁶ | 16 |
+//! | `samples`: attempts in each region and round | 1, 2, … 10⁹ | 32 |
+//! | `overlap`: how far beyond its faces a region is sampled, as a part of its width | \[0, 1\] | 0.1 |
+//! | `connections`: most motions tried in a round between two adjacent regions | 1, 2, … 10⁶ | 100 |
+//! | `neighbours`: most neighbours tried per node, within the region and in each adjacent one | 1, 2, … 10⁶ | 15 |
+//! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
+//!
+//! A point goes around a disc in the unit square:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Problem, Resolution, Rn, Rng, Straight};
+//! use mp_roadmap::{Reachable, RegionalPrm, Regions};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+//!
+//! let problem = Problem::new(&space, local, verifier, start, goal)?;
+//! let reach = Reachable { neighbours: 10, radius: 0.5, cycles: false };
+//! let mut planner = RegionalPrm::new(problem, Regions { regions: 4, ..Regions::default() }, reach)?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(1_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::by_name::{BuildArgs, BuildResult, Types};
+use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, UNDIRECTED, reachable};
+use crate::engine::{Moment, Part};
+use crate::{
+    AStar, Candidate, Connector, EdgeChecker, Growing, MilestoneKind, NearestConnector, NodeGenerator, Piece,
+    Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts,
+};
+use mp_cspace::{
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, NodeId, Problem, Reversible, Rng, Space,
+    registry::{Parameter, PlannerInfo, Settings},
+};
+use rand::RngExt;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The parameters of regional PRM.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Regions {
+    /// Into how many regions the space is cut; 1 or more.
+    pub regions: usize,
+    /// Attempts in each region and round; 1 or more.
+    pub samples: usize,
+    /// How far beyond its faces a region is sampled, as a part of its width; in \[0, 1\].
+    pub overlap: f64,
+    /// Most motions tried in a round between two adjacent regions; 1 or more.
+    pub connections: usize,
+}
+
+impl Default for Regions {
+    fn default() -> Self {
+        Self { regions: 16, samples: 32, overlap: 0.1, connections: 100 }
+    }
+}
+
+impl Regions {
+    /// The values that are set, the others by default.
+    ///
+    /// # Errors
+    /// When a value cannot be read.
+    pub fn read(settings: &Settings) -> Result<Self, BuildError> {
+        let count = |parameter| Ok::<_, BuildError>(settings.count_of(parameter)? as usize);
+        Ok(Self {
+            regions: count(&REGIONS)?,
+            samples: count(&SAMPLES)?,
+            overlap: settings.number(OVERLAP.name)?.unwrap_or(Self::default().overlap),
+            connections: count(&CONNECTIONS)?,
+        })
+    }
+
+    fn check(self) -> Result<Self, BuildError> {
+        BuildError::count_within(REGIONS.name, self.regions as u64, 1, 1_000_000)?;
+        BuildError::count_within(SAMPLES.name, self.samples as u64, 1, 1_000_000_000)?;
+        BuildError::count_within(CONNECTIONS.name, self.connections as u64, 1, 1_000_000)?;
+        if !(0.0..=1.0).contains(&self.overlap) {
+            let range = OVERLAP.range.to_owned();
+            return Err(BuildError::OutOfRange { name: OVERLAP.name, value: self.overlap, range });
+        }
+        Ok(self)
+    }
+}
+
+const REGIONS: Parameter = Parameter {
+    name: "regions",
+    range: "a whole number, 1 to 10⁶",
+    default: "16",
+    doc: "into how many regions the space is cut; numbers with small factors give compact ones",
+};
+const SAMPLES: Parameter = Parameter {
+    name: "samples",
+    range: "a whole number, 1 to 10⁹",
+    default: "32",
+    doc: "attempts in each region and round",
+};
+const OVERLAP: Parameter = Parameter {
+    name: "overlap",
+    range: "in [0, 1]",
+    default: "0.1",
+    doc: "how far beyond its faces a region is sampled, as a part of its width",
+};
+const CONNECTIONS: Parameter = Parameter {
+    name: "connections",
+    range: "a whole number, 1 to 10⁶",
+    default: "100",
+    doc: "most motions tried in a round between two adjacent regions",
+};
+
+/// The entry of [`planners`](crate::planners).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "regional-prm",
+    summary: "roadmaps of regions, connected at their borders; for roadmaps too large for one machine",
+    citation: "Jacobs, Manavi, Burgos, Denny, Thomas and Amato 2012",
+    parameters: &[REGIONS, SAMPLES, OVERLAP, CONNECTIONS, NEIGHBOURS, RADIUS, CYCLES],
+    aliases: &[],
+    cannot: UNDIRECTED,
+};
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let generator = InRegions::read(args.space, args.index(), args.settings)?;
+    let connector = generator.connector.clone();
+    args.build(RoadmapPlannerParts::new(generator, connector))
+}
+
+/// A number of the states that runs straight from a lower to an upper bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Axis {
+    /// Its place in the unit cube, and in velocities.
+    coordinate: usize,
+    /// How far it is from its lower to its upper bound, in its own unit.
+    width: f64,
+    /// The same in the metric.
+    length: f64,
+    cells: u32,
+    /// By how much the numbers of two regions differ that are neighbours along this axis.
+    stride: u32,
+}
+
+/// A space that is cut into a grid of regions of equal measure.
+///
+/// The regions are those of the unit cube, which [`Space::unit_cube_to_state`] maps to the space. So they tile the space, whatever it is.
+/// Along which numbers it can be cut is found with [`Space::velocity_into`]: a space without velocities is one region.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subdivision<S> {
+    dim: usize,
+    /// All numbers at their lower bounds.
+    origin: S,
+    axes: Vec<Axis>,
+    overlap: f64,
+    regions: u32,
+    pairs: Vec<[u32; 2]>,
+}
+
+/// Differences below this part of the width of an axis are due to rounding.
+const ROUNDING: f64 = 1e-6;
+
+impl<S: Clone> Subdivision<S> {
+    /// The space cut into so many regions, which are sampled beyond their faces by a part `overlap` of their widths. One region, if it
+    /// cannot be cut.
+    ///
+    /// # Errors
+    /// When there are no regions, or more than 10⁶, or the part is not in \[0, 1\].
+    pub fn new<C: Space<State = S>>(space: &C, regions: usize, overlap: f64) -> Result<Self, BuildError> {
+        let Regions { regions, overlap, .. } = Regions { regions, overlap, ..Regions::default() }.check()?;
+        let dim = space.dim();
+        let mut axes: Vec<Axis> =
+            (0..dim).filter_map(|coordinate| straight_axis(space, coordinate)).collect();
+        // Each factor, the largest first, cuts the regions where they are longest, the first of axes of the same length.
+        for factor in factors(regions as u32).into_iter().rev() {
+            let longer = |best: Option<usize>, i: usize| {
+                let length = |i: usize| axes[i].length / f64::from(axes[i].cells);
+                Some(best.filter(|&best| length(best) >= length(i)).unwrap_or(i))
+            };
+            if let Some(longest) = (0..axes.len()).fold(None, longer) {
+                axes[longest].cells *= factor;
+            }
+        }
+        let mut regions = 1;
+        for axis in &mut axes {
+            axis.stride = regions;
+            regions *= axis.cells;
+        }
+        axes.retain(|axis| axis.cells > 1);
+        let along = |region: u32, axis: &Axis| {
+            (cell(axis, region) + 1 < axis.cells).then_some([region, region + axis.stride])
+        };
+        let pairs = (0..regions).flat_map(|region| axes.iter().filter_map(move |axis| along(region, axis)));
+        let (pairs, origin) = (pairs.collect(), space.unit_cube_to_state(&vec![0.0; dim]));
+        Ok(Self { dim, origin, axes, overlap, regions, pairs })
+    }
+
+    /// How many regions there are; their numbers are those below.
+    #[must_use]
+    pub fn regions(&self) -> u32 {
+        self.regions
+    }
+
+    /// All pairs of adjacent regions, in order, the lower region first.
+    #[must_use]
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        &self.pairs
+    }
+
+    /// The region in which a state is.
+    pub fn region_of<C: Space<State = S>>(&self, space: &C, q: &S) -> u32 {
+        let cell = |(axis, x): (&Axis, f64)| {
+            let cell = (x * f64::from(axis.cells)).floor().clamp(0.0, f64::from(axis.cells - 1));
+            cell as u32 * axis.stride
+        };
+        self.axes.iter().zip(self.coordinates(space, q)).map(cell).sum()
+    }
+
+    /// A sample of a region and the overlap around it, uniform in both.
+    pub fn sample<C: Space<State = S>>(&self, space: &C, region: u32, rng: &mut Rng) -> S {
+        let mut u: Vec<f64> = (0..self.dim).map(|_| rng.random()).collect();
+        for axis in &self.axes {
+            let Range { start, end } = self.range(axis, region);
+            let x = &mut u[axis.coordinate];
+            *x = (start + (end - start) * *x).min(1.0 - f64::EPSILON);
+        }
+        space.unit_cube_to_state(&u)
+    }
+
+    /// Whether a state is in a region or its overlap, up to rounding.
+    fn holds<C: Space<State = S>>(&self, space: &C, region: u32, q: &S) -> bool {
+        let within = |(axis, x): (&Axis, f64)| {
+            let Range { start, end } = self.range(axis, region);
+            (start - ROUNDING..=end + ROUNDING).contains(&x)
+        };
+        region < self.regions && self.axes.iter().zip(self.coordinates(space, q)).all(within)
+    }
+
+    /// The range of a region and its overlap along an axis, in the unit cube.
+    fn range(&self, axis: &Axis, region: u32) -> Range<f64> {
+        let (cell, cells) = (f64::from(cell(axis, region)), f64::from(axis.cells));
+        ((cell - self.overlap) / cells).max(0.0)..((cell + 1.0 + self.overlap) / cells).min(1.0)
+    }
+
+    /// Where a state is along each axis, from 0 to 1.
+    fn coordinates<C: Space<State = S>>(&self, space: &C, q: &S) -> impl Iterator<Item = f64> {
+        let mut velocity = vec![0.0; self.dim];
+        space.velocity_into(&self.origin, q, &mut velocity);
+        self.axes.iter().map(move |axis| velocity[axis.coordinate] / axis.width)
+    }
+}
+
+/// The place of a region along an axis.
+fn cell(axis: &Axis, region: u32) -> u32 {
+    region / axis.stride % axis.cells
+}
+
+/// The axis of a coordinate of the unit cube along which states move straight, alone and in proportion: not a rotation.
+fn straight_axis<C: Space>(space: &C, coordinate: usize) -> Option<Axis> {
+    let mut velocity = vec![0.0; space.dim()];
+    let state = |others: f64, x: f64| {
+        let mut u = vec![others; space.dim()];
+        u[coordinate] = x;
+        space.unit_cube_to_state(&u)
+    };
+    if !space.velocity_into(&state(0.0, 0.0), &state(0.0, 0.5), &mut velocity) {
+        return None;
+    }
+    let width = 2.0 * velocity[coordinate];
+    let straight = [0.0, 0.6].into_iter().all(|others| {
+        [0.25, 0.5, 0.75, 0.95].into_iter().all(|x| {
+            let wanted = |i: usize| if i == coordinate { x * width } else { 0.0 };
+            space.velocity_into(&state(others, 0.0), &state(others, x), &mut velocity)
+                && velocity.iter().enumerate().all(|(i, v)| (v - wanted(i)).abs() <= ROUNDING * width)
+        })
+    });
+    let length = 2.0 * space.distance(&state(0.0, 0.0), &state(0.0, 0.5));
+    let axis = Axis { coordinate, width, length, cells: 1, stride: 1 };
+    (width > 0.0 && width.is_finite() && straight).then_some(axis)
+}
+
+/// The prime factors of a number, the smallest first.
+fn factors(mut number: u32) -> Vec<u32> {
+    let (mut factors, mut factor) = (Vec::new(), 2);
+    while factor * factor <= number {
+        while number.is_multiple_of(factor) {
+            factors.push(factor);
+            number /= factor;
+        }
+        factor += 1;
+    }
+    factors.extend((number > 1).then_some(number));
+    factors
+}
+
+/// Roadmaps of regions, and the edges between them, as [pieces](Piece). An item of a round is a region, or behind all regions a pair of
+/// adjacent ones.
+#[derive(Clone, Debug)]
+pub struct InRegions<S, N> {
+    subdivision: Arc<Subdivision<S>>,
+    /// An empty index.
+    index: N,
+    connector: NearestConnector,
+    samples: usize,
+    connections: usize,
+    /// The number of the next attempt.
+    next: u64,
+    /// How many nodes there were when the round began.
+    old: NodeId,
+    /// The roadmap when regions began to grow, or to be connected. What came later, such as edges that a query has blocked, would make
+    /// pieces depend on each other.
+    moment: Moment,
+    /// The regions of the nodes that there were at that moment.
+    regions: Arc<Vec<u32>>,
+}
+
+impl<S: Clone, N: Clone> InRegions<S, N> {
+    /// Regions of a space. `index` is empty.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new<C: Space<State = S>>(
+        space: &C,
+        index: N,
+        regions: Regions,
+        reach: Reachable,
+    ) -> Result<Self, BuildError> {
+        let Regions { regions, samples, overlap, connections } = regions.check()?;
+        Ok(Self {
+            subdivision: Arc::new(Subdivision::new(space, regions, overlap)?),
+            index,
+            connector: NearestConnector::new(reach)?,
+            samples,
+            connections,
+            next: 0,
+            old: 0,
+            moment: Moment::default(),
+            regions: Arc::default(),
+        })
+    }
+
+    /// As the settings of the planner say.
+    ///
+    /// # Errors
+    /// When a value cannot be read or is out of range.
+    pub fn read<C: Space<State = S>>(space: &C, index: N, settings: &Settings) -> Result<Self, BuildError> {
+        Self::new(space, index, Regions::read(settings)?, reachable(space, settings)?)
+    }
+
+    /// How the space is cut.
+    #[must_use]
+    pub fn subdivision(&self) -> &Subdivision<S> {
+        &self.subdivision
+    }
+
+    /// How many items a round has: regions, and pairs of them.
+    #[must_use]
+    pub fn items(&self) -> u64 {
+        u64::from(self.subdivision.regions) + self.subdivision.pairs.len() as u64
+    }
+
+    /// The pair of regions that an item of a round connects; `None` for a region.
+    #[must_use]
+    pub fn pair(&self, item: u64) -> Option<[u32; 2]> {
+        let pair = item.checked_sub(u64::from(self.subdivision.regions))?;
+        self.subdivision.pairs.get(pair as usize).copied()
+    }
+
+    /// What item number `item` of the first round adds to the roadmap. The roadmap of a region is made from an empty `map`, and edges
+    /// between two regions from a `map` that has just those two pieces, the lower region first. In a [`Builder`](crate::Builder) the seed
+    /// is the first number drawn.
+    pub fn piece_of<C, L>(
+        &self,
+        item: u64,
+        map: &Roadmap<S, L::Edge>,
+        checker: &mut EdgeChecker<'_, C, L>,
+        seed: u64,
+    ) -> Piece<S, L::Edge>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge: Reversible>,
+        N: NearestNeighbors<C>,
+    {
+        let mut first = self.clone();
+        (first.old, first.regions) = (0, Arc::default());
+        first.look(map, checker.space());
+        first.made(item, map, checker, &mut Rng::stream(seed, item))
+    }
+
+    /// Notes the moment, and the regions of nodes that are new.
+    fn look<C: Space<State = S>, E>(&mut self, map: &Roadmap<S, E>, space: &C) {
+        self.moment = Moment::of(map);
+        let regions = Arc::make_mut(&mut self.regions);
+        for id in regions.len() as NodeId..map.len() as NodeId {
+            let q = map.state(id);
+            let known = map.tag(id).obstacle.filter(|&region| self.subdivision.holds(space, region, q));
+            regions.push(known.unwrap_or_else(|| self.subdivision.region_of(space, q)));
+        }
+    }
+
+    fn members(&self, region: u32) -> impl Iterator<Item = NodeId> {
+        let of = self.regions.iter().enumerate().filter(move |(_, of)| **of == region);
+        of.map(|(id, _)| id as NodeId)
+    }
+
+    fn made<C, L>(
+        &self,
+        item: u64,
+        map: &Roadmap<S, L::Edge>,
+        checker: &mut EdgeChecker<'_, C, L>,
+        rng: &mut Rng,
+    ) -> Piece<S, L::Edge>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge: Reversible>,
+        N: NearestNeighbors<C>,
+    {
+        match self.pair(item) {
+            None => self.grown(item as u32, map, checker, rng),
+            Some(pair) => self.joined(pair, map, checker),
+        }
+    }
+
+    /// More nodes of a region, with their edges.
+    fn grown<C, L>(
+        &self,
+        region: u32,
+        map: &Roadmap<S, L::Edge>,
+        checker: &mut EdgeChecker<'_, C, L>,
+        rng: &mut Rng,
+    ) -> Piece<S, L::Edge>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge: Reversible>,
+        N: NearestNeighbors<C>,
+    {
+        let (space, mut index) = (checker.space(), self.index.clone());
+        let mut part = Part::of(map, self.members(region).collect(), self.moment);
+        (0..part.map.len() as NodeId).for_each(|id| index.inserted(space, part.map.states(), id));
+        let (mut connector, mut unseen) = (self.connector.clone(), ());
+        let mut growing = Growing::of_piece(&mut part.map, &mut index, checker, &mut unseen);
+        for _ in 0..self.samples {
+            if growing.checker().is_interrupted() {
+                break;
+            }
+            let q = self.subdivision.sample(space, region, rng);
+            if growing.checker().admits(&q) {
+                let candidate = Candidate::new(q, MilestoneKind::Plain).of(region);
+                connector.connect(candidate, &mut growing);
+            }
+        }
+        part.piece()
+    }
+
+    /// Edges between two regions.
+    fn joined<C, L>(
+        &self,
+        [one, other]: [u32; 2],
+        map: &Roadmap<S, L::Edge>,
+        checker: &mut EdgeChecker<'_, C, L>,
+    ) -> Piece<S, L::Edge>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge: Reversible>,
+        N: NearestNeighbors<C>,
+    {
+        let (space, mut index) = (checker.space(), self.index.clone());
+        let mut members: Vec<NodeId> = self.members(one).collect();
+        let border = members.len() as NodeId;
+        members.extend(self.members(other));
+        let old: Vec<bool> = members.iter().map(|&id| id < self.old).collect();
+        let mut part = Part::of(map, members, self.moment);
+        (border..part.map.len() as NodeId).for_each(|id| index.inserted(space, part.map.states(), id));
+        let Reachable { neighbours, radius, cycles } = self.connector.within;
+        let mut unseen = ();
+        let mut growing = Growing::of_piece(&mut part.map, &mut index, checker, &mut unseen);
+        let (mut near, mut close) = (Vec::new(), Vec::new());
+        for id in 0..border {
+            if growing.checker().is_interrupted() {
+                break;
+            }
+            let q = growing.map().state(id).clone();
+            growing.near(&q, neighbours, radius, &mut near);
+            let new = near.iter().filter(|hit| !(old[id as usize] && old[hit.id as usize]));
+            close.extend(new.map(|hit| (hit.distance, id, hit.id)));
+        }
+        close.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let mut left = self.connections;
+        for (_, from, to) in close {
+            if left == 0 || growing.checker().is_interrupted() {
+                break;
+            }
+            if cycles || !growing.map().connected(from, to) {
+                left -= 1;
+                growing.try_link(from, to);
+            }
+        }
+        part.piece()
+    }
+}
+
+impl<C, L, N> NodeGenerator<C, L> for InRegions<C::State, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    N: NearestNeighbors<C> + Clone,
+{
+    /// There are no candidates: all is in the piece.
+    fn generate(
+        &mut self,
+        _: u64,
+        _: &Roadmap<C::State, L::Edge>,
+        _: &mut EdgeChecker<'_, C, L>,
+        _: &mut Rng,
+        _: &mut Vec<Candidate<C::State, L::Edge>>,
+    ) {
+    }
+
+    fn begin(&mut self, attempt: u64, map: &Roadmap<C::State, L::Edge>, space: &C) {
+        self.next = attempt;
+        let item = attempt % self.items();
+        if item == 0 {
+            self.old = map.len() as NodeId;
+        }
+        if item == 0 || item == u64::from(self.subdivision.regions) {
+            self.look(map, space);
+        }
+    }
+
+    fn piece(
+        &mut self,
+        attempt: u64,
+        map: &Roadmap<C::State, L::Edge>,
+        checker: &mut EdgeChecker<'_, C, L>,
+        rng: &mut Rng,
+    ) -> Option<Piece<C::State, L::Edge>> {
+        Some(self.made(attempt % self.items(), map, checker, rng))
+    }
+
+    /// Until all regions have grown, or all of their pairs are connected.
+    fn independent(&self, _: &Roadmap<C::State, L::Edge>) -> u64 {
+        let (item, regions) = (self.next % self.items(), u64::from(self.subdivision.regions));
+        if item < regions { regions - item } else { self.items() - item }
+    }
+}
+
+/// Regional PRM: see the [module](self).
+pub type RegionalPrm<'c, C, L, N> =
+    RoadmapPlanner<'c, C, L, InRegions<<C as Space>::State, N>, NearestConnector, AStar, N>;
+
+impl<'c, C, L, N> RegionalPrm<'c, C, L, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    N: NearestNeighbors<C> + Clone,
+{
+    /// Regional PRM with the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(problem: Problem<'c, C, L>, regions: Regions, reach: Reachable) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), regions, reach)
+    }
+
+    /// Regional PRM with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn with_index(
+        problem: Problem<'c, C, L>,
+        index: N,
+        regions: Regions,
+        reach: Reachable,
+    ) -> Result<Self, BuildError> {
+        let generator = InRegions::new(problem.space(), index.clone(), regions, reach)?;
+        let connector = generator.connector.clone();
+        Ok(Self::assemble(problem, index, RoadmapPlannerParts::new(generator, connector)))
+    }
+}
