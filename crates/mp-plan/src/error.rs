@@ -103,6 +103,17 @@ impl From<mp_store::Error> for Error {
     }
 }
 
+impl From<mp_ranks::Error> for Error {
+    fn from(error: mp_ranks::Error) -> Self {
+        match error {
+            mp_ranks::Error::Checkpoint { file, message, remedy } => {
+                Self::new(format!("{file}: {message}")).help(remedy)
+            }
+            error => Self::new(error.to_string()),
+        }
+    }
+}
+
 macro_rules! plain {
     ($($error:ty),*) => {
         $(impl From<$error> for Error {

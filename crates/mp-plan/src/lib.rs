@@ -38,6 +38,7 @@
 //! | plan | [`Scene::plan`]; with progress reports and a stop: [`Scene::plan_with`], [`Control`], [`Watch`] |
 //! | plan thousands of problems on all cores | [`plan_many`] |
 //! | plan the problems of a list, in shards, and go on where that ended | [`ProblemList`], [`ListedProblems::run`], [`merge_results`] |
+//! | race many runs of a hard problem, over threads and ranks | [`Scene::portfolio`], [`Portfolio`] |
 //! | plan in pieces, between the events of a program | [`Scene::prepare`], [`Run`] |
 //! | move start and goal | [`Scene::with_ends`] |
 //! | build a roadmap once for many queries | [`Scene::roadmap`], [`SceneRoadmap`] |
@@ -87,6 +88,7 @@ mod path;
 mod picture;
 mod plan;
 mod planners;
+mod portfolio;
 mod prepared;
 mod relax;
 mod report;
@@ -116,7 +118,7 @@ pub use goals::GoalPart;
 pub use in_order::in_order;
 pub use list::{
     ItemError, ItemResult, ListedProblems, ManyOptions, ManyOutcome, ProblemList, RESULTS_VERSION,
-    ResultsHeader, SceneFingerprint, Shard, Tally, merge_results,
+    ResultsHeader, SavedResults, SceneFingerprint, Shard, Tally, merge_results,
 };
 pub use many::plan_many;
 pub use numbers::{brief, count, plain, positive_number};
@@ -126,6 +128,9 @@ pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
 pub use planners::{meta_planners, planners, roadmap_planners};
+pub use portfolio::{
+    Portfolio, PortfolioCounts, PortfolioOptions, PortfolioOutcome, PortfolioSchedule, RankWork,
+};
 pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, RelaxField, Request};
 pub use roadmaps::{Roadmap, RoadmapState};

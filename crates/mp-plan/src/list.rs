@@ -4,6 +4,7 @@ mod merge;
 mod reader;
 mod results;
 mod run;
+mod saved;
 mod scenes;
 mod shard;
 
@@ -16,6 +17,7 @@ pub(crate) use reader::{Next, ResultsReader};
 pub(crate) use results::checksum;
 pub use results::{ItemError, ItemResult, RESULTS_VERSION, ResultsHeader, SceneFingerprint, Tally};
 pub use run::{ManyOptions, ManyOutcome};
+pub use saved::SavedResults;
 pub use scenes::ListedProblems;
 pub use shard::Shard;
 
