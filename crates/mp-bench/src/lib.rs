@@ -20,6 +20,7 @@ mod rigid;
 mod roadmaps;
 mod rrs;
 mod rsrt;
+mod scale;
 mod scaling;
 mod scenes;
 #[cfg(test)]
@@ -75,6 +76,8 @@ enum Suite {
     Rsrt,
     /// Roadmaps: corridors of decreasing width, shipped scenes, many queries, growth, pictures.
     Roadmaps,
+    /// Sweeps and portfolios on 1 to 10,000 ranks: measured costs, replayed.
+    Scale,
     /// The speed of growth of an RRT without obstacles, against its size.
     Scaling,
     /// What proofs of paths cost: certifying, and replaying by `mp-verify-certificate`.
@@ -129,6 +132,7 @@ pub fn run(options: &Options) -> Result<bool, Error> {
         Suite::Rrs => rrs::run(common, &options.rrs),
         Suite::Rsrt => rsrt::run(common, &options.rsrt),
         Suite::Roadmaps => roadmaps::run(common, &options.roadmaps),
+        Suite::Scale => scale::run(common),
         Suite::Scaling => scaling::run(common),
         Suite::Certificates => certificates::run(common),
         Suite::Assets => assets::run(&options.assets),
