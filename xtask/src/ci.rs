@@ -9,7 +9,10 @@ use std::time::Instant;
 
 /// Runs all checks, even after one has failed.
 pub(crate) fn run(tests: bool) -> ExitCode {
-    let clippy = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
+    // The program as tests do not have it.
+    let parquet = "mp-motion-cli/parquet";
+    let clippy =
+        ["clippy", "--quiet", "--workspace", "--all-targets", "--features", parquet, "--", "-D", "warnings"];
     let mut steps: Vec<(&str, &[&str])> = vec![
         ("formatting", &["fmt", "--all", "--check"]),
         ("lints", &clippy),

@@ -20,6 +20,7 @@ mod rigid;
 mod roadmaps;
 mod rrs;
 mod rsrt;
+mod scale;
 mod scaling;
 mod scenes;
 mod spread;
@@ -76,6 +77,8 @@ enum Suite {
     Roadmaps,
     /// Roadmaps by regions: what they answer, and how evenly their work is spread over ranks.
     Regions,
+    /// Sweeps and portfolios on 1 to 10,000 ranks: measured costs, replayed.
+    Scale,
     /// The speed of growth of an RRT without obstacles, against its size.
     Scaling,
     /// What proofs of paths cost: certifying, and replaying by `mp-verify-certificate`.
@@ -145,6 +148,7 @@ pub fn run(options: &Options) -> Result<bool, Error> {
         Suite::Rsrt => rsrt::run(common, &options.rsrt),
         Suite::Roadmaps => roadmaps::run(common, &options.roadmaps),
         Suite::Regions => regions::run(common),
+        Suite::Scale => scale::run(common),
         Suite::Scaling => scaling::run(common),
         Suite::Certificates => certificates::run(common),
         Suite::Assets => assets::run(&options.assets),

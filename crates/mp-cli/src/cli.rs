@@ -3,7 +3,8 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use mp_plan::{
-    Length, MetricName, Mode, MotionValidator, PlannerInfo, RelaxField, Request, Shard, positive_number,
+    Length, MetricName, Mode, MotionValidator, PlannerInfo, PortfolioSchedule, RelaxField, Request, Shard,
+    positive_number,
 };
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -28,6 +29,8 @@ pub(crate) enum Command {
     Many(Many),
     /// Merge the results of all shards of a list.
     Merge(Merge),
+    /// Write results of `many` as Parquet, for data frames and databases.
+    Export(Export),
     /// Verify a path with the independent checker: exit 0 only if it is certified free. Or explain one configuration.
     Check(Check),
     /// Describe a mesh, scene or path file.
@@ -99,7 +102,30 @@ pub(crate) struct Plan {
     /// percentage of the extent of the space.
     #[arg(long, value_name = "DISTANCE", default_value = "10%", requires = "routes", value_parser = parsed::<Length>)]
     pub(crate) apart: Length,
-    /// How many runs at once; for a single run, how many threads it may use. Results do not depend on it.
+    /// Race this many runs with random numbers of their own: the one with the fewest iterations wins, whichever is ready first. For
+    /// problems that some seeds solve many times sooner than others.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 30),
+          conflicts_with_all = ["routes", "roadmap"])]
+    pub(crate) portfolio: Option<u64>,
+    /// How many iterations each run of a portfolio may make: as many as it needs (`none`), or units by the schedule `luby`,
+    /// `counter`, `zeta` or `wide`, as `restart-` planners one after the other.
+    #[arg(long, value_name = "NAME", default_value = "none", requires = "portfolio",
+          value_parser = PossibleValuesParser::new(PortfolioSchedule::ALL.map(PortfolioSchedule::name))
+              .map(|name| name.parse::<PortfolioSchedule>().unwrap_or_default()))]
+    pub(crate) schedule: PortfolioSchedule,
+    /// Iterations of a unit of the schedule.
+    #[arg(long, value_name = "N", default_value_t = 1000, requires = "portfolio",
+          value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
+    pub(crate) unit: u64,
+    /// How many runs of a portfolio race at a time, in memory too. The next ones begin when none of these has a path.
+    #[arg(long, value_name = "N", default_value_t = 64, requires = "portfolio",
+          value_parser = clap::value_parser!(u64).range(1..=1 << 20))]
+    pub(crate) round: u64,
+    /// Keep finished runs of a portfolio in this file, and go on with those in it: a program that was interrupted or killed loses no
+    /// more than one round. The file is deleted in the end.
+    #[arg(long, value_name = "FILE", requires = "portfolio")]
+    pub(crate) checkpoint: Option<PathBuf>,
+    /// How many runs at once; for a single run or a portfolio, how many threads it may use. Results do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: u16,
     /// Set a parameter of the planner.
@@ -175,6 +201,14 @@ pub(crate) struct Merge {
     /// The results of all shards, in any order.
     #[arg(required = true)]
     pub(crate) shards: Vec<PathBuf>,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Export {
+    /// Results of `mp many` or `mp merge`.
+    pub(crate) results: PathBuf,
+    /// The file: a row for each item, with the path as a list. Its name ends in `.parquet`.
+    pub(crate) out: PathBuf,
 }
 
 #[derive(Clone, Debug, Args)]

@@ -1,4 +1,4 @@
-//! The program `mp`: plan, many, merge, check, info, render, view on the command line.
+//! The program `mp`: plan, many, merge, export, check, info, render, view on the command line.
 //!
 //! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input, 141 when the reader of standard output has
 //! gone.
@@ -36,6 +36,7 @@ fn main() -> ExitCode {
         Command::Plan(args) => plan::run(args),
         Command::Many(args) => many::run(args),
         Command::Merge(args) => many::merge(args),
+        Command::Export(args) => many::export(args),
         Command::Check(args) => check::run(args),
         Command::Info(args) => info::run(args),
         Command::Render(args) => render::run(args),

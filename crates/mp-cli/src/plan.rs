@@ -10,8 +10,8 @@ use crate::request::{request, request_for};
 use crate::text::{caption, summary, table};
 use crate::{interrupt, memory};
 use mp_plan::{
-    Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Report, Request, Runs,
-    Scene, StopReason, StoppedBy, in_parallel, make_folder,
+    Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Portfolio, PortfolioOptions,
+    Report, Request, Runs, Scene, StopReason, StoppedBy, in_parallel, make_folder,
 };
 use mp_view::GrownTrees;
 use std::path::{Path, PathBuf};
@@ -46,6 +46,9 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
         return Err(Error::new("standard input can be one scene only"));
     }
 
+    if args.portfolio.is_some() && (named.len() > 1 || args.runs > 1) {
+        return Err(Error::new("--portfolio needs a single run").help("name one scene, without --runs"));
+    }
     if args.routes.is_some() {
         if named.len() > 1 || args.runs > 1 {
             return Err(Error::new("--routes needs a single run").help("name one scene, without --runs"));
@@ -86,9 +89,8 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let single = jobs.len() == 1;
     // Runs have a thread each when there are several.
     let threads = if single { args.threads } else { 1 };
-    let job = |(i, seed): (usize, u64)| {
-        one(&scenes[i], &requests[i], seed, (&cancel, spent), &files, single, threads)
-    };
+    let how = How { args, files: &files, watched: single, threads };
+    let job = |(i, seed): (usize, u64)| one(&scenes[i], &requests[i], seed, (&cancel, spent), &how);
     let reports = match jobs.as_slice() {
         [only] => vec![job(*only)?],
         _ => {
@@ -178,6 +180,9 @@ fn check_files(args: &Plan, files: &Files, scenes: &[Scene], jobs: &[(usize, u64
         claims.input(file);
     }
     files.claim_roadmap(&mut claims)?;
+    if let Some(file) = &args.checkpoint {
+        claims.output("--checkpoint", file)?;
+    }
     for &(i, seed) in jobs {
         files.claim(&mut claims, &scenes[i], seed, args.routes)?;
     }
@@ -189,16 +194,38 @@ fn check_files(args: &Plan, files: &Files, scenes: &[Scene], jobs: &[(usize, u64
     Ok(())
 }
 
+/// How a run is made, and what is written.
+struct How<'a> {
+    args: &'a Plan,
+    files: &'a Files,
+    watched: bool,
+    threads: u16,
+}
+
+impl How<'_> {
+    /// Plans: by one run, or by many that race.
+    fn planned(&self, scene: &Scene, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
+        let Plan { schedule, unit, round, checkpoint, .. } = self.args;
+        let Some(runs) = self.args.portfolio else { return scene.plan_with(request, control) };
+        let portfolio = Portfolio { runs, schedule: *schedule, unit: *unit, round: *round };
+        let options = PortfolioOptions { threads: usize::from(self.threads), checkpoint: checkpoint.clone() };
+        let outcome = scene.portfolio(request, &portfolio, &options, control)?;
+        if outcome.known > 0 {
+            note(&format!("went on after {} runs", outcome.known));
+        }
+        Ok(outcome.report)
+    }
+}
+
 /// One run: plan, then write the path and the picture.
 fn one(
     scene: &Scene,
     request: &Request,
     seed: u64,
     (cancel, spent): (&Cancel, Duration),
-    files: &Files,
-    watched: bool,
-    threads: u16,
+    how: &How<'_>,
 ) -> Result<Report, Error> {
+    let How { files, watched, threads, .. } = *how;
     let began = mp_plan::Clock::default().now();
     let request = Request { seed, ..request.clone() };
     let mut line = Line::new(scene.name(), request.budget.time_s, watched);
@@ -210,7 +237,7 @@ fn one(
     let grown = shows_search.then(|| GrownTrees::new(scene, &request));
     let mut watched = Watched { line: &mut line, grown };
     let mut control = Control { spent, ..Control::new(cancel.clone(), &mut watched) };
-    let mut report = scene.plan_with(&request, &mut control)?;
+    let mut report = how.planned(scene, &request, &mut control)?;
     let grown = watched.grown;
     let Some(rows) = report.path.clone() else { return Ok(report) };
     let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };

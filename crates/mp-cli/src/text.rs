@@ -16,6 +16,11 @@ pub(crate) fn summary(report: &Report) -> String {
         )),
     }
     let mut row = |name: &str, text: String| lines.push(format!("  {name:<11}{text}"));
+    if let Some(runs) = &report.portfolio {
+        let won = runs.winner.map(|run| format!("run {} won, ", grouped(run))).unwrap_or_default();
+        let [begun, needed] = [grouped(runs.begun), grouped(runs.iterations)];
+        row("portfolio", format!("{won}{begun} runs with {needed} iterations in all"));
+    }
     row("iterations", grouped(report.iterations));
     row("nodes", grouped(report.nodes as u64));
     if let (Some(edges), Some(components)) = (report.edges, report.components) {
@@ -195,6 +200,7 @@ mod tests {
             nodes: 98765,
             edges: None,
             components: None,
+            portfolio: None,
             motion_checks: 5000,
             collision_checks: 1_000_000,
             rejected: 0,

@@ -1,4 +1,4 @@
-//! Several routes of one scene, by the command line.
+//! Several routes of one scene, and portfolios of runs, by the command line.
 
 mod common;
 
@@ -74,4 +74,52 @@ fn what_cannot_be_is_said() {
     let run = mp(&dir, &["plan", "free.toml", "--routes", "2", "--planner", "prm-star"]);
     assert!(run.code == 2 && run.stderr.contains("leaves nothing free"), "{run:?}");
     assert_eq!(mp(&dir, &["plan", "parking", "--routes", "2"]).code, 2);
+}
+
+#[test]
+fn a_portfolio_is_the_same_on_any_number_of_threads() {
+    let dir = Dir::empty();
+    dir.write("block.toml", BLOCK);
+    let plan = |threads: &str, out: &str| {
+        let words = [
+            "plan",
+            "block.toml",
+            "--planner",
+            "rrt",
+            "--portfolio",
+            "12",
+            "--schedule",
+            "luby",
+            "--unit",
+            "90",
+        ];
+        let more = ["--round", "4", "--threads", threads, "--checkpoint", "kept", "--out", out];
+        mp(&dir, &[&words[..], &more].concat())
+    };
+    let runs = [("1", "one.txt"), ("3", "three.txt")].map(|(threads, out)| plan(threads, out));
+    for run in &runs {
+        let told = |line: &&str| {
+            line.contains("run ") && line.contains(" won, ") && line.contains(" iterations in all")
+        };
+        assert!(run.code == 0 && run.stdout.lines().any(|line| told(&line)), "{run:?}");
+    }
+    assert!(dir.read("one.txt") == dir.read("three.txt") && !dir.exists("kept"));
+    let run = mp(&dir, &["plan", "block.toml", "--portfolio", "3", "--iterations", "1", "--json"]);
+    let portfolio = &run.json()["portfolio"];
+    assert_eq!(
+        (run.code, &portfolio["winner"], &portfolio["iterations"]),
+        (1, &().into(), &3.into()),
+        "{run:?}"
+    );
+    for (args, words) in [
+        (&["--portfolio", "0"][..], "--portfolio"),
+        (&["--portfolio", "3", "--schedule", "fast"], "luby"),
+        (&["--portfolio", "3", "--runs", "2"], "--portfolio needs a single run"),
+        (&["--portfolio", "3", "--routes", "2"], "--routes"),
+        (&["--portfolio", "3", "--checkpoint", "block.toml"], "--checkpoint"),
+        (&["--unit", "7"], "--portfolio"),
+    ] {
+        let run = mp(&dir, &[&["plan", "block.toml"], args].concat());
+        assert!(run.code == 2 && run.stderr.contains(words), "{words}: {run:?}");
+    }
 }

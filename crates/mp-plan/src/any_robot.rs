@@ -7,7 +7,7 @@ use crate::path::state;
 use crate::plan::plan;
 #[cfg(feature = "ranks")]
 use crate::regional::AnyRegional;
-use crate::run::AnyPrepared;
+use crate::run::{AnyPrepared, FoundRun};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::AnySceneRoadmap;
 use crate::sweep::{sweep, track};
@@ -22,6 +22,7 @@ use nalgebra::{Isometry3, Point3};
 use std::any::Any;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// A [`RobotKind`] behind a pointer.
 pub(crate) trait AnyRobot: Send + Sync {
@@ -48,6 +49,14 @@ pub(crate) trait AnyRobot: Send + Sync {
         control: &mut Control<'_>,
     ) -> Result<Vec<Report>, Error>;
     fn prepare<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error>;
+    /// The report of a run elsewhere, which took the time `time`: its path is finished here.
+    fn found_report(
+        &self,
+        request: &Request,
+        found: FoundRun,
+        time: Duration,
+        control: &mut Control<'_>,
+    ) -> Result<Report, Error>;
     #[cfg(feature = "roadmaps")]
     fn roadmap(
         self: Arc<Self>,
@@ -162,6 +171,15 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     }
     fn prepare<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error> {
         crate::run::prepare(self, request)
+    }
+    fn found_report(
+        &self,
+        request: &Request,
+        found: FoundRun,
+        time: Duration,
+        control: &mut Control<'_>,
+    ) -> Result<Report, Error> {
+        crate::plan::found_report(self, request, found, time, control)
     }
     #[cfg(feature = "roadmaps")]
     fn roadmap(

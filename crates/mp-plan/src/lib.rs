@@ -39,6 +39,7 @@
 //! | plan thousands of problems on all cores | [`plan_many`] |
 //! | plan the problems of a list, in shards, and go on where that ended | [`ProblemList`], [`ListedProblems::run`], [`merge_results`] |
 //! | do so on all ranks of a cluster | [`ListedProblems::run_on`] |
+//! | race many runs of a hard problem, over threads and ranks | [`Scene::portfolio`], [`Portfolio`] |
 //! | plan in pieces, between the events of a program | [`Scene::prepare`], [`Run`] |
 //! | move start and goal | [`Scene::with_ends`] |
 //! | build a roadmap once for many queries | [`Scene::roadmap`], [`SceneRoadmap`] |
@@ -89,6 +90,7 @@ mod path;
 mod picture;
 mod plan;
 mod planners;
+mod portfolio;
 mod prepared;
 #[cfg(feature = "ranks")]
 mod regional;
@@ -120,7 +122,7 @@ pub use goals::GoalPart;
 pub use in_order::in_order;
 pub use list::{
     ItemError, ItemResult, ListedProblems, ManyOptions, ManyOutcome, ProblemList, RESULTS_VERSION,
-    RanksOutcome, ResultsHeader, SceneFingerprint, Shard, Tally, merge_results,
+    RanksOutcome, ResultsHeader, SavedResults, SceneFingerprint, Shard, Tally, merge_results,
 };
 pub use many::plan_many;
 pub use numbers::{brief, count, plain, positive_number};
@@ -130,6 +132,9 @@ pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
 pub use planners::{meta_planners, planners, roadmap_planners};
+pub use portfolio::{
+    Portfolio, PortfolioCounts, PortfolioOptions, PortfolioOutcome, PortfolioSchedule, RankWork,
+};
 #[cfg(feature = "ranks")]
 pub use regional::{RegionalTally, RegionalWork};
 pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};

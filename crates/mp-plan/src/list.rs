@@ -7,6 +7,7 @@ mod ranks;
 mod reader;
 mod results;
 mod run;
+mod saved;
 mod scenes;
 mod shard;
 
@@ -20,6 +21,7 @@ pub(crate) use reader::{Next, ResultsReader};
 pub(crate) use results::checksum;
 pub use results::{ItemError, ItemResult, RESULTS_VERSION, ResultsHeader, SceneFingerprint, Tally};
 pub use run::{ManyOptions, ManyOutcome};
+pub use saved::SavedResults;
 pub use scenes::ListedProblems;
 pub use shard::Shard;
 

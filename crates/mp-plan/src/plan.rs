@@ -1,11 +1,12 @@
 //! Planning: runs a request, finishes the path and makes the report.
 
 use crate::finish::finish;
+use crate::relax::relax_if_requested;
 use crate::report::{RunStage, StageTime};
-use crate::run::PLANNING_PART;
+use crate::run::{FoundRun, PLANNING_PART};
 use crate::search::{Search, search_within};
-use crate::{Control, Error, REPORT_VERSION, Report, Request, RobotKind, StoppedBy};
-use mp_cspace::{Outcome, StopReason};
+use crate::{Control, Error, Finish, REPORT_VERSION, Report, Request, RobotKind, StoppedBy};
+use mp_cspace::{Outcome, Path, StateVector, StopReason};
 use std::time::Duration;
 
 /// Plans, finishes the path, and makes the report.
@@ -71,6 +72,7 @@ pub(crate) fn reported<K: RobotKind>(
         certificate_file: None,
         columns: RobotKind::columns(kind),
         path: None,
+        portfolio: None,
     };
     let path = match found.outcome {
         Outcome::Stopped(reason) => {
@@ -104,6 +106,50 @@ pub(crate) fn reported<K: RobotKind>(
     report.fingerprint = Some(format!("{:016x}", crate::numbers::fingerprint(numbers)));
     report.path = Some(finished.path.rows);
     Ok(report)
+}
+
+/// Finishes the path of a run that took the time `time`, if there is one, and makes the report.
+pub(crate) fn found_report<K: RobotKind>(
+    kind: &K,
+    request: &Request,
+    found: FoundRun,
+    time: Duration,
+    control: &mut Control<'_>,
+) -> Result<Report, Error> {
+    let FoundRun { progress, queries, map, path, ended_by } = found;
+    let began = control.clock.now();
+    let mut relaxing = Duration::ZERO;
+    let outcome = match path {
+        Some(rows) => {
+            let states = rows.iter().map(|row| K::State::read(row)).collect::<Option<Vec<_>>>();
+            let states = states.ok_or_else(|| {
+                Error::new("the path of a run has a state that is none of the robot")
+                    .help("do all processes run the same program with the same scene?")
+            })?;
+            let budget = request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
+            let left = budget.map(|budget| budget.saturating_sub(control.spent).saturating_sub(time));
+            let path = relax_if_requested(kind, request, Path::straight(states), control, left)?;
+            if request.finish == Finish::Relax {
+                relaxing = control.clock.now().saturating_sub(began);
+            }
+            Outcome::Solved(path)
+        }
+        None => Outcome::Stopped(ended_by.unwrap_or(StopReason::Cancelled)),
+    };
+    let found = Search {
+        outcome,
+        progress,
+        queries,
+        time: time + relaxing,
+        relaxing,
+        ended_by,
+        found_unverified: false,
+        first: None,
+        map,
+        roadmap: None,
+    };
+    let left = left(request, control, &found);
+    reported(kind, request, found, None, control, left)
 }
 
 /// The stages up to the path found.

@@ -1,6 +1,6 @@
 //! The result of a run: plain data.
 
-use crate::{Column, Error};
+use crate::{Column, Error, PortfolioCounts};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::time::Duration;
@@ -86,6 +86,9 @@ pub struct Report {
     pub columns: Vec<Column>,
     /// The path, one configuration in each row, start first.
     pub path: Option<Vec<Vec<f64>>>,
+    /// Of a [portfolio](crate::Scene::portfolio), its runs; the other members are then those of the winner.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub portfolio: Option<PortfolioCounts>,
 }
 
 /// A stage of a run, and how long it took.

@@ -9,7 +9,7 @@ use crate::search::Search;
 use crate::watch::Events;
 use crate::{Control, Error, Finish, Report, Request, RobotKind, Stage, StoppedBy};
 use mp_cspace::erased::AnySpace;
-use mp_cspace::{Interrupt, Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
+use mp_cspace::{Interrupt, Outcome, Path, Planner, Progress, Rng, StateVector, Stop, StopReason, Workers};
 use mp_tree::{TreeState, improve};
 use std::fmt;
 use std::sync::atomic::Ordering;
@@ -29,7 +29,8 @@ impl PreparedRun<'_> {
     /// # Errors
     /// When the request is not valid for the robot, or a roadmap cannot be read.
     pub fn begin(&self, control: &mut Control<'_>) -> Result<Run<'_>, Error> {
-        Ok(Run { run: self.prepared.begin(control)?, file: self.file.clone() })
+        let rng = Rng::seed(self.prepared.seed());
+        Ok(Run { run: self.prepared.begin(rng, control)?, file: self.file.clone() })
     }
 }
 
@@ -96,7 +97,10 @@ impl fmt::Debug for Run<'_> {
 
 /// A prepared request for a robot of some kind.
 pub(crate) trait AnyPrepared {
-    fn begin(&self, control: &mut Control<'_>) -> Result<Box<dyn AnyRun + '_>, Error>;
+    /// The seed of the request.
+    fn seed(&self) -> u64;
+    /// Makes the planner, which draws from `rng`.
+    fn begin(&self, rng: Rng, control: &mut Control<'_>) -> Result<Box<dyn AnyRun + '_>, Error>;
 }
 
 /// A run for a robot of some kind.
@@ -104,6 +108,21 @@ pub(crate) trait AnyRun {
     fn advance(&mut self, pause: &mut dyn Stop, control: &mut Control<'_>) -> bool;
     fn progress(&mut self) -> Progress;
     fn finish(self: Box<Self>, control: &mut Control<'_>) -> Result<Report, Error>;
+    /// Ends the run as it is, with the path as found.
+    fn into_found(self: Box<Self>) -> Result<FoundRun, Error>;
+}
+
+/// What a run came to: plain data, from which [`found_report`](crate::any_robot::AnyRobot::found_report) makes a report elsewhere.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FoundRun {
+    pub(crate) progress: Progress,
+    pub(crate) queries: u64,
+    /// Edges and components of a roadmap.
+    pub(crate) map: Option<[usize; 2]>,
+    /// The path, if there is one: its states as [numbers](mp_cspace::StateVector), to the bit.
+    pub(crate) path: Option<Vec<Vec<f64>>>,
+    /// What ended the run; `None` where the planner ended with its path, or the run is not over.
+    pub(crate) ended_by: Option<StopReason>,
 }
 
 /// The request, prepared for a robot.
@@ -117,8 +136,11 @@ pub(crate) fn prepare<'s, K: RobotKind>(
 }
 
 impl<K: RobotKind> AnyPrepared for Prepared<'_, K> {
-    fn begin(&self, control: &mut Control<'_>) -> Result<Box<dyn AnyRun + '_>, Error> {
-        Ok(Box::new(RobotRun::new(self, control, PLANNING_PART)?))
+    fn seed(&self) -> u64 {
+        self.request.seed
+    }
+    fn begin(&self, rng: Rng, control: &mut Control<'_>) -> Result<Box<dyn AnyRun + '_>, Error> {
+        Ok(Box::new(RobotRun { rng, ..RobotRun::new(self, control, PLANNING_PART)? }))
     }
 }
 
@@ -318,6 +340,27 @@ impl<K: RobotKind> AnyRun for RobotRun<'_, '_, K> {
         let found = self.into_search(control)?;
         let left = left(request, control, &found);
         reported(kind, request, found, None, control, left)
+    }
+    fn into_found(mut self: Box<Self>) -> Result<FoundRun, Error> {
+        let progress = RobotRun::progress(&mut self);
+        let map = match &mut self.made {
+            None | Some(NamedPlanner::Tree(_)) => None,
+            Some(NamedPlanner::Roadmap(made)) => Some(made.keep(self.file.as_ref(), false)?.0),
+        };
+        // Checkers report their last queries when they are dropped.
+        self.made = None;
+        let numbers = |state: &K::State| {
+            let mut numbers = Vec::new();
+            state.write(&mut numbers);
+            numbers
+        };
+        Ok(FoundRun {
+            progress,
+            queries: self.prepared.queries.load(Ordering::Relaxed),
+            map,
+            path: self.found.best.map(|path| path.states.iter().map(numbers).collect()),
+            ended_by: self.found.over.flatten(),
+        })
     }
 }
 

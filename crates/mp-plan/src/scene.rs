@@ -1,6 +1,7 @@
 //! A scene of any kind, and what can be done with it.
 
 use crate::any_robot::AnyRobot;
+use crate::run::{AnyPrepared, FoundRun};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
@@ -15,6 +16,7 @@ use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// A scene to plan in: a robot of any kind among its obstacles, with a start and goals. Clones share the data.
 ///
@@ -313,6 +315,24 @@ impl Scene {
         self.check_ends()?;
         let file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(PreparedRun { prepared: self.robot.prepare(request)?, file })
+    }
+
+    /// The request, prepared for a run that makes no report itself.
+    pub(crate) fn prepared<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error> {
+        self.robot.prepare(request)
+    }
+
+    /// The report of a run that made none itself, and took the time `time`.
+    pub(crate) fn found_report(
+        &self,
+        request: &Request,
+        found: FoundRun,
+        time: Duration,
+        control: &mut Control<'_>,
+    ) -> Result<Report, Error> {
+        let mut report = self.robot.found_report(request, found, time, control)?;
+        report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
+        Ok(report)
     }
 
     /// Builds a roadmap for many queries, with the planner of the request, which must build roadmaps, until its budget is

@@ -190,8 +190,9 @@ impl ItemResult {
         Self { item, report, error }
     }
 
-    /// It counted.
-    pub(super) fn tally(&self) -> Tally {
+    /// How it counts: the tally of one item.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
         let solved = self.report.as_ref().is_some_and(|report| report.solved);
         let by_time = |report: &Report| {
             let time = Some(StoppedBy::Time);

@@ -1,7 +1,8 @@
-//! Lists of problems: the same bytes on any number of threads, in any number of shards, and after any end.
+//! Lists of problems and portfolios: the same bytes on any number of threads, in any number of shards, and after any end.
 #![cfg(not(target_family = "wasm"))]
 
 mod lists;
+mod portfolios;
 mod ranks;
 mod runs;
 mod shards;

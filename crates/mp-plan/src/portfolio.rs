@@ -1,0 +1,467 @@
+//! Portfolios: many runs of one request, with random numbers of their own, over threads and over the ranks of a cluster.
+//!
+//! A portfolio is a fixed list of runs, numbered from 1. Run i draws from stream *(seed, i)*, and its *cap*, the most iterations it may
+//! make, is that of the [schedule](PortfolioSchedule). The runs are made in *rounds* of so many; a round begins when the one before has no
+//! path. The winner is the run of the first round with a path that has the fewest iterations, and of several such the one with the
+//! least number. So it depends on the request and the portfolio alone, whoever finished first, and on how many machines.
+//!
+//! - Portfolios: C. Gomes and B. Selman, *Algorithm portfolios*, Artificial Intelligence 126, 2001. For trees of motion planning, N. Wedge and
+//!   M. Branicky, *On heavy-tailed runtimes and restarts in rapidly-exploring random trees*, AAAI workshop, 2008.
+//! - Schedules over many processors: M. Luby and W. Ertel, *Optimal parallelization of Las Vegas algorithms*, STACS 1994; A. Cire,
+//!   S. Kadioglu and M. Sellmann, *Parallel restarted search*, AAAI 2014, where processors take the runs of one sequence of lengths in
+//!   turn, as here. There the first to finish wins; that the one with the fewest iterations does is as in `or-` planners
+//!   ([`mp_tree::algo::or_parallel`]).
+//!
+//! How it is worked on, which changes nothing in the result:
+//! 1. the runs of a round are dealt to as many *lanes* as there are threads on all ranks, the largest caps first, one to each lane in turn;
+//! 2. a lane advances its runs by turns, the one as far as the other, until each has a path, has reached its cap, or has made as many
+//!    iterations as the best run known: then it cannot win any more;
+//! 3. when a lane is done, the others hear of its best run.
+//!
+//! So a round costs each run as many iterations as the winner needs, and at most a sixteenth of that more, or what is made until the news
+//! has spread. A round keeps the trees of all its runs.
+
+mod lane;
+mod rounds;
+
+use crate::numbers::fingerprint;
+use crate::run::FoundRun;
+use crate::{Clock, Control, Error, Report, Request, Scene, Stage, StoppedBy};
+use lane::{Lane, Start};
+use mp_cspace::{Rng, StopReason};
+use mp_ranks::{Checkpoint, Link};
+use mp_tree::Schedule;
+use rounds::Rounds;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// The most runs of a portfolio.
+const MAX_RUNS: u64 = 1 << 30;
+/// The most runs of a round: all of them are in memory.
+const MAX_ROUND: u64 = 1 << 20;
+/// The largest unit, as that of `restart-` planners.
+const MAX_UNIT: u64 = 1_000_000_000_000;
+
+/// Which runs are made.
+///
+/// ```
+/// use mp_plan::{Control, Portfolio, PortfolioOptions, PortfolioSchedule, Request, Scene};
+/// let scene = Scene::find("easy")?;
+/// let portfolio = Portfolio { schedule: PortfolioSchedule::Luby, unit: 50, ..Portfolio::new(20) };
+/// let on = |threads| {
+///     let options = PortfolioOptions { threads, ..PortfolioOptions::default() };
+///     scene.portfolio(&Request::new("rrt-connect"), &portfolio, &options, &mut Control::default())
+/// };
+/// let (one, two) = (on(1)?.report.without_times(), on(2)?.report.without_times());
+/// assert!(one.solved && one.portfolio.as_ref().is_some_and(|runs| runs.winner.is_some()));
+/// assert_eq!(one, two);
+/// # Ok::<(), mp_plan::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Portfolio {
+    /// How many runs there are at most, 1 to 2^30.
+    pub runs: u64,
+    /// Their caps.
+    pub schedule: PortfolioSchedule,
+    /// How many iterations a run of length 1 may make, 1 to 10^12. Runs without caps have no unit.
+    pub unit: u64,
+    /// How many runs are in a round, 1 to 2^20. Ranks and threads beyond that number have nothing to do, and where caps differ they are
+    /// all busy only if there are some times as many runs as threads.
+    pub round: u64,
+}
+
+/// The caps of the runs of a [`Portfolio`]: of run i the i-th length, in units, of the schedule that
+/// [`restart-`](mp_tree::algo::restarts) planners go through one after the other. In addition each run has the budgets of its request.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PortfolioSchedule {
+    /// No caps: all runs of a round race to the end (Carpin and Pagello 2002).
+    #[default]
+    None,
+    /// 1, 1, 2, 1, 1, 2, 4, 1, … (Luby, Sinclair and Zuckerman 1993).
+    Luby,
+    /// Counter search: at the count n = 1, 2, 3, … every length whose square divides n (Amato, Ashur and Har-Peled 2025).
+    Counter,
+    /// Length t with probability 6/(π·t)² (the same); lengths are drawn from stream *(seed, 0)*.
+    Zeta,
+    /// Wide search (Ashur and Har-Peled 2025) up to the beginning of its last run: of N runs, run i has ⌊N/i⌋ units.
+    Wide,
+}
+
+impl PortfolioSchedule {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::None, Self::Luby, Self::Counter, Self::Zeta, Self::Wide];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Luby => "luby",
+            Self::Counter => "counter",
+            Self::Zeta => "zeta",
+            Self::Wide => "wide",
+        }
+    }
+}
+
+impl fmt::Display for PortfolioSchedule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for PortfolioSchedule {
+    type Err = Error;
+    fn from_str(name: &str) -> Result<Self, Error> {
+        Self::ALL.into_iter().find(|schedule| schedule.name() == name).ok_or_else(|| {
+            let names = Self::ALL.map(Self::name).join(", ");
+            Error::new(format!("there is no schedule `{name}`")).help(format!("there are: {names}"))
+        })
+    }
+}
+
+impl Portfolio {
+    /// So many runs without caps, of which at most 64 are in a round.
+    #[must_use]
+    pub fn new(runs: u64) -> Self {
+        Self { runs, schedule: PortfolioSchedule::None, unit: 1000, round: 64 }
+    }
+
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// When one is out of its range.
+    pub fn check(&self) -> Result<(), Error> {
+        let range = |what: &str, value: u64, most: u64| match (1..=most).contains(&value) {
+            true => Ok(()),
+            false => Err(Error::new(format!("a portfolio has {what} {value}"))
+                .help(format!("give a whole number from 1 to {most}"))),
+        };
+        range("the number of runs", self.runs, MAX_RUNS)?;
+        range("rounds of", self.round, MAX_ROUND)?;
+        range("the unit", self.unit, MAX_UNIT)
+    }
+
+    /// The caps of the runs, that of run 1 first; `None` for a run without one.
+    fn caps(&self, seed: u64) -> impl Iterator<Item = Option<u64>> {
+        let schedule = match self.schedule {
+            PortfolioSchedule::None => None,
+            PortfolioSchedule::Luby => Some(Schedule::Luby),
+            PortfolioSchedule::Counter => Some(Schedule::Counter),
+            PortfolioSchedule::Zeta => Some(Schedule::Zeta),
+            PortfolioSchedule::Wide => Some(Schedule::Wide),
+        };
+        let mut lengths = schedule.map(|schedule| schedule.lengths(Rng::stream(seed, 0)));
+        let (runs, wide, unit) = (self.runs, schedule == Some(Schedule::Wide), self.unit);
+        (1..=runs).map(move |run| {
+            let length = if wide { runs / run } else { lengths.as_mut()?.next()? };
+            Some(length.saturating_mul(unit))
+        })
+    }
+
+    /// How many rounds there are at most.
+    fn rounds(&self) -> u64 {
+        self.runs.div_ceil(self.round)
+    }
+
+    /// The runs of a round, counted from 0.
+    fn round_runs(&self, round: u64) -> std::ops::RangeInclusive<u64> {
+        let before = round.saturating_mul(self.round);
+        before + 1..=before.saturating_add(self.round).min(self.runs)
+    }
+}
+
+/// The runs of a portfolio, in its [report](Report::portfolio). Unless time or a cancel has ended it, all numbers are the same on any number
+/// of threads and ranks.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PortfolioCounts {
+    /// The most runs.
+    pub runs: u64,
+    /// Their caps.
+    pub schedule: PortfolioSchedule,
+    /// Iterations of a run of length 1.
+    pub unit: u64,
+    /// Runs of a round.
+    pub round: u64,
+    /// How many runs were begun: those of the rounds up to the winner's.
+    pub begun: u64,
+    /// The run whose path this is, from 1.
+    pub winner: Option<u64>,
+    /// How many iterations the result needs, in all runs that were begun: those of the winner in each run of its round, or fewer where a run
+    /// ended before, and all of the rounds before. What was done beyond that is not counted: see [`PortfolioOutcome::work`].
+    pub iterations: u64,
+}
+
+/// What a rank has done for a portfolio. Depends on who was faster.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RankWork {
+    /// Runs that it has worked on.
+    pub runs: u64,
+    /// Their iterations.
+    pub iterations: u64,
+    /// Their collision and clearance queries.
+    pub queries: u64,
+}
+
+/// How a portfolio is worked on. Results do not depend on it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PortfolioOptions {
+    /// On how many threads; of several ranks, on how many each. The same on all ranks.
+    pub threads: usize,
+    /// Keeps finished runs in this file, and goes on with those in it; it is deleted in the end. Used by the first rank alone.
+    pub checkpoint: Option<PathBuf>,
+}
+
+/// One thread, without a checkpoint.
+impl Default for PortfolioOptions {
+    fn default() -> Self {
+        Self { threads: 1, checkpoint: None }
+    }
+}
+
+/// What became of a portfolio.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PortfolioOutcome {
+    /// The report of the winner, with the [counts](Report::portfolio) of the portfolio. Without a winner its counts are sums over all runs,
+    /// and the nodes those of the largest run.
+    pub report: Report,
+    /// What each rank has done.
+    pub work: Vec<RankWork>,
+    /// How many runs were known from the checkpoint.
+    pub known: u64,
+}
+
+impl PortfolioOutcome {
+    /// The iterations that the result needs, divided by those that could have been made while the busiest rank worked. Means something only
+    /// when nothing came from a checkpoint.
+    #[must_use]
+    pub fn efficiency(&self) -> f64 {
+        let needed = self.report.portfolio.as_ref().map_or(0, |counts| counts.iterations);
+        let most = self.work.iter().map(|work| work.iterations).max().unwrap_or(0);
+        needed as f64 / (self.work.len() as f64 * most as f64).max(1.0)
+    }
+}
+
+impl Scene {
+    /// Plans by a portfolio: many runs of one request, of which the one with the fewest iterations wins. Anytime planners end with their
+    /// first path; time is that of the whole portfolio, and other budgets are those of each run. Of `control`, the stop is
+    /// not asked, and the watch hears of no single events.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan), when a number is out of its range, the request names a file for a roadmap, or the checkpoint cannot be used.
+    pub fn portfolio(
+        &self,
+        request: &Request,
+        portfolio: &Portfolio,
+        options: &PortfolioOptions,
+        control: &mut Control<'_>,
+    ) -> Result<PortfolioOutcome, Error> {
+        let link = mp_ranks::threads(1).remove(0);
+        let outcome = self.portfolio_on(&link, request, portfolio, options, control)?;
+        outcome.ok_or_else(|| Error::new("there is no rank that hands out the runs"))
+    }
+
+    /// As [`portfolio`](Self::portfolio), on all ranks of `link`: each calls this with the same scene, request, portfolio and number of
+    /// threads. The first has the outcome, the others `None`.
+    ///
+    /// ```
+    /// use mp_plan::{Control, Portfolio, PortfolioOptions, Request, Scene};
+    /// let (scene, request) = (Scene::find("easy")?, Request::new("rrt-connect"));
+    /// let on = |link: &dyn mp_ranks::Link| {
+    ///     let options = PortfolioOptions::default();
+    ///     scene.portfolio_on(link, &request, &Portfolio::new(8), &options, &mut Control::default())
+    /// };
+    /// let mut links = mp_ranks::threads(3);
+    /// let master = links.remove(0);
+    /// let outcome = std::thread::scope(|scope| {
+    ///     links.into_iter().for_each(|link| drop(scope.spawn(move || on(&link))));
+    ///     on(&master)
+    /// })?;
+    /// assert!(outcome.is_some_and(|outcome| outcome.report.solved && outcome.work.len() == 3));
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`portfolio`](Self::portfolio), and when the ranks cannot reach each other, or have different requests.
+    pub fn portfolio_on(
+        &self,
+        link: &dyn Link,
+        request: &Request,
+        portfolio: &Portfolio,
+        options: &PortfolioOptions,
+        control: &mut Control<'_>,
+    ) -> Result<Option<PortfolioOutcome>, Error> {
+        portfolio.check()?;
+        if request.roadmap.is_some() {
+            return Err(Error::new("a portfolio keeps no roadmap").help("leave the file of the roadmap out"));
+        }
+        // Each run has one thread, and ends with its first path.
+        let request = Request { threads: 1, first_only: true, ..request.clone() };
+        let began = control.time_if_limited(&request);
+        self.check_ends()?;
+        control.spend_since(began);
+        let began = control.clock.now();
+        control.stage(Stage::Planning);
+        // What is wrong with the request is said as always, before it is said of a run.
+        drop(self.prepared(&request)?.begin(Rng::seed(request.seed), control)?);
+        let identity = self.portfolio_identity(&request, portfolio)?;
+        let threads = options.threads.max(1);
+        let dealt =
+            Dealt { portfolio: *portfolio, seed: request.seed, lanes: (threads * link.ranks()) as u64 };
+        let clocks = Clocks { clock: control.clock, began, spent: control.spent };
+        // The others wait for the first rank.
+        let refused = |e: Error| {
+            let _ = Start::shared(link, None);
+            e
+        };
+        let checkpoint = match (&options.checkpoint, link.is_master()) {
+            (Some(file), true) => Some(self.checkpoint(file, &identity).map_err(refused)?),
+            _ => None,
+        };
+        let watch = control.watch.as_deref_mut();
+        let mut rounds = Rounds::new(&dealt, link.ranks(), checkpoint.as_ref(), watch).map_err(refused)?;
+        let known = rounds.known_runs();
+        let identity = format!("{identity}, {} lanes", dealt.lanes);
+        let start = Start::shared(link, Some(Start::new(identity, &rounds)))?;
+        let run_options = mp_ranks::Options { threads, cancel: control.cancel.clone() };
+        let work = |item: u64, hand: &mp_ranks::Hand| {
+            Lane { scene: self, request: &request, dealt: &dealt, start: &start, clocks: &clocks }
+                .work(item, hand)
+        };
+        let job = link.is_master().then_some(&mut rounds as &mut dyn mp_ranks::Job);
+        let ran = mp_ranks::run(link, &run_options, job, &work)?;
+        if !link.is_master() {
+            return Ok(None);
+        }
+        let cancelled = ran.cancelled.then(|| control.cancel.reason().unwrap_or(StopReason::Cancelled));
+        let (found, counts, work) = rounds.into_found(cancelled);
+        let time = control.clock.now().saturating_sub(began);
+        let complete = found.ended_by.is_none_or(|reason| !is_of_machine(reason));
+        let mut report = self.found_report(&request, found, time, control)?;
+        report.portfolio = Some(counts);
+        if let (Some(checkpoint), true) = (checkpoint, complete) {
+            checkpoint.delete()?;
+        }
+        Ok(Some(PortfolioOutcome { report, work, known }))
+    }
+
+    fn checkpoint(&self, file: &Path, identity: &str) -> Result<Checkpoint, Error> {
+        mp_store::make_folder(mp_store::folder_of(file))?;
+        let files = self.input_fingerprint(Path::new(""))?;
+        Ok(Checkpoint::open(file, &format!("portfolio, scene {files:016x}, {identity}"))?)
+    }
+
+    /// What the results of runs depend on, but for the content of the files of the scene.
+    fn portfolio_identity(&self, request: &Request, portfolio: &Portfolio) -> Result<String, Error> {
+        let written =
+            |e: serde_json::Error| Error::new(format!("the request cannot be written as JSON: {e}"));
+        // Time only ends runs, and those that it ends are not kept.
+        let mut timeless = request.clone();
+        timeless.budget.time_s = None;
+        let json = serde_json::to_string(&(timeless, portfolio)).map_err(written)?;
+        let ends = fingerprint(self.goals().into_iter().flatten().chain(self.start()));
+        let request = xxhash_rust::xxh3::xxh3_64(json.as_bytes());
+        let version = env!("CARGO_PKG_VERSION");
+        Ok(format!("{} {ends:016x}, request {request:016x}, version {version}", self.name()))
+    }
+}
+
+/// How the runs are dealt: the same on all ranks.
+#[derive(Clone, Copy, Debug)]
+struct Dealt {
+    portfolio: Portfolio,
+    seed: u64,
+    lanes: u64,
+}
+
+impl Dealt {
+    /// The runs of a lane of a round, with their caps, the largest first; those that `known` says are left out before.
+    fn lane(&self, item: u64, known: impl Fn(u64) -> bool) -> Vec<(u64, Option<u64>)> {
+        let (round, lane) = (item / self.lanes, item % self.lanes);
+        let runs = self.portfolio.round_runs(round);
+        let caps =
+            self.portfolio.caps(self.seed).skip(usize::try_from(*runs.start() - 1).unwrap_or(usize::MAX));
+        let mut open: Vec<_> = runs.zip(caps).filter(|(run, _)| !known(*run)).collect();
+        open.sort_by_key(|(run, cap)| (std::cmp::Reverse(cap.unwrap_or(u64::MAX)), *run));
+        let lanes = usize::try_from(self.lanes).unwrap_or(usize::MAX);
+        open.into_iter().skip(usize::try_from(lane).unwrap_or(usize::MAX)).step_by(lanes).collect()
+    }
+}
+
+/// When a rank began, and what its time budget had spent by then.
+#[derive(Clone, Copy, Debug)]
+struct Clocks {
+    clock: Clock,
+    began: std::time::Duration,
+    spent: std::time::Duration,
+}
+
+/// What a run came to, as ranks tell it and checkpoints keep it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RunOutcome {
+    run: u64,
+    iterations: u64,
+    nodes: usize,
+    motions: u64,
+    rejected: u64,
+    queries: u64,
+    map: Option<[usize; 2]>,
+    /// What ended a run without a path. Neither this nor a path is there when it was outrun: it did not have a path that could win.
+    stopped_by: Option<StoppedBy>,
+    /// The states of its path as numbers.
+    path: Option<Vec<Vec<f64>>>,
+}
+
+impl RunOutcome {
+    fn of(run: u64, found: FoundRun) -> Self {
+        let FoundRun { progress, queries, map, path, ended_by } = found;
+        let stopped_by = match path {
+            Some(_) => None,
+            None => ended_by.map(StoppedBy::from),
+        };
+        let (iterations, nodes, motions) = (progress.iterations, progress.nodes, progress.motions);
+        Self { run, iterations, nodes, motions, rejected: progress.rejected, queries, map, stopped_by, path }
+    }
+
+    /// Where it stands among runs with a path.
+    fn rank(&self) -> Option<(u64, u64)> {
+        self.path.as_ref().map(|_| (self.iterations, self.run))
+    }
+
+    /// Whether more of it changes nothing, if the best run has so many iterations.
+    fn is_settled(&self, best: Option<u64>) -> bool {
+        self.path.is_some() || self.stopped_by.is_some() || best.is_some_and(|best| best <= self.iterations)
+    }
+
+    /// Whether it ended by itself, and would so on every machine.
+    fn is_lasting(&self) -> bool {
+        self.stopped_by.is_none_or(|by| !is_of_machine(reason_of(by)))
+    }
+}
+
+/// Whether it depends on the machine that this ended a run.
+fn is_of_machine(reason: StopReason) -> bool {
+    matches!(reason, StopReason::Deadline | StopReason::Cancelled | StopReason::Memory)
+}
+
+/// The reason that a report calls so.
+fn reason_of(by: StoppedBy) -> StopReason {
+    match by {
+        StoppedBy::Time => StopReason::Deadline,
+        StoppedBy::Nodes => StopReason::Nodes,
+        StoppedBy::Queries => StopReason::Motions,
+        StoppedBy::Memory => StopReason::Memory,
+        StoppedBy::Interrupted => StopReason::Cancelled,
+        StoppedBy::Exhausted => StopReason::Exhausted,
+        _ => StopReason::Iterations,
+    }
+}
+
+/// Runs of a round by their numbers.
+type Known = HashMap<u64, RunOutcome>;
