@@ -43,7 +43,7 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     let mut findings = arrows(root, &architecture)?;
     findings.extend(missing_paths(root, &architecture));
     let mut paths = Vec::new();
-    for folder in ["crates", "python", "xtask"] {
+    for folder in ["crates", "mpi", "python", "xtask"] {
         rust_files(&root.join(folder), &mut paths)?;
     }
     paths.sort();
@@ -152,7 +152,7 @@ fn dependencies(manifest: &str) -> BTreeSet<String> {
 fn arrows(root: &Path, architecture: &str) -> Result<Vec<String>> {
     let map = code_map(architecture);
     let mut findings = Vec::new();
-    let mut folders = vec![root.join("python"), root.join("xtask")];
+    let mut folders = ["mpi", "python", "xtask"].map(|name| root.join(name)).to_vec();
     let crates = root.join("crates");
     for entry in list(&crates)? {
         folders.push(entry?);

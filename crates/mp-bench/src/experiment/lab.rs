@@ -15,6 +15,10 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
+/// Ranks share a setup's cases in pieces, each with a setup of its own: about so many for each thread of a rank, so that all have about as
+/// much to do, and a job that is killed loses little.
+const PIECES: usize = 32;
+
 /// How often ranks tell how far they are.
 const TELL: Duration = Duration::from_secs(10);
 
@@ -159,7 +163,8 @@ impl Lab {
         let open = |group: &&[K]| group.iter().filter(|case| log.get(case).is_none()).cloned().collect();
         let groups: Vec<Vec<K>> = mine.iter().map(open).filter(|group: &Vec<K>| !group.is_empty()).collect();
         let count: usize = mine.iter().map(|group| group.len()).sum();
-        let known = count - groups.iter().map(Vec::len).sum::<usize>();
+        let left = groups.iter().map(Vec::len).sum::<usize>();
+        let known = count - left;
         if known > 0 {
             note(&format!("{what}: {known} of {count} runs are known already; --fresh measures anew"));
         }
@@ -184,6 +189,9 @@ impl Lab {
                     threads: self.pool.current_num_threads(),
                     cancel: self.cancel.clone(),
                 };
+                let most = left.div_ceil(PIECES * link.ranks() * options.threads).max(1);
+                let groups: Vec<Vec<K>> =
+                    groups.iter().flat_map(|group| group.chunks(most).map(<[K]>::to_vec)).collect();
                 let mut told = Instant::now();
                 let took = |runs: usize| {
                     bar.inc(runs as u64);

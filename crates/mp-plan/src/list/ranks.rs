@@ -205,7 +205,10 @@ impl ListJob<'_, '_> {
 impl Job for ListJob<'_, '_> {
     fn next(&mut self) -> Option<u64> {
         let begun = &self.begun;
-        let place = self.order.next(begun.log.tally.items, |place| begun.ahead.ready.contains_key(&place))?;
+        let written = begun.log.tally.items;
+        // Results of an earlier job are written when their place comes.
+        let known = |place| place < written || begun.ahead.ready.contains_key(&place);
+        let place = self.order.next(written, known)?;
         Some(begun.ahead.shard.item(place))
     }
     fn left(&self) -> u64 {
@@ -294,7 +297,7 @@ impl Planned {
     /// As ranks send it: how it counts, how long it took, its checks, its line.
     fn to_bytes(&self) -> Vec<u8> {
         let Tally { solved, unsolved, timed, .. } = self.tally;
-        let mut bytes = vec![solved as u8 | (unsolved as u8) << 1 | (timed as u8) << 2];
+        let mut bytes = vec![(solved + 2 * unsolved + 4 * timed) as u8];
         bytes.extend(self.seconds.to_le_bytes());
         bytes.extend(self.checks.to_le_bytes());
         bytes.extend(self.line.as_bytes());
@@ -306,7 +309,7 @@ impl Planned {
         let (seconds, rest) = rest.split_first_chunk()?;
         let (checks, line) = rest.split_first_chunk()?;
         let line = std::str::from_utf8(line).ok().filter(|line| line.ends_with('\n'))?.to_owned();
-        let bit = |bit: u32| u64::from(counts >> bit & 1);
+        let bit = |bit: u32| u64::from((counts >> bit) & 1);
         let (solved, unsolved, timed) = (bit(0), bit(1), bit(2));
         let tally = Tally { items: 1, solved, unsolved, failed: 1 - solved.max(unsolved), timed };
         Some(Self { line, tally, seconds: f64::from_le_bytes(*seconds), checks: u64::from_le_bytes(*checks) })

@@ -71,7 +71,7 @@ fn ahead_of(dir: &Dir, out: &str) -> Option<String> {
 fn ranks_do_not_matter() {
     let dir = Dir::new();
     dir.run("all.jsonl", &whole()).unwrap();
-    for ranks in [1, 2, 3, 5, 20] {
+    for ranks in [1, 3, 20] {
         let out = format!("{ranks}.jsonl");
         let mut steps = Vec::new();
         let ran = Job::new(&dir, &out).watched(ranks, |now| steps.push(now.tally.items)).unwrap();
@@ -95,7 +95,7 @@ fn what_ended_early_goes_on_on_other_ranks() {
     let all = dir.read("all.jsonl");
     let lines = |text: &str| text.matches('\n').count().saturating_sub(1) as u64;
     for (ranks, told) in [(1, 0), (2, 0), (3, 2)] {
-        for after in [0, 1, 4, 9, 13] {
+        for after in [0, 4, 9, 13] {
             let out = format!("{ranks}-{after}.jsonl");
             let ran = Job::new(&dir, &out).told(told, after).on(ranks).unwrap().outcome;
             assert!(ran.tally.items >= after && ran.before == 0, "{ran:?}");

@@ -1,0 +1,70 @@
+//! Messages over MPI.
+
+use mp_ranks::{Error, Link};
+use mpi::environment::Universe;
+use mpi::point_to_point::{Destination, MatchedReceiveVec, Source};
+use mpi::topology::{Communicator, SimpleCommunicator};
+use mpi::{Rank, Threading};
+use std::cell::Cell;
+
+/// The world of an MPI job. It ends MPI when it is dropped.
+pub(crate) struct MpiLink {
+    world: SimpleCommunicator,
+    _universe: Universe,
+    /// Whether something could not be sent.
+    broken: Cell<bool>,
+}
+
+impl MpiLink {
+    /// Begins MPI. `None` when it has begun before, or cannot be used by a program with several threads.
+    pub(crate) fn new() -> Option<Self> {
+        // Only the thread that calls this sends and receives.
+        let (universe, threading) = mpi::initialize_with_threading(Threading::Funneled)?;
+        (threading >= Threading::Funneled).then(|| Self {
+            world: universe.world(),
+            _universe: universe,
+            broken: Cell::new(false),
+        })
+    }
+
+    /// Whether a message could not be sent, for which another rank may wait.
+    pub(crate) fn is_broken(&self) -> bool {
+        self.broken.get()
+    }
+
+    fn fault(&self, message: String) -> Error {
+        self.broken.set(true);
+        Error::Link(message)
+    }
+
+    /// Ends all ranks at once.
+    pub(crate) fn abort(&self, code: u8) -> ! {
+        self.world.abort(code.into())
+    }
+}
+
+impl Link for MpiLink {
+    fn rank(&self) -> usize {
+        usize::try_from(self.world.rank()).unwrap_or(0)
+    }
+    fn ranks(&self) -> usize {
+        usize::try_from(self.world.size()).unwrap_or(1)
+    }
+    fn send(&self, to: usize, message: Vec<u8>) -> Result<(), Error> {
+        let known = Rank::try_from(to).ok().filter(|rank| *rank < self.world.size());
+        let rank = known.ok_or_else(|| self.fault(format!("there is no rank {to}")))?;
+        if i32::try_from(message.len()).is_err() {
+            let length = message.len();
+            return Err(self.fault(format!("a message of {length} bytes is too large: MPI takes 2 GiB")));
+        }
+        // Where a rank is gone, MPI itself ends the job.
+        self.world.process_at_rank(rank).send(&message[..]);
+        Ok(())
+    }
+    fn poll(&self) -> Result<Option<(usize, Vec<u8>)>, Error> {
+        let Some(found) = self.world.any_process().immediate_matched_probe() else { return Ok(None) };
+        let (bytes, status) = found.matched_receive_vec::<u8>();
+        let from = usize::try_from(status.source_rank());
+        from.map(|from| Some((from, bytes))).map_err(|_| Error::Link("a message has no sender".to_owned()))
+    }
+}
