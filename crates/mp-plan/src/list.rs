@@ -1,5 +1,6 @@
 //! Lists of planning problems: their items are numbered, and their results are logs that go on where they ended.
 
+mod items;
 mod merge;
 mod reader;
 mod results;
@@ -7,6 +8,7 @@ mod run;
 mod scenes;
 mod shard;
 
+pub use items::ListResults;
 pub use merge::merge_results;
 #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
 pub(crate) use merge::merged;
