@@ -17,6 +17,7 @@ from ._own import Robot, Space
 from ._planners import Parameter, PlannerInfo, meta_planners, metrics, planners, scenes
 from ._progress import Progress
 from ._report import Column, Explanation, Finished, Report, StageTime, Touch, Verdict
+from ._results import Results, read_results
 from ._roadmap import Roadmap
 from ._scene import Options, Scene
 from ._shapes import (
@@ -57,6 +58,7 @@ __all__ = [
     "Progress",
     "Rectangle",
     "Report",
+    "Results",
     "Roadmap",
     "Robot",
     "Scene",
@@ -74,5 +76,6 @@ __all__ = [
     "pose_from_matrix",
     "pose_from_rotation",
     "pose_from_xyz_qxyzw",
+    "read_results",
     "scenes",
 ]

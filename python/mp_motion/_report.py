@@ -13,7 +13,7 @@ from ._shapes import Array
 if TYPE_CHECKING:
     import pandas as pd
 
-    from ._scene import Scene
+    from ._scene import File, Scene
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,56 @@ class StageTime:
     ended_by: str | None
 
 
+class InScene:
+    """A path that knows its scene, and shows itself there: in a notebook as the last line of a cell."""
+
+    _scene: Scene | None
+
+    def __getstate__(self) -> dict[str, Any]:
+        # A scene is much larger than its path.
+        return self.__dict__ | {"_scene": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+
+    def _repr_html_(self) -> str | None:
+        return None if self._scene is None else self._scene._frame(self._itself())
+
+    def _repr_png_(self) -> bytes | None:
+        return None if self._scene is None else self._scene._picture(self._itself())
+
+    def show(self) -> None:
+        """Open the scene with the path in the browser; in a notebook, below the cell.
+
+        Raises
+        ------
+        ValueError
+            When it was read back without its scene: then use ``scene.show(path)``.
+        """
+        self._of_scene().show(self._itself())
+
+    def save(self, file: File) -> None:
+        """Write the path, a picture, a film or a page: see :meth:`Scene.save`.
+
+        Raises
+        ------
+        ValueError
+            When it was read back without its scene: then use ``scene.save(file, path)``.
+        """
+        self._of_scene().save(file, self._itself())
+
+    def _itself(self) -> Report | Finished:
+        assert isinstance(self, Report | Finished)
+        return self
+
+    def _of_scene(self) -> Scene:
+        if self._scene is None:
+            raise ValueError("the path has come without its scene: use scene.show(path), scene.save(file, path)")
+        return self._scene
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Report:
+class Report(InScene):
     """The result of a run. Lengths are in the metric of the space, clearances in metres, times in seconds.
 
     Attributes
@@ -188,44 +236,9 @@ class Report:
     def __repr__(self) -> str:
         return f"<Report {self}>"
 
-    def __getstate__(self) -> dict[str, Any]:
-        # A scene is much larger than its report.
-        return {f.name: getattr(self, f.name) for f in fields(self)} | {"_scene": None}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-
-    def _repr_html_(self) -> str | None:
-        return None if self._scene is None else self._scene._frame(self)
-
-    def show(self) -> None:
-        """Open the scene with the path in the browser.
-
-        Raises
-        ------
-        ValueError
-            When the report was read back without its scene: then use ``scene.show(report)``.
-        """
-        self._of_scene().show(self)
-
-    def save(self, file: str) -> None:
-        """Write the path, a picture, a film or a page: see :meth:`Scene.save`.
-
-        Raises
-        ------
-        ValueError
-            When the report was read back without its scene: then use ``scene.save(file, report)``.
-        """
-        self._of_scene().save(file, self)
-
-    def _of_scene(self) -> Scene:
-        if self._scene is None:
-            raise ValueError("the report has come without its scene: use scene.show(report), scene.save(file, report)")
-        return self._scene
-
 
 @dataclass(frozen=True, eq=False)
-class Finished:
+class Finished(InScene):
     """A path that was shortened and verified.
 
     Attributes
@@ -244,6 +257,7 @@ class Finished:
     path_length: float
     clearance: float | None
     shortened: bool
+    _scene: Scene | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,8 @@ from ._shapes import (
 
 #: A file, as a name or a path.
 File: TypeAlias = str | os.PathLike[str]
+#: A path: its configurations in rows, or what has one.
+PathRows: TypeAlias = ArrayLike | Report | Finished
 #: What is done to the path that a planner found.
 Finish: TypeAlias = Literal["shorten", "as-found", "relax"]
 #: A number is fixed, a pair is an interval; what is not named is free.
@@ -720,7 +722,7 @@ class Scene:
 
     def shorten(
         self,
-        path: ArrayLike | Report,
+        path: PathRows,
         *,
         seed: int = 1,
         time: float | None = 60.0,
@@ -733,7 +735,7 @@ class Scene:
 
         Parameters
         ----------
-        path : array_like, shape (n, columns), or Report
+        path : array_like, shape (n, columns), or Report or Finished
             One configuration in each row.
         seed, time, finish, field, progress, cancel
             As of :meth:`plan`.
@@ -752,16 +754,16 @@ class Scene:
         """
         options = Options(seed=seed, time=time, finish=finish, field=field)
         with reporter(progress) as tell:
-            return Finished(*self._native.finish(options.to_json(self), self._path(path), cancel, tell))
+            return Finished(*self._native.finish(options.to_json(self), self._path(path), cancel, tell), _scene=self)
 
     # --- checking --------------------------------------------------------------------------------------------------
 
-    def check(self, path: ArrayLike | Report) -> Verdict:
+    def check(self, path: PathRows) -> Verdict:
         """Verify a path from the start to a goal, with code that shares nothing with the planners.
 
         Parameters
         ----------
-        path : array_like, shape (n, columns), or Report
+        path : array_like, shape (n, columns), or Report or Finished
             One configuration in each row.
 
         Returns
@@ -800,25 +802,25 @@ class Scene:
         """
         return self._native.check_ends()
 
-    def certificate(self, path: ArrayLike | Report) -> str:
+    def certificate(self, path: PathRows) -> str:
         """Return the proof that a path is free, as JSON, which ``mp-verify-certificate`` replays.
 
         Parameters
         ----------
-        path : array_like, shape (n, columns), or Report
+        path : array_like, shape (n, columns), or Report or Finished
             Of a report the clearance is used, half of which is proved.
         """
-        clearance = path.clearance or 0.0 if isinstance(path, Report) else 0.0
+        clearance = path.clearance or 0.0 if isinstance(path, Report | Finished) else 0.0
         return self._native.certificate(self._path(path), clearance)
 
     def read_path(self, file: File) -> Array:
         """Read a path from a text, CSV or JSON file, shape (n, columns)."""
         return self._native.read_path(os.fspath(file))
 
-    def _path(self, path: ArrayLike | Report) -> Array:
-        if isinstance(path, Report):
+    def _path(self, path: PathRows) -> Array:
+        if isinstance(path, Report | Finished):
             if path.path is None:
-                raise Error(f"the report has no path: {path.why}", remedy="plan with a larger budget, or another seed")
+                raise Error(f"there is no path: {path}", remedy="plan with a larger budget, or another seed")
             path = path.path
         rows = np.ascontiguousarray(path, dtype=np.float64)
         if rows.ndim != 2:
@@ -827,19 +829,19 @@ class Scene:
 
     # --- looking at it ---------------------------------------------------------------------------------------------
 
-    def show(self, path: ArrayLike | Report | None = None) -> None:
-        """Open the scene in the browser, with a path if one is given. In a notebook, its last line shows it as well.
+    def show(self, path: PathRows | None = None) -> None:
+        """Open the scene in the browser, with a path if one is given; in a notebook, show it below the cell.
 
         Parameters
         ----------
-        path : array_like, shape (n, columns), or Report, optional
+        path : array_like, shape (n, columns), or Report or Finished, optional
         """
         _view.show(self, path)
 
     def save(
         self,
         file: File,
-        path: ArrayLike | Report | None = None,
+        path: PathRows | None = None,
         *,
         size: tuple[int, int] | None = None,
         mode: str | None = None,
@@ -854,7 +856,7 @@ class Scene:
         file : path
             ``.html`` (a page that opens in any browser), ``.png``, ``.svg``, ``.gif``, ``.mp4``, ``.glb`` (for Blender),
             ``.mpv``; or the path alone: ``.txt``, ``.csv``, ``.json``.
-        path : array_like, shape (n, columns), or Report, optional
+        path : array_like, shape (n, columns), or Report or Finished, optional
             The path.
         size : (int, int), optional
             Width and height of a picture or film, pixels.
@@ -869,15 +871,21 @@ class Scene:
         """
         _view.save(self, file, path, (size, mode, camera, at, seconds))
 
-    def to_bytes(self, ending: str, path: ArrayLike | Report | None = None) -> bytes:
+    def to_bytes(self, ending: str, path: PathRows | None = None) -> bytes:
         """Return what :meth:`save` would write to a file with this ending, such as ``html`` or ``png``."""
         return _view.content(self, f"x.{ending}", path, (None, None, None, None, None))
 
-    def _frame(self, path: ArrayLike | Report | None) -> str | None:
+    def _frame(self, path: PathRows | None) -> str | None:
         return None if self._robot is not None else _view.frame(self, path)
+
+    def _picture(self, path: PathRows | None) -> bytes | None:
+        return None if self._robot is not None else _view.content(self, "x.png", path, _view.SMALL)
 
     def _repr_html_(self) -> str | None:
         return self._frame(None)
+
+    def _repr_png_(self) -> bytes | None:
+        return self._picture(None)
 
 
 def _own_again(robot: Robot, start: Array, goals: Array) -> Scene:

@@ -2,28 +2,30 @@
 
 from __future__ import annotations
 
-import atexit
 import html
+import importlib
+import json
 import os
+import sys
 import tempfile
 import webbrowser
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
-
-from numpy.typing import ArrayLike
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ._errors import Error
 from ._report import Report
 
 if TYPE_CHECKING:
-    from ._scene import File, Scene
+    from ._scene import File, PathRows, Scene
 
 #: Size, mode, camera, moment, seconds.
 Wanted: TypeAlias = tuple[tuple[int, int] | None, str | None, str | None, float | None, float | None]
 NOTHING: Wanted = (None, None, None, None, None)
+#: The picture of a notebook where no page can be shown, as on paper.
+SMALL: Wanted = ((720, 480), None, None, None, None)
 
 
-def content(scene: Scene, file: File, path: ArrayLike | Report | None, wanted: Wanted) -> bytes:
+def content(scene: Scene, file: File, path: PathRows | None, wanted: Wanted) -> bytes:
     """Return the bytes of a file whose kind is that of its ending."""
     file = os.fspath(file)
     ending = Path(file).suffix.lower().removeprefix(".")
@@ -40,8 +42,6 @@ def content(scene: Scene, file: File, path: ArrayLike | Report | None, wanted: W
         if isinstance(path, Report):
             members = path.to_dict()
             members["path"] = members["first_path"] = None
-            import json
-
             report = json.dumps(members)
         kind = "html" if ending == "htm" else ending
         return scene._native.view(kind, report, rows, 8.0 if wanted[4] is None else wanted[4])
@@ -53,17 +53,21 @@ def content(scene: Scene, file: File, path: ArrayLike | Report | None, wanted: W
     return drawn
 
 
-def save(scene: Scene, file: File, path: ArrayLike | Report | None, wanted: Wanted) -> None:
+def save(scene: Scene, file: File, path: PathRows | None, wanted: Wanted) -> None:
     """Write such a file, whole or not at all."""
     scene._native.write(os.fspath(file), content(scene, file, path, wanted))
 
 
-def show(scene: Scene, path: ArrayLike | Report | None) -> None:
-    """Open the page in the browser; where there is none, say where it is."""
+def show(scene: Scene, path: PathRows | None) -> None:
+    """Open the page in the browser, in a notebook below the cell."""
+    if in_notebook():
+        display: Any = importlib.import_module("IPython.display")
+        display.display({"text/html": frame(scene, path), "image/png": content(scene, "x.png", path, SMALL)}, raw=True)
+        return
     page = content(scene, "x.html", path, NOTHING)
+    # It stays: the browser may read it after this program has ended.
     with tempfile.NamedTemporaryFile(prefix=f"{scene.name}-", suffix=".html", delete=False) as file:
         file.write(page)
-    atexit.register(lambda: Path(file.name).unlink(missing_ok=True))
     if not webbrowser.open(Path(file.name).as_uri()):
         raise Error(
             "there is no browser here",
@@ -71,7 +75,14 @@ def show(scene: Scene, path: ArrayLike | Report | None) -> None:
         )
 
 
-def frame(scene: Scene, path: ArrayLike | Report | None) -> str:
+def in_notebook() -> bool:
+    """Return whether this is a cell of a notebook, where a browser is already."""
+    ipython: Any = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    return shell is not None and hasattr(shell, "kernel")
+
+
+def frame(scene: Scene, path: PathRows | None) -> str:
     """Return the page in a frame, for notebooks."""
     page = content(scene, "x.html", path, NOTHING).decode()
     return (

@@ -8,6 +8,7 @@ mod many;
 mod own;
 mod render;
 mod report;
+mod results;
 mod roadmap;
 mod scene;
 mod tables;
@@ -18,11 +19,13 @@ mod _mp {
     #[pymodule_export]
     use crate::interrupt::{Cancel, panic};
     #[pymodule_export]
-    use crate::many::Many;
+    use crate::many::{Many, panics};
+    #[pymodule_export]
+    use crate::results::Results;
     #[pymodule_export]
     use crate::roadmap::Roadmap;
     #[pymodule_export]
     use crate::scene::{Scene, mesh_off, read_mesh};
     #[pymodule_export]
-    use crate::tables::{meta_planners, metrics, planners, shipped};
+    use crate::tables::{default_request, meta_planners, metrics, planners, shipped};
 }

@@ -1,13 +1,14 @@
 //! Many problems at once, as an iterator.
 
 use crate::callback::{Failure, known_to_python};
-use crate::error::to_python;
+use crate::error::{internal, to_python};
 use crate::interrupt::{Cancel, INTERVAL};
 use crate::report::parts;
 use crate::scene::{Scene, request};
 use mp_plan::{Control, Error, Report, Request, in_order};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -15,8 +16,8 @@ use std::thread::JoinHandle;
 /// So many results wait for who takes them.
 const WAITING: usize = 64;
 
-/// What a worker has to say.
-type Planned = Result<Report, Error>;
+/// What a worker has to say; what a panic says.
+type Planned = std::thread::Result<Result<Report, Error>>;
 
 /// Results in the order of problems. Problems are drawn and planned by threads of their own.
 #[pyclass(frozen, module = "mp_motion._mp")]
@@ -92,30 +93,17 @@ impl Many {
     fn new(problems: Py<PyAny>, threads: usize, cancel: Option<&Cancel>) -> Self {
         let failures = Failures::default();
         let drawn = Drawn { iterator: problems, failures: failures.clone() };
-        let ours = mp_plan::Cancel::new();
-        let (sender, receiver) = sync_channel(WAITING);
-        let raised = ours.clone();
-        let work = move || {
-            // As `plan_many`, in threads that the interpreter knows, and with functions that may fail.
-            let plan = |_, (scene, request): (mp_plan::Scene, Request)| {
-                known_to_python(|| {
-                    let mut control = Control { cancel: raised.clone(), ..Control::default() };
-                    scene.plan_with(&request, &mut control)
-                })
-            };
-            in_order(drawn, threads, &raised, plan, |_, result| match sender.send(result) {
-                Ok(()) => ControlFlow::Continue(()),
-                // Nobody takes them any more.
-                Err(_) => ControlFlow::Break(()),
-            });
-        };
-        Self {
-            results: Mutex::new(Some(receiver)),
-            thread: Mutex::new(Some(std::thread::spawn(work))),
-            cancel: ours,
-            theirs: cancel.map(|cancel| cancel.0.clone()),
+        let theirs = cancel.map(|cancel| cancel.0.clone());
+        Self::start(
+            drawn,
+            threads,
+            theirs,
             failures,
-        }
+            |(scene, request): (mp_plan::Scene, Request), cancel| {
+                let mut control = Control { cancel: cancel.clone(), ..Control::default() };
+                scene.plan_with(&request, &mut control)
+            },
+        )
     }
 
     fn __iter__(this: PyRef<'_, Self>) -> PyRef<'_, Self> {
@@ -139,10 +127,11 @@ impl Many {
                 return Err(e);
             }
             match taken {
-                Some(Ok(Ok(report))) => {
+                Some(Ok(Ok(Ok(report)))) => {
                     return Ok(Some(parts(py, report)?.into_pyobject(py)?.into_any().unbind()));
                 }
-                Some(Ok(Err(e))) => return Ok(Some(to_python(&e).into_value(py).into_any())),
+                Some(Ok(Ok(Err(e)))) => return Ok(Some(to_python(&e).into_value(py).into_any())),
+                Some(Ok(Err(panic))) => return Err(internal(&*panic)),
                 Some(Err(RecvTimeoutError::Timeout)) => {}
                 None | Some(Err(RecvTimeoutError::Disconnected)) => {
                     self.close(py)?;
@@ -167,8 +156,50 @@ impl Many {
             drop(results);
             thread.map_or(Ok(()), JoinHandle::join)
         });
-        ended.map_err(|panic| crate::error::internal(&*panic))
+        ended.map_err(|panic| internal(&*panic))
     }
+}
+
+impl Many {
+    /// Does `job` with all items, as [`mp_plan::plan_many`] does, in threads that the interpreter knows, and with functions that may fail.
+    fn start<I: Send + 'static>(
+        items: impl Iterator<Item = I> + Send + 'static,
+        threads: usize,
+        theirs: Option<mp_plan::Cancel>,
+        failures: Failures,
+        job: impl Fn(I, &mp_plan::Cancel) -> Result<Report, Error> + Send + Sync + 'static,
+    ) -> Self {
+        let cancel = mp_plan::Cancel::new();
+        let (sender, receiver) = sync_channel(WAITING);
+        let raised = cancel.clone();
+        let work = move || {
+            let plan = |_, item| known_to_python(|| catch_unwind(AssertUnwindSafe(|| job(item, &raised))));
+            in_order(items, threads, &raised, plan, |_, result| {
+                let goes_on = result.is_ok();
+                match sender.send(result) {
+                    Ok(()) if goes_on => ControlFlow::Continue(()),
+                    // There was a panic, or nobody takes them any more.
+                    _ => ControlFlow::Break(()),
+                }
+            });
+        };
+        Self {
+            results: Mutex::new(Some(receiver)),
+            thread: Mutex::new(Some(std::thread::spawn(work))),
+            cancel,
+            theirs,
+            failures,
+        }
+    }
+}
+
+/// Items of which each panics from `first` on, as a fault in planning would: tests look at what becomes of it.
+#[pyfunction]
+pub(crate) fn panics(message: String, first: usize, threads: usize) -> Many {
+    Many::start(0..100, threads, None, Failures::default(), move |item, _| match item < first {
+        true => Err(Error::new("no problem")),
+        false => std::panic::panic_any(message.clone()),
+    })
 }
 
 impl Drop for Many {

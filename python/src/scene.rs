@@ -224,8 +224,10 @@ impl Scene {
     }
 
     fn free_share(&self, py: Python<'_>, samples: u32) -> PyResult<f64> {
+        let cancel = mp_plan::Cancel::new();
+        let interrupt = Interrupt::new(cancel.clone());
         let (share, raised) =
-            self.work(py, &mp_plan::Cancel::new(), None, |_| self.scene.free_share(samples))?;
+            self.work(py, &cancel, None, |_| self.scene.free_share_until(samples, &interrupt))?;
         raised.map_or(Ok(share), Err)
     }
 
@@ -326,7 +328,10 @@ impl Scene {
     /// Verifies a path: the JSON form of a verdict.
     fn check(&self, py: Python<'_>, path: PyReadonlyArray2<'_, f64>) -> PyResult<String> {
         let path = self.rows(rows(&path));
-        let (verdict, raised) = self.work(py, &mp_plan::Cancel::new(), None, |_| self.scene.check(&path))?;
+        let cancel = mp_plan::Cancel::new();
+        let interrupt = Interrupt::new(cancel.clone());
+        let (verdict, raised) =
+            self.work(py, &cancel, None, |_| self.scene.check_until(&path, &interrupt))?;
         raised.map_or(Ok(()), Err)?;
         json(&verdict.to_python()?)
     }
@@ -410,7 +415,7 @@ impl Scene {
 }
 
 /// The JSON form of a result.
-fn json(value: &impl serde::Serialize) -> PyResult<String> {
+pub(crate) fn json(value: &impl serde::Serialize) -> PyResult<String> {
     serde_json::to_string(value).map_err(|e| PyValueError::new_err(e.to_string()))
 }
 

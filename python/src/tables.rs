@@ -1,5 +1,6 @@
 //! The tables of planners, metrics and shipped scenes, as `mp-plan` has them.
 
+use crate::scene::json;
 use mp_plan::Parameter;
 use pyo3::prelude::*;
 
@@ -45,4 +46,10 @@ pub(crate) fn metrics() -> Vec<(&'static str, &'static str)> {
 #[pyfunction]
 pub(crate) fn shipped() -> Vec<&'static str> {
     mp_plan::Scene::shipped()
+}
+
+/// The request without any option, as JSON.
+#[pyfunction]
+pub(crate) fn default_request() -> PyResult<String> {
+    json(&mp_plan::Request::default())
 }

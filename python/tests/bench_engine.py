@@ -1,21 +1,26 @@
-"""Measure the package, beside the program ``mp`` and the wheel of OMPL: the Python section of docs/benchmarks.md.
+"""Measure the package, beside the program ``mp`` and the wheel of OMPL: the section Python of docs/benchmarks.md.
 
-With the package installed, ``MP=target/release/mp python python/tests/bench_engine.py``. With ``ompl`` from PyPI installed, its
-figures are beside ours.
+With the package installed, ``MP=target/release/mp python python/tests/bench_engine.py [SECTION …]``. For the figures of OMPL,
+give ``OMPL_PYTHON=…/bin/python``: an environment of its own, with ``ompl`` and ``python-fcl`` from PyPI; the latter here too.
 """
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
 import json
 import os
 import statistics
 import subprocess
 import sys
+import tempfile
 import textwrap
 import threading
 import time
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +28,33 @@ from numpy.typing import NDArray
 import mp_motion as mp
 
 Array = NDArray[np.float64]
-HAS_OMPL = importlib.util.find_spec("ompl") is not None
+PEER = Path(__file__).with_name("peer_ompl.py")
+
+
+@cache
+def peer() -> Any:
+    """Return the functions that both sides call: Python looks for modules where the script is."""
+    return importlib.import_module("peer_ompl")
+
+
+def python(script: str, *arguments: object) -> str:
+    """Run a script in a process of its own."""
+    command = [sys.executable, "-c", textwrap.dedent(script), *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+def program(*arguments: object) -> str:
+    """Run the program ``mp``."""
+    return subprocess.run([os.environ["MP"], *map(str, arguments)], capture_output=True, text=True, check=True).stdout
+
+
+def ompl(*arguments: object) -> dict[str, Any] | None:
+    """Run the script for OMPL's wheel; ``None`` where it is not installed."""
+    if "OMPL_PYTHON" not in os.environ:
+        return None
+    command = [os.environ["OMPL_PYTHON"], str(PEER), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return dict(json.loads(done.stdout))
 
 
 def ticks_during(work: Callable[[], object]) -> tuple[int, float]:
@@ -39,176 +70,224 @@ def ticks_during(work: Callable[[], object]) -> tuple[int, float]:
     thread.start()
     began = time.perf_counter()
     work()
-    seconds = time.perf_counter() - began
+    seconds, counted = time.perf_counter() - began, count
     over.set()
     thread.join()
-    return count, seconds
+    return counted, seconds
 
 
-OMPL = """
-import sys, time, threading
-from ompl import base as ob, geometric as og
-
-calls = 0
-def valid(q):
-    global calls
-    calls += 1
-    return not (1.9 <= q[0] <= 2.1 and q[1] <= 3)
-
-def solve(seconds, goal, planner):
-    space = ob.RealVectorStateSpace(2)
-    bounds = ob.RealVectorBounds(2); bounds.setLow(0); bounds.setHigh(4)
-    space.setBounds(bounds)
-    setup = og.SimpleSetup(space)
-    setup.setStateValidityChecker(ob.StateValidityCheckerFn(valid) if hasattr(ob, "StateValidityCheckerFn") else valid)
-    start, end = space.allocState(), space.allocState()
-    start[0], start[1], end[0], end[1] = 1, 1, *goal
-    setup.setStartAndGoalStates(start, end) if hasattr(setup, "setStartAndGoalStates") else None
-    setup.setPlanner(getattr(og, planner)(setup.getSpaceInformation()))
-    began = time.perf_counter()
-    setup.solve(seconds)
-    return time.perf_counter() - began
-"""
+def wall_scene(robot: mp.Robot) -> mp.Scene:
+    """Make the problem of the wall with a gap."""
+    return mp.Scene.own(robot, [1, 1], [3, 1])
 
 
 def other_threads() -> None:
-    """Count ticks beside a plan of two seconds."""
-    print("## Ticks of another thread in 2 s\n")
+    """Count ticks beside two seconds of work."""
+    print("## Ticks of another thread, for each second\n")
+    square = mp.Space([0, 0], [4, 4])
+    own = wall_scene(mp.Robot(square, valid=peer().wall))
     scene = mp.Scene("cubicles")
-    idle, _ = ticks_during(lambda: time.sleep(2))
-    ours, took = ticks_during(lambda: scene.plan("rrt-star", time=2, nodes=10**7))
-    print(f"idle {idle}, mp {ours} in {took:.2f} s")
+    large = large_mesh()
+    star = mp.Options("rrt-star", time=2, nodes=10**7)
+    path = mp.Scene("apartment").plan(seed=1)
+    works: dict[str, Callable[[], object]] = {
+        "idle": lambda: time.sleep(2),
+        "mp: planning in cubicles": lambda: scene.plan_by(star),
+        "mp: planning with a function of Python": lambda: own.plan_by(star),
+        "mp: loading a mesh of two million triangles": lambda: mp.Scene(large),
+        "mp: checking a path of apartment, 20 times": lambda: [mp.Scene("apartment").check(path) for _ in range(20)],
+    }
+    for name, work in works.items():
+        count, seconds = ticks_during(work)
+        print(f"{name}: {count / seconds:.0f} ({count} in {seconds:.2f} s)")
+    for name, what in {"nothing in the way": "locked", "a function of Python": "wall"}.items():
+        if done := ompl(what):
+            print(f"OMPL, RRT*, {name}: {done['ticks'] / done['time_s']:.1f} ({done['ticks']} in {done['time_s']:.2f} s)")
+
+
+def large_mesh() -> Path:
+    """Write a scene with hills of two million triangles."""
+    folder = Path(tempfile.mkdtemp())
+    n = 1000
+    x, y = np.meshgrid(np.linspace(-1, 1, n), np.linspace(-1, 1, n))
+    vertices = np.stack([x, y, 0.1 * np.sin(9 * x) * np.cos(7 * y) - 1], axis=2).reshape(-1, 3)
+    corner = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    triangles = np.concatenate([corner[:, None] + [0, 1, n], corner[:, None] + [1, n + 1, n]])
+    with (folder / "hills.off").open("w") as file:
+        file.write(f"OFF\n{len(vertices)} {len(triangles)} 0\n")
+        np.savetxt(file, vertices, fmt="%.6f")
+        np.savetxt(file, np.insert(triangles, 0, 3, axis=1), fmt="%d")
+    (folder / "hills.toml").write_text(
+        "[robot]\nbox = [0.1, 0.1, 0.1]\n[motion]\nstart = [-0.5, 0, 0, 0, 0, 0]\ngoal = [0.5, 0, 0, 0, 0, 0]\n"
+        '[[obstacle]]\nmesh = "hills.off"\n'
+    )
+    return folder / "hills.toml"
 
 
 def interrupts() -> None:
     """Measure how long a run goes on after Ctrl-C."""
-    print("\n## From Ctrl-C to the exception\n")
+    print("\n## From Ctrl-C to the exception, the longest of 20, ms\n")
     script = """
-    import os, signal, threading, time, mp_motion as mp
-    scene, late = mp.Scene(NAME), []
-    for _ in range(10):
+    import os, signal, sys, threading, time, mp_motion as mp
+    late = []
+    robot = mp.Robot(mp.Space([0, 0], [4, 4]), valid=lambda q: not (1.9 <= q[0] <= 2.1 and q[1] <= 3))
+    own = mp.Scene.own(robot, [1, 1], [3, 1])
+    scene = own if sys.argv[1] == "own" else mp.Scene(sys.argv[1])
+    options = mp.Options(sys.argv[2], time=600, nodes=10**8)
+    for i in range(20):
         def ring():
             global rung
             rung = time.perf_counter()
             os.kill(os.getpid(), signal.SIGINT)
-        threading.Timer(0.3, ring).start()
-        try: scene.plan(PLANNER, time=600, nodes=10**8)
+        threading.Timer(0.2 + 0.01 * i, ring).start()
+        try:
+            if sys.argv[3] == "many": list(mp.plan_many(scene, options, seeds=range(1000)))
+            elif sys.argv[3] == "roadmap": scene.roadmap(options)
+            else: scene.plan_by(options)
         except KeyboardInterrupt: late.append(time.perf_counter() - rung)
-    print(1e3 * max(late))
+    print(1e3 * max(late), len(late))
     """
-    for name, planner in [("easy", "rrt-star"), ("cubicles", "rrt-star"), ("arm", "rrt-star"), ("cubicles", "prm-star")]:
-        code = textwrap.dedent(script).replace("NAME", repr(name)).replace("PLANNER", repr(planner))
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-        print(f"{name}, {planner}: at most {float(done.stdout):.0f} ms of 10")
+    for name, planner, what in [
+        ("easy", "rrt-star", "plan"),
+        ("cubicles", "rrt-star", "plan"),
+        ("arm", "rrt-star", "plan"),
+        ("crossing", "rrt", "plan"),
+        ("parking", "rrt", "plan"),
+        ("own", "rrt-star", "plan"),
+        ("cubicles", "prm-star", "roadmap"),
+        ("cubicles", "rrt-star", "many"),
+    ]:
+        late, count = python(script, name, planner, what).split()
+        print(f"{what}, {name}, {planner}: {float(late):.0f} ({count})")
 
 
 def many() -> None:
-    """Plan 10,000 problems on one and two threads."""
+    """Plan 10,000 problems on one and two threads, short ones, so that what is beside planning shows."""
     print("\n## 10,000 problems\n")
     script = """
-    import hashlib, os, resource, sys, time, mp_motion as mp
+    import hashlib, sys, time, mp_motion as mp
     scene, threads = mp.Scene("easy"), int(sys.argv[1])
     a, b = scene.start, scene.goals[0]
     queries = (scene.with_ends(a + (b - a) * (i % 97) / 400, b) for i in range(10_000))
-    digest, solved, pages = hashlib.sha256(), 0, []
+    options = mp.Options("rrt-connect", time=None, iterations=1_000_000, finish="as-found")
+    digest, solved, planning, pages = hashlib.sha256(), 0, 0.0, {}
     began, spent = time.perf_counter(), time.process_time()
-    for i, r in enumerate(mp.plan_many(queries, threads=threads)):
-        digest.update(str(r if isinstance(r, mp.Error) else r.fingerprint).encode())
-        solved += isinstance(r, mp.Report) and r.solved
-        if i in (2000, 9999):
-            pages.append(int(open("/proc/self/statm").read().split()[1]) * 4096 / 1e6)
+    for i, r in enumerate(mp.plan_many(queries, options, threads=threads), start=1):
+        report = isinstance(r, mp.Report)
+        digest.update(str(r.fingerprint if report else r).encode())
+        if report:
+            solved += r.solved
+            planning += sum(stage.time_s for stage in r.stages if stage.stage != "loading")
+        if i in (1000, 10_000):
+            pages[i] = int(open("/proc/self/statm").read().split()[1]) * 4096 / 1e6
     took, spent = time.perf_counter() - began, time.process_time() - spent
-    print(took, spent, solved, pages[0], pages[1], digest.hexdigest())
+    print(took, spent, planning, solved, *pages.values(), digest.hexdigest())
     """
     digests = set[str]()
     for threads in (1, 2):
-        done = subprocess.run(
-            [sys.executable, "-c", textwrap.dedent(script), str(threads)], capture_output=True, text=True, check=True
-        )
-        took, spent, solved, early, late, digest = done.stdout.split()
+        took, spent, planning, solved, early, late, digest = python(script, threads).split()
         digests.add(digest)
-        rate, busy = 10_000 / float(took), float(spent) / (threads * float(took))
+        rate, share = 10_000 / float(took), float(planning) / (threads * float(took))
         print(
-            f"{threads} threads: {rate:.0f} a second, {100 * busy:.0f}% of the cores' time, {solved} solved, "
-            f"memory {float(early):.0f} → {float(late):.0f} MB"
+            f"{threads} threads: {rate:.0f} a second in {float(took):.1f} s, processor {float(spent):.1f} s, "
+            f"{100 * share:.1f}% of the threads' time in planning and verifying, {solved} solved, "
+            f"memory {float(early):.1f} MB after 1,000, {float(late):.1f} MB after all"
         )
     print("the same bytes" if len(digests) == 1 else "NOT the same bytes")
 
 
-def program() -> None:
+def beside_the_program() -> None:
     """Plan in cubicles from Python and by the program, in turn."""
-    print("\n## RRT-Connect in cubicles, Python : program\n")
+    print("\n## RRT-Connect in cubicles, Python beside the program\n")
+    script = """
+    import sys, mp_motion as mp
     scene = mp.Scene("cubicles")
-    ratios: list[float] = []
-    ours: list[float] = []
-    theirs: list[float] = []
-    for seed in range(1, 41):
-        a = scene.plan("rrt-connect", seed=seed, finish="as-found").time_s
-        done = subprocess.run(
-            [os.environ["MP"], "plan", "cubicles", "--planner", "rrt-connect", "--seed", str(seed), "--no-shorten", "--json"],
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        b = json.loads(done.stdout)["time_s"]
-        ratios.append(a / b)
-        ours.append(a)
-        theirs.append(b)
-    print(
-        f"median of 40 pairs {statistics.median(ratios):.3f} "
-        f"({1e3 * statistics.median(ours):.1f} and {1e3 * statistics.median(theirs):.1f} ms)"
-    )
+    print(*(scene.plan("rrt-connect", seed=seed, finish="as-found").time_s for seed in range(1, 41)))
+    """
+    ours, theirs = np.full(40, np.inf), np.full(40, np.inf)
+    for _ in range(15):
+        ours = np.minimum(ours, [float(word) for word in python(script).split()])
+        run = json.loads(program("plan", "cubicles", "--planner", "rrt-connect", "--runs", 40, "--no-shorten", "--json"))
+        theirs = np.minimum(theirs, [one["time_s"] for one in run["runs"]])
+    print(f"sums of 40 seeds, each the least of 15: {1e3 * ours.sum():.1f} and {1e3 * theirs.sum():.1f} ms")
+    print(f"ratio of the sums {ours.sum() / theirs.sum():.4f}, median of the 40 ratios {np.median(ours / theirs):.4f}")
 
 
 def callbacks() -> None:
-    """Measure a run with a validity in Python, per check, beside OMPL's wheel."""
-    print("\n## A validity in Python, microseconds for each check\n")
-    calls = 0
+    """Measure runs with a validity in Python, per check, beside OMPL's wheel."""
+    print("\n## A validity in Python\n")
+    print("| problem | | s | checks | µs a check | of it the function | the rest |\n|---|---|---:|---:|---:|---:|---:|")
 
-    def valid(q: Array) -> bool:
-        nonlocal calls
-        calls += 1
-        return not (1.9 <= q[0] <= 2.1 and q[1] <= 3)
+    def row(problem: str, name: str, seconds: float, calls: int, inside: float) -> None:
+        whole, within = 1e6 * seconds / calls, 1e6 * inside / calls
+        print(f"| {problem} | {name} | {seconds:.2f} | {calls} | {whole:.2f} | {within:.2f} | {whole - within:.2f} |")
 
     def valid_many(qs: Array) -> NDArray[np.bool_]:
-        nonlocal calls
-        calls += len(qs)
         return ~((qs[:, 0] >= 1.9) & (qs[:, 0] <= 2.1) & (qs[:, 1] <= 3))
 
-    q = np.array([1.0, 1.0])
-    began = time.perf_counter()
-    for _ in range(100_000):
-        valid(q)
-    print(f"the function alone: {10 * (time.perf_counter() - began):.2f}")
     space = mp.Space([0, 0], [4, 4])
-    for name, robot in {
-        "valid": mp.Robot(space, valid=valid),
-        "valid_many": mp.Robot(space, valid_many=valid_many),
-    }.items():
-        calls = 0
-        report = mp.Scene.own(robot, [1, 1], [3, 1]).plan(
-            "rrt", iterations=20_000, finish="as-found", settings={"step": "0.02"}
-        )
-        whole = mp.Scene.own(robot, [1, 1], [3, 1]).plan("rrt-star", time=2, finish="as-found")
-        print(
-            f"{name}: rrt {1e6 * report.time_s / report.collision_checks:.2f}, "
-            f"rrt-star {1e6 * whole.time_s / whole.collision_checks:.2f}"
-        )
-    if not HAS_OMPL:
-        print("OMPL's wheel is not installed: pip install ompl")
-        return
-    script = OMPL + "\ntook = solve(2, (3, 1), 'RRTstar')\nprint(took, calls)"
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        print(done.stderr[-400:])
-        return
-    took, count = done.stdout.split()[-2:]
-    print(f"OMPL, RRTstar: {1e6 * float(took) / int(count):.2f}")
+    for name, function in {"valid": peer().wall, "valid_many": valid_many}.items():
+        counted = peer().Counted(function)
+        report = wall_scene(mp.Robot(space, **{name: counted})).plan("rrt-star", time=2, nodes=10**7, finish="as-found")
+        row("wall, RRT*", f"mp, `{name}`", report.time_s, report.collision_checks, counted.inside)
+    if done := ompl("wall"):
+        row("wall, RRT*", "OMPL", done["time_s"], done["calls"], done["inside_s"])
+    if importlib.util.find_spec("fcl") is not None:
+        with_fcl(row)
 
+
+def with_fcl(row: Callable[[str, str, float, int, float], None]) -> None:
+    """Plan in cubicles with a validity by python-fcl, on both sides, and without Python."""
+    with tempfile.TemporaryDirectory() as folder:
+        program("plan", "cubicles", "--export", folder)
+        bodies = peer().Bodies(Path(folder), "cubicles")
+        low, high = (bodies.problem["bounds"][end] for end in ("low", "high"))
+        half = [np.pi, np.pi / 2, np.pi]
+        space = mp.Space([*low, *(-x for x in half)], [*high, *half], periodic=[False] * 3 + [True, False, True])
+        shipped = mp.Scene("cubicles")
+
+        def free(q: Array) -> bool:
+            matrix = mp.matrix_from_pose(q)
+            return bool(bodies.is_free(matrix[:3, 3], matrix[:3, :3]))
+
+        for name, seeds in {"mp, `valid`": range(1, 21), "OMPL": range(1, 21)}.items():
+            seconds: list[float] = []
+            calls, inside = 0, 0.0
+            for seed in seeds:
+                if name == "OMPL":
+                    done = ompl("cubicles", seed, folder)
+                    if done is None:
+                        return
+                    assert done["solved"]
+                    seconds.append(done["time_s"])
+                    calls, inside = calls + done["calls"], inside + done["inside_s"]
+                else:
+                    counted = peer().Counted(free)
+                    scene = mp.Scene.own(mp.Robot(space, valid=counted), shipped.start, shipped.goals[0])
+                    report = scene.plan("rrt-connect", seed=seed, finish="as-found")
+                    assert report.solved
+                    seconds.append(report.time_s)
+                    calls, inside = calls + report.collision_checks, inside + counted.inside
+            row("cubicles, RRT-Connect, 20 seeds", name, sum(seconds), calls, inside)
+            print(f"{name}: median {statistics.median(seconds):.3f} s", file=sys.stderr)
+        for motion in ("certified", "discrete:1%"):
+            reports = [shipped.plan("rrt-connect", seed=s, finish="as-found", motion=motion) for s in range(1, 21)]
+            seconds = [r.time_s for r in reports]
+            row(
+                "cubicles, RRT-Connect, 20 seeds", f"mp, the scene itself, {motion}",
+                sum(seconds), sum(r.collision_checks for r in reports), 0.0,
+            )  # fmt: skip
+            print(f"{motion}: median {statistics.median(seconds):.4f} s", file=sys.stderr)
+
+
+SECTIONS = {
+    "threads": other_threads,
+    "interrupts": interrupts,
+    "many": many,
+    "program": beside_the_program,
+    "callbacks": callbacks,
+}
 
 if __name__ == "__main__":
-    other_threads()
-    interrupts()
-    many()
-    program()
-    callbacks()
+    for section in sys.argv[1:] or SECTIONS:
+        SECTIONS[section]()

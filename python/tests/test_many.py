@@ -11,10 +11,12 @@ import threading
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 import mp_motion as mp
+from mp_motion import _mp
 
 
 def queries(count: int) -> Iterator[mp.Scene]:
@@ -86,6 +88,16 @@ def test_an_error_while_drawing_comes_after_the_results_before_it() -> None:
     assert list(mp.plan_many([])) == []
 
 
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_a_panic_is_an_exception_after_the_results_before_it(threads: int) -> None:
+    results = _mp.panics("on purpose", 5, threads)
+    assert [isinstance(next(results), mp.Error) for _ in range(5)] == [True] * 5
+    with pytest.raises(mp.InternalError, match="on purpose"):
+        next(results)
+    assert next(results, None) is None
+    assert next(mp.plan_many(mp.Scene("easy")))
+
+
 LONG = mp.Options("rrt-star", time=600, nodes=10**7)
 
 
@@ -137,3 +149,50 @@ def test_a_program_that_leaves_off_in_the_middle_ends() -> None:
     """
     done = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
+
+
+LIST = """{"scene": "easy", "seeds": [3, 1]}
+{"scene": "easy", "request": {"budget": {"iterations": 1}}}
+{"scene": "easy", "request": {"planner": "no-such-planner"}}
+{"scene": "maze", "seeds": {"from": 4, "count": 2}, "request": {"planner": "rrt"}}
+"""
+
+
+def test_results_of_the_program_are_read(program: str, folder: Path) -> None:
+    (folder / "list.jsonl").write_text(LIST)
+    subprocess.run([program, "many", "list.jsonl", "--out", "r.jsonl"], check=True, capture_output=True)
+    results = mp.read_results(folder / "r.jsonl")
+    assert results.header["items"] == 6 and repr(results) == "<Results of list.jsonl: shard 1/1 of 6 items>"
+    items = list(results)
+    assert [item for item, _ in items] == [item for item, _ in results] == list(range(6))
+    reports = {item: result for item, result in items if isinstance(result, mp.Report)}
+    assert [reports[item].seed for item in (0, 1, 2, 4, 5)] == [3, 1, 1, 4, 5]
+    assert reports[2].path is None and reports[2].stopped_by == "iterations"
+    error = items[3][1]
+    assert isinstance(error, mp.Error) and "no-such-planner" in str(error) and error.remedy
+    for item, (name, planner, seed) in {0: ("easy", None, 3), 5: ("maze", "rrt", 5)}.items():
+        report, scene = reports[item], mp.Scene(name)
+        again = scene.plan(planner, seed=seed)
+        assert report.path is not None and again.path is not None and (report.path == again.path).all()
+        assert scene.check(report) and report.fingerprint == again.fingerprint
+
+    table = results.to_pandas()
+    assert table.index.tolist() == list(range(6)) and table["solved"].tolist() == [True, True, False, None, True, True]
+    assert table.loc[5, "planner"] == "rrt" and table.loc[5, "path_length"] == reports[5].path_length
+    assert "no-such-planner" in str(table.loc[3, "error"]) and table["error"].count() == 1
+
+    whole = (folder / "r.jsonl").read_bytes()
+    lines = whole.splitlines(keepends=True)
+    (folder / "cut.jsonl").write_bytes(b"".join(lines[:4]) + lines[4][:20])
+    found: list[int] = []
+    with pytest.raises(mp.Error, match="it has 3 of 6 items") as raised:
+        found.extend(item for item, _ in mp.read_results("cut.jsonl"))
+    assert found == [0, 1, 2] and "mp many list.jsonl" in str(raised.value.remedy)
+    assert [item for item, _ in mp.read_results("cut.jsonl", partial=True)] == found
+    (folder / "bad.jsonl").write_bytes(whole.replace(b'"seed":5', b'"seed":6'))
+    with pytest.raises(mp.Error, match="checksum"):
+        list(mp.read_results("bad.jsonl"))
+    with pytest.raises(mp.Error, match="no file of results"):
+        mp.read_results("list.jsonl")
+    with pytest.raises(mp.Error, match=r"nowhere\.jsonl"):
+        mp.read_results("nowhere.jsonl")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -11,7 +12,9 @@ import textwrap
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 import mp_motion as mp
@@ -47,6 +50,23 @@ def test_other_threads_run_while_it_plans() -> None:
     assert took > 0.9
     # As many, but for what the machine does meanwhile. With the lock held there is one.
     assert planning / took > 0.25 * idle / seconds
+
+
+def test_other_threads_run_while_it_loads_and_checks(folder: Path) -> None:
+    n = 300
+    x, y = np.meshgrid(np.linspace(-1, 1, n), np.linspace(-1, 1, n))
+    vertices = np.stack([x, y, 0.1 * np.sin(9 * x) * np.cos(7 * y) - 1], axis=2).reshape(-1, 3)
+    corner = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    triangles = np.concatenate([corner[:, None] + [0, 1, n], corner[:, None] + [1, n + 1, n]])
+    start, goal = [-0.5, 0, -0.7, 0, 0, 0], [0.5, 0, -0.7, 0, 0, 0]
+    made = mp.Scene.rigid(mp.Box(0.1, 0.1, 0.1), start, goal, [mp.Mesh(vertices, triangles)])
+    again: list[mp.Scene] = []
+    pickled = pickle.dumps(made)
+    count, seconds = ticks_during(lambda: again.append(pickle.loads(pickled)))
+    assert count > 50 * seconds, "loading"
+    path = np.linspace(start, goal, 2000)
+    count, seconds = ticks_during(lambda: again[0].check(path))
+    assert count > 50 * seconds, "checking"
 
 
 def test_the_progress_is_told_in_the_calling_thread() -> None:

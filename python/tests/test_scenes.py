@@ -1,14 +1,22 @@
 from __future__ import annotations
 
+import dataclasses
+import inspect
+import json
 import math
+import os
 import pickle
+import subprocess
+import sys
 from pathlib import Path
+from urllib.parse import unquote, urlparse
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 import mp_motion as mp
+from mp_motion import _mp
 
 from .names import FILE, text
 
@@ -17,6 +25,14 @@ POST = mp.Body(mp.Box(0.2, 1, 4), name="post")
 
 def test_the_names_are_those_of_the_registry() -> None:
     assert text() == FILE.read_text(), "run python python/tests/names.py"
+
+
+def test_options_have_the_defaults_of_the_engine() -> None:
+    scene = mp.Scene("easy")
+    assert json.loads(mp.Options().to_json(scene)) == json.loads(_mp.default_request())
+    of_plan = inspect.signature(mp.Scene.plan).parameters
+    for field in dataclasses.fields(mp.Options):
+        assert of_plan[field.name].default == field.default, field.name
 
 
 def test_poses_are_converted_both_ways() -> None:
@@ -215,4 +231,18 @@ def test_what_may_hold_is_shown() -> None:
     assert "backward" in mp.Scene("parking").planners_that_cannot()["rrt-connect"]
     page = scene.plan()._repr_html_()
     assert page is not None and page.startswith("<iframe") and "easy" in page
+    picture = scene.plan()._repr_png_()
+    assert picture is not None and picture.startswith(b"\x89PNG")
+    shortened = scene.shorten(scene.plan(finish="as-found"))
+    page = shortened._repr_html_()
+    assert page is not None and page.startswith("<iframe") and scene.check(shortened)
+    assert pickle.loads(pickle.dumps(shortened))._repr_html_() is None
     assert repr(scene) == "<Scene easy: SE3>" and repr(scene.plan()).startswith("<Report easy: solved")
+
+
+def test_the_page_is_there_when_the_program_has_ended(folder: Path) -> None:
+    script = "import mp_motion as mp; mp.Scene('easy').plan().show()"
+    environment = os.environ | {"BROWSER": "echo %s", "TMPDIR": str(folder)}
+    done = subprocess.run([sys.executable, "-c", script], env=environment, check=True, capture_output=True, text=True)
+    page = Path(unquote(urlparse(done.stdout.strip()).path))
+    assert page.parent == folder and page.suffix == ".html" and "<script" in page.read_text()

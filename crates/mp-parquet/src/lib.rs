@@ -14,7 +14,7 @@ mod columns;
 mod rows;
 
 use columns::{COLUMNS, schema};
-use mp_plan::{Error, SavedResults};
+use mp_plan::{Error, ListResults};
 use mp_store::Lock;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
@@ -52,7 +52,7 @@ impl Exported {
 /// # Errors
 /// When the results cannot be read or are damaged, or the file cannot be written; it is then as before.
 pub fn export(from: &Path, to: &Path) -> Result<Exported, Error> {
-    let results = SavedResults::open(from)?;
+    let results = ListResults::open(from)?.partial();
     let items = results.items();
     mp_store::make_folder(mp_store::folder_of(to))?;
     let _lock = Lock::of_file(to)?;
@@ -83,7 +83,7 @@ impl Write for Sink {
 
 /// The file, a row group after the other.
 struct Parts {
-    results: SavedResults,
+    results: ListResults,
     sink: Sink,
     /// None when the file is closed.
     writer: Option<SerializedFileWriter<Sink>>,
@@ -91,7 +91,7 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(results: SavedResults) -> Result<Self, Error> {
+    fn new(results: ListResults) -> Result<Self, Error> {
         let header = serde_json::to_string(results.header())
             .map_err(|e| Error::new(format!("the header of the results cannot be written: {e}")))?;
         let head = KeyValue::new("mp-many".to_owned(), header);

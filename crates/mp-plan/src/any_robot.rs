@@ -31,7 +31,7 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn columns(&self) -> Vec<Column>;
     fn limits(&self) -> Vec<Option<[f64; 2]>>;
     fn details(&self) -> Vec<(String, String)>;
-    fn free_share(&self, samples: u32) -> f64;
+    fn free_share(&self, samples: u32, interrupt: &Interrupt) -> f64;
     fn path_format(&self) -> PathFormat;
     fn default_planner(&self) -> &'static str;
     fn demands(&self) -> &'static [Demand];
@@ -77,7 +77,7 @@ pub(crate) trait AnyRobot: Send + Sync {
         request: &Request,
         control: &mut Control<'_>,
     ) -> Result<Finished, Error>;
-    fn check(&self, path: &PathRows) -> Result<Verdict, Error>;
+    fn check(&self, path: &PathRows, interrupt: &Interrupt) -> Result<Verdict, Error>;
     fn certificate(
         &self,
         path: &PathRows,
@@ -124,9 +124,11 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     fn details(&self) -> Vec<(String, String)> {
         RobotKind::details(self)
     }
-    fn free_share(&self, samples: u32) -> f64 {
+    fn free_share(&self, samples: u32, interrupt: &Interrupt) -> f64 {
         let (mut rng, mut checker) = (Rng::seed(1), self.checker().clone());
-        let free = (0..samples).filter(|_| checker.is_valid(&self.space().sample_uniform(&mut rng))).count();
+        let mut interrupt = interrupt.clone();
+        let tried = (0..samples).take_while(|_| !interrupt.ask());
+        let free = tried.filter(|_| checker.is_valid(&self.space().sample_uniform(&mut rng))).count();
         free as f64 / f64::from(samples.max(1))
     }
     fn path_format(&self) -> PathFormat {
@@ -209,8 +211,8 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     ) -> Result<Finished, Error> {
         crate::finish::finish_given(self, path, request, control)
     }
-    fn check(&self, path: &PathRows) -> Result<Verdict, Error> {
-        check(self, path)
+    fn check(&self, path: &PathRows, interrupt: &Interrupt) -> Result<Verdict, Error> {
+        check(self, path, interrupt)
     }
     fn certificate(
         &self,

@@ -85,8 +85,12 @@ pub(crate) fn clearance<K: RobotKind>(
     interrupt.raised().is_none().then_some(tightest.clearance)
 }
 
-/// Checks that a path is free and leads from the start to a goal.
-pub(crate) fn check<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Verdict, Error> {
+/// Checks that a path is free and leads from the start to a goal. Where `interrupt` says to end, the path has a fault.
+pub(crate) fn check<K: RobotKind>(
+    kind: &K,
+    path: &PathRows,
+    interrupt: &Interrupt,
+) -> Result<Verdict, Error> {
     let _span = tracing::info_span!("check", scene = kind.name()).entered();
     let states = Path::straight(states(kind, path)?);
     let mut faults = Vec::new();
@@ -107,11 +111,11 @@ pub(crate) fn check<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Verdict, 
         faults.push(format!("does not end at {which}: {}{} off", brief(goal.off), goal.unit));
     }
     faults.extend(kind.odd_rows(&path.rows));
-    let report = verified(kind, &states, &Interrupt::never())?;
+    let report = verified(kind, &states, interrupt)?;
     faults.extend(report.fault.map(|fault| fault_text(kind, &states, fault)));
     let clearance = match faults.is_empty() {
         true => {
-            let found = clearance(kind, &states, 0.1 * kind.accuracy(), &Interrupt::never());
+            let found = clearance(kind, &states, 0.1 * kind.accuracy(), interrupt);
             found.map_or(report.clearance, |c| c.max(report.clearance))
         }
         false => 0.0,

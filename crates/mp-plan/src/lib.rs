@@ -37,7 +37,7 @@
 //! | say how to plan | [`Request`]: planner, settings, metric, motion check, budgets, seed, what is done to the path found |
 //! | plan | [`Scene::plan`]; with progress reports and a stop: [`Scene::plan_with`], [`Control`], [`Watch`] |
 //! | plan thousands of problems on all cores | [`plan_many`] |
-//! | plan the problems of a list, in shards, and go on where that ended | [`ProblemList`], [`ListedProblems::run`], [`merge_results`] |
+//! | plan the problems of a list, in shards, and go on where that ended | [`ProblemList`], [`ListedProblems::run`], [`merge_results`]; read the results: [`ListResults`] |
 //! | do so on all ranks of a cluster | [`ListedProblems::run_on`] |
 //! | race many runs of a hard problem, over threads and ranks | [`Scene::portfolio`], [`Portfolio`] |
 //! | plan in pieces, between the events of a program | [`Scene::prepare`], [`Run`] |
@@ -121,8 +121,8 @@ pub use finish::{Finished, shorten};
 pub use goals::GoalPart;
 pub use in_order::in_order;
 pub use list::{
-    ItemError, ItemResult, ListedProblems, ManyOptions, ManyOutcome, ProblemList, RESULTS_VERSION,
-    RanksOutcome, ResultsHeader, SavedResults, SceneFingerprint, Shard, Tally, merge_results,
+    ItemError, ItemResult, ListResults, ListedProblems, ManyOptions, ManyOutcome, ProblemList,
+    RESULTS_VERSION, RanksOutcome, ResultsHeader, SceneFingerprint, Shard, Tally, merge_results,
 };
 pub use many::plan_many;
 pub use numbers::{brief, count, plain, positive_number};

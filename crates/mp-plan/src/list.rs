@@ -1,5 +1,6 @@
 //! Lists of planning problems: their items are numbered, and their results are logs that go on where they ended.
 
+mod items;
 mod merge;
 mod order;
 mod parcel;
@@ -7,10 +8,10 @@ mod ranks;
 mod reader;
 mod results;
 mod run;
-mod saved;
 mod scenes;
 mod shard;
 
+pub use items::ListResults;
 pub use merge::merge_results;
 #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
 pub(crate) use merge::merged;
@@ -21,7 +22,6 @@ pub(crate) use reader::{Next, ResultsReader};
 pub(crate) use results::checksum;
 pub use results::{ItemError, ItemResult, RESULTS_VERSION, ResultsHeader, SceneFingerprint, Tally};
 pub use run::{ManyOptions, ManyOutcome};
-pub use saved::SavedResults;
 pub use scenes::ListedProblems;
 pub use shard::Shard;
 

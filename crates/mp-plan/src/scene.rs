@@ -207,7 +207,13 @@ impl Scene {
     /// fraction.
     #[must_use]
     pub fn free_share(&self, samples: u32) -> f64 {
-        self.robot.free_share(samples)
+        self.free_share_until(samples, &Interrupt::never())
+    }
+
+    /// As [`free_share`](Self::free_share), unless `interrupt` says to end: then it means nothing.
+    #[must_use]
+    pub fn free_share_until(&self, samples: u32, interrupt: &Interrupt) -> f64 {
+        self.robot.free_share(samples, interrupt)
     }
 
     /// The format in which its paths are written as text.
@@ -409,7 +415,15 @@ impl Scene {
     /// # Errors
     /// When the path is of another robot. A path that is not free is not an error: see [`Verdict::free`].
     pub fn check(&self, path: &PathRows) -> Result<Verdict, Error> {
-        self.robot.check(path)
+        self.check_until(path, &Interrupt::never())
+    }
+
+    /// As [`check`](Self::check), unless `interrupt` says to end: then the path has a fault where it is not verified.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check).
+    pub fn check_until(&self, path: &PathRows, interrupt: &Interrupt) -> Result<Verdict, Error> {
+        self.robot.check(path, interrupt)
     }
 
     /// The certificate of a path: a file with which another program proves again that it is free. `clearance` (m) is that of the path, 0 if

@@ -149,7 +149,7 @@ fn read<R: BufRead>(shard: &mut ResultsReader<R>) -> Result<Next, Error> {
 }
 
 /// The error about a shard whose log was cut off.
-fn incomplete<R: BufRead>(shard: &ResultsReader<R>) -> Error {
+pub(super) fn incomplete<R: BufRead>(shard: &ResultsReader<R>) -> Error {
     let (name, header) = (shortened(&shard.name, 120), &shard.header);
     let (items, all) = (shard.tally.items, shard.expected());
     Error::new(format!("{name}, shard {}, is not complete: it has {items} of {all} items", header.shard))

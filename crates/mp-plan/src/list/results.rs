@@ -190,6 +190,22 @@ impl ItemResult {
         Self { item, report, error }
     }
 
+    /// The report, or the error.
+    ///
+    /// # Errors
+    /// When the item could not be planned.
+    pub fn into_result(self) -> Result<Report, Error> {
+        let Some(error) = self.error else {
+            let neither = || Error::new(format!("item {} has neither a report nor an error", self.item));
+            return self.report.ok_or_else(neither);
+        };
+        let planned = Error::new(error.message);
+        Err(match error.help {
+            Some(help) => planned.help(help),
+            None => planned,
+        })
+    }
+
     /// How it counts: the tally of one item.
     #[must_use]
     pub fn tally(&self) -> Tally {

@@ -8,7 +8,8 @@ mod runs;
 mod shards;
 
 use mp_plan::{
-    Cancel, Error, Interrupt, ListedProblems, ManyOptions, ManyOutcome, ProblemList, merge_results,
+    Cancel, Error, Interrupt, ListResults, ListedProblems, ManyOptions, ManyOutcome, ProblemList,
+    merge_results,
 };
 use std::path::PathBuf;
 
@@ -56,6 +57,16 @@ impl Dir {
     }
     fn run(&self, out: &str, options: &ManyOptions) -> Result<ManyOutcome, Error> {
         self.problems().run(&self.at(out), options, &Cancel::new(), |_| ())
+    }
+    /// Which items of a file have a report, and the error at its end.
+    fn items(&self, file: &str, partial: bool) -> (Vec<(u64, bool)>, Option<Error>) {
+        let results = ListResults::open(&self.at(file)).unwrap();
+        let mut results = if partial { results.partial() } else { results };
+        let mut error = None;
+        let items = results.by_ref().map_while(|item| item.map_err(|e| error = Some(e)).ok());
+        let items = items.map(|item| (item.item, item.report.is_some())).collect();
+        assert!(results.next().is_none());
+        (items, error)
     }
     fn shard(&self, out: &str, shard: &str) -> ManyOutcome {
         self.run(out, &ManyOptions { shard: shard.parse().unwrap(), ..ManyOptions::default() }).unwrap()

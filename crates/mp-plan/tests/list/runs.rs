@@ -1,7 +1,9 @@
 //! Runs: what they write, and how they go on.
 
 use crate::{Dir, LIST, WALL, whole};
-use mp_plan::{Cancel, Interrupt, ManyOptions, ManyOutcome, ProblemList, Report, Shard};
+use mp_plan::{
+    Cancel, Interrupt, ItemResult, ListResults, ManyOptions, ManyOutcome, ProblemList, Report, Shard,
+};
 use serde_json::Value;
 
 #[test]
@@ -48,6 +50,46 @@ fn results_are_lines_in_order() {
     let scene = mp_plan::Scene::find("easy").unwrap();
     let report = scene.plan(&mp_plan::Request::new("rrt-connect").seed(8)).unwrap();
     assert_eq!(items[3]["report"]["fingerprint"].as_str(), report.fingerprint.as_deref());
+}
+
+#[test]
+fn results_are_read_item_by_item() {
+    let dir = Dir::new();
+    dir.run("r.jsonl", &whole()).unwrap();
+    let (all, none) = dir.items("r.jsonl", false);
+    assert!(none.is_none());
+    assert_eq!(all, (0..14).map(|item| (item, !(10..13).contains(&item))).collect::<Vec<_>>());
+    let results = ListResults::open(&dir.at("r.jsonl")).unwrap();
+    assert_eq!((results.header().items, results.header().list.as_str()), (14, "problems.jsonl"));
+    let lines: Vec<ItemResult> =
+        dir.read("r.jsonl").lines().skip(1).filter_map(|line| serde_json::from_str(line).ok()).collect();
+    assert_eq!(results.collect::<Result<Vec<_>, _>>().unwrap(), lines);
+    assert_eq!(lines[0].clone().into_result().unwrap().seed, 5);
+    let error = lines[10].clone().into_result().unwrap_err();
+    assert!(error.message().contains("the goal is in collision") && error.remedy().is_some());
+
+    // Of a shard, the numbers are those in the list.
+    dir.shard("2.jsonl", "2/5");
+    assert_eq!(dir.items("2.jsonl", false).0, [(1, true), (6, true), (11, false)]);
+
+    // One that was cut off, also within a line, and one that was changed.
+    let text = dir.read("r.jsonl");
+    let sixth = text.match_indices('\n').nth(6).unwrap().0;
+    for cut in [sixth + 1, sixth + 30] {
+        dir.write("cut.jsonl", &text[..cut]);
+        let (items, error) = dir.items("cut.jsonl", false);
+        let error = error.unwrap();
+        assert!(error.message().contains("it has 6 of 14 items"), "{error}");
+        assert!(error.remedy().unwrap().contains("mp many problems.jsonl"), "{error}");
+        assert_eq!(items, all[..6]);
+        let (partial, error) = dir.items("cut.jsonl", true);
+        assert!(partial == items && error.is_none());
+    }
+    dir.write("bad.jsonl", text.replacen("\"item\":3", "\"item\":4", 1));
+    let (items, error) = dir.items("bad.jsonl", true);
+    assert!(items.len() == 3 && error.unwrap().message().contains("line 5"));
+    dir.write("bad.jsonl", "{}\n");
+    assert!(ListResults::open(&dir.at("bad.jsonl")).unwrap_err().message().contains("is no file of results"));
 }
 
 #[test]

@@ -1,0 +1,165 @@
+"""What is measured of OMPL's wheel, in an environment of its own, and the functions that both sides call.
+
+``bench_engine.py`` runs ``python peer_ompl.py locked``, ``… wall`` and ``… cubicles SEED FOLDER``. They need ``ompl`` from PyPI
+and, for ``cubicles``, ``python-fcl``.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Counted:
+    """A function that counts its calls, and the seconds that it takes itself."""
+
+    def __init__(self, function: Callable[[Any], Any]) -> None:
+        self.function, self.calls, self.inside = function, 0, 0.0
+
+    def __call__(self, q: Any) -> Any:
+        """Call the function."""
+        self.calls += 1
+        began = time.perf_counter()
+        result = self.function(q)
+        self.inside += time.perf_counter() - began
+        return result
+
+
+def wall(q: Any) -> bool:
+    """Return whether a point passes a wall with a gap, in a square of 4 m."""
+    return not (1.9 <= q[0] <= 2.1 and q[1] <= 3)
+
+
+class Bodies:
+    """Robot and obstacles of an exported scene, as python-fcl has them."""
+
+    def __init__(self, folder: Path, name: str) -> None:
+        self.fcl: Any = importlib.import_module("fcl")
+        self.problem: dict[str, Any] = json.loads((folder / f"{name}.json").read_text())
+        self.robot, self.obstacles = (
+            self.fcl.CollisionObject(self._mesh(folder / self.problem[which]["mesh"])) for which in ("robot", "env")
+        )
+        self.request, self.result = self.fcl.CollisionRequest(), self.fcl.CollisionResult
+
+    def _mesh(self, file: Path) -> Any:
+        words = file.read_text().split()
+        n, m = int(words[1]), int(words[2])
+        vertices = np.array(words[4 : 4 + 3 * n], dtype=np.float64).reshape(n, 3)
+        triangles = np.array(words[4 + 3 * n : 4 + 3 * n + 4 * m], dtype=np.int64).reshape(m, 4)[:, 1:]
+        model = self.fcl.BVHModel()
+        model.beginModel(n, m)
+        model.addSubModel(vertices, triangles)
+        model.endModel()
+        return model
+
+    def is_free(self, position: Any, turn: Any) -> bool:
+        """Return whether the robot is free there; `turn` is a matrix or a quaternion, w first."""
+        self.robot.setTransform(self.fcl.Transform(turn, position))
+        return not self.fcl.collide(self.robot, self.obstacles, self.request, self.result())
+
+
+def plane(valid: Any) -> Any:
+    """Make the problem of the wall, for RRT*."""
+    space = ob.RealVectorStateSpace(2)
+    bounds = ob.RealVectorBounds(2)
+    bounds.setLow(0)
+    bounds.setHigh(4)
+    space.setBounds(bounds)
+    setup = og.SimpleSetup(space)
+    ends = space.allocState(), space.allocState()
+    for state, (x, y) in zip(ends, ((1, 1), (3, 1)), strict=True):
+        state[0], state[1] = x, y
+    information = setup.getSpaceInformation()
+    setup.setStateValidityChecker(valid if valid is not None else ob.AllValidStateValidityChecker(information))
+    setup.setStartAndGoalStates(*ends)
+    setup.setPlanner(og.RRTstar(information))
+    return setup
+
+
+def free_body(bodies: Bodies, valid: Counted) -> Any:
+    """Make an exported problem in SE(3), for RRT-Connect with the step and resolution of docs/benchmarks.md."""
+    problem = bodies.problem
+    space = ob.SE3StateSpace()
+    bounds = ob.RealVectorBounds(3)
+    for i in range(3):
+        bounds.setLow(i, problem["bounds"]["low"][i])
+        bounds.setHigh(i, problem["bounds"]["high"][i])
+    space.setBounds(bounds)
+    setup = og.SimpleSetup(space)
+    information = setup.getSpaceInformation()
+    setup.setStateValidityChecker(valid)
+    information.setStateValidityCheckingResolution(problem["resolution_fraction"])
+    ends: list[Any] = []
+    for end in (problem["start"], problem["goal"]):
+        state = space.allocState()
+        state.setXYZ(*end["position"])
+        for axis in "xyzw":
+            setattr(state.rotation(), axis, end["quaternion"][axis])
+        ends.append(state)
+    setup.setStartAndGoalStates(*ends)
+    planner = og.RRTConnect(information)
+    planner.setRange(0.05 * space.getMaximumExtent())
+    setup.setPlanner(planner)
+    return setup
+
+
+def solve_beside_ticks(setup: Any, seconds: float) -> dict[str, Any]:
+    """Solve beside a thread that sleeps for a millisecond at a time."""
+    count, over = 0, threading.Event()
+
+    def tick() -> None:
+        nonlocal count
+        while not over.wait(0.001):
+            count += 1
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    began = time.perf_counter()
+    solved = setup.solve(seconds)
+    took, counted = time.perf_counter() - began, count
+    over.set()
+    thread.join()
+    return {"ticks": counted, "time_s": took, "solved": bool(solved)}
+
+
+def main(what: str, seed: str = "1", folder: str = ".") -> None:
+    """Measure, and print a line of JSON."""
+    ou.RNG.setSeed(int(seed))
+    ou.setLogLevel(ou.LOG_ERROR)
+    counted = Counted(wall)
+    if what == "locked":
+        print(json.dumps(solve_beside_ticks(plane(None), 2.0)))
+        return
+    if what == "wall":
+        done = solve_beside_ticks(plane(counted), 2.0)
+    else:
+        bodies = Bodies(Path(folder), "cubicles")
+
+        def free(state: Any) -> bool:
+            r = state.rotation()
+            return bodies.is_free([state.getX(), state.getY(), state.getZ()], [r.w, r.x, r.y, r.z])
+
+        counted = Counted(free)
+        setup = free_body(bodies, counted)
+        began = time.perf_counter()
+        solved = setup.solve(120.0)
+        done = {"time_s": time.perf_counter() - began, "solved": bool(solved)}
+    print(json.dumps(done | {"calls": counted.calls, "inside_s": counted.inside}))
+
+
+if __name__ == "__main__":
+    ob: Any = importlib.import_module("ompl.base")
+    og: Any = importlib.import_module("ompl.geometric")
+    ou: Any = importlib.import_module("ompl.util")
+    main(*sys.argv[1:])
