@@ -31,7 +31,7 @@ enum Command {
     /// Plan the problems of a list, as `mp many` does.
     Many(many::Many),
     /// Run a suite of measurements, as `mp-bench` does.
-    Bench(mp_bench::Options),
+    Bench(Box<mp_bench::Options>),
 }
 
 impl Command {
