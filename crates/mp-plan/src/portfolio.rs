@@ -1,25 +1,4 @@
 //! Portfolios: many runs of one request, with random numbers of their own, over threads and over the ranks of a cluster.
-//!
-//! A portfolio is a fixed list of runs, numbered from 1. Run i draws from stream *(seed, i)*, and its *cap*, the most iterations it may
-//! make, is that of the [schedule](PortfolioSchedule). The runs are made in *rounds* of so many; a round begins when the one before has no
-//! path. The winner is the run of the first round with a path that has the fewest iterations, and of several such the one with the
-//! least number. So it depends on the request and the portfolio alone, whoever finished first, and on how many machines.
-//!
-//! - Portfolios: C. Gomes and B. Selman, *Algorithm portfolios*, Artificial Intelligence 126, 2001. For trees of motion planning, N. Wedge and
-//!   M. Branicky, *On heavy-tailed runtimes and restarts in rapidly-exploring random trees*, AAAI workshop, 2008.
-//! - Schedules over many processors: M. Luby and W. Ertel, *Optimal parallelization of Las Vegas algorithms*, STACS 1994; A. Cire,
-//!   S. Kadioglu and M. Sellmann, *Parallel restarted search*, AAAI 2014, where processors take the runs of one sequence of lengths in
-//!   turn, as here. There the first to finish wins; that the one with the fewest iterations does is as in `or-` planners
-//!   ([`mp_tree::algo::or_parallel`]).
-//!
-//! How it is worked on, which changes nothing in the result:
-//! 1. the runs of a round are dealt to as many *lanes* as there are threads on all ranks, the largest caps first, one to each lane in turn;
-//! 2. a lane advances its runs by turns, the one as far as the other, until each has a path, has reached its cap, or has made as many
-//!    iterations as the best run known: then it cannot win any more;
-//! 3. when a lane is done, the others hear of its best run.
-//!
-//! So a round costs each run as many iterations as the winner needs, and at most a sixteenth of that more, or what is made until the news
-//! has spread. A round keeps the trees of all its runs.
 
 mod lane;
 mod rounds;
@@ -46,6 +25,27 @@ const MAX_ROUND: u64 = 1 << 20;
 const MAX_UNIT: u64 = 1_000_000_000_000;
 
 /// Which runs are made.
+///
+/// A portfolio is a fixed list of runs, numbered from 1. Run i draws from stream *(seed, i)*, and its *cap*, the most iterations it may
+/// make, is that of the [schedule](PortfolioSchedule). The runs are made in *rounds* of so many; a round begins when the one before has no
+/// path. The winner is the run of the first round with a path that has the fewest iterations, and of several such the one with the
+/// least number. So it depends on the request and the portfolio alone, whoever finished first, and on how many machines.
+///
+/// - Portfolios: C. Gomes and B. Selman, *Algorithm portfolios*, Artificial Intelligence 126, 2001. For trees of motion planning, N. Wedge and
+///   M. Branicky, *On heavy-tailed runtimes and restarts in rapidly-exploring random trees*, AAAI workshop, 2008.
+/// - Schedules over many processors: M. Luby and W. Ertel, *Optimal parallelization of Las Vegas algorithms*, STACS 1994; A. Cire,
+///   S. Kadioglu and M. Sellmann, *Parallel restarted search*, AAAI 2014, where processors take the runs of one sequence of lengths in
+///   turn, as here. There the first to finish wins; that the one with the fewest iterations does is as in `or-` planners
+///   ([there](mp_tree::algo::or_parallel)).
+///
+/// How it is worked on, which changes nothing in the result:
+/// 1. the runs of a round are dealt to as many *lanes* as there are threads on all ranks, the largest caps first, one to each lane in turn;
+/// 2. a lane advances its runs by turns, the one as far as the other, until each has a path, has reached its cap, or has made as many
+///    iterations as the best run known: then it cannot win any more;
+/// 3. when a lane is done, the others hear of its best run.
+///
+/// So a round costs each run as many iterations as the winner needs, and at most a sixteenth of that more, or what is made until the news
+/// has spread. A round keeps the trees of all its runs.
 ///
 /// ```
 /// use mp_plan::{Control, Portfolio, PortfolioOptions, PortfolioSchedule, Request, Scene};
