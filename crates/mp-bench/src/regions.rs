@@ -12,9 +12,10 @@ use mp_ranks::{Policy, simulate};
 use serde::{Deserialize, Serialize};
 
 /// Scenes, regions and attempts in each.
-const ROADMAPS: [(&str, usize, usize); 5] = [
+const ROADMAPS: [(&str, usize, usize); 6] = [
     ("cubicles", 64, 100),
     ("cubicles", 1_024, 100),
+    ("cubicles", 1_024, 1_000),
     ("apartment", 64, 100),
     ("apartment", 1_024, 100),
     ("maze", 64, 50),
@@ -112,7 +113,7 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
         let wanted = common.scenes.is_empty() || common.scenes.iter().any(|name| name == scene);
         wanted && (*regions < 100 || !common.quick)
     });
-    let seeds = 1..=u64::from(common.runs_or(1, 5));
+    let seeds = 1..=u64::from(common.runs_or(1, 2));
     let cases: Vec<Case> = roadmaps
         .flat_map(|(scene, regions, samples)| {
             seeds.clone().map(move |seed| Case { scene: scene.to_owned(), regions, samples, seed })
@@ -122,38 +123,47 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
         return Ok(false);
     }
     let built = |b: &Built| format!("{} / {} / {}", b.nodes, b.edges, b.components);
-    let mut table = Table::of(
+    let answers = Table::of(
         log.each(&cases),
         &[
             ("scene", &|(case, _)| case.scene.clone()),
             ("regions", &|(case, _)| case.regions.to_string()),
+            ("attempts in each", &|(case, _)| case.samples.to_string()),
             ("seed", &|(case, _)| case.seed.to_string()),
             ("nodes / edges / components", &|(_, run)| built(&run.by_regions)),
             ("of `prm`", &|(_, run)| built(&run.plain)),
-            ("answered", &|(_, run)| format!("{}", run.by_regions.answered)),
-            ("by `prm`", &|(_, run)| format!("{}", run.plain.answered)),
+            ("answered of 100", &|(_, run)| run.by_regions.answered.to_string()),
+            ("by `prm`", &|(_, run)| run.plain.answered.to_string()),
+        ],
+    );
+    let mut balance = Table::of(
+        log.each(&cases),
+        &[
+            ("scene", &|(case, _)| case.scene.clone()),
+            ("regions", &|(case, _)| case.regions.to_string()),
+            ("attempts in each", &|(case, _)| case.samples.to_string()),
+            ("seed", &|(case, _)| case.seed.to_string()),
+            ("queries of a region", &|(_, run)| {
+                let costs = run.costs(0..run.regions);
+                format!("{:.0}", costs.iter().sum::<f64>() / QUERY_S / costs.len() as f64)
+            }),
+            ("largest : mean", &|(_, run)| format!("{:.2}", run.imbalance())),
             ("queries of pairs", &|(_, run)| {
                 let [regions, pairs] = [0..run.regions, run.regions..run.queries.len()]
                     .map(|items| run.queries[items].iter().sum::<u64>() as f64);
                 format!("{:.0}%", 100.0 * pairs / (regions + pairs))
             }),
-            ("largest region : mean", &|(_, run)| format!("{:.2}", run.imbalance())),
         ],
     );
-    let orders = [
-        (Order::AsNumbered, ""),
-        (Order::ByEstimate, ", dearest first"),
-        (Order::ByCost, ", if costs were known"),
-    ];
     for ranks in RANKS {
-        for (order, name) in orders {
-            table.head.push(format!("{ranks} ranks{name}"));
-            for (row, (_, run)) in table.rows.iter_mut().zip(log.each(&cases)) {
-                row.push(format!("{:.2}", run.efficiency(ranks, order)));
-            }
+        balance.head.push(format!("{ranks} ranks"));
+        for (row, (_, run)) in balance.rows.iter_mut().zip(log.each(&cases)) {
+            let of = |order| format!("{:.2}", run.efficiency(ranks, order));
+            row.push([Order::AsNumbered, Order::ByEstimate, Order::ByCost].map(of).join(" / "));
         }
     }
-    lab.report("regions", &table, &table)?;
+    let text = format!("{}\n\n{}\n", answers.markdown(), balance.markdown());
+    lab.report_text("regions", &text, &answers)?;
     Ok(log.each(&cases).count() == cases.len())
 }
 
