@@ -65,7 +65,7 @@ fn published(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let name = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
     let files = entries.filter(|path| !name(path).starts_with('.') && !name(path).ends_with(".jsonl"));
-    files.map(|path| (name(&path), std::fs::read(&path).unwrap())).collect()
+    files.map(|path| (name(&path), mp_store::read(&path, 1 << 26).unwrap())).collect()
 }
 
 fn assert_success(output: &Output) {
@@ -120,10 +120,11 @@ fn shards_that_do_not_belong_together_are_refused() {
     refused(&["s1", "other"], &["other", "another command"]);
     refused(&["s1", "nowhere"], &["nowhere", "has no shard"]);
     let file = folder("s2").join("shard.json");
-    let text = std::fs::read_to_string(&file).unwrap();
-    std::fs::write(&file, text.replace(env!("CARGO_PKG_VERSION"), "0.0.9")).unwrap();
+    let text = String::from_utf8(mp_store::read(&file, 1 << 20).unwrap()).unwrap();
+    let write = |text: String| mp_store::write(&file, text.as_bytes()).unwrap();
+    write(text.replace(env!("CARGO_PKG_VERSION"), "0.0.9"));
     refused(&["s1", "s2"], &["version 0.0.9", "--shard 2/2"]);
-    std::fs::write(&file, text.replace("\"complete\": true", "\"complete\": false")).unwrap();
+    write(text.replace("\"complete\": true", "\"complete\": false"));
     refused(&["s1", "s2"], &["shard 2/2", "not complete"]);
     let output = run("scaling --shard 1/2", 0, &folder("time"));
     assert!(String::from_utf8_lossy(&output.stderr).contains("cannot be spread"));

@@ -15,9 +15,8 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// Ranks share a setup's cases in pieces, each with a setup of its own: about so many for each thread of a rank, so that all have about as
-/// much to do, and a job that is killed loses little.
-const PIECES: usize = 32;
+/// About so many groups of cases for each thread of a rank make them all end at about the same time.
+const GROUPS: usize = 8;
 
 /// How often ranks tell how far they are.
 const TELL: Duration = Duration::from_secs(10);
@@ -163,8 +162,7 @@ impl Lab {
         let open = |group: &&[K]| group.iter().filter(|case| log.get(case).is_none()).cloned().collect();
         let groups: Vec<Vec<K>> = mine.iter().map(open).filter(|group: &Vec<K>| !group.is_empty()).collect();
         let count: usize = mine.iter().map(|group| group.len()).sum();
-        let left = groups.iter().map(Vec::len).sum::<usize>();
-        let known = count - left;
+        let known = count - groups.iter().map(Vec::len).sum::<usize>();
         if known > 0 {
             note(&format!("{what}: {known} of {count} runs are known already; --fresh measures anew"));
         }
@@ -189,9 +187,13 @@ impl Lab {
                     threads: self.pool.current_num_threads(),
                     cancel: self.cancel.clone(),
                 };
-                let most = left.div_ceil(PIECES * link.ranks() * options.threads).max(1);
-                let groups: Vec<Vec<K>> =
-                    groups.iter().flat_map(|group| group.chunks(most).map(<[K]>::to_vec)).collect();
+                // Few groups are cut, each into no more pieces than there are threads, as each piece has a setup of its own.
+                let workers = link.ranks() * options.threads;
+                let pieces = (GROUPS * workers).div_ceil(groups.len().max(1)).min(workers);
+                let cut = |group: &Vec<K>| -> Vec<Vec<K>> {
+                    group.chunks(group.len().div_ceil(pieces)).map(<[K]>::to_vec).collect()
+                };
+                let groups: Vec<Vec<K>> = groups.iter().flat_map(cut).collect();
                 let mut told = Instant::now();
                 let took = |runs: usize| {
                     bar.inc(runs as u64);
