@@ -12,7 +12,8 @@ use std::sync::{Mutex, PoisonError};
 #[pyclass(frozen, module = "mp_motion._mp")]
 #[derive(Debug)]
 pub(crate) struct Results {
-    results: Mutex<ListResults>,
+    /// In a box: its checksum must be aligned as objects of Python are not.
+    results: Mutex<Box<ListResults>>,
     header: String,
 }
 
@@ -23,7 +24,7 @@ impl Results {
         let results = py.detach(|| ListResults::open(&file)).to_python()?;
         let header = json(results.header())?;
         let results = if partial { results.partial() } else { results };
-        Ok(Self { results: Mutex::new(results), header })
+        Ok(Self { results: Mutex::new(Box::new(results)), header })
     }
 
     /// What they are of, as JSON.

@@ -10,7 +10,6 @@ import importlib
 import importlib.util
 import json
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -126,7 +125,7 @@ def large_mesh() -> Path:
 
 def interrupts() -> None:
     """Measure how long a run goes on after Ctrl-C."""
-    print("\n## From Ctrl-C to the exception, the longest of 20, ms\n")
+    print("\n## From Ctrl-C to the exception, the longest and the median of 10, ms\n")
     script = """
     import os, signal, sys, threading, time, mp_motion as mp
     late = []
@@ -134,7 +133,7 @@ def interrupts() -> None:
     own = mp.Scene.own(robot, [1, 1], [3, 1])
     scene = own if sys.argv[1] == "own" else mp.Scene(sys.argv[1])
     options = mp.Options(sys.argv[2], time=600, nodes=10**8)
-    for i in range(20):
+    for i in range(10):
         def ring():
             global rung
             rung = time.perf_counter()
@@ -145,20 +144,18 @@ def interrupts() -> None:
             elif sys.argv[3] == "roadmap": scene.roadmap(options)
             else: scene.plan_by(options)
         except KeyboardInterrupt: late.append(time.perf_counter() - rung)
-    print(1e3 * max(late), len(late))
+    print(1e3 * max(late), 1e3 * sorted(late)[len(late) // 2], len(late))
     """
     for name, planner, what in [
         ("easy", "rrt-star", "plan"),
         ("cubicles", "rrt-star", "plan"),
         ("arm", "rrt-star", "plan"),
-        ("crossing", "rrt", "plan"),
-        ("parking", "rrt", "plan"),
         ("own", "rrt-star", "plan"),
         ("cubicles", "prm-star", "roadmap"),
         ("cubicles", "rrt-star", "many"),
     ]:
-        late, count = python(script, name, planner, what).split()
-        print(f"{what}, {name}, {planner}: {float(late):.0f} ({count})")
+        late, median, count = python(script, name, planner, what).split()
+        print(f"{what}, {name}, {planner}: {float(late):.0f}, {float(median):.0f} ({count})", flush=True)
 
 
 def many() -> None:
@@ -214,30 +211,40 @@ def beside_the_program() -> None:
 
 
 def callbacks() -> None:
-    """Measure runs with a validity in Python, per check, beside OMPL's wheel."""
+    """Measure the processor time of runs with a validity in Python, per check, beside OMPL's wheel."""
     print("\n## A validity in Python\n")
     print("| problem | | s | checks | µs a check | of it the function | the rest |\n|---|---|---:|---:|---:|---:|---:|")
 
     def row(problem: str, name: str, seconds: float, calls: int, inside: float) -> None:
         whole, within = 1e6 * seconds / calls, 1e6 * inside / calls
-        print(f"| {problem} | {name} | {seconds:.2f} | {calls} | {whole:.2f} | {within:.2f} | {whole - within:.2f} |")
+        print(
+            f"| {problem} | {name} | {seconds:.2f} | {calls} | {whole:.2f} | {within:.2f} | {whole - within:.2f} |", flush=True
+        )
 
     def valid_many(qs: Array) -> NDArray[np.bool_]:
         return ~((qs[:, 0] >= 1.9) & (qs[:, 0] <= 2.1) & (qs[:, 1] <= 3))
 
     space = mp.Space([0, 0], [4, 4])
     for name, function in {"valid": peer().wall, "valid_many": valid_many}.items():
-        counted = peer().Counted(function)
-        report = wall_scene(mp.Robot(space, **{name: counted})).plan("rrt-star", time=2, nodes=10**7, finish="as-found")
-        row("wall, RRT*", f"mp, `{name}`", report.time_s, report.collision_checks, counted.inside)
+        counted = peer().Counted(function, name == "valid_many")
+        spent, _ = spent_by(wall_scene(mp.Robot(space, **{name: counted})), "rrt-star", time=2, nodes=10**7)
+        row("wall, RRT*", f"mp, `{name}`", spent, counted.calls, counted.inside)
     if done := ompl("wall"):
-        row("wall, RRT*", "OMPL", done["time_s"], done["calls"], done["inside_s"])
+        row("wall, RRT*", "OMPL", done["processor_s"], done["calls"], done["inside_s"])
     if importlib.util.find_spec("fcl") is not None:
         with_fcl(row)
 
 
+def spent_by(scene: mp.Scene, planner: str, **options: Any) -> tuple[float, mp.Report]:
+    """Plan, and return the seconds of processor time with the report."""
+    spent = time.process_time()
+    report = scene.plan(planner, finish="as-found", **options)
+    return time.process_time() - spent, report
+
+
 def with_fcl(row: Callable[[str, str, float, int, float], None]) -> None:
     """Plan in cubicles with a validity by python-fcl, on both sides, and without Python."""
+    problem, seeds = "cubicles, RRT-Connect, 10 seeds", range(1, 11)
     with tempfile.TemporaryDirectory() as folder:
         program("plan", "cubicles", "--export", folder)
         bodies = peer().Bodies(Path(folder), "cubicles")
@@ -250,34 +257,22 @@ def with_fcl(row: Callable[[str, str, float, int, float], None]) -> None:
             matrix = mp.matrix_from_pose(q)
             return bool(bodies.is_free(matrix[:3, 3], matrix[:3, :3]))
 
-        for name, seeds in {"mp, `valid`": range(1, 21), "OMPL": range(1, 21)}.items():
-            seconds: list[float] = []
-            calls, inside = 0, 0.0
-            for seed in seeds:
-                if name == "OMPL":
-                    done = ompl("cubicles", seed, folder)
-                    if done is None:
-                        return
-                    assert done["solved"]
-                    seconds.append(done["time_s"])
-                    calls, inside = calls + done["calls"], inside + done["inside_s"]
-                else:
-                    counted = peer().Counted(free)
-                    scene = mp.Scene.own(mp.Robot(space, valid=counted), shipped.start, shipped.goals[0])
-                    report = scene.plan("rrt-connect", seed=seed, finish="as-found")
-                    assert report.solved
-                    seconds.append(report.time_s)
-                    calls, inside = calls + report.collision_checks, inside + counted.inside
-            row("cubicles, RRT-Connect, 20 seeds", name, sum(seconds), calls, inside)
-            print(f"{name}: median {statistics.median(seconds):.3f} s", file=sys.stderr)
+        counted, seconds = peer().Counted(free), 0.0
+        for seed in seeds:
+            scene = mp.Scene.own(mp.Robot(space, valid=counted), shipped.start, shipped.goals[0])
+            spent, report = spent_by(scene, "rrt-connect", seed=seed)
+            assert report.solved
+            seconds += spent
+        row(problem, "mp, `valid`, with verifying", seconds, counted.calls, counted.inside)
+        runs = [done for seed in seeds if (done := ompl("cubicles", seed, folder))]
+        if runs:
+            assert all(run["solved"] for run in runs)
+            seconds, calls, inside = (sum(run[what] for run in runs) for what in ("processor_s", "calls", "inside_s"))
+            row(problem, "OMPL", seconds, int(calls), inside)
         for motion in ("certified", "discrete:1%"):
-            reports = [shipped.plan("rrt-connect", seed=s, finish="as-found", motion=motion) for s in range(1, 21)]
-            seconds = [r.time_s for r in reports]
-            row(
-                "cubicles, RRT-Connect, 20 seeds", f"mp, the scene itself, {motion}",
-                sum(seconds), sum(r.collision_checks for r in reports), 0.0,
-            )  # fmt: skip
-            print(f"{motion}: median {statistics.median(seconds):.4f} s", file=sys.stderr)
+            both = [spent_by(shipped, "rrt-connect", seed=seed, motion=motion) for seed in seeds]
+            seconds, checks = sum(spent for spent, _ in both), sum(report.collision_checks for _, report in both)
+            row(problem, f"mp, the scene itself, {motion}, with verifying", seconds, checks, 0.0)
 
 
 SECTIONS = {

@@ -103,8 +103,15 @@ LONG = mp.Options("rrt-star", time=600, nodes=10**7)
 
 def test_others_cancel_and_what_was_found_is_kept() -> None:
     cancel = mp.Cancel()
-    threading.Timer(0.3, cancel.cancel).start()
-    results = list(mp.plan_many(mp.Scene("easy"), LONG, seeds=range(1000), threads=2, cancel=cancel))
+
+    def drawn() -> Iterator[mp.Scene]:
+        # From the moment at which one is begun.
+        threading.Timer(1, cancel.cancel).start()
+        while True:
+            yield scene
+
+    scene = mp.Scene("easy")
+    results = list(mp.plan_many(drawn(), LONG, threads=2, cancel=cancel))
     # Those that had begun.
     assert 1 <= len(results) <= 2
     assert all(isinstance(r, mp.Report) and r.solved for r in results)

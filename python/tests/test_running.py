@@ -116,6 +116,20 @@ def test_ctrl_c_stops_and_keeps_what_was_found() -> None:
         )
 
 
+def test_ctrl_c_stops_other_work() -> None:
+    scene = mp.Scene("easy")
+    report = scene.plan()
+    assert report.path is not None
+    # Back and forth, some hundred thousand edges.
+    to_and_fro = np.concatenate([report.path[:-1], report.path[:0:-1]])
+    path = np.concatenate([np.tile(to_and_fro, (400_000 // len(to_and_fro), 1)), report.path])
+    works: list[Callable[[], object]] = [lambda: scene.check(path), lambda: scene.free_share(2**32 - 1)]
+    for work in works:
+        threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        with pytest.raises(KeyboardInterrupt):
+            work()
+
+
 def test_a_handler_of_ones_own_is_obeyed() -> None:
     class AlarmError(Exception):
         pass
