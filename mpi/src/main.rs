@@ -7,6 +7,9 @@ mod bench;
 mod link;
 mod many;
 mod output;
+mod portfolio;
+mod request;
+mod roadmap;
 mod signals;
 
 use clap::{Parser, Subcommand};
@@ -32,12 +35,16 @@ enum Command {
     Many(many::Many),
     /// Run a suite of measurements, as `mp-bench` does.
     Bench(Box<mp_bench::Options>),
+    /// Race many runs of one request, as `mp plan --portfolio` does.
+    Portfolio(portfolio::Race),
+    /// Build a roadmap by regions, as `mp plan --planner regional-prm` does.
+    Roadmap(roadmap::Regions),
 }
 
 impl Command {
     /// Whether others know when the first rank ends early, and end. Otherwise they may wait for it.
     fn tells_others(&self) -> bool {
-        matches!(self, Self::Many(_))
+        !matches!(self, Self::Bench(_))
     }
 }
 
@@ -83,5 +90,7 @@ fn run(command: &Command, link: Rc<MpiLink>, cancel: &Cancel) -> Result<bool, Er
     match command {
         Command::Many(args) => many::run(args, &*link, cancel),
         Command::Bench(args) => bench::run(args, link, cancel),
+        Command::Portfolio(args) => portfolio::run(args, &*link, cancel),
+        Command::Roadmap(args) => roadmap::run(args, &*link, cancel),
     }
 }

@@ -1,11 +1,10 @@
 //! Standard output, standard error, and output files.
 
 use crate::input::is_standard;
+pub(crate) use mp_plan::Claims;
 use mp_plan::{Error, write_file};
-use mp_store::FileId;
-use std::collections::HashMap;
 use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Whether the reader of standard output has gone.
@@ -52,82 +51,4 @@ pub(crate) fn note(line: &str) {
 /// Writes `bytes` to `path`, whole or not at all, or to standard output for `-`. Makes the folder when it is missing.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     if is_standard(path) { to_standard_output(bytes) } else { write_file(path, bytes) }
-}
-
-/// The files of a command: inputs, and outputs that must be none of them, and no other output. Files are compared, not
-/// names.
-#[derive(Debug, Default)]
-pub(crate) struct Claims(HashMap<FileId, Claim>);
-
-#[derive(Debug)]
-struct Claim {
-    /// What an error calls it: `--out`, `input`.
-    what: String,
-    path: PathBuf,
-    is_input: bool,
-}
-
-impl Claims {
-    /// Adds a file that is read. Standard input is none.
-    pub(crate) fn input(&mut self, path: &Path) {
-        if !is_standard(path) {
-            let claim = Claim { what: "input".into(), path: path.to_owned(), is_input: true };
-            self.0.insert(FileId::of(path), claim);
-        }
-    }
-
-    /// Adds a file that will be written. Standard output is none.
-    ///
-    /// # Errors
-    /// When it is an input or another output, or could not be written.
-    pub(crate) fn output(&mut self, option: &str, path: &Path) -> Result<(), Error> {
-        if is_standard(path) {
-            return Ok(());
-        }
-        mp_store::writable(path)?;
-        let claim = Claim { what: option.into(), path: path.to_owned(), is_input: false };
-        match self.0.insert(FileId::of(path), claim) {
-            None => Ok(()),
-            Some(other) if other.is_input => Err(Error::new(format!(
-                "{option} {} would overwrite the input {}",
-                path.display(),
-                other.path.display()
-            ))
-            .help("name another file")),
-            Some(other) if other.what == option => {
-                Err(Error::new(format!("{option} {} would be written twice", path.display()))
-                    .help("give each run a file of its own"))
-            }
-            Some(other) => Err(Error::new(format!(
-                "{option} {} and {} {} are the same file",
-                path.display(),
-                other.what,
-                other.path.display()
-            ))
-            .help("give each a file of its own")),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn outputs_are_no_inputs_and_no_other_outputs() {
-        let dir = tempfile::tempdir().unwrap();
-        let at = |name: &str| dir.path().join(name);
-        std::fs::write(at("scene"), "").unwrap();
-        let mut claims = Claims::default();
-        claims.input(&at("scene"));
-        claims.input(&at("scene"));
-        let refused = claims.output("--out", &at("./scene")).unwrap_err();
-        assert!(refused.message().contains("overwrite the input"), "{refused}");
-        claims.output("--out", &at("new/path")).unwrap();
-        let refused = claims.output("--roadmap", &at("new/./path")).unwrap_err();
-        assert!(refused.message().contains("--out"), "{refused}");
-        claims.output("--out", Path::new("-")).unwrap();
-        claims.output("--picture", Path::new("-")).unwrap();
-        assert!(claims.output("--out", dir.path()).is_err());
-    }
 }

@@ -21,14 +21,10 @@ pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
     let threads = if single { usize::from(args.threads) } else { 1 };
     if let Some(file) = &args.request {
         let text = match is_standard(file) {
-            true => standard_input()?,
-            false => String::from_utf8_lossy(&mp_io::read_text(file)?.1).into_owned(),
+            true => standard_input()?.into_bytes(),
+            false => mp_io::read_text(file)?.1,
         };
-        let read: Request = serde_json::from_str(&text).map_err(|e| {
-            Error::new(format!("{} is not a request: {e}", file.display()))
-                .help("docs/formats/report.md describes requests")
-        })?;
-        let request = Request { threads, ..read };
+        let request = Request { threads, ..Request::parse(file, &text)? };
         request.check()?;
         return Ok(request);
     }
@@ -51,12 +47,7 @@ pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
     if let Some(step) = args.step {
         request = request.set("step", step);
     }
-    for text in &args.set {
-        match text.split_once('=') {
-            Some((key, value)) if !key.trim().is_empty() => request = request.set(key.trim(), value.trim()),
-            _ => return Err(Error::new(format!("cannot read the setting `{text}`")).help("write KEY=VALUE")),
-        }
-    }
+    request = request.set_each(&args.set)?;
     if request.roadmap.is_some() && !single {
         return Err(Error::new("--roadmap needs a single run").help("name one scene, without --runs"));
     }

@@ -5,9 +5,11 @@ use crate::check::check;
 use crate::explain::{check_ends, explain, lint};
 use crate::path::state;
 use crate::plan::plan;
-#[cfg(feature = "ranks")]
+#[cfg(all(feature = "ranks", feature = "roadmaps"))]
 use crate::regional::AnyRegional;
-use crate::run::{AnyPrepared, FoundRun};
+use crate::run::AnyPrepared;
+#[cfg(feature = "ranks")]
+use crate::run::FoundRun;
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::AnySceneRoadmap;
 use crate::sweep::{sweep, track};
@@ -22,6 +24,7 @@ use nalgebra::{Isometry3, Point3};
 use std::any::Any;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+#[cfg(feature = "ranks")]
 use std::time::Duration;
 
 /// A [`RobotKind`] behind a pointer.
@@ -50,6 +53,7 @@ pub(crate) trait AnyRobot: Send + Sync {
     ) -> Result<Vec<Report>, Error>;
     fn prepare<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error>;
     /// The report of a run elsewhere, which took the time `time`: its path is finished here.
+    #[cfg(feature = "ranks")]
     fn found_report(
         &self,
         request: &Request,
@@ -63,9 +67,9 @@ pub(crate) trait AnyRobot: Send + Sync {
         request: &Request,
         control: &mut Control<'_>,
     ) -> Result<Box<dyn AnySceneRoadmap>, Error>;
-    #[cfg(feature = "ranks")]
+    #[cfg(all(feature = "ranks", feature = "roadmaps"))]
     fn regional<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyRegional + 's>, Error>;
-    #[cfg(feature = "ranks")]
+    #[cfg(all(feature = "ranks", feature = "roadmaps"))]
     fn roadmap_of(
         self: Arc<Self>,
         request: &Request,
@@ -174,6 +178,7 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     fn prepare<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error> {
         crate::run::prepare(self, request)
     }
+    #[cfg(feature = "ranks")]
     fn found_report(
         &self,
         request: &Request,
@@ -191,11 +196,11 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     ) -> Result<Box<dyn AnySceneRoadmap>, Error> {
         crate::scene_roadmap::build(self, request, control)
     }
-    #[cfg(feature = "ranks")]
+    #[cfg(all(feature = "ranks", feature = "roadmaps"))]
     fn regional<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyRegional + 's>, Error> {
         crate::regional::regional(self, request)
     }
-    #[cfg(feature = "ranks")]
+    #[cfg(all(feature = "ranks", feature = "roadmaps"))]
     fn roadmap_of(
         self: Arc<Self>,
         request: &Request,

@@ -103,6 +103,7 @@ impl From<mp_store::Error> for Error {
     }
 }
 
+#[cfg(feature = "ranks")]
 impl From<mp_ranks::Error> for Error {
     fn from(error: mp_ranks::Error) -> Self {
         match error {

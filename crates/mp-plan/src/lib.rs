@@ -76,6 +76,8 @@ mod goals;
 mod in_order;
 pub mod info;
 mod inputs;
+#[cfg(feature = "ranks")]
+mod job_identity;
 mod kinds;
 mod list;
 mod load;
@@ -90,9 +92,11 @@ mod path;
 mod picture;
 mod plan;
 mod planners;
-mod portfolio;
-mod prepared;
 #[cfg(feature = "ranks")]
+mod portfolio;
+mod portfolio_counts;
+mod prepared;
+#[cfg(all(feature = "ranks", feature = "roadmaps"))]
 mod regional;
 mod relax;
 mod report;
@@ -120,22 +124,24 @@ pub use find::find_problem;
 pub use finish::{Finished, shorten};
 pub use goals::GoalPart;
 pub use in_order::in_order;
+#[cfg(feature = "ranks")]
+pub use list::RanksOutcome;
 pub use list::{
     ItemError, ItemResult, ListResults, ListedProblems, ManyOptions, ManyOutcome, ProblemList,
-    RESULTS_VERSION, RanksOutcome, ResultsHeader, SceneFingerprint, Shard, Tally, merge_results,
+    RESULTS_VERSION, ResultsHeader, SceneFingerprint, Shard, Tally, merge_results,
 };
 pub use many::plan_many;
 pub use numbers::{brief, count, plain, positive_number};
-pub use output::{make_folder, write_file};
+pub use output::{Claims, make_folder, write_file};
 pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
 pub use planners::{meta_planners, planners, roadmap_planners};
-pub use portfolio::{
-    Portfolio, PortfolioCounts, PortfolioOptions, PortfolioOutcome, PortfolioSchedule, RankWork,
-};
 #[cfg(feature = "ranks")]
+pub use portfolio::{Portfolio, PortfolioOptions, PortfolioOutcome, RankWork};
+pub use portfolio_counts::{PortfolioCounts, PortfolioSchedule};
+#[cfg(all(feature = "ranks", feature = "roadmaps"))]
 pub use regional::{RegionalTally, RegionalWork};
 pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, RelaxField, Request};

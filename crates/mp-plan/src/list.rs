@@ -2,8 +2,11 @@
 
 mod items;
 mod merge;
+#[cfg(feature = "ranks")]
 mod order;
+#[cfg(feature = "ranks")]
 mod parcel;
+#[cfg(feature = "ranks")]
 mod ranks;
 mod reader;
 mod results;
@@ -15,6 +18,7 @@ pub use items::ListResults;
 pub use merge::merge_results;
 #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
 pub(crate) use merge::merged;
+#[cfg(feature = "ranks")]
 pub use ranks::RanksOutcome;
 #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
 pub(crate) use reader::{Next, ResultsReader};

@@ -1,7 +1,9 @@
 //! Files that a front end writes.
 
 use crate::Error;
-use std::path::Path;
+use mp_store::FileId;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 
 /// Makes a folder, and those above it, when it is missing.
 ///
@@ -18,4 +20,63 @@ pub fn make_folder(folder: &Path) -> Result<(), Error> {
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     mp_store::make_folder(mp_store::folder_of(path))?;
     Ok(mp_store::write(path, bytes)?)
+}
+
+/// The files of a command: inputs, and outputs that must be none of them, and no other output. Files are compared, not
+/// names. The name `-` stands for standard input and output, which are no files.
+#[derive(Debug, Default)]
+pub struct Claims(HashMap<FileId, Claim>);
+
+#[derive(Debug)]
+struct Claim {
+    /// What an error calls it: `--out`, `input`.
+    what: String,
+    path: PathBuf,
+    is_input: bool,
+}
+
+impl Claims {
+    /// Adds a file that is read.
+    pub fn input(&mut self, path: &Path) {
+        if !is_standard(path) {
+            let claim = Claim { what: "input".into(), path: path.to_owned(), is_input: true };
+            self.0.insert(FileId::of(path), claim);
+        }
+    }
+
+    /// Adds a file that will be written; `option` is what errors call it.
+    ///
+    /// # Errors
+    /// When it is an input or another output, or could not be written.
+    pub fn output(&mut self, option: &str, path: &Path) -> Result<(), Error> {
+        if is_standard(path) {
+            return Ok(());
+        }
+        mp_store::writable(path)?;
+        let claim = Claim { what: option.into(), path: path.to_owned(), is_input: false };
+        match self.0.insert(FileId::of(path), claim) {
+            None => Ok(()),
+            Some(other) if other.is_input => Err(Error::new(format!(
+                "{option} {} would overwrite the input {}",
+                path.display(),
+                other.path.display()
+            ))
+            .help("name another file")),
+            Some(other) if other.what == option => {
+                Err(Error::new(format!("{option} {} would be written twice", path.display()))
+                    .help("give each run a file of its own"))
+            }
+            Some(other) => Err(Error::new(format!(
+                "{option} {} and {} {} are the same file",
+                path.display(),
+                other.what,
+                other.path.display()
+            ))
+            .help("give each a file of its own")),
+        }
+    }
+}
+
+fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
 }

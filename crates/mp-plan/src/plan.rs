@@ -1,12 +1,17 @@
 //! Planning: runs a request, finishes the path and makes the report.
 
 use crate::finish::finish;
+#[cfg(feature = "ranks")]
 use crate::relax::relax_if_requested;
 use crate::report::{RunStage, StageTime};
-use crate::run::{FoundRun, PLANNING_PART};
+#[cfg(feature = "ranks")]
+use crate::run::FoundRun;
+use crate::run::PLANNING_PART;
 use crate::search::{Search, search_within};
-use crate::{Control, Error, Finish, REPORT_VERSION, Report, Request, RobotKind, StoppedBy};
-use mp_cspace::{Outcome, Path, StateVector, StopReason};
+use crate::{Control, Error, REPORT_VERSION, Report, Request, RobotKind, StoppedBy};
+use mp_cspace::{Outcome, StopReason};
+#[cfg(feature = "ranks")]
+use mp_cspace::{Path, StateVector};
 use std::time::Duration;
 
 /// Plans, finishes the path, and makes the report.
@@ -109,6 +114,7 @@ pub(crate) fn reported<K: RobotKind>(
 }
 
 /// Finishes the path of a run that took the time `time`, if there is one, and makes the report.
+#[cfg(feature = "ranks")]
 pub(crate) fn found_report<K: RobotKind>(
     kind: &K,
     request: &Request,
@@ -129,7 +135,7 @@ pub(crate) fn found_report<K: RobotKind>(
             let budget = request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
             let left = budget.map(|budget| budget.saturating_sub(control.spent).saturating_sub(time));
             let path = relax_if_requested(kind, request, Path::straight(states), control, left)?;
-            if request.finish == Finish::Relax {
+            if request.finish == crate::Finish::Relax {
                 relaxing = control.clock.now().saturating_sub(began);
             }
             Outcome::Solved(path)

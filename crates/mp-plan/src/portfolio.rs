@@ -3,9 +3,9 @@
 mod lane;
 mod rounds;
 
-use crate::numbers::fingerprint;
+use crate::job_identity::timeless;
 use crate::run::FoundRun;
-use crate::{Clock, Control, Error, Report, Request, Scene, Stage, StoppedBy};
+use crate::{Clock, Control, Error, PortfolioSchedule, Report, Request, Scene, Stage, StoppedBy};
 use lane::{Lane, Start};
 use mp_cspace::{Rng, StopReason};
 use mp_ranks::{Checkpoint, Link};
@@ -13,9 +13,7 @@ use mp_tree::Schedule;
 use rounds::Rounds;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::fmt;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 /// The most runs of a portfolio.
 const MAX_RUNS: u64 = 1 << 30;
@@ -74,57 +72,6 @@ pub struct Portfolio {
     pub round: u64,
 }
 
-/// The caps of the runs of a [`Portfolio`]: of run i the i-th length, in units, of the schedule that
-/// [`restart-`](mp_tree::algo::restarts) planners go through one after the other. In addition each run has the budgets of its request.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum PortfolioSchedule {
-    /// No caps: all runs of a round race to the end (Carpin and Pagello 2002).
-    #[default]
-    None,
-    /// 1, 1, 2, 1, 1, 2, 4, 1, … (Luby, Sinclair and Zuckerman 1993).
-    Luby,
-    /// Counter search: at the count n = 1, 2, 3, … every length whose square divides n (Amato, Ashur and Har-Peled 2025).
-    Counter,
-    /// Length t with probability 6/(π·t)² (the same); lengths are drawn from stream *(seed, 0)*.
-    Zeta,
-    /// Wide search (Ashur and Har-Peled 2025) up to the beginning of its last run: of N runs, run i has ⌊N/i⌋ units.
-    Wide,
-}
-
-impl PortfolioSchedule {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::None, Self::Luby, Self::Counter, Self::Zeta, Self::Wide];
-
-    /// Its name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Luby => "luby",
-            Self::Counter => "counter",
-            Self::Zeta => "zeta",
-            Self::Wide => "wide",
-        }
-    }
-}
-
-impl fmt::Display for PortfolioSchedule {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for PortfolioSchedule {
-    type Err = Error;
-    fn from_str(name: &str) -> Result<Self, Error> {
-        Self::ALL.into_iter().find(|schedule| schedule.name() == name).ok_or_else(|| {
-            let names = Self::ALL.map(Self::name).join(", ");
-            Error::new(format!("there is no schedule `{name}`")).help(format!("there are: {names}"))
-        })
-    }
-}
-
 impl Portfolio {
     /// So many runs without caps, of which at most 64 are in a round.
     #[must_use]
@@ -174,27 +121,6 @@ impl Portfolio {
         let before = round.saturating_mul(self.round);
         before + 1..=before.saturating_add(self.round).min(self.runs)
     }
-}
-
-/// The runs of a portfolio, in its [report](Report::portfolio). Unless time or a cancel has ended it, all numbers are the same on any number
-/// of threads and ranks.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PortfolioCounts {
-    /// The most runs.
-    pub runs: u64,
-    /// Their caps.
-    pub schedule: PortfolioSchedule,
-    /// Iterations of a run of length 1.
-    pub unit: u64,
-    /// Runs of a round.
-    pub round: u64,
-    /// How many runs were begun: those of the rounds up to the winner's.
-    pub begun: u64,
-    /// The run whose path this is, from 1.
-    pub winner: Option<u64>,
-    /// How many iterations the result needs, in all runs that were begun: those of the winner in each run of its round, or fewer where a run
-    /// ended before, and all of the rounds before. What was done beyond that is not counted: see [`PortfolioOutcome::work`].
-    pub iterations: u64,
 }
 
 /// What a rank has done for a portfolio. Depends on who was faster.
@@ -351,23 +277,12 @@ impl Scene {
     }
 
     fn checkpoint(&self, file: &Path, identity: &str) -> Result<Checkpoint, Error> {
-        mp_store::make_folder(mp_store::folder_of(file))?;
-        let files = self.input_fingerprint(Path::new(""))?;
-        Ok(Checkpoint::open(file, &format!("portfolio, scene {files:016x}, {identity}"))?)
+        self.checkpoint_of("portfolio", file, identity)
     }
 
     /// What the results of runs depend on, but for the content of the files of the scene.
     fn portfolio_identity(&self, request: &Request, portfolio: &Portfolio) -> Result<String, Error> {
-        let written =
-            |e: serde_json::Error| Error::new(format!("the request cannot be written as JSON: {e}"));
-        // Time only ends runs, and those that it ends are not kept.
-        let mut timeless = request.clone();
-        timeless.budget.time_s = None;
-        let json = serde_json::to_string(&(timeless, portfolio)).map_err(written)?;
-        let ends = fingerprint(self.goals().into_iter().flatten().chain(self.start()));
-        let request = xxhash_rust::xxh3::xxh3_64(json.as_bytes());
-        let version = env!("CARGO_PKG_VERSION");
-        Ok(format!("{} {ends:016x}, request {request:016x}, version {version}", self.name()))
+        self.job_identity(&(timeless(request), portfolio))
     }
 }
 

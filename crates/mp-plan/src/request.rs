@@ -346,6 +346,28 @@ impl Request {
         self
     }
 
+    /// Sets parameters of the planner that are written as `KEY=VALUE`.
+    ///
+    /// # Errors
+    /// When a text is not written so.
+    pub fn set_each(self, texts: &[String]) -> Result<Self, Error> {
+        texts.iter().try_fold(self, |request, text| match text.split_once('=') {
+            Some((key, value)) if !key.trim().is_empty() => Ok(request.set(key.trim(), value.trim())),
+            _ => Err(Error::new(format!("cannot read the setting `{text}`")).help("write KEY=VALUE")),
+        })
+    }
+
+    /// A request in JSON, the content of `file`. Its [values](Self::check) are not checked.
+    ///
+    /// # Errors
+    /// When it is not a request.
+    pub fn parse(file: impl AsRef<std::path::Path>, text: &[u8]) -> Result<Self, Error> {
+        serde_json::from_slice(text).map_err(|e| {
+            Error::new(format!("{} is not a request: {e}", file.as_ref().display()))
+                .help("docs/formats/report.md describes requests")
+        })
+    }
+
     /// Sets the seed.
     #[must_use]
     pub fn seed(self, seed: u64) -> Self {

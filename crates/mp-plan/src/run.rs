@@ -9,7 +9,7 @@ use crate::search::Search;
 use crate::watch::Events;
 use crate::{Control, Error, Finish, Report, Request, RobotKind, Stage, StoppedBy};
 use mp_cspace::erased::AnySpace;
-use mp_cspace::{Interrupt, Outcome, Path, Planner, Progress, Rng, StateVector, Stop, StopReason, Workers};
+use mp_cspace::{Interrupt, Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
 use mp_tree::{TreeState, improve};
 use std::fmt;
 use std::sync::atomic::Ordering;
@@ -109,10 +109,12 @@ pub(crate) trait AnyRun {
     fn progress(&mut self) -> Progress;
     fn finish(self: Box<Self>, control: &mut Control<'_>) -> Result<Report, Error>;
     /// Ends the run as it is, with the path as found.
+    #[cfg(feature = "ranks")]
     fn into_found(self: Box<Self>) -> Result<FoundRun, Error>;
 }
 
 /// What a run came to: plain data, from which [`found_report`](crate::any_robot::AnyRobot::found_report) makes a report elsewhere.
+#[cfg(feature = "ranks")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FoundRun {
     pub(crate) progress: Progress,
@@ -341,6 +343,7 @@ impl<K: RobotKind> AnyRun for RobotRun<'_, '_, K> {
         let left = left(request, control, &found);
         reported(kind, request, found, None, control, left)
     }
+    #[cfg(feature = "ranks")]
     fn into_found(mut self: Box<Self>) -> Result<FoundRun, Error> {
         let progress = RobotRun::progress(&mut self);
         let map = match &mut self.made {
@@ -351,7 +354,7 @@ impl<K: RobotKind> AnyRun for RobotRun<'_, '_, K> {
         self.made = None;
         let numbers = |state: &K::State| {
             let mut numbers = Vec::new();
-            state.write(&mut numbers);
+            mp_cspace::StateVector::write(state, &mut numbers);
             numbers
         };
         Ok(FoundRun {

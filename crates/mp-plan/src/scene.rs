@@ -1,6 +1,7 @@
 //! A scene of any kind, and what can be done with it.
 
 use crate::any_robot::AnyRobot;
+#[cfg(feature = "ranks")]
 use crate::run::{AnyPrepared, FoundRun};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
@@ -16,6 +17,7 @@ use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+#[cfg(feature = "ranks")]
 use std::time::Duration;
 
 /// A scene to plan in: a robot of any kind among its obstacles, with a start and goals. Clones share the data.
@@ -324,11 +326,13 @@ impl Scene {
     }
 
     /// The request, prepared for a run that makes no report itself.
+    #[cfg(feature = "ranks")]
     pub(crate) fn prepared<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error> {
         self.robot.prepare(request)
     }
 
     /// The report of a run that made none itself, and took the time `time`.
+    #[cfg(feature = "ranks")]
     pub(crate) fn found_report(
         &self,
         request: &Request,
@@ -379,11 +383,22 @@ impl Scene {
     ///
     /// # Errors
     /// When the request is not valid, for this scene or for such work.
-    #[cfg(feature = "ranks")]
+    #[cfg(all(feature = "ranks", feature = "roadmaps"))]
     pub fn regions<'s>(&'s self, request: &'s Request) -> Result<crate::RegionalWork<'s>, Error> {
         self.check_ends()?;
         let file = self.file.as_ref().map(|file| file.display().to_string());
         crate::RegionalWork::new(&self.robot, file, request)
+    }
+
+    /// Opens a file, or begins it, that keeps results of [`regions`](Self::regions) with this request:
+    /// [`RegionalWork::over`](crate::RegionalWork::over) goes on with those in it.
+    ///
+    /// # Errors
+    /// When the file is in use, damaged, of another scene or request, or cannot be read or written.
+    #[cfg(all(feature = "ranks", feature = "roadmaps"))]
+    pub fn regions_checkpoint(&self, request: &Request, file: &Path) -> Result<mp_ranks::Checkpoint, Error> {
+        let identity = self.job_identity(&crate::job_identity::timeless(request))?;
+        self.checkpoint_of("roadmap by regions", file, &identity)
     }
 
     /// Finishes a path from elsewhere, between any two configurations: verifies it, shortens or relaxes it as the request says, and

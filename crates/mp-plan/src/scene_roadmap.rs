@@ -135,7 +135,7 @@ pub(crate) fn build<K: RobotKind + 'static>(
 }
 
 /// A roadmap that was built elsewhere, for this robot: a [`Roadmap`].
-#[cfg(feature = "ranks")]
+#[cfg(all(feature = "ranks", feature = "roadmaps"))]
 pub(crate) fn of_map<K: RobotKind + 'static>(
     kind: Arc<K>,
     request: &Request,

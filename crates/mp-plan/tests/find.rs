@@ -1,6 +1,7 @@
-//! Scenes are found by name and by file.
+//! Scenes are found by name and by file; outputs are no inputs.
 
-use mp_plan::Scene;
+use mp_plan::{Claims, Scene};
+use std::path::Path;
 
 #[test]
 fn shipped_scenes_are_found_by_name_and_are_sound() {
@@ -57,4 +58,22 @@ fn paths_do_not_hide_scenes() {
     write("wall.txt", "Rob\n");
     let e = Scene::find(dir.path().join("wall")).unwrap_err();
     assert!(e.file().is_some_and(|file| file.file().ends_with("wall.txt")), "{e:?}");
+}
+
+#[test]
+fn outputs_are_no_inputs_and_no_other_outputs() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    std::fs::write(at("scene"), "").unwrap();
+    let mut claims = Claims::default();
+    claims.input(&at("scene"));
+    claims.input(&at("scene"));
+    let refused = claims.output("--out", &at("./scene")).unwrap_err();
+    assert!(refused.message().contains("overwrite the input"), "{refused}");
+    claims.output("--out", &at("new/path")).unwrap();
+    let refused = claims.output("--roadmap", &at("new/./path")).unwrap_err();
+    assert!(refused.message().contains("--out"), "{refused}");
+    claims.output("--out", Path::new("-")).unwrap();
+    claims.output("--picture", Path::new("-")).unwrap();
+    assert!(claims.output("--out", dir.path()).is_err());
 }

@@ -1,14 +1,15 @@
-//! A list with its scenes as bytes, for ranks that need not see the same disk.
+//! Scenes, and a list with its scenes, as bytes, for ranks that need not see the same disk.
 
 use super::{ListedProblems, ProblemList, SceneFingerprint};
 use crate::inputs::fingerprint_of;
-use crate::{Error, Scene};
+use crate::{Error, Request, Scene};
 use mp_io::{ErrorKind, Files};
+use mp_ranks::{Link, broadcast};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// What such bytes begin with.
-const FORMAT: &str = "mp-many parcel 1";
+const FORMAT: &str = "mp parcel 1";
 
 impl ListedProblems {
     /// The list and all files of its scenes.
@@ -16,12 +17,7 @@ impl ListedProblems {
     /// # Errors
     /// When one has changed since it was loaded, or cannot be read any more.
     pub(super) fn packed(&self) -> Result<Vec<u8>, Error> {
-        let changed = |file: &Path| {
-            Error::new(format!("{} has changed since it was loaded", file.display())).help("start again")
-        };
-        let mut parcel = Writer::default();
-        parcel.text(FORMAT);
-        parcel.text(env!("CARGO_PKG_VERSION"));
+        let mut parcel = Writer::new();
         let (_, list) = mp_io::read_text(self.list.file())?;
         if xxhash_rust::xxh3::xxh3_64(&list) != self.list.fingerprint {
             return Err(changed(self.list.file()));
@@ -29,23 +25,7 @@ impl ListedProblems {
         parcel.path(self.list.file());
         parcel.bytes(&list);
         for (scene, known) in self.scenes.iter().zip(&self.fingerprints) {
-            let files = scene.inputs().iter().map(|file| Ok(scene.content(self.list.folder(), file)?));
-            let files = files.collect::<Result<Vec<_>, Error>>()?;
-            if hexadecimal(fingerprint_of(files.iter().map(Ok))?) != known.fingerprint {
-                return Err(changed(Path::new(&known.file)));
-            }
-            parcel.path(Path::new(&known.file));
-            parcel.text(&known.fingerprint);
-            parcel.number(files.len());
-            for (name, bytes) in scene.inputs().iter().zip(&files) {
-                parcel.path(name);
-                parcel.bytes(bytes);
-            }
-            parcel.number(scene.folders.len());
-            for (folder, absolute) in &*scene.folders {
-                parcel.path(folder);
-                parcel.path(absolute);
-            }
+            parcel.scene(scene, self.list.folder(), Path::new(&known.file), &known.fingerprint)?;
         }
         Ok(parcel.0)
     }
@@ -55,43 +35,72 @@ impl ListedProblems {
     /// # Errors
     /// When they are of another version, are not whole, or a scene cannot be loaded or is not the same here.
     pub(super) fn unpacked(bytes: &[u8]) -> Result<Self, Error> {
-        let mut parcel = Reader(bytes);
-        if parcel.text()? != FORMAT {
-            return Err(torn());
-        }
-        let version = parcel.text()?;
-        if version != env!("CARGO_PKG_VERSION") {
-            let own = env!("CARGO_PKG_VERSION");
-            let message = format!("this rank has version {own} of the program, and the master {version}");
-            return Err(Error::new(message).help("start the same program on all nodes"));
-        }
+        let mut parcel = Reader::new(bytes)?;
         let file = parcel.path()?;
         let list = ProblemList::parse(file, parcel.bytes()?)?;
         let (mut scenes, mut fingerprints) = (Vec::new(), Vec::new());
         for name in &list.scenes {
-            let file = parcel.path()?;
-            let fingerprint = parcel.text()?.to_owned();
-            let mut sent = Sent::default();
-            for _ in 0..parcel.number()? {
-                sent.files.insert(parcel.path()?, parcel.bytes()?);
-            }
-            for _ in 0..parcel.number()? {
-                sent.folders.insert(parcel.path()?, parcel.path()?);
-            }
-            let scene = Scene::load_from(&sent, &file)?;
-            let read = |name: &PathBuf| sent.read(name, mp_io::MAX_MESH_BYTES).map_err(Error::from);
-            let here = hexadecimal(fingerprint_of(scene.inputs().iter().map(read))?);
-            if here != fingerprint {
-                let message =
-                    format!("the scene {} has the fingerprint {here}, not {fingerprint}", file.display());
-                return Err(Error::new(message).help("start the same program on all nodes"));
-            }
+            let (scene, file, fingerprint) = parcel.scene()?;
             let (scene_name, file) = (name.clone(), file.display().to_string());
             fingerprints.push(SceneFingerprint { scene: scene_name, file, fingerprint });
             scenes.push(scene);
         }
         Ok(Self { list, scenes, fingerprints })
     }
+}
+
+impl Scene {
+    /// A scene and a request on all ranks: each of them calls this. Only the master needs the disk: it calls `load`, and sends the request and
+    /// all files of the scene to the others, once. `None` on the others when the master cannot load it.
+    ///
+    /// ```
+    /// use mp_plan::{Request, Scene};
+    /// let load = || Ok((Scene::find("easy")?, Request::new("rrt-connect").seed(7)));
+    /// let link = mp_ranks::threads(1).remove(0); // of MPI, on a cluster
+    /// let Some((scene, request)) = Scene::on_ranks(&link, load)? else { return Ok(()) };
+    /// assert!(scene.plan(&request)?.solved);
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// On the master, when `load` fails or the scene is from no file; elsewhere, when a rank has another version of the program. Where a rank
+    /// cannot be reached.
+    pub fn on_ranks(
+        link: &dyn Link,
+        load: impl FnOnce() -> Result<(Self, Request), Error>,
+    ) -> Result<Option<(Self, Request)>, Error> {
+        if !link.is_master() {
+            let bytes = broadcast(link, Vec::new())?;
+            if bytes.is_empty() {
+                return Ok(None);
+            }
+            let mut parcel = Reader::new(&bytes)?;
+            let request = serde_json::from_str(parcel.text()?).map_err(|_| torn())?;
+            return Ok(Some((parcel.scene()?.0, request)));
+        }
+        let loaded = load().and_then(|(scene, request)| {
+            let mut parcel = Writer::new();
+            if link.ranks() > 1 {
+                let text = serde_json::to_string(&request);
+                parcel.text(&text.map_err(|e| Error::new(format!("the request is not valid: {e}")))?);
+                let file = scene.file().ok_or_else(|| {
+                    Error::new("a scene that was read from no file cannot be sent to other ranks")
+                        .help("write it to a file")
+                })?;
+                let fingerprint = hexadecimal(scene.input_fingerprint(Path::new(""))?);
+                parcel.scene(&scene, Path::new(""), file, &fingerprint)?;
+            }
+            Ok(((scene, request), parcel.0))
+        });
+        match loaded {
+            Ok((loaded, parcel)) => broadcast(link, parcel).map_err(Error::from).map(|_| Some(loaded)),
+            Err(e) => broadcast(link, Vec::new()).map_err(Error::from).and(Err(e)),
+        }
+    }
+}
+
+fn changed(file: &Path) -> Error {
+    Error::new(format!("{} has changed since it was loaded", file.display())).help("start again")
 }
 
 /// A fingerprint as text.
@@ -131,10 +140,36 @@ impl Files for Sent<'_> {
 }
 
 /// Pieces of bytes, each after its length.
-#[derive(Default)]
 struct Writer(Vec<u8>);
 
 impl Writer {
+    fn new() -> Self {
+        let mut parcel = Self(Vec::new());
+        parcel.text(FORMAT);
+        parcel.text(env!("CARGO_PKG_VERSION"));
+        parcel
+    }
+    /// A scene of the file `name`, with all files that it was read from, relative to `folder`.
+    fn scene(&mut self, scene: &Scene, folder: &Path, name: &Path, fingerprint: &str) -> Result<(), Error> {
+        let files = scene.inputs().iter().map(|file| Ok(scene.content(folder, file)?));
+        let files = files.collect::<Result<Vec<_>, Error>>()?;
+        if hexadecimal(fingerprint_of(files.iter().map(Ok))?) != fingerprint {
+            return Err(changed(name));
+        }
+        self.path(name);
+        self.text(fingerprint);
+        self.number(files.len());
+        for (name, bytes) in scene.inputs().iter().zip(&files) {
+            self.path(name);
+            self.bytes(bytes);
+        }
+        self.number(scene.folders.len());
+        for (folder, absolute) in &*scene.folders {
+            self.path(folder);
+            self.path(absolute);
+        }
+        Ok(())
+    }
     fn number(&mut self, number: usize) {
         self.0.extend((number as u64).to_le_bytes());
     }
@@ -155,6 +190,41 @@ impl Writer {
 struct Reader<'b>(&'b [u8]);
 
 impl<'b> Reader<'b> {
+    /// What a [`Writer`] of the same version wrote.
+    fn new(bytes: &'b [u8]) -> Result<Self, Error> {
+        let mut parcel = Self(bytes);
+        if parcel.text()? != FORMAT {
+            return Err(torn());
+        }
+        let version = parcel.text()?;
+        if version != env!("CARGO_PKG_VERSION") {
+            let own = env!("CARGO_PKG_VERSION");
+            let message = format!("this rank has version {own} of the program, and the master {version}");
+            return Err(Error::new(message).help("start the same program on all nodes"));
+        }
+        Ok(parcel)
+    }
+    /// A scene, its file and its fingerprint.
+    fn scene(&mut self) -> Result<(Scene, PathBuf, String), Error> {
+        let file = self.path()?;
+        let fingerprint = self.text()?.to_owned();
+        let mut sent = Sent::default();
+        for _ in 0..self.number()? {
+            sent.files.insert(self.path()?, self.bytes()?);
+        }
+        for _ in 0..self.number()? {
+            sent.folders.insert(self.path()?, self.path()?);
+        }
+        let scene = Scene::load_from(&sent, &file)?;
+        let read = |name: &PathBuf| sent.read(name, mp_io::MAX_MESH_BYTES).map_err(Error::from);
+        let here = hexadecimal(fingerprint_of(scene.inputs().iter().map(read))?);
+        if here != fingerprint {
+            let message =
+                format!("the scene {} has the fingerprint {here}, not {fingerprint}", file.display());
+            return Err(Error::new(message).help("start the same program on all nodes"));
+        }
+        Ok((scene, file, fingerprint))
+    }
     fn number(&mut self) -> Result<usize, Error> {
         let (number, rest) = self.0.split_first_chunk::<8>().ok_or_else(torn)?;
         self.0 = rest;
@@ -175,5 +245,5 @@ impl<'b> Reader<'b> {
 }
 
 fn torn() -> Error {
-    Error::new("the list did not arrive whole").help("start the same program on all nodes")
+    Error::new("what the master sent did not arrive whole").help("start the same program on all nodes")
 }

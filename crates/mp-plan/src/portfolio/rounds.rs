@@ -1,9 +1,9 @@
 //! The master of a portfolio: hands out the lanes of round after round, and finds the winner.
 
 use super::lane::LaneResult;
-use super::{Dealt, Known, PortfolioCounts, RankWork, RunOutcome, is_of_machine, reason_of};
+use super::{Dealt, Known, RankWork, RunOutcome, is_of_machine, reason_of};
 use crate::run::FoundRun;
-use crate::{Error, Watch};
+use crate::{Error, PortfolioCounts, Watch};
 use mp_cspace::{Progress, StopReason};
 use mp_ranks::{Checkpoint, Job};
 use std::collections::{HashMap, HashSet, VecDeque};

@@ -2,7 +2,8 @@
 
 use crate::{Dir, LIST, SCENE, STICK, WALL, whole};
 use mp_plan::{
-    Cancel, Error, Interrupt, ListedProblems, ManyOptions, ManyOutcome, ProblemList, RanksOutcome, Shard,
+    Cancel, Error, Interrupt, ListedProblems, ManyOptions, ManyOutcome, ProblemList, RanksOutcome, Request,
+    Scene, Shard,
 };
 use mp_ranks::{Link, threads};
 
@@ -205,4 +206,41 @@ fn what_cannot_begin_ends_on_all_ranks() {
     std::fs::remove_file(dir.at("problems.jsonl")).unwrap();
     refused("new.jsonl", "problems.jsonl");
     assert!(!dir.at("new.jsonl").exists());
+}
+
+/// What each of three ranks has of a scene and a request that the first one loads.
+fn shared(
+    load: impl FnOnce() -> Result<(Scene, Request), Error> + Send,
+) -> Vec<Result<Option<(Scene, Request)>, Error>> {
+    let mut links = threads(3);
+    let others = links.split_off(1);
+    std::thread::scope(|scope| {
+        let never = || -> Result<(Scene, Request), Error> { panic!("only the master loads") };
+        let others: Vec<_> =
+            others.into_iter().map(|link| scope.spawn(move || Scene::on_ranks(&link, never))).collect();
+        let first = Scene::on_ranks(&links[0], load);
+        let others = others.into_iter().map(|rank| rank.join().unwrap());
+        std::iter::once(first).chain(others).collect()
+    })
+}
+
+#[test]
+fn a_scene_and_a_request_are_sent() {
+    let dir = Dir::new();
+    let request = Request::new("rrt-connect").seed(7).set("step", "10%");
+    for file in [dir.at("wall.env"), "arm".into(), "rrs-high".into()] {
+        let all = shared(|| Ok((Scene::find(&file)?, request.clone())));
+        let plans: Vec<_> = all
+            .into_iter()
+            .map(|one| {
+                let (scene, sent) = one.unwrap().unwrap();
+                assert_eq!(sent, request);
+                (scene.name().to_owned(), scene.plan(&sent).unwrap().without_times().path)
+            })
+            .collect();
+        assert!(plans[0].1.is_some() && plans.iter().all(|plan| *plan == plans[0]), "{file:?}");
+    }
+    let mut refused = shared(|| Err(Error::new("no such scene"))).into_iter();
+    assert!(refused.next().unwrap().unwrap_err().message().contains("no such scene"));
+    assert!(refused.all(|one| one.unwrap().is_none()));
 }
