@@ -1,5 +1,6 @@
 //! Scenes, and a list with its scenes, as bytes, for ranks that need not see the same disk.
 
+use super::scenes::hexadecimal;
 use super::{ListedProblems, ProblemList, SceneFingerprint};
 use crate::inputs::fingerprint_of;
 use crate::{Error, Request, Scene};
@@ -101,11 +102,6 @@ impl Scene {
 
 fn changed(file: &Path) -> Error {
     Error::new(format!("{} has changed since it was loaded", file.display())).help("start again")
-}
-
-/// A fingerprint as text.
-pub(super) fn hexadecimal(fingerprint: u64) -> String {
-    format!("{fingerprint:016x}")
 }
 
 /// The files of a scene, sent by another rank.

@@ -150,7 +150,8 @@ impl ListedProblems {
     }
 }
 
-/// An item that is planned.
+/// An item that is planned. Its costs are for the order in which ranks do items.
+#[cfg_attr(not(feature = "ranks"), expect(dead_code))]
 pub(super) struct Planned {
     /// Its line of the results.
     pub(super) line: String,

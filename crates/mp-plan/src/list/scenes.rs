@@ -1,6 +1,5 @@
 //! The scenes of a list, loaded once.
 
-use super::parcel::hexadecimal;
 use super::{ProblemList, SceneFingerprint};
 use crate::{Error, Request, Scene};
 use mp_cspace::Interrupt;
@@ -94,4 +93,9 @@ impl ListedProblems {
         }
         Ok((scene, request))
     }
+}
+
+/// A fingerprint as text.
+pub(super) fn hexadecimal(fingerprint: u64) -> String {
+    format!("{fingerprint:016x}")
 }
