@@ -91,7 +91,7 @@ fn exported(args: &Export) -> Result<bool, Error> {
         let (rows, items) = (exported.rows, exported.items);
         note(&format!("the results are not complete: there are {rows} of {items} items"));
     }
-    print(&count(usize::try_from(exported.rows).unwrap_or(usize::MAX), "row"))?;
+    print(&mp_plan::count(usize::try_from(exported.rows).unwrap_or(usize::MAX), "row"))?;
     note(&format!("wrote {}", args.out.display()));
     Ok(exported.is_complete())
 }

@@ -56,7 +56,7 @@ impl FromStr for PortfolioSchedule {
     }
 }
 
-/// The runs of a portfolio, in its [report](Report::portfolio). Unless time or a cancel has ended it, all numbers are the same on any number
+/// The runs of a portfolio, in its [report](crate::Report::portfolio). Unless time or a cancel has ended it, all numbers are the same on any number
 /// of threads and ranks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PortfolioCounts {
