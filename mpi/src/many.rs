@@ -2,9 +2,7 @@
 
 use crate::output::{Teller, note, print};
 use clap::Args;
-use mp_plan::{
-    Error, Interrupt, ListedProblems, ManyOptions, ManyOutcome, ProblemList, Shard, Tally, positive_number,
-};
+use mp_plan::{Error, ListedProblems, ManyOptions, ManyOutcome, Shard, Tally, positive_number};
 use mp_ranks::Link;
 use mp_stop::Cancel;
 use std::path::{Path, PathBuf};
@@ -67,12 +65,7 @@ pub(crate) fn run(args: &Many, link: &dyn Link, cancel: &Cancel) -> Result<bool,
 
 /// The list with its scenes. What was chosen for a robot or a map alone is said to the person watching.
 fn loaded(file: &Path, cancel: &Cancel) -> Result<ListedProblems, Error> {
-    let problems = match ProblemList::load(file)?.with_scenes(&Interrupt::new(cancel.clone())) {
-        Err(_) if cancel.is_raised() => {
-            return Err(Error::new("interrupted while the scenes of the list were loaded"));
-        }
-        loaded => loaded?,
-    };
+    let problems = ListedProblems::load(file, cancel)?;
     problems.scenes().iter().flat_map(|scene| scene.notes()).for_each(|line| note(&format!("note: {line}")));
     Ok(problems)
 }

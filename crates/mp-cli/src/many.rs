@@ -5,10 +5,7 @@ use crate::input::is_standard;
 use crate::interrupt;
 use crate::output::{Claims, note, print};
 use crate::progress::Line;
-use mp_plan::{
-    Cancel, Error, Interrupt, ListedProblems, ManyOptions, ManyOutcome, ProblemList, Shard, Tally,
-    merge_results,
-};
+use mp_plan::{Cancel, Error, ListedProblems, ManyOptions, ManyOutcome, Shard, Tally, merge_results};
 use std::path::Path;
 
 /// Plans the problems of a list. True when all are planned, solved or not.
@@ -105,13 +102,7 @@ fn exported(_: &Export) -> Result<bool, Error> {
 
 /// The list with its scenes. What was chosen for a robot or a map alone is said to the person watching.
 fn loaded(file: &Path, cancel: &Cancel) -> Result<ListedProblems, Error> {
-    let list = ProblemList::load(file)?;
-    let problems = match list.with_scenes(&Interrupt::new(cancel.clone())) {
-        Err(_) if cancel.is_raised() => {
-            return Err(Error::new("interrupted while the scenes of the list were loaded"));
-        }
-        loaded => loaded?,
-    };
+    let problems = ListedProblems::load(file, cancel)?;
     problems.scenes().iter().flat_map(|scene| scene.notes()).for_each(|line| note(&format!("note: {line}")));
     Ok(problems)
 }

@@ -173,8 +173,7 @@ impl<'s> RegionalWork<'s> {
         if !link.is_master() && complete.is_err() {
             return complete.map(|_| None);
         }
-        let all = broadcast(link, if let Ok(true) = complete { job.joined(regions) } else { Vec::new() });
-        let all = all.map_err(failed)?;
+        let all = broadcast(link, if let Ok(true) = complete { job.joined(regions) } else { Vec::new() })?;
         if !complete? || all.is_empty() {
             return Ok(None);
         }
@@ -199,7 +198,7 @@ impl<'s> RegionalWork<'s> {
 
 /// Whether the master says that all go on.
 fn together(link: &dyn Link, go_on: bool) -> Result<bool, Error> {
-    Ok(broadcast(link, vec![u8::from(go_on)]).map_err(failed)? == [1])
+    Ok(broadcast(link, vec![u8::from(go_on)])? == [1])
 }
 
 /// What an item of a [`RegionalWork`] took and made.
@@ -251,14 +250,14 @@ impl Phases<'_> {
             Ok(())
         });
         let job: Option<&mut dyn Job> = if self.link.is_master() { Some(&mut job) } else { None };
-        let ran = run(self.link, self.options, job, &estimate).map_err(failed)?;
+        let ran = run(self.link, self.options, job, &estimate)?;
         Ok((!ran.cancelled).then_some(estimates))
     }
 
     /// Does these items, but for those whose results are known, the dearest first. Whether all were done.
     fn run(&mut self, items: Range<u64>, cost: &dyn Fn(u64) -> f64, work: &Work<'_>) -> Result<bool, Error> {
         if !self.link.is_master() {
-            run(self.link, self.options, None, work).map_err(failed)?;
+            run(self.link, self.options, None, work)?;
             return Ok(true);
         }
         let open: Vec<u64> = items.filter(|item| self.results[*item as usize].is_none()).collect();
@@ -271,7 +270,7 @@ impl Phases<'_> {
             Ok(())
         };
         let mut job = Items::dearest_first(open, cost, take);
-        Ok(!run(self.link, self.options, Some(&mut job), work).map_err(failed)?.cancelled)
+        Ok(!run(self.link, self.options, Some(&mut job), work)?.cancelled)
     }
 
     /// The results of the first items, for [`split`]. Not empty.
@@ -296,15 +295,6 @@ fn split(joined: &[u8]) -> Vec<&[u8]> {
         rest = after;
     }
     results
-}
-
-fn failed(error: mp_ranks::Error) -> Error {
-    match error {
-        mp_ranks::Error::Checkpoint { file, message, remedy } => {
-            Error::new(format!("{file}: {message}")).help(remedy)
-        }
-        other => Error::new(other.to_string()),
-    }
 }
 
 /// The work for a robot of some kind.

@@ -2,7 +2,7 @@
 
 use super::{ProblemList, SceneFingerprint};
 use crate::{Error, Request, Scene};
-use mp_cspace::Interrupt;
+use mp_cspace::{Cancel, Interrupt};
 use std::path::{Path, PathBuf};
 
 /// A list of problems with its scenes: all that is needed to plan its items.
@@ -46,6 +46,19 @@ impl ProblemList {
 }
 
 impl ListedProblems {
+    /// Reads a list and its scenes, unless `cancel` is raised.
+    ///
+    /// # Errors
+    /// As [`ProblemList::load`] and [`ProblemList::with_scenes`].
+    pub fn load(file: impl AsRef<Path>, cancel: &Cancel) -> Result<Self, Error> {
+        match ProblemList::load(file)?.with_scenes(&Interrupt::new(cancel.clone())) {
+            Err(_) if cancel.is_raised() => {
+                Err(Error::new("interrupted while the scenes of the list were loaded"))
+            }
+            loaded => loaded,
+        }
+    }
+
     /// The list.
     #[must_use]
     pub fn list(&self) -> &ProblemList {
