@@ -7,6 +7,8 @@ use mp_cspace::testkit::{SpaceKit, check_local_planner, check_true_metric};
 use mp_cspace::*;
 use nalgebra::{DVector, Isometry3, Point2, Point3, SVector, UnitQuaternion, Vector3, Vector4};
 use proptest::prelude::*;
+use proptest::test_runner;
+use std::fmt::Debug;
 
 /// The torus of `N` angles.
 fn circles<const N: usize>() -> Joints<SVector<f64, N>> {
@@ -28,7 +30,11 @@ fn conforms<C: Space + TrueMetric>(space: &C, kit: SpaceKit) {
 }
 
 /// The axioms on three states and two times chosen by proptest, which shrinks to simple ones.
-fn axioms<C: Space + TrueMetric>(space: &C, u: &[Vec<f64>; 3], t: f64) -> Ok {
+fn axioms<S: Clone + Debug + PartialEq + Send + Sync>(
+    space: &dyn Space<State = S>,
+    u: &[Vec<f64>; 3],
+    t: f64,
+) -> Ok {
     let [a, b, c] = [0, 1, 2].map(|i| space.unit_cube_to_state(&u[i]));
     let slack = 1e-12 * space.extent();
     let (ab, bc, ac) = (space.distance(&a, &b), space.distance(&b, &c), space.distance(&a, &c));
@@ -42,7 +48,11 @@ fn axioms<C: Space + TrueMetric>(space: &C, u: &[Vec<f64>; 3], t: f64) -> Ok {
 }
 
 /// As [`axioms`], with constant speed.
-fn geodesic_axioms<C: Space + TrueMetric>(space: &C, u: &[Vec<f64>; 3], t: f64) -> Ok {
+fn geodesic_axioms<S: Clone + Debug + PartialEq + Send + Sync>(
+    space: &dyn Space<State = S>,
+    u: &[Vec<f64>; 3],
+    t: f64,
+) -> Ok {
     let [a, b] = [0, 1].map(|i| space.unit_cube_to_state(&u[i]));
     let (d, m) = (space.distance(&a, &b), space.interpolate(&a, &b, t));
     prop_assert!((space.distance(&a, &m) - t * d).abs() <= 1e-12 * space.extent());
@@ -56,6 +66,16 @@ fn cube_points(dim: usize) -> impl Strategy<Value = [Vec<f64>; 3]> {
     prop::array::uniform3(prop::collection::vec(coordinate, dim))
 }
 
+/// Three states and a time that `axioms` refuses, as simple ones as there are, fail the test.
+fn for_all(dim: usize, axioms: &dyn Fn(&[Vec<f64>; 3], f64) -> Ok) {
+    let mut runner = test_runner::TestRunner::new(ProptestConfig {
+        failure_persistence: None,
+        ..ProptestConfig::with_cases(300)
+    });
+    let found = runner.run(&(cube_points(dim), 0.0..=1.0f64), |(u, t)| axioms(&u, t));
+    found.unwrap_or_else(|e| panic!("{e}"));
+}
+
 /// One kit test and one property test per space.
 macro_rules! spaces {
     ($($name:ident: $space:expr, $kit:expr, $axioms:ident;)*) => {$(
@@ -65,12 +85,10 @@ macro_rules! spaces {
             fn conforms_to_the_kit() {
                 conforms(&$space, $kit);
             }
-            proptest! {
-                #![proptest_config(ProptestConfig::with_cases(300))]
-                #[test]
-                fn obeys_the_axioms(u in cube_points($space.dim()), t in 0.0..=1.0f64) {
-                    $axioms(&$space, &u, t)?;
-                }
+            #[test]
+            fn obeys_the_axioms() {
+                let space = $space;
+                for_all(space.dim(), &|u, t| $axioms(&space, u, t));
             }
         }
     )*};

@@ -37,13 +37,15 @@ const MAX_UNIT: u64 = 1_000_000_000_000;
 ///   ([there](mp_tree::algo::or_parallel)).
 ///
 /// How it is worked on, which changes nothing in the result:
-/// 1. the runs of a round are dealt to as many *lanes* as there are threads on all ranks, the largest caps first, one to each lane in turn;
+/// 1. the runs of a round are dealt to as many *lanes* as there are threads on all ranks, the largest caps first, one to each lane in turn,
+///    there and back again;
 /// 2. a lane advances its runs by turns, the one as far as the other, until each has a path, has reached its cap, or has made as many
 ///    iterations as the best run known: then it cannot win any more;
-/// 3. when a lane is done, the others hear of its best run.
+/// 3. a lane that is an eighth ahead of the one that is furthest behind waits for it, which must come as far as the winner anyway;
+/// 4. when a lane is done, the others hear of its best run.
 ///
-/// So a round costs each run as many iterations as the winner needs, and at most a sixteenth of that more, or what is made until the news
-/// has spread. A round keeps the trees of all its runs.
+/// So a round costs each run as many iterations as the winner needs, and at most a sixteenth or an eighth of that more, or what is made
+/// until news have spread. A round keeps the trees of all its runs.
 ///
 /// ```
 /// use mp_plan::{Control, Portfolio, PortfolioOptions, PortfolioSchedule, Request, Scene};
@@ -303,9 +305,15 @@ impl Dealt {
             self.portfolio.caps(self.seed).skip(usize::try_from(*runs.start() - 1).unwrap_or(usize::MAX));
         let mut open: Vec<_> = runs.zip(caps).filter(|(run, _)| !known(*run)).collect();
         open.sort_by_key(|(run, cap)| (std::cmp::Reverse(cap.unwrap_or(u64::MAX)), *run));
-        let lanes = usize::try_from(self.lanes).unwrap_or(usize::MAX);
-        open.into_iter().skip(usize::try_from(lane).unwrap_or(usize::MAX)).step_by(lanes).collect()
+        let mine = (0..).zip(open).filter(|(place, _)| dealt_to(*place, self.lanes) == lane);
+        mine.map(|(_, run)| run).collect()
     }
+}
+
+/// The lane, of so many, that gets the run in a place: there and back again, so that none has the larger cap of each turn.
+fn dealt_to(place: u64, lanes: u64) -> u64 {
+    let (turn, lane) = (place / lanes, place % lanes);
+    if turn.is_multiple_of(2) { lane } else { lanes - 1 - lane }
 }
 
 /// When a rank began, and what its time budget had spent by then.

@@ -3,6 +3,7 @@
 use crate::link::MASTER;
 use crate::{Error, Job, Link};
 use mp_stop::Cancel;
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Mutex, PoisonError};
@@ -36,6 +37,9 @@ pub struct Hand {
     /// Raised when the result is not wanted any more.
     pub cancel: Cancel,
     bound: AtomicU64,
+    least: AtomicU64,
+    /// What was reported and not yet passed on.
+    reports: Mutex<Vec<(u64, u64)>>,
 }
 
 impl Hand {
@@ -43,6 +47,19 @@ impl Hand {
     #[must_use]
     pub fn bound(&self) -> u64 {
         self.bound.load(Ordering::Relaxed)
+    }
+
+    /// Reports how far the work on an item is, by a measure that all items of the job share. Of items that never report it is 0.
+    pub fn reached(&self, item: u64, far: u64) {
+        let mut reports = self.reports.lock().unwrap_or_else(PoisonError::into_inner);
+        reports.retain(|(other, _)| *other != item);
+        reports.push((item, far));
+    }
+
+    /// How far the item is that is furthest behind of all that are worked on, as far as it is known here: news take some milliseconds.
+    #[must_use]
+    pub fn least_reached(&self) -> u64 {
+        self.least.load(Ordering::Relaxed)
     }
 }
 
@@ -61,12 +78,16 @@ mod kind {
     pub(super) const WORK: u8 = b'w';
     /// To a rank: the bound has fallen.
     pub(super) const BOUND: u8 = b'b';
+    /// To a rank: how far the item is that is furthest behind.
+    pub(super) const LEAST: u8 = b'l';
     /// To a rank: drop everything.
     pub(super) const STOP: u8 = b's';
     /// To a rank: everything is done.
     pub(super) const END: u8 = b'e';
     /// To the master: the result of an item.
     pub(super) const DONE: u8 = b'd';
+    /// To the master: how far an item is.
+    pub(super) const REACHED: u8 = b'r';
     /// To the master: an item cannot be done.
     pub(super) const FAILED: u8 = b'f';
     /// To the master: an item was dropped, as this rank was cancelled.
@@ -145,11 +166,26 @@ impl Crew<'_> {
     fn lower(&self, bound: u64) {
         self.hand.bound.fetch_min(bound, Ordering::Relaxed);
     }
+
+    /// The item that is furthest behind is so far.
+    fn set_least(&self, far: u64) {
+        self.hand.least.store(far, Ordering::Relaxed);
+    }
+
+    /// What was reported since the last time.
+    fn reports(&self) -> Vec<(u64, u64)> {
+        std::mem::take(&mut self.hand.reports.lock().unwrap_or_else(PoisonError::into_inner))
+    }
 }
 
 /// Calls `with` with so many threads that `work`.
 fn with_crew<T>(options: &Options, work: &Work<'_>, with: impl FnOnce(Crew<'_>) -> T) -> T {
-    let hand = Hand { cancel: options.cancel.clone(), bound: AtomicU64::new(u64::MAX) };
+    let hand = Hand {
+        cancel: options.cancel.clone(),
+        bound: AtomicU64::new(u64::MAX),
+        least: AtomicU64::new(0),
+        reports: Mutex::default(),
+    };
     let (queue, items) = channel::<u64>();
     let (sender, results) = channel();
     let items = Mutex::new(items);
@@ -219,6 +255,10 @@ struct Master<'a, 'c> {
     busy: Vec<usize>,
     done: Vec<u64>,
     bound: u64,
+    /// How far each item is that is worked on, whether any ever said so, and the least that the ranks know of.
+    reached: HashMap<u64, u64>,
+    reported: bool,
+    least: u64,
     /// Whether an item was dropped.
     dropped: bool,
 }
@@ -227,7 +267,9 @@ impl<'a, 'c> Master<'a, 'c> {
     fn new(link: &'a dyn Link, options: &'a Options, job: &'a mut dyn Job, crew: Crew<'c>) -> Self {
         let ranks = link.ranks();
         let (busy, done) = (vec![0; ranks], vec![0; ranks]);
-        Self { link, options, job, crew, busy, done, bound: u64::MAX, dropped: false }
+        let reached = HashMap::new();
+        let (bound, reported, least, dropped) = (u64::MAX, false, 0, false);
+        Self { link, options, job, crew, busy, done, bound, reached, reported, least, dropped }
     }
 
     /// Hands out items until there are none. False when it was cancelled.
@@ -237,6 +279,7 @@ impl<'a, 'c> Master<'a, 'c> {
                 return Ok(false);
             }
             self.fill()?;
+            self.tell_least()?;
             if self.busy.iter().all(|busy| *busy == 0) {
                 return Ok(true);
             }
@@ -246,7 +289,30 @@ impl<'a, 'c> Master<'a, 'c> {
             if let Some((item, result)) = self.crew.result() {
                 self.took(item, MASTER, result)?;
             }
+            for (item, far) in self.crew.reports() {
+                self.is_at(item, far);
+            }
         }
+    }
+
+    /// An item that is worked on is so far.
+    fn is_at(&mut self, item: u64, far: u64) {
+        // A report may come behind its result.
+        if let Some(reached) = self.reached.get_mut(&item) {
+            *reached = far;
+            self.reported = true;
+        }
+    }
+
+    /// Tells all how far the item is that is furthest behind, when that has changed.
+    fn tell_least(&mut self) -> Result<(), Error> {
+        let least = if self.reported { self.reached.values().min().copied().unwrap_or(0) } else { 0 };
+        if least != self.least {
+            self.least = least;
+            self.crew.set_least(least);
+            self.to_others(kind::LEAST, least)?;
+        }
+        Ok(())
     }
 
     /// Gives each rank as many items as it works on at a time, in turn, and while there are plenty one more.
@@ -261,6 +327,7 @@ impl<'a, 'c> Master<'a, 'c> {
                 }
                 let Some(item) = self.job.next() else { return Ok(()) };
                 self.busy[rank] += 1;
+                self.reached.insert(item, 0);
                 match rank {
                     MASTER => self.crew.give(item),
                     rank => self.link.send(rank, message(kind::WORK, item, &[]))?,
@@ -278,6 +345,11 @@ impl<'a, 'c> Master<'a, 'c> {
                 self.took(item, from, Outcome::Failed(String::from_utf8_lossy(rest).into_owned()))
             }
             kind::DROPPED => self.took(item, from, Outcome::Dropped),
+            kind::REACHED => {
+                let far = rest.try_into().map_err(|_| Error::OutOfStep { rank: from })?;
+                self.is_at(item, u64::from_le_bytes(far));
+                Ok(())
+            }
             _ => Err(Error::OutOfStep { rank: from }),
         }
     }
@@ -285,6 +357,7 @@ impl<'a, 'c> Master<'a, 'c> {
     fn took(&mut self, item: u64, rank: usize, result: Outcome) -> Result<(), Error> {
         let failed = |message| Error::Item { item, rank, message };
         self.busy[rank] = self.busy[rank].checked_sub(1).ok_or(Error::OutOfStep { rank })?;
+        self.reached.remove(&item);
         match result {
             Outcome::Done(result) => self.job.take(item, rank, result).map_err(failed)?,
             Outcome::Failed(message) => return Err(failed(message)),
@@ -342,6 +415,7 @@ fn other(link: &dyn Link, mut crew: Crew<'_>) -> Result<(), Error> {
             match parts(from, &received)? {
                 (kind::WORK, item, _) => crew.give(item),
                 (kind::BOUND, bound, _) => crew.lower(bound),
+                (kind::LEAST, far, _) => crew.set_least(far),
                 (ended @ (kind::STOP | kind::END), ..) => {
                     if ended == kind::STOP {
                         crew.stop();
@@ -355,6 +429,9 @@ fn other(link: &dyn Link, mut crew: Crew<'_>) -> Result<(), Error> {
             std::thread::sleep(POLL);
         } else if let Some((item, result)) = crew.result() {
             send(item, result)?;
+        }
+        for (item, far) in crew.reports() {
+            link.send(MASTER, message(kind::REACHED, item, &far.to_le_bytes()))?;
         }
     }
 }

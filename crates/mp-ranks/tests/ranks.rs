@@ -257,3 +257,29 @@ fn simulated_jobs_are_those_done_by_hand() {
     // Sent at 0.25 and 0.5, there at 0.75 and 1, done at 1.75 and 2, known at 2.25 and 2.5, the next ones sent at 2.5 and 2.75 …
     assert_eq!((slow.makespan_s, slow.master_load), (4.25, 1.0 / 4.25));
 }
+
+#[test]
+fn items_hear_how_far_the_last_of_them_is() {
+    const LEAD: u64 = 10;
+    for (ranks, threads) in [(1, 1), (1, 4), (3, 1), (3, 2)] {
+        let items = (ranks * threads) as u64;
+        let far: Vec<AtomicU64> = (0..items).map(|_| AtomicU64::new(0)).collect();
+        let work = |item: u64, hand: &Hand| {
+            for reached in 0..100 {
+                far[item as usize].store(reached, Ordering::SeqCst);
+                hand.reached(item, reached);
+                while reached > hand.least_reached() + LEAD {
+                    std::thread::sleep(Duration::from_micros(100));
+                }
+                // What is known is older than what is.
+                let least = far.iter().map(|far| far.load(Ordering::SeqCst)).min().unwrap();
+                assert!(reached <= least + LEAD, "{reached}, and one is at {least}");
+            }
+            far[item as usize].store(u64::MAX, Ordering::SeqCst);
+            Ok(Vec::new())
+        };
+        let options = Options { threads, ..Options::default() };
+        let ran = on(ranks, &options, &mut Items::new(0..items, |_, _, _| Ok(())), &work).unwrap();
+        assert_eq!(ran.items.iter().sum::<u64>(), items);
+    }
+}

@@ -194,7 +194,14 @@ impl Replay {
             let made = |(length, cap): &(u64, u64), most: u64| (*length).min(*cap).min(most) as f64;
             let bound = best.unwrap_or(u64::MAX);
             let reach = best.map_or(u64::MAX, |best| best + (best / 16).max(16));
-            let lane = |lane: usize| round.iter().skip(lane).step_by(ranks).map(|run| made(run, reach)).sum();
+            // The largest caps first, there and back again.
+            let lane = |lane: usize| {
+                let turns = round.chunks(ranks).enumerate();
+                let of = |(turn, runs): (usize, &[(u64, u64)])| {
+                    runs.get(if turn % 2 == 0 { lane } else { ranks - 1 - lane }).map(|run| made(run, reach))
+                };
+                turns.filter_map(of).sum()
+            };
             replay.needed += round.iter().map(|run| made(run, bound)).sum::<f64>();
             replay.most += (0..ranks).map(lane).fold(0.0, f64::max);
             replay.rounds += 1.0;

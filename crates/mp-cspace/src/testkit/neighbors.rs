@@ -14,6 +14,11 @@ where
     C: Space,
     N: NearestNeighbors<C>,
 {
+    agree(space, index, points, seed);
+}
+
+/// As [`check_nearest_neighbors`]; each method of the index is compiled once.
+fn agree<C: Space>(space: &C, index: &mut dyn NearestNeighbors<C>, points: usize, seed: u64) {
     let mut rng = Rng::seed(seed);
     for round in 0..2 {
         index.clear();
@@ -50,7 +55,7 @@ fn scan<C: Space>(space: &C, states: &[C::State], q: &C::State) -> Vec<Hit> {
     hits
 }
 
-fn compare<C: Space>(space: &C, index: &impl NearestNeighbors<C>, states: &[C::State], rng: &mut Rng) {
+fn compare<C: Space>(space: &C, index: &dyn NearestNeighbors<C>, states: &[C::State], rng: &mut Rng) {
     let n = states.len();
     for query in 0..3 {
         // A state in the index has itself and equal states at distance zero.

@@ -65,6 +65,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod subdivision;
+
+pub use subdivision::Subdivision;
+
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, UNDIRECTED, reachable};
 use crate::engine::{Moment, Part};
@@ -76,8 +80,7 @@ use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, NodeId, Problem, Reversible, Rng, Space,
     registry::{Parameter, PlannerInfo, Settings},
 };
-use rand::RngExt;
-use std::ops::Range;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The parameters of regional PRM.
@@ -168,171 +171,6 @@ pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<
     args.build(RoadmapPlannerParts::new(generator, connector))
 }
 
-/// A number of the states that runs straight from a lower to an upper bound.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Axis {
-    /// Its place in the unit cube, and in velocities.
-    coordinate: usize,
-    /// How far it is from its lower to its upper bound, in its own unit.
-    width: f64,
-    /// The same in the metric.
-    length: f64,
-    cells: u32,
-    /// By how much the numbers of two regions differ that are neighbours along this axis.
-    stride: u32,
-}
-
-/// A space that is cut into a grid of regions of equal measure.
-///
-/// The regions are those of the unit cube, which [`Space::unit_cube_to_state`] maps to the space. So they tile the space, whatever it is.
-/// Along which numbers it can be cut is found with [`Space::velocity_into`]: a space without velocities is one region.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Subdivision<S> {
-    dim: usize,
-    /// All numbers at their lower bounds.
-    origin: S,
-    axes: Vec<Axis>,
-    overlap: f64,
-    regions: u32,
-    pairs: Vec<[u32; 2]>,
-}
-
-/// Differences below this part of the width of an axis are due to rounding.
-const ROUNDING: f64 = 1e-6;
-
-impl<S: Clone> Subdivision<S> {
-    /// The space cut into so many regions, which are sampled beyond their faces by a part `overlap` of their widths. One region, if it
-    /// cannot be cut.
-    ///
-    /// # Errors
-    /// When there are no regions, or more than 10⁶, or the part is not in \[0, 1\].
-    pub fn new<C: Space<State = S>>(space: &C, regions: usize, overlap: f64) -> Result<Self, BuildError> {
-        let Regions { regions, overlap, .. } = Regions { regions, overlap, ..Regions::default() }.check()?;
-        let dim = space.dim();
-        let mut axes: Vec<Axis> =
-            (0..dim).filter_map(|coordinate| straight_axis(space, coordinate)).collect();
-        // Each factor, the largest first, cuts the regions where they are longest, the first of axes of the same length.
-        for factor in factors(regions as u32).into_iter().rev() {
-            let longer = |best: Option<usize>, i: usize| {
-                let length = |i: usize| axes[i].length / f64::from(axes[i].cells);
-                Some(best.filter(|&best| length(best) >= length(i)).unwrap_or(i))
-            };
-            if let Some(longest) = (0..axes.len()).fold(None, longer) {
-                axes[longest].cells *= factor;
-            }
-        }
-        let mut regions = 1;
-        for axis in &mut axes {
-            axis.stride = regions;
-            regions *= axis.cells;
-        }
-        axes.retain(|axis| axis.cells > 1);
-        let along = |region: u32, axis: &Axis| {
-            (cell(axis, region) + 1 < axis.cells).then_some([region, region + axis.stride])
-        };
-        let pairs = (0..regions).flat_map(|region| axes.iter().filter_map(move |axis| along(region, axis)));
-        let (pairs, origin) = (pairs.collect(), space.unit_cube_to_state(&vec![0.0; dim]));
-        Ok(Self { dim, origin, axes, overlap, regions, pairs })
-    }
-
-    /// How many regions there are; their numbers are those below.
-    #[must_use]
-    pub fn regions(&self) -> u32 {
-        self.regions
-    }
-
-    /// All pairs of adjacent regions, in order, the lower region first.
-    #[must_use]
-    pub fn pairs(&self) -> &[[u32; 2]] {
-        &self.pairs
-    }
-
-    /// The region in which a state is.
-    pub fn region_of<C: Space<State = S>>(&self, space: &C, q: &S) -> u32 {
-        let cell = |(axis, x): (&Axis, f64)| {
-            let cell = (x * f64::from(axis.cells)).floor().clamp(0.0, f64::from(axis.cells - 1));
-            cell as u32 * axis.stride
-        };
-        self.axes.iter().zip(self.coordinates(space, q)).map(cell).sum()
-    }
-
-    /// A sample of a region and the overlap around it, uniform in both.
-    pub fn sample<C: Space<State = S>>(&self, space: &C, region: u32, rng: &mut Rng) -> S {
-        let mut u: Vec<f64> = (0..self.dim).map(|_| rng.random()).collect();
-        for axis in &self.axes {
-            let Range { start, end } = self.range(axis, region);
-            let x = &mut u[axis.coordinate];
-            *x = (start + (end - start) * *x).min(1.0 - f64::EPSILON);
-        }
-        space.unit_cube_to_state(&u)
-    }
-
-    /// Whether a state is in a region or its overlap, up to rounding.
-    fn holds<C: Space<State = S>>(&self, space: &C, region: u32, q: &S) -> bool {
-        let within = |(axis, x): (&Axis, f64)| {
-            let Range { start, end } = self.range(axis, region);
-            (start - ROUNDING..=end + ROUNDING).contains(&x)
-        };
-        region < self.regions && self.axes.iter().zip(self.coordinates(space, q)).all(within)
-    }
-
-    /// The range of a region and its overlap along an axis, in the unit cube.
-    fn range(&self, axis: &Axis, region: u32) -> Range<f64> {
-        let (cell, cells) = (f64::from(cell(axis, region)), f64::from(axis.cells));
-        ((cell - self.overlap) / cells).max(0.0)..((cell + 1.0 + self.overlap) / cells).min(1.0)
-    }
-
-    /// Where a state is along each axis, from 0 to 1.
-    fn coordinates<C: Space<State = S>>(&self, space: &C, q: &S) -> impl Iterator<Item = f64> {
-        let mut velocity = vec![0.0; self.dim];
-        space.velocity_into(&self.origin, q, &mut velocity);
-        self.axes.iter().map(move |axis| velocity[axis.coordinate] / axis.width)
-    }
-}
-
-/// The place of a region along an axis.
-fn cell(axis: &Axis, region: u32) -> u32 {
-    region / axis.stride % axis.cells
-}
-
-/// The axis of a coordinate of the unit cube along which states move straight, alone and in proportion: not a rotation.
-fn straight_axis<C: Space>(space: &C, coordinate: usize) -> Option<Axis> {
-    let mut velocity = vec![0.0; space.dim()];
-    let state = |others: f64, x: f64| {
-        let mut u = vec![others; space.dim()];
-        u[coordinate] = x;
-        space.unit_cube_to_state(&u)
-    };
-    if !space.velocity_into(&state(0.0, 0.0), &state(0.0, 0.5), &mut velocity) {
-        return None;
-    }
-    let width = 2.0 * velocity[coordinate];
-    let straight = [0.0, 0.6].into_iter().all(|others| {
-        [0.25, 0.5, 0.75, 0.95].into_iter().all(|x| {
-            let wanted = |i: usize| if i == coordinate { x * width } else { 0.0 };
-            space.velocity_into(&state(others, 0.0), &state(others, x), &mut velocity)
-                && velocity.iter().enumerate().all(|(i, v)| (v - wanted(i)).abs() <= ROUNDING * width)
-        })
-    });
-    let length = 2.0 * space.distance(&state(0.0, 0.0), &state(0.0, 0.5));
-    let axis = Axis { coordinate, width, length, cells: 1, stride: 1 };
-    (width > 0.0 && width.is_finite() && straight).then_some(axis)
-}
-
-/// The prime factors of a number, the smallest first.
-fn factors(mut number: u32) -> Vec<u32> {
-    let (mut factors, mut factor) = (Vec::new(), 2);
-    while factor * factor <= number {
-        while number.is_multiple_of(factor) {
-            factors.push(factor);
-            number /= factor;
-        }
-        factor += 1;
-    }
-    factors.extend((number > 1).then_some(number));
-    factors
-}
-
 /// Roadmaps of regions, and the edges between them, as [pieces](Piece). An item of a round is a region, or behind all regions a pair of
 /// adjacent ones.
 #[derive(Clone, Debug)]
@@ -350,8 +188,9 @@ pub struct InRegions<S, N> {
     /// The roadmap when regions began to grow, or to be connected. What came later, such as edges that a query has blocked, would make
     /// pieces depend on each other.
     moment: Moment,
-    /// The regions of the nodes that there were at that moment.
-    regions: Arc<Vec<u32>>,
+    /// The nodes of each region that has any, in order, and how many there are in all, at that moment.
+    members: Arc<BTreeMap<u32, Vec<NodeId>>>,
+    seen: NodeId,
 }
 
 impl<S: Clone, N: Clone> InRegions<S, N> {
@@ -375,7 +214,8 @@ impl<S: Clone, N: Clone> InRegions<S, N> {
             next: 0,
             old: 0,
             moment: Moment::default(),
-            regions: Arc::default(),
+            members: Arc::default(),
+            seen: 0,
         })
     }
 
@@ -396,14 +236,14 @@ impl<S: Clone, N: Clone> InRegions<S, N> {
     /// How many items a round has: regions, and pairs of them.
     #[must_use]
     pub fn items(&self) -> u64 {
-        u64::from(self.subdivision.regions) + self.subdivision.pairs.len() as u64
+        u64::from(self.subdivision.regions()) + self.subdivision.pairs().len() as u64
     }
 
     /// The pair of regions that an item of a round connects; `None` for a region.
     #[must_use]
     pub fn pair(&self, item: u64) -> Option<[u32; 2]> {
-        let pair = item.checked_sub(u64::from(self.subdivision.regions))?;
-        self.subdivision.pairs.get(pair as usize).copied()
+        let pair = item.checked_sub(u64::from(self.subdivision.regions()))?;
+        self.subdivision.pairs().get(pair as usize).copied()
     }
 
     /// What item number `item` of the first round adds to the roadmap. The roadmap of a region is made from an empty `map`, and edges
@@ -422,7 +262,7 @@ impl<S: Clone, N: Clone> InRegions<S, N> {
         N: NearestNeighbors<C>,
     {
         let mut first = self.clone();
-        (first.old, first.regions) = (0, Arc::default());
+        (first.old, first.seen, first.members) = (0, 0, Arc::default());
         first.look(map, checker.space());
         first.made(item, map, checker, &mut Rng::stream(seed, item))
     }
@@ -430,17 +270,18 @@ impl<S: Clone, N: Clone> InRegions<S, N> {
     /// Notes the moment, and the regions of nodes that are new.
     fn look<C: Space<State = S>, E>(&mut self, map: &Roadmap<S, E>, space: &C) {
         self.moment = Moment::of(map);
-        let regions = Arc::make_mut(&mut self.regions);
-        for id in regions.len() as NodeId..map.len() as NodeId {
+        let members = Arc::make_mut(&mut self.members);
+        for id in self.seen..map.len() as NodeId {
             let q = map.state(id);
             let known = map.tag(id).obstacle.filter(|&region| self.subdivision.holds(space, region, q));
-            regions.push(known.unwrap_or_else(|| self.subdivision.region_of(space, q)));
+            let region = known.unwrap_or_else(|| self.subdivision.region_of(space, q));
+            members.entry(region).or_default().push(id);
         }
+        self.seen = map.len() as NodeId;
     }
 
-    fn members(&self, region: u32) -> impl Iterator<Item = NodeId> {
-        let of = self.regions.iter().enumerate().filter(move |(_, of)| **of == region);
-        of.map(|(id, _)| id as NodeId)
+    fn members(&self, region: u32) -> &[NodeId] {
+        self.members.get(&region).map_or(&[], Vec::as_slice)
     }
 
     fn made<C, L>(
@@ -475,7 +316,7 @@ impl<S: Clone, N: Clone> InRegions<S, N> {
         N: NearestNeighbors<C>,
     {
         let (space, mut index) = (checker.space(), self.index.clone());
-        let mut part = Part::of(map, self.members(region).collect(), self.moment);
+        let mut part = Part::of(map, self.members(region).to_vec(), self.moment);
         (0..part.map.len() as NodeId).for_each(|id| index.inserted(space, part.map.states(), id));
         let (mut connector, mut unseen) = (self.connector.clone(), ());
         let mut growing = Growing::of_piece(&mut part.map, &mut index, checker, &mut unseen);
@@ -505,9 +346,8 @@ impl<S: Clone, N: Clone> InRegions<S, N> {
         N: NearestNeighbors<C>,
     {
         let (space, mut index) = (checker.space(), self.index.clone());
-        let mut members: Vec<NodeId> = self.members(one).collect();
-        let border = members.len() as NodeId;
-        members.extend(self.members(other));
+        let border = self.members(one).len() as NodeId;
+        let members = [self.members(one), self.members(other)].concat();
         let old: Vec<bool> = members.iter().map(|&id| id < self.old).collect();
         let mut part = Part::of(map, members, self.moment);
         (border..part.map.len() as NodeId).for_each(|id| index.inserted(space, part.map.states(), id));
@@ -562,7 +402,7 @@ where
         if item == 0 {
             self.old = map.len() as NodeId;
         }
-        if item == 0 || item == u64::from(self.subdivision.regions) {
+        if item == 0 || item == u64::from(self.subdivision.regions()) {
             self.look(map, space);
         }
     }
@@ -579,7 +419,7 @@ where
 
     /// Until all regions have grown, or all of their pairs are connected.
     fn independent(&self, _: &Roadmap<C::State, L::Edge>) -> u64 {
-        let (item, regions) = (self.next % self.items(), u64::from(self.subdivision.regions));
+        let (item, regions) = (self.next % self.items(), u64::from(self.subdivision.regions()));
         if item < regions { regions - item } else { self.items() - item }
     }
 }
