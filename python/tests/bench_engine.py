@@ -14,7 +14,6 @@ import subprocess
 import sys
 import tempfile
 import textwrap
-import threading
 import time
 from collections.abc import Callable
 from functools import cache
@@ -56,25 +55,6 @@ def ompl(*arguments: object) -> dict[str, Any] | None:
     return dict(json.loads(done.stdout))
 
 
-def ticks_during(work: Callable[[], object]) -> tuple[int, float]:
-    """Count how often a thread that sleeps for a millisecond at a time wakes up, and the seconds."""
-    count, over = 0, threading.Event()
-
-    def tick() -> None:
-        nonlocal count
-        while not over.wait(0.001):
-            count += 1
-
-    thread = threading.Thread(target=tick)
-    thread.start()
-    began = time.perf_counter()
-    work()
-    seconds, counted = time.perf_counter() - began, count
-    over.set()
-    thread.join()
-    return counted, seconds
-
-
 def wall_scene(robot: mp.Robot) -> mp.Scene:
     """Make the problem of the wall with a gap."""
     return mp.Scene.own(robot, [1, 1], [3, 1])
@@ -97,7 +77,7 @@ def other_threads() -> None:
         "mp: checking a path of apartment, 20 times": lambda: [mp.Scene("apartment").check(path) for _ in range(20)],
     }
     for name, work in works.items():
-        count, seconds = ticks_during(work)
+        count, seconds = peer().ticks_during(work)
         print(f"{name}: {count / seconds:.0f} ({count} in {seconds:.2f} s)")
     for name, what in {"nothing in the way": "locked", "a function of Python": "wall"}.items():
         if done := ompl(what):

@@ -114,8 +114,8 @@ def free_body(bodies: Bodies, valid: Counted) -> Any:
     return setup
 
 
-def solve_beside_ticks(setup: Any, seconds: float) -> dict[str, Any]:
-    """Solve beside a thread that sleeps for a millisecond at a time."""
+def ticks_during(work: Callable[[], object]) -> tuple[int, float]:
+    """Count how often a thread that sleeps for a millisecond at a time wakes up, and the seconds."""
     count, over = 0, threading.Event()
 
     def tick() -> None:
@@ -125,12 +125,20 @@ def solve_beside_ticks(setup: Any, seconds: float) -> dict[str, Any]:
 
     thread = threading.Thread(target=tick)
     thread.start()
-    began, spent = time.perf_counter(), time.process_time()
-    solved = setup.solve(seconds)
-    took, counted, spent = time.perf_counter() - began, count, time.process_time() - spent
+    began = time.perf_counter()
+    work()
+    seconds, counted = time.perf_counter() - began, count
     over.set()
     thread.join()
-    return {"ticks": counted, "time_s": took, "processor_s": spent, "solved": bool(solved)}
+    return counted, seconds
+
+
+def solve_beside_ticks(setup: Any, seconds: float) -> dict[str, Any]:
+    """Solve beside a thread that ticks."""
+    ended: list[Any] = []
+    spent = time.process_time()
+    ticks, took = ticks_during(lambda: ended.append(setup.solve(seconds)))
+    return {"ticks": ticks, "time_s": took, "processor_s": time.process_time() - spent, "solved": bool(ended[0])}
 
 
 def main(what: str, seed: str = "1", folder: str = ".") -> None:

@@ -1,0 +1,9 @@
+//! RRTConCon: a point leaves a bug trap in the plane.
+//!
+//! `cargo run -p mp-tree --example trees con_con [SEED]`
+
+use crate::shared;
+pub(crate) fn main() -> shared::Result {
+    let space = shared::square()?;
+    shared::run(mp_tree::RrtConCon::new(shared::bug_trap(&space)?, shared::tuning())?)
+}
