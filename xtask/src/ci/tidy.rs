@@ -263,13 +263,13 @@ fn algorithm(sources: &[(PathBuf, String)], path: &Path) -> Option<&'static str>
     let registered = sources.iter().any(made_by_name);
     let capital = |part: &str| part[..1].to_uppercase() + &part[1..];
     let kind: String = stem.split('_').filter(|part| !part.is_empty()).map(capital).collect();
-    let within = |s: &Path, folder: &str| s.parent().is_some_and(|p| p.ends_with(folder));
+    let within = |s: &Path, folder: &str| s.ancestors().any(|p| p.ends_with(folder));
     if !sources.iter().any(|(s, _)| s.file_name() == Some(name) && within(s, "examples")) {
         return Some("example of its name");
     }
     let tests = |(s, text): &(PathBuf, String)| {
         (s == path && text.contains("#[cfg(test)]"))
-            || (s.ancestors().any(|folder| folder.ends_with("tests"))
+            || (within(s, "tests")
                 && (s.file_name() == Some(name)
                     || text.contains(&word)
                     || text.contains(&kind)
@@ -366,7 +366,7 @@ mod tests {
         let file = PathBuf::from("crates/mp-x/src/algo/fast.rs");
         let mut sources = vec![(file.clone(), String::new())];
         assert_eq!(algorithm(&sources, &file), Some("example of its name"));
-        sources.push(("crates/mp/examples/fast.rs".into(), String::new()));
+        sources.push(("crates/mp/examples/all/fast.rs".into(), String::new()));
         assert_eq!(algorithm(&sources, &file), Some("test"));
         sources.push(("crates/mp-x/tests/family/all.rs".into(), "run(\"fast\")".into()));
         assert_eq!(algorithm(&sources, &file), None);
