@@ -15,7 +15,10 @@ mod shared;
 mod visibility_prm;
 mod window;
 
-const EXAMPLES: &[(&str, fn() -> shared::Result)] = &[
+/// Its name, and what it does.
+type Example = (&'static str, fn() -> shared::Result);
+
+const EXAMPLES: &[Example] = &[
     ("bridge_prm", bridge_prm::main),
     ("gaussian_prm", gaussian_prm::main),
     ("lazy_prm", lazy_prm::main),

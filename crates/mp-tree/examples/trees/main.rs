@@ -30,7 +30,10 @@ mod shared_tree;
 mod t_rrt;
 mod utility_rrt;
 
-const EXAMPLES: &[(&str, fn() -> shared::Result)] = &[
+/// Its name, and what it does.
+type Example = (&'static str, fn() -> shared::Result);
+
+const EXAMPLES: &[Example] = &[
     ("add_rrt", add_rrt::main),
     ("aorrtc", aorrtc::main),
     ("bi_rrt", bi_rrt::main),
