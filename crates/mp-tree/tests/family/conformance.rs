@@ -9,9 +9,9 @@ use nalgebra::{DVector, SVector, Vector2};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-const SEEDS: u64 = 12;
+const SEEDS: u64 = 20;
 /// Of these seeds so many are planned with a discrete check as well.
-const DISCRETE: u64 = 3;
+const DISCRETE: u64 = 4;
 /// Iterations given to problems that have no solution.
 const HOPELESS: u64 = 10_000;
 
