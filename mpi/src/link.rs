@@ -6,6 +6,12 @@ use mpi::point_to_point::{Destination, MatchedReceiveVec, Source};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use mpi::{Rank, Threading};
 use std::cell::Cell;
+use std::time::Duration;
+
+/// How long it waits before it looks for messages again: the first time after there was one, and at most.
+///
+/// MPI cannot wake a thread up, and its own waiting keeps a core busy. To look takes some microseconds.
+const WAIT: [Duration; 2] = [Duration::from_micros(30), Duration::from_millis(1)];
 
 /// The world of an MPI job. It ends MPI when it is dropped.
 pub(crate) struct MpiLink {
@@ -13,6 +19,8 @@ pub(crate) struct MpiLink {
     _universe: Universe,
     /// Whether something could not be sent.
     broken: Cell<bool>,
+    /// How long to wait next.
+    wait: Cell<Duration>,
 }
 
 impl MpiLink {
@@ -24,6 +32,7 @@ impl MpiLink {
             world: universe.world(),
             _universe: universe,
             broken: Cell::new(false),
+            wait: Cell::new(WAIT[0]),
         })
     }
 
@@ -63,8 +72,14 @@ impl Link for MpiLink {
     }
     fn poll(&self) -> Result<Option<(usize, Vec<u8>)>, Error> {
         let Some(found) = self.world.any_process().immediate_matched_probe() else { return Ok(None) };
+        self.wait.set(WAIT[0]);
         let (bytes, status) = found.matched_receive_vec::<u8>();
         let from = usize::try_from(status.source_rank());
         from.map(|from| Some((from, bytes))).map_err(|_| Error::Link("a message has no sender".to_owned()))
+    }
+    fn wait(&self, most: Duration) {
+        let wait = self.wait.get();
+        std::thread::park_timeout(wait.min(most));
+        self.wait.set((wait + wait / 4).min(WAIT[1]));
     }
 }

@@ -7,6 +7,7 @@
 //! - A [`Link`] carries messages. [`threads`] makes links between threads; that of MPI is elsewhere.
 //! - A [`Checkpoint`] keeps results, so that a job that was killed goes on.
 //! - [`Shares`] says what each rank did.
+//! - [`Pace`] keeps searches that race side by side.
 //! - [`simulate`] replays measured costs for any number of ranks.
 //!
 //! ```
@@ -34,6 +35,7 @@
 mod checkpoint;
 mod job;
 mod link;
+mod pace;
 mod run;
 mod shares;
 mod simulate;
@@ -41,6 +43,7 @@ mod simulate;
 pub use checkpoint::Checkpoint;
 pub use job::{Items, Job};
 pub use link::{Link, ThreadLink, threads};
+pub use pace::Pace;
 pub use run::{Hand, Options, Ran, Work, broadcast, run};
 pub use shares::Shares;
 pub use simulate::{Policy, Simulated, simulate};

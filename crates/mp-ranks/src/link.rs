@@ -1,7 +1,10 @@
 //! Messages between ranks.
 
 use crate::Error;
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::Thread;
+use std::time::Duration;
 
 /// The rank that hands out work.
 pub(crate) const MASTER: usize = 0;
@@ -24,6 +27,11 @@ pub trait Link {
     /// # Errors
     /// When no rank can be reached any more.
     fn poll(&self) -> Result<Option<(usize, Vec<u8>)>, Error>;
+    /// Waits until a message has arrived, someone [unparks](Thread::unpark) this thread, or as long as seems good for a link that cannot tell
+    /// that messages arrive, but not longer than `most`. May return at any time.
+    fn wait(&self, most: Duration) {
+        std::thread::park_timeout(most.min(Duration::from_millis(1)));
+    }
 
     /// Whether this rank hands out the work.
     fn is_master(&self) -> bool {
@@ -35,15 +43,30 @@ pub trait Link {
 #[derive(Debug)]
 pub struct ThreadLink {
     rank: usize,
-    to: Vec<Sender<(usize, Vec<u8>)>>,
+    to: Vec<Mailbox>,
     arrived: Receiver<(usize, Vec<u8>)>,
+}
+
+/// Where messages to a rank go.
+#[derive(Clone, Debug)]
+struct Mailbox {
+    sender: Sender<(usize, Vec<u8>)>,
+    /// Who looked last, and may be waiting.
+    reader: Arc<Mutex<Option<Thread>>>,
+}
+
+impl Mailbox {
+    fn reader(&self) -> std::sync::MutexGuard<'_, Option<Thread>> {
+        self.reader.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// The links of so many ranks, each for a thread of this process; at least one.
 #[must_use]
 pub fn threads(ranks: usize) -> Vec<ThreadLink> {
     let (senders, receivers): (Vec<_>, Vec<_>) = (0..ranks.max(1)).map(|_| channel()).unzip();
-    let link = |(rank, arrived)| ThreadLink { rank, to: senders.clone(), arrived };
+    let to: Vec<_> = senders.into_iter().map(|sender| Mailbox { sender, reader: Arc::default() }).collect();
+    let link = |(rank, arrived)| ThreadLink { rank, to: to.clone(), arrived };
     receivers.into_iter().enumerate().map(link).collect()
 }
 
@@ -55,17 +78,21 @@ impl Link for ThreadLink {
         self.to.len()
     }
     fn send(&self, to: usize, message: Vec<u8>) -> Result<(), Error> {
-        let sent = self.to.get(to).map(|sender| sender.send((self.rank, message)));
-        match sent {
-            Some(Ok(())) => Ok(()),
-            _ => Err(Error::Link(format!("rank {to} has ended"))),
+        let mailbox = self.to.get(to);
+        let sent = mailbox.filter(|mailbox| mailbox.sender.send((self.rank, message)).is_ok());
+        let mailbox = sent.ok_or_else(|| Error::Link(format!("rank {to} has ended")))?;
+        if let Some(reader) = &*mailbox.reader() {
+            reader.unpark();
         }
+        Ok(())
     }
     fn poll(&self) -> Result<Option<(usize, Vec<u8>)>, Error> {
-        match self.arrived.try_recv() {
-            Ok(message) => Ok(Some(message)),
-            // This link has a sender to itself.
-            Err(TryRecvError::Empty | TryRecvError::Disconnected) => Ok(None),
-        }
+        // Before it looks: what comes later wakes it.
+        *self.to[self.rank].reader() = Some(std::thread::current());
+        // This link has a sender to itself, so an error means that there is nothing.
+        Ok(self.arrived.try_recv().ok())
+    }
+    fn wait(&self, most: Duration) {
+        std::thread::park_timeout(most);
     }
 }

@@ -5,12 +5,13 @@ use crate::{Error, Job, Link};
 use mp_stop::Cancel;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::thread::Thread;
 use std::time::Duration;
 
-/// How often messages are looked for.
-const POLL: Duration = Duration::from_millis(1);
+/// How often it is asked at least whether the job is cancelled.
+const CANCEL: Duration = Duration::from_millis(5);
 /// While there are so many items for each thread, each rank has one more than it works on, and never waits for the next.
 const PLENTY: u64 = 8;
 
@@ -40,6 +41,11 @@ pub struct Hand {
     least: AtomicU64,
     /// What was reported and not yet passed on.
     reports: Mutex<Vec<(u64, u64)>>,
+    /// Passes it on.
+    reader: Thread,
+    /// Wakes those who wait for news.
+    waiting: Mutex<()>,
+    news: Condvar,
 }
 
 impl Hand {
@@ -54,12 +60,31 @@ impl Hand {
         let mut reports = self.reports.lock().unwrap_or_else(PoisonError::into_inner);
         reports.retain(|(other, _)| *other != item);
         reports.push((item, far));
+        drop(reports);
+        self.reader.unpark();
     }
 
-    /// How far the item is that is furthest behind of all that are worked on, as far as it is known here: news take some milliseconds.
+    /// How far the item is that is furthest behind of all that are worked on, as far as it is known here: news take some tenths of a
+    /// millisecond between processes.
     #[must_use]
     pub fn least_reached(&self) -> u64 {
         self.least.load(Ordering::Relaxed)
+    }
+
+    /// Waits while `not_yet`, which is asked again when there are news of [`least_reached`](Self::least_reached) or [`bound`](Self::bound),
+    /// and each `interval`.
+    pub fn wait_while(&self, interval: Duration, mut not_yet: impl FnMut() -> bool) {
+        let mut held = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        while not_yet() {
+            let woken = self.news.wait_timeout(held, interval);
+            held = woken.unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+
+    fn tell_news(&self) {
+        // Whoever has asked before the news waits by now.
+        drop(self.waiting.lock().unwrap_or_else(PoisonError::into_inner));
+        self.news.notify_all();
     }
 }
 
@@ -140,36 +165,31 @@ impl Crew<'_> {
         self.busy += 1;
     }
 
-    /// A result, if there is one soon.
+    /// A result, if there is one.
     fn result(&mut self) -> Option<(u64, Outcome)> {
-        match self.results.recv_timeout(POLL) {
-            Ok(done) => {
-                self.busy -= 1;
-                Some(done)
-            }
-            Err(RecvTimeoutError::Timeout) => None,
-            Err(RecvTimeoutError::Disconnected) => {
-                std::thread::sleep(POLL);
-                None
-            }
-        }
+        let done = self.results.try_recv().ok()?;
+        self.busy -= 1;
+        Some(done)
     }
 
     /// Drops all work.
     fn stop(&mut self) {
         self.hand.cancel.cancel();
-        while self.busy > 0 {
-            let _ = self.result();
+        self.hand.tell_news();
+        while self.busy > 0 && self.results.recv().is_ok() {
+            self.busy -= 1;
         }
     }
 
     fn lower(&self, bound: u64) {
         self.hand.bound.fetch_min(bound, Ordering::Relaxed);
+        self.hand.tell_news();
     }
 
     /// The item that is furthest behind is so far.
     fn set_least(&self, far: u64) {
         self.hand.least.store(far, Ordering::Relaxed);
+        self.hand.tell_news();
     }
 
     /// What was reported since the last time.
@@ -185,6 +205,9 @@ fn with_crew<T>(options: &Options, work: &Work<'_>, with: impl FnOnce(Crew<'_>) 
         bound: AtomicU64::new(u64::MAX),
         least: AtomicU64::new(0),
         reports: Mutex::default(),
+        reader: std::thread::current(),
+        waiting: Mutex::default(),
+        news: Condvar::new(),
     };
     let (queue, items) = channel::<u64>();
     let (sender, results) = channel();
@@ -199,6 +222,7 @@ fn with_crew<T>(options: &Options, work: &Work<'_>, with: impl FnOnce(Crew<'_>) 
                     if sender.send((item, outcome(item, hand, work))).is_err() {
                         return;
                     }
+                    hand.reader.unpark();
                 }
             });
         }
@@ -283,14 +307,21 @@ impl<'a, 'c> Master<'a, 'c> {
             if self.busy.iter().all(|busy| *busy == 0) {
                 return Ok(true);
             }
+            let mut news = false;
             while let Some((from, message)) = self.link.poll()? {
                 self.received(from, &message)?;
+                news = true;
             }
-            if let Some((item, result)) = self.crew.result() {
+            while let Some((item, result)) = self.crew.result() {
                 self.took(item, MASTER, result)?;
+                news = true;
             }
             for (item, far) in self.crew.reports() {
                 self.is_at(item, far);
+                news = true;
+            }
+            if !news {
+                self.link.wait(CANCEL);
             }
         }
     }
@@ -396,7 +427,7 @@ impl<'a, 'c> Master<'a, 'c> {
             match self.link.poll()? {
                 // Results that nobody wants any more come before.
                 Some((from, message)) => idle += usize::from(parts(from, &message)?.0 == kind::IDLE),
-                None => std::thread::sleep(POLL),
+                None => self.link.wait(CANCEL),
             }
         }
         Ok(Ran { cancelled: !ran?, items: self.done })
@@ -411,7 +442,9 @@ fn other(link: &dyn Link, mut crew: Crew<'_>) -> Result<(), Error> {
         Outcome::Dropped => link.send(MASTER, message(kind::DROPPED, item, &[])),
     };
     loop {
+        let mut news = false;
         while let Some((from, received)) = link.poll()? {
+            news = true;
             match parts(from, &received)? {
                 (kind::WORK, item, _) => crew.give(item),
                 (kind::BOUND, bound, _) => crew.lower(bound),
@@ -425,13 +458,16 @@ fn other(link: &dyn Link, mut crew: Crew<'_>) -> Result<(), Error> {
                 _ => return Err(Error::OutOfStep { rank: from }),
             }
         }
-        if crew.busy == 0 {
-            std::thread::sleep(POLL);
-        } else if let Some((item, result)) = crew.result() {
+        while let Some((item, result)) = crew.result() {
             send(item, result)?;
+            news = true;
         }
         for (item, far) in crew.reports() {
             link.send(MASTER, message(kind::REACHED, item, &far.to_le_bytes()))?;
+            news = true;
+        }
+        if !news {
+            link.wait(CANCEL);
         }
     }
 }
@@ -454,7 +490,7 @@ pub fn broadcast(link: &dyn Link, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
                     _ => Err(Error::OutOfStep { rank: from }),
                 };
             }
-            None => std::thread::sleep(POLL),
+            None => link.wait(CANCEL),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The same results for any number of ranks, whoever is fast or slow; cancelled and gone on with; failing.
 
 use mp_ranks::{
-    Checkpoint, Error, Hand, Items, Job, Link, Options, Policy, Ran, Work, broadcast, run, simulate, threads,
+    Checkpoint, Error, Hand, Items, Job, Link, Options, Pace, Policy, Ran, Work, broadcast, run, simulate,
+    threads,
 };
 use mp_stop::Cancel;
 use proptest::prelude::*;
@@ -281,5 +282,61 @@ fn items_hear_how_far_the_last_of_them_is() {
         let options = Options { threads, ..Options::default() };
         let ran = on(ranks, &options, &mut Items::new(0..items, |_, _, _| Ok(())), &work).unwrap();
         assert_eq!(ran.items.iter().sum::<u64>(), items);
+    }
+}
+
+#[test]
+fn those_who_race_keep_pace_and_none_waits_for_ever() {
+    // The steps of the clock, microseconds: with long ones nothing is too new to count; with short ones most reports are left out.
+    for step in [1000, 30] {
+        for (ranks, threads) in [(1, 4), (3, 1), (3, 2)] {
+            let items = (ranks * threads) as u64;
+            let far: Vec<AtomicU64> = (0..items).map(|_| AtomicU64::new(0)).collect();
+            let clock = AtomicU64::new(0);
+            let now = || Duration::from_micros(clock.fetch_add(step, Ordering::SeqCst));
+            let work = |item: u64, hand: &Hand| {
+                let mut pace = Pace::new(item);
+                for reached in 0..400 {
+                    far[item as usize].store(reached, Ordering::SeqCst);
+                    pace.keep(hand, reached, now, || false);
+                    let least = far.iter().map(|far| far.load(Ordering::SeqCst)).min().unwrap();
+                    assert!(
+                        step < 200 || reached <= least + (least / 8).max(4),
+                        "{reached}, and one is at {least}"
+                    );
+                }
+                far[item as usize].store(u64::MAX, Ordering::SeqCst);
+                Ok(Vec::new())
+            };
+            let options = Options { threads, ..Options::default() };
+            let ran = on(ranks, &options, &mut Items::new(0..items, |_, _, _| Ok(())), &work).unwrap();
+            assert_eq!(ran.items.iter().sum::<u64>(), items);
+        }
+    }
+}
+
+#[test]
+fn news_wake_those_who_wait() {
+    let (waits, day) = (AtomicU64::new(0), Duration::from_secs(24 * 60 * 60));
+    let work = |item: u64, hand: &Hand| {
+        if item == 0 {
+            hand.reached(0, 2);
+            hand.wait_while(day, || {
+                waits.store(1, Ordering::SeqCst);
+                hand.least_reached() < 1
+            });
+        } else {
+            while waits.load(Ordering::SeqCst) == 0 {
+                std::thread::yield_now();
+            }
+            hand.reached(item, 1);
+            hand.wait_while(day, || hand.least_reached() < 1);
+        }
+        Ok(Vec::new())
+    };
+    for _ in 0..100 {
+        waits.store(0, Ordering::SeqCst);
+        let ran = on(2, &Options::default(), &mut Items::new(0..2, |_, _, _| Ok(())), &work).unwrap();
+        assert_eq!(ran.items, [1, 1]);
     }
 }

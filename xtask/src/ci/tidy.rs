@@ -57,6 +57,14 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     findings.extend(alone_lines(
         sources.iter().map(|(p, text)| (p.strip_prefix(root).unwrap_or(p), text.as_str())),
     ));
+    for src in paths_of_crates(root)? {
+        let manifest = read(&src.with_file_name("Cargo.toml"))?;
+        let of_crate = sources.iter().filter(|(path, _)| path.starts_with(&src));
+        findings.extend(idle_tests(
+            &manifest,
+            of_crate.map(|(p, text)| (p.strip_prefix(root).unwrap_or(p), text)),
+        ));
+    }
     for (path, text) in &sources {
         let path = path.strip_prefix(root).unwrap_or(path);
         findings.extend(file_calls(path, text));
@@ -68,6 +76,22 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
         findings.extend(algorithm(&sources, path).map(|lack| format!("{shown} has no {lack}")));
     }
     Ok(findings)
+}
+
+/// Tests that never run, as they are in the sources of a library whose manifest says that it has none.
+fn idle_tests<'s>(manifest: &str, sources: impl Iterator<Item = (&'s Path, &'s String)>) -> Vec<String> {
+    let mut of_lib = manifest.lines().skip_while(|line| line.trim() != "[lib]").skip(1);
+    let has_none =
+        of_lib.by_ref().take_while(|line| !line.starts_with('[')).any(|line| line.trim() == "test = false");
+    let with_tests = sources.filter(|(_, text)| has_none && text.contains("#[cfg(test)]"));
+    with_tests
+        .map(|(path, _)| {
+            format!(
+                "{} has tests that never run: `test = false` in the manifest; put them into `tests`",
+                path.display()
+            )
+        })
+        .collect()
 }
 
 /// The folders of sources of all crates.
@@ -301,6 +325,14 @@ mod tests {
     fn the_workspace_is_tidy() {
         let findings = check(&crate::root()).unwrap();
         assert!(findings.is_empty(), "{findings:#?}");
+    }
+
+    #[test]
+    fn tests_that_never_run_are_found() {
+        let (path, text) = (Path::new("crates/mp-x/src/a.rs"), "#[cfg(test)]\nmod tests {}\n".to_owned());
+        let found = |manifest: &str| idle_tests(manifest, [(path, &text)].into_iter()).len();
+        assert_eq!(found("[package]\nname = \"x\"\n\n# Why.\n[lib]\ntest = false\n"), 1);
+        assert_eq!(found("[lib]\ndoctest = false\n\n[[bin]]\nname = \"x\"\ntest = false\n"), 0);
     }
 
     #[test]

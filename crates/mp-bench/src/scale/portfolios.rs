@@ -193,7 +193,7 @@ impl Replay {
             let best = round.iter().filter(|(length, cap)| length <= cap).map(|(length, _)| *length).min();
             let made = |(length, cap): &(u64, u64), most: u64| (*length).min(*cap).min(most) as f64;
             let bound = best.unwrap_or(u64::MAX);
-            let reach = best.map_or(u64::MAX, |best| best + (best / 16).max(16));
+            let reach = best.map_or(u64::MAX, |best| best + (best / 16).max(4));
             // The largest caps first, there and back again.
             let lane = |lane: usize| {
                 let turns = round.chunks(ranks).enumerate();

@@ -2,21 +2,17 @@
 
 use super::{Clocks, Dealt, RunOutcome, rounds::Rounds};
 use crate::run::AnyRun;
-use crate::{Clock, Control, Error, Request, Scene};
+use crate::{Control, Error, Request, Scene};
 use mp_cspace::{Iterations, Rng, StopReason};
-use mp_ranks::{Hand, Link};
+use mp_ranks::{Hand, Link, Pace};
 use serde::{Deserialize, Serialize};
-use std::collections::{HashSet, VecDeque};
+use std::collections::HashSet;
 use std::time::Duration;
 
 /// So many iterations make a turn at least.
-const LEAST_TURN: u64 = 16;
+const LEAST_TURN: u64 = 4;
 /// A turn is at most this part of what the run has made.
 const TURN_PART: u64 = 16;
-/// A lane is at most this part ahead of the one that is furthest behind, as far as it knows: what it makes beyond the winner is in vain.
-const LEAD_PART: u64 = 8;
-/// News of other lanes may be so old.
-const NEWS: Duration = Duration::from_millis(4);
 
 /// What all ranks must know before they begin: the same for all.
 #[derive(Debug, Serialize, Deserialize)]
@@ -78,7 +74,7 @@ fn received(link: &dyn Link) -> Result<(usize, bool), Error> {
     loop {
         match link.poll()? {
             Some((from, message)) => return Ok((from, message == answer(true))),
-            None => std::thread::sleep(Duration::from_millis(1)),
+            None => link.wait(Duration::from_millis(5)),
         }
     }
 }
@@ -137,11 +133,11 @@ impl Lane<'_> {
             best.map_or(known, |(iterations, _)| iterations.min(known))
         };
         let mut reach = 0;
-        let mut lead = Lead::new(self.clocks.clock);
+        let mut pace = Pace::new(item);
         while racers.iter().any(|racer| racer.run.is_some()) && !hand.cancel.is_raised() {
-            hand.reached(item, reach);
             // Where nothing but the end of runs that cannot win is left, nobody is waited for.
-            lead.wait(reach, || hand.cancel.is_raised() || bound(best) <= reach, || hand.least_reached());
+            let over = || hand.cancel.is_raised() || bound(best) <= reach;
+            pace.keep(hand, reach, || self.clocks.clock.now(), over);
             reach = next_reach(reach);
             for racer in &mut racers {
                 let Some(mut run) = racer.run.take() else { continue };
@@ -188,73 +184,7 @@ impl Lane<'_> {
     }
 }
 
-/// How far a lane may be ahead of the others.
-///
-/// It costs no time that it waits: the one that is furthest behind must get as far as the winner anyway. News take some milliseconds, so
-/// that what a lane made in these does not count.
-struct Lead {
-    clock: Clock,
-    /// How far it was, and when: the first not later than [`NEWS`] ago, if it has come so far.
-    was: VecDeque<(Duration, u64)>,
-}
-
-impl Lead {
-    fn new(clock: Clock) -> Self {
-        Self { clock, was: VecDeque::new() }
-    }
-
-    /// Having reached so much, waits until the last, which is `least`, is near enough, or it is `over`.
-    fn wait(&mut self, reach: u64, over: impl Fn() -> bool, least: impl Fn() -> u64) {
-        self.was.push_back((self.clock.now(), reach));
-        while !over() && self.reached_before_the_news() > ahead_of(least()) {
-            std::thread::sleep(NEWS / 16);
-        }
-    }
-
-    fn reached_before_the_news(&mut self) -> u64 {
-        let now = self.clock.now();
-        let old = |at: Duration| now.saturating_sub(at) >= NEWS;
-        while self.was.get(1).is_some_and(|(at, _)| old(*at)) {
-            self.was.pop_front();
-        }
-        self.was.front().filter(|(at, _)| old(*at)).map_or(0, |(_, reach)| *reach)
-    }
-}
-
-/// How far one may be when the last has reached `least`.
-fn ahead_of(least: u64) -> u64 {
-    least.saturating_add(LEAST_TURN.max(least / LEAD_PART))
-}
-
 /// How far runs have come after the next turn.
 fn next_reach(reach: u64) -> u64 {
     reach.saturating_add(LEAST_TURN.max(reach / TURN_PART))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::cell::Cell;
-
-    thread_local!(static NOW: Cell<Duration> = const { Cell::new(Duration::ZERO) });
-
-    #[test]
-    fn a_lane_waits_for_the_last() {
-        let mut lead = Lead::new(Clock::new(|| NOW.get()));
-        let asked = Cell::new(0);
-        // The last is 10 further each time it is asked for.
-        let mut waits = |at: u64, reach: u64| {
-            NOW.set(Duration::from_millis(at));
-            asked.set(0);
-            lead.wait(reach, || asked.get() == 1000, || 10 * asked.replace(asked.get() + 1));
-            asked.get()
-        };
-        // What it made since there may have been news does not count.
-        assert_eq!([waits(0, 0), waits(1, 500), waits(3, 900)], [1, 1, 1]);
-        // It had 500 before the news: the last must come to 445, as an eighth more is 500.
-        assert_eq!(waits(5, 1000), 46);
-        // When it is over, nobody waits.
-        NOW.set(Duration::from_secs(1));
-        lead.wait(2000, || true, || 0);
-    }
 }
