@@ -160,22 +160,28 @@ fn block(rng: &mut Rng, size: [f64; 2], [small, large]: [f64; 2]) -> Vec<[f64; 2
 /// and goal.
 fn scattered(mut scene: DiscScene, count: usize, radii: [f64; 2], gap: f64, seed: u64) -> DiscScene {
     let mut rng = Rng::seed(seed);
+    let world_of = |rings: &[Vec<[f64; 2]>]| {
+        let polygons = rings.iter().filter_map(|ring| Polygon::outlined(ring.iter().copied()).ok());
+        PlanarWorld::new(polygons.collect(), None).ok()
+    };
+    let ends = [scene.start, scene.goal].map(Point2::from);
+    let mut others = world_of(&scene.obstacles);
     while scene.obstacles.len() < count {
         let ring = block(&mut rng, scene.size, radii);
         let inside = ring.iter().all(|p| {
             p[0] > 0.05 && p[1] > 0.05 && p[0] < scene.size[0] - 0.05 && p[1] < scene.size[1] - 0.05
         });
-        let ends = [scene.start, scene.goal].map(Point2::from);
-        let Ok(polygon) = Polygon::outlined(ring.iter().copied()) else { continue };
-        let Ok(own) = PlanarWorld::new(vec![polygon], None) else { continue };
-        let others = scene.obstacles.iter().filter_map(|r| Polygon::outlined(r.iter().copied()).ok());
-        let Ok(others) = PlanarWorld::new(others.collect(), None) else { continue };
+        // A world takes long to make: that of the others is made again only when there is one more of them.
+        let (true, Some(world)) = (inside, &others) else { continue };
         let sides = ring.iter().zip(ring.iter().skip(1).chain(ring.first()));
         let mut sides = sides.map(|(a, b)| (Point2::from(*a), Point2::from(*b)));
-        let apart =
-            sides.all(|(a, b)| others.nearest_to_segment(&a, &b, gap).is_none() && !others.contains(&a));
-        if inside && apart && ends.iter().all(|p| own.signed_distance(p) > 2.5 * RADIUS) {
+        if !sides.all(|(a, b)| world.nearest_to_segment(&a, &b, gap).is_none() && !world.contains(&a)) {
+            continue;
+        }
+        let Some(own) = world_of(std::slice::from_ref(&ring)) else { continue };
+        if own.edges() > 0 && ends.iter().all(|p| own.signed_distance(p) > 2.5 * RADIUS) {
             scene.obstacles.push(ring);
+            others = world_of(&scene.obstacles);
         }
     }
     scene
