@@ -259,29 +259,43 @@ fn simulated_jobs_are_those_done_by_hand() {
     assert_eq!((slow.makespan_s, slow.master_load), (4.25, 1.0 / 4.25));
 }
 
+/// Items that race, all at a time. Each calls `wait` at each step; `most` is how far it may then be, when the last is so far.
+fn race(
+    [ranks, threads]: [usize; 2],
+    steps: u64,
+    wait: &(dyn Fn(&mut Pace, &Hand, u64, u64) + Sync),
+    most: &(dyn Fn(u64) -> u64 + Sync),
+) {
+    let items = (ranks * threads) as u64;
+    let far: Vec<AtomicU64> = (0..items).map(|_| AtomicU64::new(0)).collect();
+    let work = |item: u64, hand: &Hand| {
+        let mut pace = Pace::new(item);
+        for reached in 0..steps {
+            far[item as usize].store(reached, Ordering::SeqCst);
+            wait(&mut pace, hand, item, reached);
+            // What is known is older than what is.
+            let least = far.iter().map(|far| far.load(Ordering::SeqCst)).min().unwrap();
+            assert!(reached <= most(least), "{reached}, and one is at {least}");
+        }
+        far[item as usize].store(u64::MAX, Ordering::SeqCst);
+        Ok(Vec::new())
+    };
+    let options = Options { threads, ..Options::default() };
+    let ran = on(ranks, &options, &mut Items::new(0..items, |_, _, _| Ok(())), &work).unwrap();
+    assert_eq!(ran.items.iter().sum::<u64>(), items);
+}
+
 #[test]
 fn items_hear_how_far_the_last_of_them_is() {
     const LEAD: u64 = 10;
-    for (ranks, threads) in [(1, 1), (1, 4), (3, 1), (3, 2)] {
-        let items = (ranks * threads) as u64;
-        let far: Vec<AtomicU64> = (0..items).map(|_| AtomicU64::new(0)).collect();
-        let work = |item: u64, hand: &Hand| {
-            for reached in 0..100 {
-                far[item as usize].store(reached, Ordering::SeqCst);
-                hand.reached(item, reached);
-                while reached > hand.least_reached() + LEAD {
-                    std::thread::sleep(Duration::from_micros(100));
-                }
-                // What is known is older than what is.
-                let least = far.iter().map(|far| far.load(Ordering::SeqCst)).min().unwrap();
-                assert!(reached <= least + LEAD, "{reached}, and one is at {least}");
-            }
-            far[item as usize].store(u64::MAX, Ordering::SeqCst);
-            Ok(Vec::new())
-        };
-        let options = Options { threads, ..Options::default() };
-        let ran = on(ranks, &options, &mut Items::new(0..items, |_, _, _| Ok(())), &work).unwrap();
-        assert_eq!(ran.items.iter().sum::<u64>(), items);
+    let wait = |_: &mut Pace, hand: &Hand, item, reached| {
+        hand.reached(item, reached);
+        while reached > hand.least_reached() + LEAD {
+            std::thread::sleep(Duration::from_micros(100));
+        }
+    };
+    for on in [[1, 1], [1, 4], [3, 1], [3, 2]] {
+        race(on, 100, &wait, &|least| least + LEAD);
     }
 }
 
@@ -289,28 +303,12 @@ fn items_hear_how_far_the_last_of_them_is() {
 fn those_who_race_keep_pace_and_none_waits_for_ever() {
     // The steps of the clock, microseconds: with long ones nothing is too new to count; with short ones most reports are left out.
     for step in [1000, 30] {
-        for (ranks, threads) in [(1, 4), (3, 1), (3, 2)] {
-            let items = (ranks * threads) as u64;
-            let far: Vec<AtomicU64> = (0..items).map(|_| AtomicU64::new(0)).collect();
+        for on in [[1, 4], [3, 1], [3, 2]] {
             let clock = AtomicU64::new(0);
             let now = || Duration::from_micros(clock.fetch_add(step, Ordering::SeqCst));
-            let work = |item: u64, hand: &Hand| {
-                let mut pace = Pace::new(item);
-                for reached in 0..400 {
-                    far[item as usize].store(reached, Ordering::SeqCst);
-                    pace.keep(hand, reached, now, || false);
-                    let least = far.iter().map(|far| far.load(Ordering::SeqCst)).min().unwrap();
-                    assert!(
-                        step < 200 || reached <= least + (least / 8).max(4),
-                        "{reached}, and one is at {least}"
-                    );
-                }
-                far[item as usize].store(u64::MAX, Ordering::SeqCst);
-                Ok(Vec::new())
-            };
-            let options = Options { threads, ..Options::default() };
-            let ran = on(ranks, &options, &mut Items::new(0..items, |_, _, _| Ok(())), &work).unwrap();
-            assert_eq!(ran.items.iter().sum::<u64>(), items);
+            let wait = |pace: &mut Pace, hand: &Hand, _, reached| pace.keep(hand, reached, now, || false);
+            let most = |least: u64| if step < 200 { u64::MAX } else { least + (least / 8).max(4) };
+            race(on, 400, &wait, &most);
         }
     }
 }
