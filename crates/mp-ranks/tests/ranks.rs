@@ -300,7 +300,7 @@ fn items_hear_how_far_the_last_of_them_is() {
 }
 
 #[test]
-fn those_who_race_keep_pace_and_none_waits_for_ever() {
+fn those_who_race_keep_pace() {
     // The steps of the clock, microseconds: with long ones nothing is too new to count; with short ones most reports are left out.
     for step in [1000, 30] {
         for on in [[1, 4], [3, 1], [3, 2]] {
@@ -311,6 +311,29 @@ fn those_who_race_keep_pace_and_none_waits_for_ever() {
             race(on, 400, &wait, &most);
         }
     }
+}
+
+#[test]
+fn nobody_waits_without_having_said_how_far_it_is() {
+    let work = |item: u64, hand: &Hand| {
+        if item == 0 {
+            let mut pace = Pace::new(0);
+            pace.keep(hand, 10, || Duration::ZERO, || false);
+            // So soon after, 20 is not reported; then time passes, and it is too far ahead of 15.
+            let asked = AtomicU64::new(0);
+            let now =
+                || Duration::from_micros([10, 1000][usize::from(asked.fetch_add(1, Ordering::SeqCst) > 0)]);
+            pace.keep(hand, 20, now, || false);
+        } else {
+            hand.reached(1, 15);
+            hand.wait_while(Duration::from_millis(1), || hand.least_reached() < 15);
+            hand.reached(1, 100);
+        }
+        Ok(Vec::new())
+    };
+    let options = Options { threads: 2, ..Options::default() };
+    let ran = on(1, &options, &mut Items::new(0..2, |_, _, _| Ok(())), &work).unwrap();
+    assert_eq!(ran.items, [2]);
 }
 
 #[test]
