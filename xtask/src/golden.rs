@@ -24,7 +24,7 @@ struct Way {
 }
 
 /// The test programs: bits of functions, results of planners, and a simulated experiment.
-const PROGRAMS: [&str; 3] = ["bits", "fingerprints", "mp_bench"];
+const PROGRAMS: [&str; 3] = ["bits", "fingerprints", "follow"];
 
 /// How they are built.
 const TESTS: &[&[&str]] = &[&[
@@ -33,12 +33,13 @@ const TESTS: &[&[&str]] = &[&[
     "--package",
     "mp-plan",
     "--package",
-    "mp-bench",
+    "mp-experiments",
     "--test",
     "bits",
     "--test",
     "fingerprints",
-    "--lib",
+    "--test",
+    "follow",
 ]];
 
 /// How `cargo test` has built them, with all others.
@@ -102,7 +103,7 @@ const WAYS: [Way; 5] = [
         needs: &[(&["node", "--version"], "node")],
         target: Some("wasm32-wasip1"),
         tests: &[
-            &["--package", "mp-math", "--test", "bits"],
+            &["--package", "mp-math", "--package", "mp-experiments", "--test", "bits", "--test", "follow"],
             &[
                 "--package",
                 "mp-plan",

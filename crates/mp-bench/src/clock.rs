@@ -1,6 +1,6 @@
 //! Processor time.
 
-use mp_cspace::{Clock, Progress, Stop, StopReason};
+use mp_cspace::Clock;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -49,18 +49,4 @@ pub(crate) fn seconds_since(began: f64) -> f64 {
 /// The processor time of the thread that reads it, as the clock of a planner's budget and report.
 pub(crate) fn processor_clock() -> Clock {
     Clock::new(|| Duration::from_nanos(nanoseconds() as u64))
-}
-
-/// Stops at a given processor time of this thread.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ProcessorTime {
-    /// The time to stop at, a value of [`nanoseconds`].
-    pub(crate) until: f64,
-}
-
-impl Stop for ProcessorTime {
-    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
-        let due = progress.iterations.is_multiple_of(16) && nanoseconds() > self.until;
-        due.then_some(StopReason::Deadline)
-    }
 }

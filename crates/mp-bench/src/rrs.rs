@@ -4,18 +4,16 @@
 //! `--flying`, a body in space; with `--pictures`, pictures of a field and of a tree.
 
 mod flying;
-mod follow;
 mod follow_suite;
-mod noisy_robot;
 mod pictures;
 mod series;
-mod solve;
 mod tables;
 
 use crate::error::Result;
 use crate::experiment::Lab;
 use crate::options::Common;
 use clap::Args;
+use mp_experiments::rrs::ITERATIONS;
 use series::{Plan, measure};
 use tables::Results;
 
@@ -49,7 +47,7 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     }
     let plan = Plan::new(common);
     let name = lab.name("rrs");
-    let mut log = lab.log(&name, solve::ITERATIONS as f64)?;
+    let mut log = lab.log(&name, ITERATIONS as f64)?;
     let complete = measure(&plan, &lab, &mut log)?;
     let results = Results::new(&log, &plan);
     // An interrupted measurement may have nothing to draw.

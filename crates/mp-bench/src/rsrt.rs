@@ -6,15 +6,13 @@
 //! The paper stops a series when solving takes more than 60 s on a computer of 2008; `--cap` says how
 //! many seconds of processor time correspond to that here. A series also ends at the level at which no instance is solved.
 
-mod clutter;
 mod expansion;
 mod factorial;
 mod factorial_tables;
+mod in_scene;
 mod restarts;
 mod restarts_tables;
-mod robots;
 mod series;
-mod solve;
 mod tables;
 
 use crate::error::Result;
@@ -22,7 +20,7 @@ use crate::experiment::{Lab, sections};
 use crate::options::Common;
 use crate::output::note;
 use clap::{Args, ValueEnum};
-use clutter::LEVELS;
+use mp_experiments::clutter::LEVELS;
 use mp_plan::{Error, positive_number};
 use std::time::Duration;
 

@@ -1,16 +1,17 @@
 //! Many queries to one roadmap, compared with RRT-Connect for each.
 
-use crate::clock::{ProcessorTime, nanoseconds, seconds_since};
+use crate::clock::{nanoseconds, processor_clock, seconds_since};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Median, Table, mean, short};
 use crate::output::note;
 use crate::scenes::{Rigid, either};
-use mp_cspace::{Certified, Nodes, Outcome, Planner, Problem, Rng, Space, Straight, Validity};
+use mp_cspace::{Certified, Deadline, Nodes, Outcome, Planner, Problem, Rng, Space, Straight, Validity};
 use mp_plan::{RigidScene, RigidSpace, RobotKind};
 use mp_roadmap::algo::prm;
 use mp_roadmap::{Builder, EdgeChecker, Learning, PATIENCE, Reachable, RoadmapQueries};
 use mp_robot::{RigidBody, Verifier};
 use mp_tree::{RrtConnect, Tuning};
+use std::time::Duration;
 
 /// Nodes of the roadmaps.
 const SIZES: [usize; 3] = [500, 2_000, 8_000];
@@ -64,7 +65,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
             Err(_) => false,
             Ok(problem) => {
                 let mut planner = RrtConnect::new(problem, Tuning::default()).into_error()?;
-                let mut stop = ProcessorTime { until: began + CAP * 1e9 };
+                let mut stop = Deadline::by(processor_clock(), Duration::from_secs_f64(CAP));
                 matches!(planner.solve(&mut Rng::seed(seed), &mut stop, &mut ()), Outcome::Solved(_))
             }
         };

@@ -1,11 +1,11 @@
 //! The experiment of §6: trials, tables and pictures.
 
-use super::follow::{Followed, KINDS, MARGIN, Run, planned_and_followed};
 use super::tables::interval;
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table, bit, wilson};
 use crate::options::Common;
 use crate::plot::save_drawing;
+use mp_experiments::rrs::{Followed, Following, KINDS, MARGIN, planned_and_followed};
 use mp_render::{Drawing, Item};
 use mp_scenes::source::disc_scenes::{DiscScene, RADIUS, tight};
 use nalgebra::Point2;
@@ -33,8 +33,8 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
         .flat_map(|kind| (0..trials).map(|trial| Case { path: (*kind).to_owned(), trial }))
         .collect();
     let complete = lab.measure(&mut log, "rrs, following", &cases, |case| {
-        let followed = planned_and_followed(&scene, &case.path, case.trial)?;
-        Ok(Some(followed.map_or(Run::default(), |f| f.run)))
+        let followed = planned_and_followed(&scene, &case.path, case.trial).into_error()?;
+        Ok(Some(followed.map_or(Following::default(), |f| f.run)))
     })?;
     if !complete {
         return Ok(false);
@@ -54,7 +54,7 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
             ("uncertainty_m", &|(_, run)| length(run.uncertainty)),
         ],
     );
-    let centimetres = |all: &[&Run], value: fn(&Run) -> f64| {
+    let centimetres = |all: &[&Following], value: fn(&Following) -> f64| {
         let values: Vec<f64> = all.iter().map(|run| 100.0 * value(run)).collect();
         interval(&values)
     };
@@ -65,7 +65,7 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     let summary = Table::of(
         groups,
         &[
-            ("path", &|(kind, _): &(&str, Vec<&Run>)| (*kind).to_owned()),
+            ("path", &|(kind, _): &(&str, Vec<&Following>)| (*kind).to_owned()),
             ("followed", &|(_, all)| all.len().to_string()),
             ("collisions, %", &|(_, all)| {
                 let hits = all.iter().filter(|run| run.executed <= 0.0).count();
@@ -86,7 +86,7 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     let all = |trial: &u64| found().filter(|(case, _)| case.trial == *trial).count() == KINDS.len();
     if let Some(trial) = (0..trials).find(all) {
         for (kind, colour) in KINDS.iter().zip(COLOURS) {
-            let Some(followed) = planned_and_followed(&scene, kind, trial)? else { continue };
+            let Some(followed) = planned_and_followed(&scene, kind, trial).into_error()? else { continue };
             let drawing = picture(&scene, kind, &followed, colour)?;
             let stem = lab.file(&format!("{name}-{}", kind.replace(' ', "-")));
             save_drawing(&stem, &drawing, (1100, 520))?;

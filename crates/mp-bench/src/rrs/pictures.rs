@@ -1,12 +1,11 @@
 //! Pictures: the field that pushes snakes in a world, a tree with bent edges, a path relaxed, the landscape of risk.
 
-use super::follow::{MARGIN, risk_of};
-use super::solve::{Case, ITERATIONS, PreparedWorld, RANGE, planned, rrs};
 use crate::error::{IntoError, Result};
 use crate::experiment::Lab;
 use crate::plot::save_drawing;
 use mp_cspace::shorten::reduce;
-use mp_cspace::{Cancel, Iterations, Outcome, Planner, Rn, Rng, least_clearance};
+use mp_cspace::{Cancel, Clock, Iterations, Outcome, Planner, Rn, Rng, least_clearance};
+use mp_experiments::rrs::{Case, ITERATIONS, MARGIN, Planned, PreparedWorld, RANGE, planned, risk_of, rrs};
 use mp_render::{Drawing, Item};
 use mp_scenes::source::disc_scenes::{disc_scene, tight};
 use mp_snake::risk::RiskMaps;
@@ -24,7 +23,7 @@ const PATH: u32 = 0xc77d0a;
 
 /// Draws all pictures. Always true.
 pub(super) fn run(lab: &Lab) -> Result<bool> {
-    let prepared = PreparedWorld::new(disc_scene(WORLD, 0).into_error()?)?;
+    let prepared = PreparedWorld::new(disc_scene(WORLD, 0).into_error()?).into_error()?;
     for (name, drawing) in
         [("field", field(&prepared)), ("tree", tree(&prepared)?), ("relaxed", relaxed(&prepared)?)]
     {
@@ -43,6 +42,11 @@ fn world(prepared: &PreparedWorld, title: &str, subtitle: String) -> Drawing {
         title,
         subtitle,
     )
+}
+
+/// What a planner finds in a world.
+fn found(prepared: &PreparedWorld, case: &Case) -> Result<Option<Planned>> {
+    planned(prepared, case, Clock::default(), &Cancel::new()).into_error()
 }
 
 /// The energy of repulsion `½·(1 − c/range)²` below the obstacles.
@@ -68,7 +72,7 @@ fn shade(drawing: &mut Drawing, map: &Grid, part: impl Fn(f64) -> f64) {
 fn relaxed(prepared: &PreparedWorld) -> Result<Drawing> {
     let space = Rn::<2>::new([0.0; 2], prepared.scene.size).into_error()?;
     let case = Case { world: WORLD.into(), planner: "rrt-upto".into(), step: 50, trial: 0 };
-    let found = planned(prepared, &case, &Cancel::new())?.and_then(|(_, path)| path);
+    let found = found(prepared, &case)?.and_then(|(_, path)| path);
     let Some(path) = found else { return Ok(field(prepared)) };
     let mut robot = prepared.robot.clone();
     let path = reduce(&space, &mut robot, &path);
@@ -97,10 +101,10 @@ fn relaxed(prepared: &PreparedWorld) -> Result<Drawing> {
 /// Fig. 1: where a robot passes that follows a path inexactly, where obstacles are that were seen inexactly, and the risk,
 /// the product of both. Each is drawn relative to its greatest value.
 fn risk() -> Result<Vec<(String, Drawing)>> {
-    let prepared = PreparedWorld::with_margin(tight(), MARGIN)?;
+    let prepared = PreparedWorld::with_margin(tight(), MARGIN).into_error()?;
     let space = Rn::<2>::new([0.0; 2], prepared.scene.size).into_error()?;
     let case = Case { world: "follow".into(), planner: "rrs-upto".into(), step: 50, trial: 0 };
-    let found = planned(&prepared, &case, &Cancel::new())?.and_then(|(_, path)| path);
+    let found = found(&prepared, &case)?.and_then(|(_, path)| path);
     let Some(path) = found else { return Ok(Vec::new()) };
     let path = reduce(&space, &mut prepared.robot.clone(), &path);
     let titles = [
@@ -108,7 +112,7 @@ fn risk() -> Result<Vec<(String, Drawing)>> {
         ("risk-occupied", "Where obstacles are", "probability that the robot touches an obstacle here"),
         ("risk", "The landscape of risk", "the product of both: what pushes snakes away"),
     ];
-    let RiskMaps { passing, occupied, risk } = risk_of(&prepared, &space, &path)?;
+    let RiskMaps { passing, occupied, risk } = risk_of(&prepared, &space, &path).into_error()?;
     let draw = |((name, title, subtitle), map): ((&str, &str, &str), Grid)| {
         let most = map.values().iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let mut drawing = world(&prepared, title, subtitle.into());

@@ -1,9 +1,10 @@
 //! The series of all trials.
 
-use super::solve::{Case, PreparedWorld, Run, one};
+use crate::clock::processor_clock;
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Log};
 use crate::options::Common;
+use mp_experiments::rrs::{Case, PreparedWorld, Run, planned};
 use mp_scenes::source::disc_scenes::disc_scene;
 
 /// The worlds, by name.
@@ -53,8 +54,11 @@ pub(super) fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>) -> Resul
         &plan.cases(),
         // A world is prepared once for all its cases.
         |a, b| (&a.world, a.trial) == (&b.world, b.trial),
-        |case| PreparedWorld::new(disc_scene(&case.world, case.trial).into_error()?),
-        |prepared, case| one(prepared, case, &lab.cancel),
+        |case| PreparedWorld::new(disc_scene(&case.world, case.trial).into_error()?).into_error(),
+        |prepared, case| {
+            let done = planned(prepared, case, processor_clock(), &lab.cancel).into_error()?;
+            Ok(done.map(|(run, _)| run))
+        },
     )
 }
 

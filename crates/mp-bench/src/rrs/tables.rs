@@ -1,10 +1,10 @@
 //! The six measures of §4: tables and charts, compared with the values in the paper.
 
 use super::series::{PLANNERS, Plan, WORLDS};
-use super::solve::{Case, ITERATIONS, Run};
 use crate::error::Result;
 use crate::experiment::{Log, Table, mean};
 use crate::plot::{Axis, ChartCurve, Labels, chart};
+use mp_experiments::rrs::{Case, ITERATIONS, Run};
 
 /// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]

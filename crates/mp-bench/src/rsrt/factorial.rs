@@ -7,15 +7,14 @@
 //! ([`InputSet::directions`](mp_control::InputSet::directions)): the axes first, as in the paper, then directions of a
 //! low-discrepancy sequence on the sphere, scaled to the limits of each degree of freedom, each with its opposite.
 
-use super::clutter::Obstacle;
-use super::robots::{Flyer, SixAxes, TestRobot};
-use super::series::among_boxes;
-use super::solve::{ComparedPlanner, Run, RunSettings, in_scene};
-use crate::error::Result;
+use super::in_scene::in_scene;
+use crate::clock::processor_clock;
+use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Log};
 use crate::scenes::bare;
 use mp_control::{Accept, Order};
 use mp_cspace::Cancel;
+use mp_experiments::clutter::{ComparedPlanner, Mover, Obstacle, Run, RunSettings};
 use mp_plan::{Error, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -125,8 +124,7 @@ impl Plan {
 
 /// A problem with its obstacles for one seed.
 enum World {
-    Flyer(Box<Flyer>, &'static str, Vec<Obstacle>),
-    Arm(Box<SixAxes>, &'static str, Vec<Obstacle>),
+    Boxes(Mover, &'static str, Vec<Obstacle>),
     Scene(Box<Scene>),
 }
 
@@ -134,15 +132,10 @@ impl World {
     fn new(plan: &Plan, case: &Case) -> Result<Self> {
         let problem = plan.problems.iter().find(|p| p.name == case.problem);
         Ok(match problem.map(|p| p.place) {
-            Some(Place::Boxes { mover: "free-flyer", model, obstacles }) => {
-                let flyer = Flyer::new()?;
-                let obstacles = flyer.obstacles(obstacles, case.seed)?;
-                Self::Flyer(Box::new(flyer), model, obstacles)
-            }
-            Some(Place::Boxes { model, obstacles, .. }) => {
-                let arm = SixAxes::new()?;
-                let obstacles = arm.obstacles(obstacles, case.seed)?;
-                Self::Arm(Box::new(arm), model, obstacles)
+            Some(Place::Boxes { mover, model, obstacles }) => {
+                let mover = Mover::find(mover).into_error()?;
+                let obstacles = mover.obstacles(obstacles, case.seed).into_error()?;
+                Self::Boxes(mover, model, obstacles)
             }
             Some(Place::Scene(name)) => Self::Scene(Box::new(Scene::find(name)?)),
             None => return Err(Error::new(format!("there is no problem `{}` here", case.problem))),
@@ -157,13 +150,13 @@ impl World {
             inputs: case.inputs,
             seed: case.seed,
             cap,
+            clock: processor_clock(),
             cancel: cancel.clone(),
         };
         match self {
-            Self::Flyer(flyer, model, obstacles) => {
-                among_boxes(&**flyer, obstacles, [model, METRIC], &settings)
+            Self::Boxes(mover, model, obstacles) => {
+                mover.plan(obstacles, model, METRIC, &settings).into_error()
             }
-            Self::Arm(arm, model, obstacles) => among_boxes(&**arm, obstacles, [model, METRIC], &settings),
             Self::Scene(scene) => {
                 let request = bare("rrt-inputs")
                     .set("order", &case.order)

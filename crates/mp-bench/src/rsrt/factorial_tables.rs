@@ -1,10 +1,10 @@
 //! The factorial experiment as tables and charts.
 
 use super::factorial::{ACCEPTS, Case, FactorialProblem, ORDERS, Plan};
-use super::solve::Run;
 use crate::error::Result;
 use crate::experiment::{Log, Median, Table, paired_ratio, seconds};
 use crate::plot::{Axis, ChartCurve, Labels, chart};
+use mp_experiments::clutter::Run;
 
 /// An order and a condition.
 type Corner = [&'static str; 2];

@@ -1,10 +1,11 @@
 //! Restarts: Las Vegas algorithms with heavy tails, started again by schedules that do not know the distribution of their
 //! run lengths.
 
-use super::solve::{Run, in_scene};
+use super::in_scene::in_scene;
 use crate::error::Result;
 use crate::experiment::{Lab, Log};
 use crate::scenes::bare;
+use mp_experiments::clutter::Run;
 use mp_plan::{Error, Scene};
 use serde::{Deserialize, Serialize};
 

@@ -1,10 +1,10 @@
 //! Restarts as tables and charts.
 
 use super::restarts::{Case, Plan, SCHEDULES};
-use super::solve::Run;
 use crate::error::Result;
 use crate::experiment::{Log, Median, Table, bootstrap, restricted_mean, seconds, survival};
 use crate::plot::{Axis, ChartCurve, Labels, chart};
+use mp_experiments::clutter::Run;
 
 /// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]

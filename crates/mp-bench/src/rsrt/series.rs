@@ -1,11 +1,10 @@
 //! All series of problems, by increasing number of obstacles.
 
-use super::clutter::Obstacle;
-use super::robots::{Flyer, SixAxes, TestRobot};
-use super::solve::{ComparedPlanner, Run, RunSettings, positions, velocities};
+use crate::clock::processor_clock;
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Log};
-use mp_cspace::{Cancel, Euclidean, Manhattan, Product, ScaledEuclidean};
+use mp_cspace::Cancel;
+use mp_experiments::clutter::{ComparedPlanner, METRICS, MODELS, MOVERS, Mover, Obstacle, Run, RunSettings};
 use mp_plan::Error;
 use serde::{Deserialize, Serialize};
 
@@ -29,9 +28,6 @@ pub(super) struct Case {
     pub(super) instance: u64,
 }
 
-pub(super) const MOVERS: [&str; 2] = ["free-flyer", "6-DOF arm"];
-pub(super) const MODELS: [&str; 2] = ["positions", "velocities"];
-pub(super) const METRICS: [&str; 3] = ["euclidean", "scaled", "manhattan"];
 pub(super) const PLANNERS: [&str; 3] = ["rrt", "rsrt", "rrt-connect"];
 
 /// The number of inputs: one each way along each degree of freedom.
@@ -76,21 +72,16 @@ impl Series {
 
 /// Runs the cases that are not in the log. False when it was interrupted.
 pub(super) fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>) -> Result<bool> {
-    let (flyer, arm) = (Flyer::new()?, SixAxes::new()?);
     let most = plan.levels.last().copied().unwrap_or(0);
-    let instances = 0..u64::from(plan.instances);
-    let flying: Vec<Vec<Obstacle>> =
-        instances.clone().map(|i| flyer.obstacles(most, i)).collect::<Result<_>>()?;
-    let reaching: Vec<Vec<Obstacle>> = instances.map(|i| arm.obstacles(most, i)).collect::<Result<_>>()?;
+    let worlds = MOVERS.iter().map(|name| Worlds::new(name, most, plan.instances));
+    let worlds: Vec<Worlds> = worlds.collect::<Result<_>>()?;
     let mut going = Series::all();
     for &level in &plan.levels {
         let cases: Vec<Case> = going.iter().flat_map(|series| series.cases(plan, level)).collect();
         let run = |case: &Case| {
-            let world = |all: &[Vec<Obstacle>]| all[case.instance as usize][..level].to_vec();
-            match case.mover.as_str() {
-                "free-flyer" => one(&flyer, &world(&flying), case, plan.cap, &lab.cancel),
-                _ => one(&arm, &world(&reaching), case, plan.cap, &lab.cancel),
-            }
+            let of_mover = worlds.iter().find(|worlds| worlds.name == case.mover);
+            let worlds = of_mover.ok_or_else(|| Error::new(format!("there is no robot `{}`", case.mover)))?;
+            worlds.run(case, plan.cap, &lab.cancel)
         };
         if !lab.measure(log, &format!("rsrt, {level} obstacles"), &cases, run)? {
             return Ok(false);
@@ -101,53 +92,39 @@ pub(super) fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>) -> Resul
     Ok(true)
 }
 
-/// One run.
-fn one<M: TestRobot>(
-    test_robot: &M,
-    obstacles: &[Obstacle],
-    case: &Case,
-    cap: f64,
-    cancel: &Cancel,
-) -> Result<Option<Run>> {
-    let planner = match case.planner.as_str() {
-        "rrt" => ComparedPlanner::RRT,
-        "rsrt" => ComparedPlanner::RSRT,
-        "rrt-connect" => ComparedPlanner::Connect,
-        other => return Err(Error::new(format!("there is no planner `{other}` here"))),
-    };
-    let settings =
-        RunSettings { planner, inputs: INPUTS, seed: case.instance + 1, cap, cancel: cancel.clone() };
-    among_boxes(test_robot, obstacles, [&case.model, &case.metric], &settings)
+/// A robot with the obstacles of each instance, of which the first are those of smaller problems.
+struct Worlds {
+    name: &'static str,
+    mover: Mover,
+    instances: Vec<Vec<Obstacle>>,
 }
 
-/// Plans among obstacles with states that are positions, or have velocities, under a metric. `None` when it was cancelled.
-pub(super) fn among_boxes<M: TestRobot>(
-    test_robot: &M,
-    obstacles: &[Obstacle],
-    [model, metric]: [&str; 2],
-    settings: &RunSettings,
-) -> Result<Option<Run>> {
-    let robot = test_robot.among(obstacles)?;
-    let weights = test_robot.weights();
-    match (model, metric) {
-        ("positions", "euclidean") => positions(test_robot, robot, Euclidean, settings),
-        ("positions", "manhattan") => positions(test_robot, robot, Manhattan, settings),
-        ("positions", _) => {
-            let scaled = ScaledEuclidean::new(test_robot.space(), weights).into_error()?;
-            positions(test_robot, robot, scaled, settings)
-        }
-        (_, "euclidean") => velocities(test_robot, robot, Euclidean, settings),
-        (_, "manhattan") => velocities(test_robot, robot, Manhattan, settings),
-        _ => {
-            let (most, _) = test_robot.limits();
-            let space = Product::with_velocity(test_robot.space().clone(), most).into_error()?;
-            // A radian per second gets the weight of a radian; the rotation of a body has three velocities.
-            let last = weights.last().copied().unwrap_or(1.0);
-            let six = weights.iter().copied().chain(std::iter::repeat(last)).take(6);
-            let moving: Vec<f64> = weights.iter().copied().chain(six).collect();
-            let scaled = ScaledEuclidean::new(&space, moving).into_error()?;
-            velocities(test_robot, robot, scaled, settings)
-        }
+impl Worlds {
+    fn new(name: &'static str, most: usize, instances: u32) -> Result<Self> {
+        let mover = Mover::find(name).into_error()?;
+        let instances =
+            (0..instances.into()).map(|i| mover.obstacles(most, i)).collect::<mp_experiments::Result<_>>();
+        Ok(Self { name, instances: instances.into_error()?, mover })
+    }
+
+    /// One run.
+    fn run(&self, case: &Case, cap: f64, cancel: &Cancel) -> Result<Option<Run>> {
+        let planner = match case.planner.as_str() {
+            "rrt" => ComparedPlanner::RRT,
+            "rsrt" => ComparedPlanner::RSRT,
+            "rrt-connect" => ComparedPlanner::Connect,
+            other => return Err(Error::new(format!("there is no planner `{other}` here"))),
+        };
+        let settings = RunSettings {
+            planner,
+            inputs: INPUTS,
+            seed: case.instance + 1,
+            cap,
+            clock: processor_clock(),
+            cancel: cancel.clone(),
+        };
+        let obstacles = &self.instances[case.instance as usize][..case.obstacles];
+        self.mover.plan(obstacles, &case.model, &case.metric, &settings).into_error()
     }
 }
 

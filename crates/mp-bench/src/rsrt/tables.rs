@@ -1,10 +1,10 @@
 //! The results, as tables and charts.
 
-use super::series::{Case, METRICS, MODELS, MOVERS, PLANNERS, Plan, Series};
-use super::solve::Run;
+use super::series::{Case, PLANNERS, Plan, Series};
 use crate::error::Result;
 use crate::experiment::{Log, Median, Table, bit, geometric_mean, ratio, seconds};
 use crate::plot::{Axis, ChartCurve, Labels, chart};
+use mp_experiments::clutter::{METRICS, MODELS, MOVERS, Run};
 
 /// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]

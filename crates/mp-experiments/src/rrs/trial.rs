@@ -1,12 +1,10 @@
 //! One trial.
 
-use crate::clock::{nanoseconds, seconds_since};
-use crate::error::{IntoError, Result};
+use crate::Result;
 use mp_cspace::{
-    Cancel, DefaultNn, Direction, Extension, Iterations, LocalPlanner, Outcome, Path, Planner, PolylineEdge,
-    Reach, Rn, Rng, Space, Stop, StopReason, Straight, least_clearance,
+    Cancel, Clock, DefaultNn, Direction, Extension, Iterations, LocalPlanner, Outcome, Path, Planner,
+    PolylineEdge, Reach, Rn, Rng, Space, Stop, StopReason, Straight, least_clearance,
 };
-use mp_plan::Error;
 use mp_robot::{DiscRobot, DiscVerifier};
 use mp_scenes::source::disc_scenes::DiscScene;
 use mp_snake::{Bending, Field, Grid, Params, Repulsion, SnakeCounters, SnakePlanner, outline_energy};
@@ -16,9 +14,9 @@ use serde::{Deserialize, Serialize};
 use std::cell::Cell;
 
 /// The most iterations of a trial (§4).
-pub(super) const ITERATIONS: u64 = 5000;
+pub const ITERATIONS: u64 = 5000;
 /// How far obstacles push snakes, metres.
-pub(super) const RANGE: f64 = 0.15;
+pub const RANGE: f64 = 0.15;
 /// The size of a cell of the clearance map, metres.
 const CELL: f64 = 0.06;
 /// The size of a cell of the image of eq. 3, the deviation σ of its blur, metres, and its weight. The paper gives none.
@@ -28,44 +26,54 @@ const WEIGHT: f64 = 1.0;
 /// The accuracy of the safety of a path, metres.
 const ACCURACY: f64 = 1e-4;
 
-pub(super) type Point = Vector2<f64>;
+/// A place in the world, metres.
+pub type Point = Vector2<f64>;
 
-/// A case.
+/// A case: a planner in a world.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub(super) struct Case {
-    pub(super) world: String,
-    pub(super) planner: String,
+pub struct Case {
+    /// The world, by name.
+    pub world: String,
+    /// The planner, by name: `rrt`, `rrt-upto`, `rrt-connect`, `rrs`, `rrs-upto`, `rrs-eq3`, or `rrs-` and how it bends.
+    pub planner: String,
     /// Δq, centimetres.
-    pub(super) step: u32,
-    pub(super) trial: u64,
+    pub step: u32,
+    /// The number of the trial, which is also its seed.
+    pub trial: u64,
 }
 
 /// The result of a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Run {
-    pub(super) solved: bool,
-    /// Processor time, including the verification of candidate paths.
-    pub(super) seconds: f64,
-    pub(super) iterations: u64,
-    pub(super) nodes: usize,
+pub struct Run {
+    /// Whether it has found a path.
+    pub solved: bool,
+    /// Time by the clock of the trial, including the verification of candidate paths.
+    pub seconds: f64,
+    /// Iterations of the planner.
+    pub iterations: u64,
+    /// Nodes of its trees.
+    pub nodes: usize,
     /// The length of the path, metres; zero when there is none.
-    pub(super) length: f64,
+    pub length: f64,
     /// Its least distance from an obstacle, metres.
-    pub(super) safety: f64,
-    /// Edges of the tree that are straight, that a bulge bent, that a snake relaxed from a bulge, and that only a snake
-    /// bent; edges that could not be bent.
-    pub(super) straight: u64,
-    pub(super) bulged: u64,
-    pub(super) relaxed: u64,
-    pub(super) by_snake: u64,
-    pub(super) not_bent: u64,
+    pub safety: f64,
+    /// Edges of the tree that are straight.
+    pub straight: u64,
+    /// Edges that a bulge bent.
+    pub bulged: u64,
+    /// Edges that a snake relaxed from a bulge.
+    pub relaxed: u64,
+    /// Edges that only a snake bent.
+    pub by_snake: u64,
+    /// Edges that could not be bent.
+    pub not_bent: u64,
 }
 
 /// Steps of Δq, as in NEW_CONF of the paper: exactly that long, whether the sample is nearer or farther, except
 /// those toward the goal, which end at it; or at most that long, as is customary. No step is longer: if a planner tried
 /// the whole motion from start to goal first, a single snake would solve the problem.
 #[derive(Clone, Debug)]
-pub(super) struct Steps<'c, L> {
+pub struct Steps<'c, L> {
     space: &'c Rn<2>,
     goal: Point,
     step: f64,
@@ -107,7 +115,7 @@ impl<L: LocalPlanner<Point>> LocalPlanner<Point> for Steps<'_, L> {
 
 /// A local planner whose counts are seen from outside.
 #[derive(Clone, Debug)]
-pub(super) struct Counted<'c, L>(L, &'c Cell<SnakeCounters>);
+pub struct Counted<'c, L>(L, &'c Cell<SnakeCounters>);
 
 impl<F: Field<Point>> LocalPlanner<Point> for Counted<'_, Snakes<'_, F>> {
     type Edge = PolylineEdge<Point>;
@@ -133,59 +141,66 @@ type Snakes<'a, F> = SnakePlanner<'a, Rn<2>, DiscRobot, F>;
 
 /// A world prepared for all its cases: the scene, the robot and the maps that guide snakes.
 #[derive(Clone, Debug)]
-pub(super) struct PreparedWorld {
-    pub(super) scene: DiscScene,
-    pub(super) robot: DiscRobot,
+pub struct PreparedWorld {
+    /// The scene.
+    pub scene: DiscScene,
+    /// The robot among its obstacles.
+    pub robot: DiscRobot,
     /// The signed clearance of the robot, on a grid; it alone guides the snakes.
-    pub(super) map: Grid,
+    pub map: Grid,
     /// The energy of eq. 3, of the image of the places where the robot is in collision.
     outlines: Grid,
 }
 
 impl PreparedWorld {
-    pub(super) fn new(scene: DiscScene) -> Result<Self> {
+    /// The scene, with maps for its robot.
+    ///
+    /// # Errors
+    /// When the scene is not valid.
+    pub fn new(scene: DiscScene) -> Result<Self> {
         Self::with_margin(scene, 0.0)
     }
 
     /// The same for a robot whose radius is larger by `margin` metres.
-    pub(super) fn with_margin(scene: DiscScene, margin: f64) -> Result<Self> {
-        let robot = scene.robot().into_error()?;
+    ///
+    /// # Errors
+    /// When the scene is not valid.
+    pub fn with_margin(scene: DiscScene, margin: f64) -> Result<Self> {
+        let robot = scene.robot()?;
         let robot = match margin > 0.0 {
-            true => DiscRobot::new(robot.world().clone(), robot.radius() + margin).into_error()?,
+            true => DiscRobot::new(robot.world().clone(), robot.radius() + margin)?,
             false => robot,
         };
         let cells = |cell: f64| scene.size.map(|s| (s / cell).round() as usize).into();
-        let map = Grid::from_fn([0.0; 2], CELL, cells(CELL), |p| robot.signed_clearance(&p)).into_error()?;
+        let map = Grid::from_fn([0.0; 2], CELL, cells(CELL), |p| robot.signed_clearance(&p))?;
         let image =
             Grid::from_fn([0.0; 2], PIXEL, cells(PIXEL), |p| f64::from(u8::from(map.at(&p).0 <= 0.0)));
-        let outlines = outline_energy(&image.into_error()?, SIGMA, WEIGHT).into_error()?;
+        let outlines = outline_energy(&image?, SIGMA, WEIGHT)?;
         Ok(Self { scene, robot, map, outlines })
     }
 }
 
-/// Runs `case` in its world. `None` when it was cancelled.
-pub(super) fn one(world: &PreparedWorld, case: &Case, cancel: &Cancel) -> Result<Option<Run>> {
-    Ok(planned(world, case, cancel)?.map(|(run, _)| run))
-}
-
 /// The result of a case, and the path that was found.
-type Planned = (Run, Option<Path<Point>>);
+pub type Planned = (Run, Option<Path<Point>>);
 
-/// As [`one`], and returns the path too.
-pub(super) fn planned(world: &PreparedWorld, case: &Case, cancel: &Cancel) -> Result<Option<Planned>> {
+/// Runs `case` in its world, by a clock that measures its seconds. `None` when it was cancelled.
+///
+/// # Errors
+/// When there is no such planner.
+pub fn planned(world: &PreparedWorld, case: &Case, clock: Clock, cancel: &Cancel) -> Result<Option<Planned>> {
     let PreparedWorld { scene, robot, .. } = world;
-    let space = Rn::<2>::new([0.0; 2], scene.size).into_error()?;
+    let space = Rn::<2>::new([0.0; 2], scene.size)?;
     let step = f64::from(case.step) / 100.0;
     let tuning = Tuning { step: Step::Length(step), ..Tuning::default() };
     let (start, goal) = (Point::from(scene.start), Point::from(scene.goal));
     let verifier = DiscVerifier::new(robot);
-    let settings = TrialSettings { seed: case.trial + 1, cancel, space: &space, robot };
+    let settings = TrialSettings { seed: case.trial + 1, clock, cancel, space: &space, robot };
     let exactly = !matches!(case.planner.as_str(), "rrt-upto" | "rrs-upto" | "rrt-connect");
     match case.planner.as_str() {
         "rrt" | "rrt-upto" | "rrt-connect" => {
             let local = Straight::new(&space, robot.clone());
             let local = Steps { space: &space, goal, step, exactly, local };
-            let problem = Problem::new(&space, local, verifier, start, goal).into_error()?;
+            let problem = Problem::new(&space, local, verifier, start, goal)?;
             match case.planner.as_str() {
                 "rrt-connect" => settings.run(RrtConnect::new(problem, tuning), |path| path),
                 _ => settings.run(Rrt::new(problem, tuning), |path| path),
@@ -202,11 +217,11 @@ pub(super) fn planned(world: &PreparedWorld, case: &Case, cancel: &Cancel) -> Re
                 "rrs" | "rrs-upto" => Bending::default(),
                 other => match other.strip_prefix("rrs-").and_then(|bend| bend.parse().ok()) {
                     Some(bend) => bend,
-                    None => return Err(Error::new(format!("there is no planner `{other}` here"))),
+                    None => return Err(format!("there is no planner `{other}` here").into()),
                 },
             };
             let counters = Cell::default();
-            let field = Repulsion::new(&world.map, RANGE).into_error()?;
+            let field = Repulsion::new(&world.map, RANGE)?;
             let planner = rrs(world, &space, step, exactly, field, bend, &counters);
             Ok(settings.run(planner, |path| path.flattened())?.map(|run| counted(run, counters.get())))
         }
@@ -218,8 +233,11 @@ fn counted((run, path): Planned, counters: SnakeCounters) -> Planned {
     (Run { straight, bulged, relaxed, by_snake, not_bent, ..run }, path)
 }
 
-/// An RRS planner that is measured, with snakes in `field`.
-pub(super) fn rrs<'a, F: Field<Point>>(
+/// An RRS planner that is measured, with snakes in `field`, and steps of `step` metres, `exactly` or at most.
+///
+/// # Errors
+/// When the start or the goal of the world is not free.
+pub fn rrs<'a, F: Field<Point>>(
     world: &'a PreparedWorld,
     space: &'a Rn<2>,
     step: f64,
@@ -239,10 +257,12 @@ pub(super) fn rrs<'a, F: Field<Point>>(
     Rrt::new(problem, Tuning { step: Step::Length(step), ..Tuning::default() })
 }
 
-pub(super) type Rrs<'a, F> = Rrt<'a, Rn<2>, Steps<'a, Counted<'a, Snakes<'a, F>>>, <Rn<2> as DefaultNn>::Nn>;
+/// A tree of RRS, with its counts.
+pub type Rrs<'a, F> = Rrt<'a, Rn<2>, Steps<'a, Counted<'a, Snakes<'a, F>>>, <Rn<2> as DefaultNn>::Nn>;
 
 struct TrialSettings<'a> {
     seed: u64,
+    clock: Clock,
     cancel: &'a Cancel,
     space: &'a Rn<2>,
     robot: &'a DiscRobot,
@@ -254,11 +274,11 @@ impl TrialSettings<'_> {
         planner: std::result::Result<impl Planner<Point, Edge = E>, BuildError>,
         plain: impl Fn(Path<Point, E>) -> Path<Point>,
     ) -> Result<Option<Planned>> {
-        let mut planner = planner.into_error()?;
-        let began = nanoseconds();
+        let mut planner = planner?;
+        let began = self.clock.now();
         let mut stop = Iterations(ITERATIONS).or(self.cancel.clone());
         let outcome = planner.solve(&mut Rng::seed(self.seed), &mut stop, &mut ());
-        let seconds = seconds_since(began);
+        let seconds = self.clock.now().saturating_sub(began).as_secs_f64();
         let progress = planner.progress();
         let (iterations, nodes) = (progress.iterations, progress.nodes);
         let none = Run { seconds, iterations, nodes, ..Run::default() };

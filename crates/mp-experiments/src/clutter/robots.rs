@@ -1,7 +1,7 @@
 //! The robots of the experiment: a free-flyer, and an arm with six joints.
 
-use super::clutter::{Obstacle, Region, boxes};
-use crate::error::{IntoError, Result};
+use super::boxes::{Obstacle, Region, boxes};
+use crate::Result;
 use mp_cspace::{Clearance, Factored, MotionValidity, Rn, Se3, Space, Validity};
 use mp_geom::primitives::cuboid;
 use mp_robot::{Arm, ArmModel, ArmVerifier, FreeFlyer, Joint, JointKind, Link, Spatial, Verifier};
@@ -66,7 +66,7 @@ impl Flyer {
     pub(super) fn new() -> Result<Self> {
         let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, 1.5));
         Ok(Self {
-            space: Se3::new([0.0; 3], [ROOM; 3]).into_error()?,
+            space: Se3::new([0.0; 3], [ROOM; 3])?,
             start: Isometry3::translation(1.0, 1.0, 1.0),
             goal: Isometry3::from_parts(Vector3::repeat(ROOM - 1.0).into(), turn),
         })
@@ -92,14 +92,14 @@ impl TestRobot for Flyer {
             && q.rotation.angle_to(&self.goal.rotation) < within
     }
     fn among(&self, obstacles: &[Obstacle]) -> Result<FreeFlyer> {
-        let bar = cuboid(BAR[0], BAR[1], BAR[2]).into_error()?;
-        FreeFlyer::new(&bar, obstacles.iter().cloned()).into_error()
+        let bar = cuboid(BAR[0], BAR[1], BAR[2])?;
+        Ok(FreeFlyer::new(&bar, obstacles.iter().cloned())?)
     }
     fn verifier<'a>(
         &'a self,
         robot: &FreeFlyer,
     ) -> Result<impl MotionValidity<Isometry3<f64>> + Send + use<'a>> {
-        Verifier::<_, Spatial>::new(&self.space, robot).into_error()
+        Ok(Verifier::<_, Spatial>::new(&self.space, robot)?)
     }
     fn region(&self) -> Region {
         Region { low: [0.0; 3], high: [ROOM; 3], sides: (0.4, 1.4) }
@@ -139,10 +139,10 @@ const ARMS: [f64; 6] = [1.5, 1.5, 1.0, 0.3, 0.5, 0.15];
 
 impl SixAxes {
     pub(super) fn new() -> Result<Self> {
-        let arm = Arm::new(&model()?, []).into_error()?;
+        let arm = Arm::new(&model()?, [])?;
         let (start, goal) =
             (Six::from([-1.2, 0.6, 0.9, 0.0, 0.6, 0.0]), Six::from([1.4, 0.3, 1.2, 1.0, -0.7, 1.0]));
-        Ok(Self { arm, space: Rn::new([-TURN; 6], [TURN; 6]).into_error()?, start, goal })
+        Ok(Self { arm, space: Rn::new([-TURN; 6], [TURN; 6])?, start, goal })
     }
 }
 
@@ -151,7 +151,7 @@ fn model() -> Result<ArmModel> {
     let turn = JointKind::Revolute { low: -TURN, high: TURN };
     let up = |z: f64| Isometry3::translation(0.0, 0.0, z);
     let link = |name: &str, side: f64, length: f64| -> Result<Link> {
-        let shape = cuboid(side, side, length).into_error()?;
+        let shape = cuboid(side, side, length)?;
         Ok(Link::new(name).with(&shape, &up(0.5 * length)))
     };
     let joint = |name: &str, parent: &str, child: &str, z: f64, axis: Vector3<f64>| {
@@ -196,10 +196,10 @@ impl TestRobot for SixAxes {
         self.space.distance(q, &self.goal) < if has_velocity { 1.5 } else { 0.5 }
     }
     fn among(&self, obstacles: &[Obstacle]) -> Result<Arm> {
-        self.arm.among(obstacles.iter().cloned()).into_error()
+        Ok(self.arm.among(obstacles.iter().cloned())?)
     }
     fn verifier<'a>(&'a self, robot: &Arm) -> Result<impl MotionValidity<Six> + Send + use<'a>> {
-        ArmVerifier::new(&self.space, robot).into_error()
+        Ok(ArmVerifier::new(&self.space, robot)?)
     }
     fn region(&self) -> Region {
         Region { low: [-1.6, -1.6, 0.0], high: [1.6, 1.6, 1.8], sides: (0.05, 0.3) }

@@ -5,10 +5,10 @@
 //! Fox 2005, *Probabilistic robotics*, tables 5.3, 6.1 and 8.2). Safety is measured at its true position.
 
 use super::noisy_robot::{ParticleFilter, Pose, TICK};
-use super::solve::{Case, Point, PreparedWorld, RANGE, planned};
-use crate::error::{IntoError, Result};
+use super::trial::{Case, Point, PreparedWorld, RANGE, planned};
+use crate::Result;
 use mp_cspace::shorten::{Effort, simplify};
-use mp_cspace::{Cancel, Path, Rn, Rng, least_clearance};
+use mp_cspace::{Cancel, Clock, Path, Rn, Rng, least_clearance};
 use mp_robot::DiscRobot;
 use mp_scenes::source::disc_scenes::DiscScene;
 use mp_snake::risk::{MotionNoise, RangeNoise, RiskMaps};
@@ -27,27 +27,32 @@ const ARRIVED: f64 = 0.03;
 
 /// A path, and the line that the robot drove when it followed it.
 #[derive(Clone, Debug)]
-pub(super) struct Followed {
-    pub(super) path: Vec<Point2<f64>>,
-    pub(super) driven: Vec<Point2<f64>>,
-    pub(super) run: Run,
+pub struct Followed {
+    /// The path, metres.
+    pub path: Vec<Point2<f64>>,
+    /// The places of the robot, one for each tick.
+    pub driven: Vec<Point2<f64>>,
+    /// How well it did.
+    pub run: Following,
 }
 
 /// The result of following one path; lengths in metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Run {
+pub struct Following {
     /// Whether a path was found. Without one there is nothing else.
-    pub(super) found: bool,
-    /// The least clearances of the path, and of the robot that followed it; negative in collision.
-    pub(super) planned: f64,
-    pub(super) executed: f64,
+    pub found: bool,
+    /// The least clearance of the path.
+    pub planned: f64,
+    /// The least clearance of the robot that followed it; negative in collision.
+    pub executed: f64,
     /// The length of the path.
-    pub(super) length: f64,
+    pub length: f64,
     /// The mean distance of the robot from the path.
-    pub(super) error: f64,
+    pub error: f64,
     /// The uncertainty of its position at the end.
-    pub(super) uncertainty: f64,
-    pub(super) arrived: bool,
+    pub uncertainty: f64,
+    /// Whether it believes to be at the end of the path.
+    pub arrived: bool,
 }
 
 /// The point `gone` metres along the path.
@@ -62,13 +67,8 @@ fn along(path: &[Vector2<f64>], mut gone: f64) -> Vector2<f64> {
     path[path.len() - 1]
 }
 
-/// Follows `path`, with the noise of `seed`.
-pub(super) fn follow(
-    robot: &DiscRobot,
-    space: &Rn<2>,
-    path: &Path<Vector2<f64>>,
-    seed: u64,
-) -> Option<Followed> {
+/// Follows `path`, with the noise of `seed`. `None` when the path has less than two states.
+pub fn follow(robot: &DiscRobot, space: &Rn<2>, path: &Path<Vector2<f64>>, seed: u64) -> Option<Followed> {
     let world = robot.world();
     let points = &path.states;
     let first = points.get(1)? - points[0];
@@ -112,27 +112,31 @@ pub(super) fn follow(
     }
     let path = points.iter().map(|p| Point2::from(*p)).collect();
     let (error, uncertainty) = (off_path / f64::from(places.max(1)), filter.uncertainty());
-    let run = Run { found: true, planned, executed, length, error, uncertainty, arrived };
+    let run = Following { found: true, planned, executed, length, error, uncertainty, arrived };
     Some(Followed { path, driven, run })
 }
 
 /// The kinds of path that are followed: of RRT and of RRS, as they are found, made shorter, and then relaxed on the
 /// landscape of risk.
-pub(super) const KINDS: [&str; 6] =
-    ["rrt", "rrt shortened", "rrt relaxed", "rrs", "rrs shortened", "rrs relaxed"];
+pub const KINDS: [&str; 6] = ["rrt", "rrt shortened", "rrt relaxed", "rrs", "rrs shortened", "rrs relaxed"];
 
 /// All paths are planned, shortened and relaxed for a robot larger by this, metres.
-pub(super) const MARGIN: f64 = 0.01;
+pub const MARGIN: f64 = 0.01;
 /// The longest step, centimetres.
 const STEP: u32 = 50;
 
-/// Plans a path of a kind and follows it; `None` when no path was found.
-pub(super) fn planned_and_followed(scene: &DiscScene, kind: &str, trial: u64) -> Result<Option<Followed>> {
+/// Plans a path of one of [`KINDS`] and follows it; `None` when no path was found.
+///
+/// # Errors
+/// When the scene is not valid, or there is no such planner.
+pub fn planned_and_followed(scene: &DiscScene, kind: &str, trial: u64) -> Result<Option<Followed>> {
     let prepared = PreparedWorld::with_margin(scene.clone(), MARGIN)?;
-    let space = Rn::<2>::new([0.0; 2], scene.size).into_error()?;
+    let space = Rn::<2>::new([0.0; 2], scene.size)?;
     let (planner, after) = kind.split_once(' ').unwrap_or((kind, ""));
     let case = Case { world: "follow".into(), planner: format!("{planner}-upto"), step: STEP, trial };
-    let Some((_, Some(mut path))) = planned(&prepared, &case, &Cancel::new())? else { return Ok(None) };
+    let Some((_, Some(mut path))) = planned(&prepared, &case, Clock::default(), &Cancel::new())? else {
+        return Ok(None);
+    };
     if !after.is_empty() {
         let mut rng = Rng::stream(trial, 7);
         path = simplify(&space, &mut prepared.robot.clone(), &path, Effort::default(), &mut rng);
@@ -140,7 +144,7 @@ pub(super) fn planned_and_followed(scene: &DiscScene, kind: &str, trial: u64) ->
     if after == "relaxed" {
         path = relaxed(&prepared, &space, &path)?;
     }
-    Ok(follow(&scene.robot().into_error()?, &space, &path, trial))
+    Ok(follow(&scene.robot()?, &space, &path, trial))
 }
 
 /// The size of a cell of the landscape, and the length of the steps of the path in it, metres.
@@ -156,69 +160,26 @@ const PACE: f64 = 1e-3;
 const STEPS: u32 = 400;
 
 /// The landscape of risk of a path (Fig. 1): the probability of passing each place, times that of hitting an obstacle there.
-pub(super) fn risk_of(prepared: &PreparedWorld, space: &Rn<2>, path: &Path<Point>) -> Result<RiskMaps> {
+///
+/// # Errors
+/// When the world is too large for its maps.
+pub fn risk_of(prepared: &PreparedWorld, space: &Rn<2>, path: &Path<Point>) -> Result<RiskMaps> {
     let cells = prepared.scene.size.map(|s| (s / CELL).round() as usize).into();
     let seen = Grid::from_fn([0.0; 2], CELL, cells, |p| {
         f64::from(u8::from(prepared.robot.signed_clearance(&p) <= 0.0))
     });
     let (wheels, laser) = (MotionNoise::default(), RangeNoise::default());
-    let steps = path.resampled(space, STRIDE).into_error()?;
-    RiskMaps::of_path(&steps, &seen.into_error()?, wheels, laser).into_error()
+    let steps = path.resampled(space, STRIDE)?;
+    Ok(RiskMaps::of_path(&steps, &seen?, wheels, laser)?)
 }
 
 /// The path, relaxed by a snake that obstacles and risk push.
 fn relaxed(prepared: &PreparedWorld, space: &Rn<2>, path: &Path<Point>) -> Result<Path<Point>> {
     let risk = risk_of(prepared, space, path)?.risk;
     let most = risk.values().iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    let repulsion = Repulsion::new(&prepared.map, RANGE).into_error()?;
-    let mut field = With::new(repulsion, risk.map(|v| v / most), WEIGHT).into_error()?;
-    let params = Params { iterations: STEPS, pace: PACE, ..Params::for_range(RANGE).into_error()? };
+    let repulsion = Repulsion::new(&prepared.map, RANGE)?;
+    let mut field = With::new(repulsion, risk.map(|v| v / most), WEIGHT)?;
+    let params = Params { iterations: STEPS, pace: PACE, ..Params::for_range(RANGE)? };
     let relaxed = relax(space, &mut prepared.robot.clone(), &mut field, path, params, STRETCH);
-    Ok(relaxed.into_error()?.path)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use mp_scenes::source::disc_scenes::{RADIUS, tight};
-
-    /// A wide way is followed to its end, near to it, and the same way again; a way along a wall is not safe.
-    #[test]
-    fn paths_are_followed() {
-        let bar = vec![[1.0, 0.9], [4.0, 0.9], [4.0, 1.1], [1.0, 1.1]];
-        let scene = DiscScene { size: [5.0, 2.0], obstacles: vec![bar], start: [0.5, 0.5], goal: [4.5, 0.5] };
-        let robot = scene.robot().unwrap();
-        let space = Rn::<2>::new([0.0; 2], scene.size).unwrap();
-        let at = |y: f64| {
-            Path::straight(
-                [(0.5, 0.5), (1.0, y), (4.0, y), (4.5, 0.5)].map(|(x, y)| Vector2::new(x, y)).to_vec(),
-            )
-        };
-        let done = follow(&robot, &space, &at(0.45), 1).unwrap();
-        // The corner (1, 0.9) is nearest, seen from the line through (0.5, 0.5) and (1, 0.45).
-        let corner = 0.225 / mp_math::hypot(0.5, 0.05) - RADIUS;
-        assert!(
-            done.run.arrived && done.run.executed > 0.25 && (done.run.planned - corner).abs() < 1e-3,
-            "{done:?}"
-        );
-        let again = follow(&robot, &space, &at(0.45), 1).unwrap();
-        assert_eq!(done.driven, again.driven);
-        let near = 0.9 - RADIUS - 0.002;
-        let hits =
-            (0..10).filter(|i| follow(&robot, &space, &at(near), *i).unwrap().run.executed <= 0.0).count();
-        assert!(hits > 2, "{hits} of 10");
-        assert!(done.run.error < 0.03 && done.run.uncertainty < 0.05, "{done:?}");
-    }
-
-    /// Planned, shortened, relaxed and driven by a robot with noise: a hash of every place (FNV-1a).
-    #[test]
-    fn a_path_is_followed_to_the_same_bits_on_every_machine() {
-        let scene = tight();
-        let followed = planned_and_followed(&scene, "rrs relaxed", 0).unwrap().unwrap();
-        let places = followed.path.iter().chain(&followed.driven).flat_map(|p| [p.x, p.y]);
-        let numbers = places.chain([followed.run.executed, followed.run.error, followed.run.uncertainty]);
-        let hash =
-            numbers.fold(0xcbf2_9ce4_8422_2325_u64, |h, v| (h ^ v.to_bits()).wrapping_mul(0x0100_0000_01b3));
-        assert_eq!(hash, 0x8890_1063_0e33_e1b1, "{hash:#x}");
-    }
+    Ok(relaxed?.path)
 }

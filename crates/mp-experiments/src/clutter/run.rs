@@ -1,43 +1,47 @@
 //! One run of one planner on one problem.
 
+use super::boxes::Obstacle;
 use super::robots::{Six, TestRobot};
-use crate::clock::{ProcessorTime, nanoseconds, processor_clock, seconds_since};
-use crate::error::{IntoError, Result};
+use crate::Result;
 use mp_control::{
     Accept, DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, Kinematic, LocalFlowCheck,
     OnPosition, Order, ReplayFinely,
 };
 use mp_cspace::{
-    Cancel, Discrete, Exactly, Metric, MotionValidity, Outcome, Planner, Product, Resolution, Rn, Rng, Space,
-    Stop, StopReason, Straight, Validity, WithMetric,
+    Cancel, Clock, Deadline, Discrete, Euclidean, Exactly, Manhattan, Metric, MotionValidity, Outcome,
+    Planner, Product, Resolution, Rn, Rng, ScaledEuclidean, Space, Stop, StopReason, Straight, Validity,
+    WithMetric,
 };
-use mp_plan::{Control, Error, Request, Scene, StoppedBy};
 use mp_tree::{BuildError, Goals, Problem, RrtConnect, RrtInputs, Rsrt, Step, Tuning};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
-/// The result of a case.
+/// The result of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Run {
-    pub(super) solved: bool,
-    /// Processor time, including the verification of candidate paths.
-    pub(super) seconds: f64,
-    pub(super) iterations: u64,
-    pub(super) nodes: usize,
+pub struct Run {
+    /// Whether it has found a path.
+    pub solved: bool,
+    /// Time by the clock of the settings, including the verification of candidate paths.
+    pub seconds: f64,
+    /// Iterations of the planner.
+    pub iterations: u64,
+    /// Nodes of its trees.
+    pub nodes: usize,
     /// Configurations tested by the collision checker.
-    pub(super) checks: u64,
+    pub checks: u64,
     /// Expansions of nodes: motions asked of the local planner.
-    pub(super) expansions: u64,
+    pub expansions: u64,
     /// Candidate paths that failed verification.
-    pub(super) rejected: u64,
+    pub rejected: u64,
     /// Time along the path, in steps of the inputs (positions: number of edges).
-    pub(super) edges: usize,
+    pub edges: usize,
 }
 
 /// The planners compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ComparedPlanner {
+pub enum ComparedPlanner {
     /// A tree that moves by inputs: ALG. 4, RSRT, or what is between them.
     Inputs(Order, Accept),
     /// RRT-Connect with straight motions, for comparison.
@@ -46,20 +50,26 @@ pub(super) enum ComparedPlanner {
 
 impl ComparedPlanner {
     /// ALG. 4.
-    pub(super) const RRT: Self = Self::Inputs(Order::TestAll, Accept::Nearer);
-    pub(super) const RSRT: Self = Self::Inputs(Order::SortFirst, Accept::Any);
+    pub const RRT: Self = Self::Inputs(Order::TestAll, Accept::Nearer);
+    /// The rapidly-exploring sorted random tree.
+    pub const RSRT: Self = Self::Inputs(Order::SortFirst, Accept::Any);
 }
 
 /// The settings of a run.
 #[derive(Clone, Debug)]
-pub(super) struct RunSettings {
-    pub(super) planner: ComparedPlanner,
+pub struct RunSettings {
+    /// The planner.
+    pub planner: ComparedPlanner,
     /// The number of inputs: [`InputSet::directions`].
-    pub(super) inputs: usize,
-    pub(super) seed: u64,
-    /// The limit of processor time, seconds.
-    pub(super) cap: f64,
-    pub(super) cancel: Cancel,
+    pub inputs: usize,
+    /// The seed of its samples.
+    pub seed: u64,
+    /// The limit of time, seconds of `clock`.
+    pub cap: f64,
+    /// What the limit and the seconds of the run are measured with.
+    pub clock: Clock,
+    /// Ends the run, which then has no result.
+    pub cancel: Cancel,
 }
 
 /// How long an input is applied: a velocity, and an acceleration, seconds.
@@ -84,16 +94,29 @@ impl<S, V: Validity<S>> Validity<S> for CountingValidity<V> {
     }
 }
 
+/// When a run began, and when it ends at the latest.
+struct Began {
+    at: Duration,
+    deadline: Deadline,
+}
+
+impl Began {
+    fn now(settings: &RunSettings) -> Result<Self> {
+        let limit = Duration::try_from_secs_f64(settings.cap)?;
+        Ok(Self { at: settings.clock.now(), deadline: Deadline::by(settings.clock, limit) })
+    }
+}
+
 /// Runs a planner until it has a path, its time is up, or it is cancelled (`None`).
 fn run<S, E: Clone>(
     planner: std::result::Result<impl Planner<S, Edge = E>, BuildError>,
     settings: &RunSettings,
-    began: f64,
+    began: Began,
 ) -> Result<Option<Run>> {
-    let mut planner = planner.into_error()?;
-    let mut stop = ProcessorTime { until: began + settings.cap * 1e9 }.or(settings.cancel.clone());
+    let mut planner = planner?;
+    let mut stop = began.deadline.or(settings.cancel.clone());
     let outcome = planner.solve(&mut Rng::seed(settings.seed), &mut stop, &mut ());
-    let seconds = seconds_since(began);
+    let seconds = settings.clock.now().saturating_sub(began.at).as_secs_f64();
     let progress = planner.progress();
     let (solved, edges) = match outcome {
         Outcome::Solved(path) => (true, path.edges.len()),
@@ -112,33 +135,42 @@ fn run<S, E: Clone>(
     }))
 }
 
-/// Plans in a shipped scene, by name. `None` when it was cancelled. The time is that of the planner, which verifies its
-/// candidates; the path is neither shortened nor timed beyond that.
-pub(super) fn in_scene(scene: &Scene, request: &Request, cancel: &Cancel) -> Result<Option<Run>> {
-    let mut control = Control { cancel: cancel.clone(), clock: processor_clock(), ..Control::default() };
-    let report = scene.plan_with(request, &mut control)?;
-    if report.stopped_by == Some(StoppedBy::Interrupted) {
-        return Ok(None);
+/// Plans among obstacles, with states of one of [`MODELS`](super::MODELS), under one of [`METRICS`](super::METRICS). `None` when it
+/// was cancelled.
+pub(super) fn among<M: TestRobot>(
+    test_robot: &M,
+    obstacles: &[Obstacle],
+    model: &str,
+    metric: &str,
+    settings: &RunSettings,
+) -> Result<Option<Run>> {
+    let robot = test_robot.among(obstacles)?;
+    let weights = test_robot.weights();
+    match (model, metric) {
+        ("positions", "euclidean") => positions(test_robot, robot, Euclidean, settings),
+        ("positions", "manhattan") => positions(test_robot, robot, Manhattan, settings),
+        ("positions", "scaled") => {
+            let scaled = ScaledEuclidean::new(test_robot.space(), weights)?;
+            positions(test_robot, robot, scaled, settings)
+        }
+        ("velocities", "euclidean") => velocities(test_robot, robot, Euclidean, settings),
+        ("velocities", "manhattan") => velocities(test_robot, robot, Manhattan, settings),
+        ("velocities", "scaled") => {
+            let (most, _) = test_robot.limits();
+            let space = Product::with_velocity(test_robot.space().clone(), most)?;
+            // A radian per second gets the weight of a radian; the rotation of a body has three velocities.
+            let last = weights.last().copied().unwrap_or(1.0);
+            let six = weights.iter().copied().chain(std::iter::repeat(last)).take(6);
+            let moving: Vec<f64> = weights.iter().copied().chain(six).collect();
+            let scaled = ScaledEuclidean::new(&space, moving)?;
+            velocities(test_robot, robot, scaled, settings)
+        }
+        _ => Err(format!("there are no {model} under the metric `{metric}` here").into()),
     }
-    Ok(Some(Run {
-        solved: report.solved,
-        seconds: report.time_s,
-        iterations: report.iterations,
-        nodes: report.nodes,
-        checks: report.collision_checks,
-        expansions: report.motion_checks,
-        rejected: report.rejected,
-        edges: report.path.map_or(0, |path| path.len().saturating_sub(1)),
-    }))
 }
 
 /// Plans with states that are positions, under `metric`. `None` when it was cancelled.
-pub(super) fn positions<M, D>(
-    test_robot: &M,
-    robot: M::Robot,
-    metric: D,
-    settings: &RunSettings,
-) -> Result<Option<Run>>
+fn positions<M, D>(test_robot: &M, robot: M::Robot, metric: D, settings: &RunSettings) -> Result<Option<Run>>
 where
     M: TestRobot,
     D: Metric<M::Space>,
@@ -146,25 +178,24 @@ where
     let space = WithMetric::new(test_robot.space().clone(), metric);
     let verifier = test_robot.verifier(&robot)?;
     let count = Arc::new(AtomicU64::new(0));
-    let began = nanoseconds();
+    let began = Began::now(settings)?;
     let valid = CountingValidity { valid: robot, count: count.clone() };
     let resolution = Resolution::Length(test_robot.resolution());
-    let check = Discrete::new(test_robot.space(), valid, resolution).into_error()?;
+    let check = Discrete::new(test_robot.space(), valid, resolution)?;
     let straight = Straight::new(&space, check);
     let (start, goal, tuning) = (test_robot.start().clone(), test_robot.goal().clone(), tuning());
     let done = match settings.planner {
         ComparedPlanner::Connect => {
-            let problem = Problem::new(&space, straight, verifier, start, goal).into_error()?;
+            let problem = Problem::new(&space, straight, verifier, start, goal)?;
             run(RrtConnect::new(problem, tuning), settings, began)
         }
         ComparedPlanner::Inputs(order, accept) => {
-            let flow = Kinematic::new(&space).into_error()?;
-            let inputs = InputSet::directions(test_robot.speeds(), settings.inputs).into_error()?;
-            let local =
-                InputPlanner::new(&space, flow, inputs, MOVED, LocalFlowCheck(straight)).into_error()?;
+            let flow = Kinematic::new(&space)?;
+            let inputs = InputSet::directions(test_robot.speeds(), settings.inputs)?;
+            let local = InputPlanner::new(&space, flow, inputs, MOVED, LocalFlowCheck(straight))?;
             let near = |q: &State<M>| test_robot.arrived(q, false);
             let goals = Goals::region(near).with_sampler(Exactly(goal));
-            let problem = Problem::new(&space, local.ordered(order), verifier, start, goals).into_error()?;
+            let problem = Problem::new(&space, local.ordered(order), verifier, start, goals)?;
             match accept {
                 Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, began),
                 Accept::Any => run(Rsrt::new(problem, tuning), settings, began),
@@ -181,42 +212,37 @@ fn tuning() -> Tuning {
 
 /// Plans with states that are positions and velocities, under `metric`; the
 /// goal is a position, at any velocity. `None` when it was cancelled.
-pub(super) fn velocities<M, D>(
-    test_robot: &M,
-    robot: M::Robot,
-    metric: D,
-    settings: &RunSettings,
-) -> Result<Option<Run>>
+fn velocities<M, D>(test_robot: &M, robot: M::Robot, metric: D, settings: &RunSettings) -> Result<Option<Run>>
 where
     M: TestRobot,
     D: Metric<Product<M::Space, Rn<6>>>,
 {
     let (most, accelerations) = test_robot.limits();
-    let moving = Product::with_velocity(test_robot.space().clone(), most).into_error()?;
+    let moving = Product::with_velocity(test_robot.space().clone(), most)?;
     // The length of a motion is measured by positions, not by velocities.
-    let speeds = Rn::new(-most, most).into_error()?;
-    let places = Product::new(test_robot.space().clone(), 1.0, speeds, 1e-6).into_error()?;
-    let flow = DoubleIntegrator::new(test_robot.space()).into_error()?;
+    let speeds = Rn::new(-most, most)?;
+    let places = Product::new(test_robot.space().clone(), 1.0, speeds, 1e-6)?;
+    let flow = DoubleIntegrator::new(test_robot.space())?;
     let space = WithMetric::new(moving.clone(), metric);
     let mut proof = test_robot.verifier(&robot)?;
     let proved = OnPosition(move |q: &State<M>| proof.check_motion(q, q).is_free());
     let fine = Resolution::Length(0.1 * test_robot.resolution());
-    let verifier = ReplayFinely::new(&places, flow, proved, fine).into_error()?;
+    let verifier = ReplayFinely::new(&places, flow, proved, fine)?;
     let count = Arc::new(AtomicU64::new(0));
-    let began = nanoseconds();
+    let began = Began::now(settings)?;
     let valid = OnPosition(CountingValidity { valid: robot, count: count.clone() });
     let resolution = Resolution::Length(test_robot.resolution());
-    let check = DiscreteFlowCheck::new(&places, valid, resolution).into_error()?;
+    let check = DiscreteFlowCheck::new(&places, valid, resolution)?;
     let ComparedPlanner::Inputs(order, accept) = settings.planner else {
-        return Err(Error::new("two trees grown by accelerations do not meet"));
+        return Err("two trees grown by accelerations do not meet".into());
     };
-    let inputs = InputSet::directions(accelerations, settings.inputs).into_error()?;
-    let local = InputPlanner::new(&space, flow, inputs, ACCELERATED, check).into_error()?.ordered(order);
+    let inputs = InputSet::directions(accelerations, settings.inputs)?;
+    let local = InputPlanner::new(&space, flow, inputs, ACCELERATED, check)?.ordered(order);
     let rest = Six::zeros();
     let goals = Goals::region(|q: &Moving<M>| test_robot.arrived(&q.0, true))
         .with_sampler(Exactly((test_robot.goal().clone(), rest)));
     let start = (test_robot.start().clone(), rest);
-    let problem = Problem::new(&space, local, verifier, start, goals).into_error()?;
+    let problem = Problem::new(&space, local, verifier, start, goals)?;
     let tuning = tuning();
     let done = match accept {
         Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, began),

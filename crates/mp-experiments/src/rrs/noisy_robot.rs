@@ -7,7 +7,7 @@ use rand::RngExt;
 use std::f64::consts::TAU;
 
 /// Seconds between two commands.
-pub(super) const TICK: f64 = 0.1;
+pub const TICK: f64 = 0.1;
 /// Standard deviations of the wheel noise: of the speed per speed and turn rate, of the turn rate per speed and turn rate.
 const WHEELS: [f64; 4] = [0.08, 0.01, 0.4, 0.08];
 /// The laser: beams over 240°, its range (m), and its standard deviation, constant (m) and per distance.
@@ -20,9 +20,11 @@ const JUDGED: f64 = 0.06;
 
 /// The position and heading of the robot.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pose {
-    pub(super) at: Vector2<f64>,
-    pub(super) angle: f64,
+pub struct Pose {
+    /// Where its centre is, metres.
+    pub at: Vector2<f64>,
+    /// Where it looks, radians from the first axis.
+    pub angle: f64,
 }
 
 /// The unit vector at `angle` from the first axis.
@@ -39,7 +41,7 @@ fn normal(rng: &mut Rng, deviation: f64) -> f64 {
 
 impl Pose {
     /// The pose after a tick at a speed and a turn rate, with wheel noise.
-    pub(super) fn driven(self, [speed, turn]: [f64; 2], rng: &mut Rng) -> Self {
+    pub fn driven(self, [speed, turn]: [f64; 2], rng: &mut Rng) -> Self {
         let [a, b, c, d] = WHEELS;
         let speed = speed + normal(rng, a * speed.abs() + b * turn.abs());
         let turn = turn + normal(rng, c * speed.abs() + d * turn.abs());
@@ -48,7 +50,7 @@ impl Pose {
     }
 
     /// The laser ranges at this pose, with noise.
-    pub(super) fn scan(&self, world: &PlanarWorld, rng: &mut Rng) -> Vec<f64> {
+    pub fn scan(&self, world: &PlanarWorld, rng: &mut Rng) -> Vec<f64> {
         let measured = |i: usize| {
             let d = range(world, self.at, self.beam(i));
             d + normal(rng, LASER[0] + LASER[1] * d)
@@ -64,7 +66,8 @@ impl Pose {
 }
 
 /// The length of a beam until it is within a millimetre of an obstacle.
-fn range(world: &PlanarWorld, from: Vector2<f64>, along: Vector2<f64>) -> f64 {
+#[must_use]
+pub fn range(world: &PlanarWorld, from: Vector2<f64>, along: Vector2<f64>) -> f64 {
     let mut gone = 0.0;
     while gone < REACH {
         let free = world.signed_distance(&Point2::from(from + along * gone));
@@ -77,13 +80,14 @@ fn range(world: &PlanarWorld, from: Vector2<f64>, along: Vector2<f64>) -> f64 {
 }
 
 /// The particle filter: samples of the pose.
-pub(super) struct ParticleFilter {
+#[derive(Clone, Debug)]
+pub struct ParticleFilter {
     poses: Vec<Pose>,
 }
 
 impl ParticleFilter {
     /// Particles around a start that is known to about a centimetre and a degree.
-    pub(super) fn about(pose: Pose, rng: &mut Rng) -> Self {
+    pub fn about(pose: Pose, rng: &mut Rng) -> Self {
         let near = |rng: &mut Rng| Pose {
             at: pose.at + Vector2::new(normal(rng, 0.01), normal(rng, 0.01)),
             angle: pose.angle + normal(rng, 0.02),
@@ -92,7 +96,7 @@ impl ParticleFilter {
     }
 
     /// The estimated pose: the mean of the particles.
-    pub(super) fn mean(&self) -> Pose {
+    pub fn mean(&self) -> Pose {
         let n = self.poses.len() as f64;
         let at = self.poses.iter().map(|p| p.at).sum::<Vector2<f64>>() / n;
         let toward = self.poses.iter().map(|p| direction(p.angle)).sum::<Vector2<f64>>();
@@ -100,14 +104,14 @@ impl ParticleFilter {
     }
 
     /// The uncertainty of the position: the root of the mean squared distance of the particles from their mean, metres.
-    pub(super) fn uncertainty(&self) -> f64 {
+    pub fn uncertainty(&self) -> f64 {
         let mean = self.mean().at;
         let squares: f64 = self.poses.iter().map(|p| (p.at - mean).norm_squared()).sum();
         (squares / self.poses.len() as f64).sqrt()
     }
 
     /// Moves all particles by the motion model, and resamples them by how well they explain the laser ranges.
-    pub(super) fn update(&mut self, command: [f64; 2], seen: &[f64], world: &PlanarWorld, rng: &mut Rng) {
+    pub fn update(&mut self, command: [f64; 2], seen: &[f64], world: &PlanarWorld, rng: &mut Rng) {
         let mut weights = Vec::with_capacity(self.poses.len());
         for pose in &mut self.poses {
             *pose = pose.driven(command, rng);
@@ -132,34 +136,5 @@ impl ParticleFilter {
             mark += step;
         }
         self.poses = kept;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Particles about a known place are as uncertain as the place; seeing the walls makes them less so.
-    #[test]
-    fn seeing_walls_lessens_uncertainty() {
-        let world = PlanarWorld::new(vec![], Some([[0.0, 0.0], [3.0, 2.0]])).unwrap();
-        let pose = Pose { at: Vector2::new(1.0, 1.0), angle: 0.3 };
-        let mut rng = Rng::seed(1);
-        let mut filter = ParticleFilter::about(pose, &mut rng);
-        let before = filter.uncertainty();
-        assert!((0.010..0.018).contains(&before), "{before}");
-        for _ in 0..60 {
-            let seen = pose.scan(&world, &mut rng);
-            filter.update([0.0, 0.0], &seen, &world, &mut rng);
-        }
-        assert!(filter.uncertainty() < 0.7 * before, "{} {before}", filter.uncertainty());
-    }
-
-    #[test]
-    fn beams_end_at_walls() {
-        let world = PlanarWorld::new(vec![], Some([[0.0, 0.0], [3.0, 2.0]])).unwrap();
-        let from = Vector2::new(1.0, 1.0);
-        assert!((range(&world, from, Vector2::new(1.0, 0.0)) - 2.0).abs() < 2e-3);
-        assert!((range(&world, from, Vector2::new(0.6, 0.8)) - 1.25).abs() < 2e-3);
     }
 }

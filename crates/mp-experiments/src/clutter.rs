@@ -1,0 +1,82 @@
+//! The problems of Jouandeau, Touati and Ali Cherif 2008, *Incremental motion planning with Las Vegas algorithms*, §4, and one
+//! run of a planner on one of them: a free-flyer and an arm of six joints among 2 to 512 boxes, with states that are positions
+//! or have velocities, under three metrics.
+
+mod boxes;
+mod robots;
+mod run;
+
+use crate::Result;
+pub use boxes::{LEVELS, Obstacle};
+use robots::{Flyer, SixAxes, TestRobot};
+pub use run::{ComparedPlanner, Run, RunSettings};
+
+/// The names of the robots, of what a state holds, and of the metrics.
+pub const MOVERS: [&str; 2] = ["free-flyer", "6-DOF arm"];
+/// Positions alone, or positions and velocities.
+pub const MODELS: [&str; 2] = ["positions", "velocities"];
+/// The metrics, by name.
+pub const METRICS: [&str; 3] = ["euclidean", "scaled", "manhattan"];
+
+/// A robot of the experiment, with its start, its goal and its worlds.
+#[derive(Clone, Debug)]
+pub struct Mover(Robot);
+
+#[derive(Clone, Debug)]
+enum Robot {
+    Flyer(Box<Flyer>),
+    Arm(Box<SixAxes>),
+}
+
+impl Mover {
+    /// One of [`MOVERS`].
+    ///
+    /// # Errors
+    /// When there is no such robot.
+    pub fn find(name: &str) -> Result<Self> {
+        Ok(Self(match MOVERS.iter().position(|mover| *mover == name) {
+            Some(0) => Robot::Flyer(Box::new(Flyer::new()?)),
+            Some(_) => Robot::Arm(Box::new(SixAxes::new()?)),
+            None => return Err(format!("there is no robot `{name}` here: {}", MOVERS.join(", ")).into()),
+        }))
+    }
+
+    /// `count` boxes of an instance, none of them at the start or the goal. The first n are those of its problem with n.
+    ///
+    /// # Errors
+    /// None that is known: when a box cannot be made.
+    pub fn obstacles(&self, count: usize, instance: u64) -> Result<Vec<Obstacle>> {
+        match &self.0 {
+            Robot::Flyer(flyer) => flyer.obstacles(count, instance),
+            Robot::Arm(arm) => arm.obstacles(count, instance),
+        }
+    }
+
+    /// Whether a box keeps some clearance from the start and the goal.
+    ///
+    /// # Errors
+    /// When the box is not valid.
+    pub fn spares(&self, obstacle: &Obstacle) -> Result<bool> {
+        match &self.0 {
+            Robot::Flyer(flyer) => flyer.spares(obstacle),
+            Robot::Arm(arm) => arm.spares(obstacle),
+        }
+    }
+
+    /// Plans among obstacles, with states of one of [`MODELS`], under one of [`METRICS`]. `None` when it was cancelled.
+    ///
+    /// # Errors
+    /// When there is no such model or metric, and when trees that grow by accelerations are to meet.
+    pub fn plan(
+        &self,
+        obstacles: &[Obstacle],
+        model: &str,
+        metric: &str,
+        settings: &RunSettings,
+    ) -> Result<Option<Run>> {
+        match &self.0 {
+            Robot::Flyer(flyer) => run::among(&**flyer, obstacles, model, metric, settings),
+            Robot::Arm(arm) => run::among(&**arm, obstacles, model, metric, settings),
+        }
+    }
+}
