@@ -12,7 +12,7 @@ import puppeteer from "puppeteer-core";
 /** The program, for commands that tests run. */
 export const PROGRAM = process.env.MP ?? fileURLToPath(new URL("../../../../../target/debug/mp", import.meta.url));
 const CHROMIUM = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((path) => path && existsSync(path));
-const FLAGS = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--force-device-scale-factor=1"];
+const FLAGS = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing", "--force-device-scale-factor=1"];
 
 /** Why these tests cannot run here, or false. */
 export const missing = !CHROMIUM ? "no Chromium: install it, or name it in the variable CHROMIUM"
