@@ -117,14 +117,14 @@ impl Error {
     }
 
     pub(crate) fn expected(mut self, what: impl Into<String>) -> Self {
-        self.0.expected = Some(shortened(&what.into(), MAX_EXPECTED));
+        self.0.expected = Some(one_line(&what.into(), MAX_EXPECTED));
         self
     }
 
     /// Adds what to do about it.
     #[must_use]
     pub fn help(mut self, what: impl Into<String>) -> Self {
-        self.0.help = Some(shortened(&what.into(), MAX_HELP));
+        self.0.help = Some(one_line(&what.into(), MAX_HELP));
         self
     }
 
@@ -135,7 +135,7 @@ impl Error {
 
     /// Adds the place at which another file names the file in error.
     pub(crate) fn cited_at(mut self, place: String) -> Self {
-        self.0.cited_at = Some(shortened(&place, MAX_FILE));
+        self.0.cited_at = Some(one_line(&place, MAX_FILE));
         self
     }
 
@@ -234,7 +234,7 @@ impl Error {
         if let Some(place) = &self.0.cited_at {
             text += &format!(" (named at {place})");
         }
-        shortened(&text, most)
+        one_line(&text, most)
     }
 }
 
@@ -354,6 +354,13 @@ mod tests {
         let e = Error::at(ErrorKind::Format, "f", "a\u{1b}[31m bad", 7, 3, "\u{1b}[2J".into());
         assert!(!e.report().contains('\u{1b}') && !e.to_string().contains('\u{1b}'));
         assert!(e.report().contains("bad"));
+        let named = Error::new(ErrorKind::Io, "a\u{8}b", "no")
+            .cited_at("c\u{8}:1".into())
+            .expected("d\u{8}")
+            .help("e\u{8}");
+        for shown in [named.to_string(), named.report()] {
+            assert!(!shown.contains('\u{8}'), "{shown:?}");
+        }
     }
 
     #[test]

@@ -164,8 +164,10 @@ impl FromStr for Length {
     type Err = Error;
     fn from_str(s: &str) -> Result<Self, Error> {
         match s.strip_suffix('%') {
-            Some(percent) => match positive(percent)? {
-                p if p <= 100.0 => Ok(Self::Fraction(p / 100.0)),
+            Some(percent) => match positive(percent)? / 100.0 {
+                // The least numbers have no hundredth.
+                0.0 => Err(not_positive()),
+                part if part <= 1.0 => Ok(Self::Fraction(part)),
                 _ => Err(Error::new("more than 100% of the extent")),
             },
             None => positive(s).map(Self::Absolute),
@@ -177,9 +179,13 @@ impl FromStr for Length {
 fn positive(s: &str) -> Result<f64, Error> {
     match s.trim().parse::<f64>() {
         Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
-        Ok(_) => Err(Error::new("must be a finite number above zero")),
+        Ok(_) => Err(not_positive()),
         Err(_) => Err(Error::new("not a number")),
     }
+}
+
+fn not_positive() -> Error {
+    Error::new("must be a finite number above zero")
 }
 
 /// How motions are checked while planning. As text, `certified`, `discrete:1%` or `discrete:0.05`.
