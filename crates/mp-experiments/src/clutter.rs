@@ -11,9 +11,9 @@ pub use boxes::{LEVELS, Obstacle};
 use robots::{Flyer, SixAxes, TestRobot};
 pub use run::{ComparedPlanner, Run, RunSettings};
 
-/// The names of the robots, of what a state holds, and of the metrics.
+/// The robots, by name: see [`Mover::find`].
 pub const MOVERS: [&str; 2] = ["free-flyer", "6-DOF arm"];
-/// Positions alone, or positions and velocities.
+/// What a state holds: positions alone, or positions and velocities.
 pub const MODELS: [&str; 2] = ["positions", "velocities"];
 /// The metrics, by name.
 pub const METRICS: [&str; 3] = ["euclidean", "scaled", "manhattan"];
@@ -44,7 +44,7 @@ impl Mover {
     /// `count` boxes of an instance, none of them at the start or the goal. The first n are those of its problem with n.
     ///
     /// # Errors
-    /// None that is known: when a box cannot be made.
+    /// When a box cannot be made, of which no case is known.
     pub fn obstacles(&self, count: usize, instance: u64) -> Result<Vec<Obstacle>> {
         match &self.0 {
             Robot::Flyer(flyer) => flyer.obstacles(count, instance),

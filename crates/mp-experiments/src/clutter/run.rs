@@ -23,7 +23,7 @@ use std::time::Duration;
 pub struct Run {
     /// Whether it has found a path.
     pub solved: bool,
-    /// Time by the clock of the settings, including the verification of candidate paths.
+    /// Seconds by the clock of the settings, including the verification of candidate paths.
     pub seconds: f64,
     /// Iterations of the planner.
     pub iterations: u64,

@@ -47,7 +47,7 @@ pub struct Case {
 pub struct Run {
     /// Whether it has found a path.
     pub solved: bool,
-    /// Time by the clock of the trial, including the verification of candidate paths.
+    /// Seconds by the clock of the trial, including the verification of candidate paths.
     pub seconds: f64,
     /// Iterations of the planner.
     pub iterations: u64,
