@@ -133,14 +133,15 @@ impl TriMesh {
         Self::new(vertices, triangles)
     }
 
-    /// The same triangles, with vertices at identical coordinates merged and unused vertices dropped.
+    /// The same triangles and solids, with vertices at identical coordinates merged and unused vertices dropped.
     #[must_use]
     pub fn welded(&self) -> Self {
         let soup: Vec<_> = (0..self.triangles().len()).map(|i| self.triangle(i)).collect();
-        Self::from_soup(&soup).unwrap_or_else(|_| self.clone())
+        Self::from_soup(&soup)
+            .map_or_else(|_| self.clone(), |welded| Self { solids: self.solids.clone(), ..welded })
     }
 
-    /// The mesh turned inside out: every triangle reversed.
+    /// The mesh turned inside out: every triangle reversed. It is a surface: around solids there is room now.
     #[must_use]
     pub fn reversed(&self) -> Self {
         self.with_triangles(self.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect())

@@ -5,7 +5,7 @@
 //! - [`Aabb`], [`Obb`], [`Sphere`]: bounding volumes.
 //! - [`MassProperties`]: volume, centroid, inertia, principal axes.
 //! - [`Features`]: size, place and direction of a body for obstacle-geometry planners; [`TriMesh::parts`]: its components.
-//! - [`primitives`]: closed solids.
+//! - [`primitives`]: closed solids; [`TriMesh::into_solid`]: a closed mesh as one.
 //! - [`planar`]: polygons in the plane.
 //! - [`pose_from_six`] and others: poses to and from numbers; [`six_tuples`] of a motion.
 //!
@@ -21,6 +21,7 @@ pub mod planar;
 mod pose;
 pub mod primitives;
 mod six_tuples;
+mod solid;
 mod sphere;
 mod spread;
 mod topology;
@@ -37,6 +38,7 @@ pub use pose::{
 };
 pub use primitives::PrimitiveError;
 pub use six_tuples::{displacement_bound, six_tuples};
+pub use solid::SolidError;
 pub use sphere::{Sphere, minimal_sphere};
 pub use spread::evenly;
 pub use topology::{NO_COMPONENT, Topology};

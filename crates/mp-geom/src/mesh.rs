@@ -1,6 +1,7 @@
 //! The indexed triangle mesh.
 
 use nalgebra::{Isometry3, Point3};
+use std::ops::Range;
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -63,16 +64,23 @@ fn check_count(what: &'static str, count: usize) -> Result<(), MeshError> {
 ///
 /// It is never empty, every coordinate is finite and every index in range: the constructors check this. Clones share vertices
 /// and triangles.
+///
+/// A mesh is a surface. Some of its triangles, or all, may bound [solids](TriMesh::solids): then what is inside of these belongs to
+/// the mesh too. [Primitives](crate::primitives) are solids; what is read from a file is a surface until
+/// [`into_solid`](TriMesh::into_solid).
 #[derive(Clone, Debug)]
 pub struct TriMesh {
-    vertices: Arc<Vec<Point3<f64>>>,
-    triangles: Arc<Vec<[u32; 3]>>,
+    pub(crate) vertices: Arc<Vec<Point3<f64>>>,
+    pub(crate) triangles: Arc<Vec<[u32; 3]>>,
+    /// See [`solids`](Self::solids).
+    pub(crate) solids: Arc<Vec<Range<u32>>>,
 }
 
-/// The same vertices and triangles in the same order. Clones are not compared number by number.
+/// The same vertices and triangles in the same order, and the same solids. Clones are not compared number by number.
 impl PartialEq for TriMesh {
     fn eq(&self, other: &Self) -> bool {
-        (Arc::ptr_eq(&self.vertices, &other.vertices) || self.vertices == other.vertices)
+        self.solids == other.solids
+            && (Arc::ptr_eq(&self.vertices, &other.vertices) || self.vertices == other.vertices)
             && (Arc::ptr_eq(&self.triangles, &other.triangles) || self.triangles == other.triangles)
     }
 }
@@ -98,7 +106,7 @@ impl TriMesh {
                 return Err(MeshError::IndexOutOfRange { triangle, index, vertices: vertices.len() });
             }
         }
-        Ok(Self { vertices: vertices.into(), triangles: triangles.into() })
+        Ok(Self { vertices: vertices.into(), triangles: triangles.into(), solids: Arc::default() })
     }
 
     /// The vertices.
@@ -122,34 +130,38 @@ impl TriMesh {
         self.triangles[i].map(|v| self.vertices[v as usize])
     }
 
-    /// The same vertices with other triangles, whose indices the caller knows to be in range.
+    /// The same vertices with other triangles, whose indices the caller knows to be in range: a surface.
     pub(crate) fn with_triangles(&self, triangles: Vec<[u32; 3]>) -> Self {
-        Self { vertices: Arc::clone(&self.vertices), triangles: triangles.into() }
+        Self { vertices: Arc::clone(&self.vertices), triangles: triangles.into(), solids: Arc::default() }
     }
 
-    /// The mesh moved by `pose`. It shares the triangles with this one, and the vertices, too, if the pose is the identity.
+    /// The mesh moved by `pose`, with the same solids. It shares the triangles with this one, and the vertices, too, if the pose is
+    /// the identity.
     #[must_use]
     pub fn transformed(&self, pose: &Isometry3<f64>) -> Self {
         if *pose == Isometry3::identity() {
             return self.clone();
         }
         let vertices: Vec<_> = self.vertices.iter().map(|p| pose * p).collect();
-        Self { vertices: vertices.into(), triangles: Arc::clone(&self.triangles) }
+        Self { vertices: vertices.into(), ..self.clone() }
     }
 
-    /// All of `meshes` in one. `None` when there are none. A single one is cloned.
+    /// All of `meshes` in one, with their solids. `None` when there are none. A single one is cloned.
     #[must_use]
     pub fn merged<'a>(meshes: impl IntoIterator<Item = &'a TriMesh>) -> Option<Self> {
         let mut meshes = meshes.into_iter();
         let first = meshes.next()?;
         let Some(second) = meshes.next() else { return Some(first.clone()) };
-        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        let (mut vertices, mut triangles, mut solids) = (Vec::new(), Vec::new(), Vec::new());
         for m in [first, second].into_iter().chain(meshes) {
             let base = u32::try_from(vertices.len()).ok()?;
+            let before = u32::try_from(triangles.len()).ok()?;
             vertices.extend_from_slice(&m.vertices);
             triangles.extend(m.triangles.iter().map(|t| t.map(|i| i.wrapping_add(base))));
+            u32::try_from(triangles.len()).ok()?;
+            solids.extend(m.solids.iter().map(|solid| before + solid.start..before + solid.end));
         }
-        Self::new(vertices, triangles).ok()
+        Some(Self { solids: solids.into(), ..Self::new(vertices, triangles).ok()? })
     }
 }
 

@@ -1,4 +1,4 @@
-//! Closed solids with outward triangles, in metres.
+//! Closed solids with outward triangles, in metres: what is inside belongs to them ([`TriMesh::solids`]).
 //!
 //! All are centred on the origin with their axis along Z, except [`prism`] and [`tetrahedron_of`], whose
 //! corners are given. Curved ones are inscribed: vertices lie on the surface, the mesh inside it.
@@ -103,7 +103,7 @@ pub fn cuboid(x: f64, y: f64, z: f64) -> Made {
     let quads: [[u32; 4]; 6] =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    Ok(TriMesh::new(vertices, triangles)?)
+    Ok(TriMesh::new(vertices, triangles)?.trusted_solid())
 }
 
 /// A sphere: an icosahedron whose triangles are split in four `subdivisions` times (0 to
@@ -155,7 +155,7 @@ pub fn sphere(radius: f64, subdivisions: u32) -> Made {
         triangles = split;
     }
     let vertices = directions.iter().map(|d| Point3::from(d * radius)).collect();
-    Ok(TriMesh::new(vertices, triangles)?)
+    Ok(TriMesh::new(vertices, triangles)?.trusted_solid())
 }
 
 /// A cone of `height` over a disc of `radius`, apex up.
@@ -218,7 +218,7 @@ pub fn torus(ring: f64, tube: f64, segments: u32, tube_segments: u32) -> Made {
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
-    Ok(TriMesh::new(vertices, triangles)?)
+    Ok(TriMesh::new(vertices, triangles)?.trusted_solid())
 }
 
 /// A regular tetrahedron centred on the origin with edges of length `edge`, one corner up.
@@ -252,7 +252,7 @@ pub fn tetrahedron_of(corners: [Point3<f64>; 4]) -> Made {
     if volume < 0.0 {
         mesh = mesh.reversed();
     }
-    Ok(mesh)
+    Ok(mesh.trusted_solid())
 }
 
 /// The prism over a simple polygon, possibly concave, in either direction, from `z_min` to `z_max`.
@@ -289,7 +289,7 @@ pub fn prism(polygon: &[Point2<f64>], z_min: f64, z_max: f64) -> Made {
         let [a, b, c, d] = [i, (i + 1) % n, (i + 1) % n + n, i + n].map(|i| i as u32);
         triangles.extend([[a, b, c], [a, c, d]]);
     }
-    Ok(TriMesh::new(vertices, triangles)?)
+    Ok(TriMesh::new(vertices, triangles)?.trusted_solid())
 }
 
 /// Point `k` of `n` on the unit circle.
@@ -330,7 +330,7 @@ fn revolve(profile: &[(f64, f64)], segments: u32) -> Made {
         }
         below = Some((first, pole));
     }
-    Ok(TriMesh::new(vertices, triangles)?)
+    Ok(TriMesh::new(vertices, triangles)?.trusted_solid())
 }
 
 #[cfg(test)]

@@ -190,13 +190,13 @@ impl TriMesh {
         })
     }
 
-    /// The components connected through edges, each with only its own vertices, in the order of their first
+    /// The components connected through edges, as surfaces, each with only its own vertices, in the order of their first
     /// triangles. Triangles with two corners in one place belong to none; a mesh of only such triangles is one part.
     #[must_use]
     pub fn parts(&self) -> Vec<TriMesh> {
         let topology = self.topology();
         if topology.components < 2 {
-            return vec![self.clone()];
+            return vec![self.clone().into_surface()];
         }
         let mut vertices = vec![Vec::new(); topology.components];
         let mut triangles = vec![Vec::new(); topology.components];
@@ -220,7 +220,7 @@ impl TriMesh {
     }
 
     /// For every vertex the first one at its position.
-    fn names(&self) -> Vec<u32> {
+    pub(crate) fn names(&self) -> Vec<u32> {
         // 0 and −0 are the same place.
         let place = |i: u32| <[f64; 3]>::from(self.vertices()[i as usize]).map(|c| (c + 0.0).to_bits());
         let count = self.vertices().len() as u32;
@@ -370,7 +370,7 @@ mod tests {
         let soup = |m: &TriMesh| (0..m.triangles().len()).map(|i| m.triangle(i)).collect::<Vec<_>>();
         assert!(merged.parts().iter().map(soup).eq(whole.iter().map(soup)));
         assert_eq!(merged.welded().parts().len(), 3, "a shared corner joins nothing");
-        assert_eq!(whole[0].parts(), [whole[0].clone()]);
+        assert_eq!(whole[0].parts(), [whole[0].clone().into_surface()]);
         let volume: f64 = merged.parts().iter().map(|p| p.features().volume).sum();
         assert!((volume - merged.signed_volume()).abs() < 1e-12);
         // Triangles in turn from one part and the other.

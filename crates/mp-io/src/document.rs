@@ -387,10 +387,7 @@ impl DocumentBody {
             })?,
         };
         let made = match self.scale {
-            Some([x, y, z]) => {
-                let scaled = made.vertices().iter().map(|p| Point3::new(x * p.x, y * p.y, z * p.z)).collect();
-                TriMesh::new(scaled, made.triangles().to_vec()).map_err(|e| mesh_error(file, &e))?
-            }
+            Some(scale) => made.scaled(scale).map_err(|e| mesh_error(file, &e))?,
             None => made,
         };
         match vertex_beyond(&made) {

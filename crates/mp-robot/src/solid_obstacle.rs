@@ -2,7 +2,6 @@
 
 use mp_geom::{Aabb, TriMesh};
 use nalgebra::Point3;
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// A closed, consistently oriented obstacle in the world, with triangles facing outward.
@@ -29,22 +28,8 @@ impl SolidObstacle {
     /// Whether `p` is inside, by its winding number. For points within rounding of the surface either answer is
     /// possible.
     pub(crate) fn contains(&self, p: &Point3<f64>) -> bool {
-        self.bounds.contains(p) && winding_number(&self.mesh, p) > 0.5
+        self.bounds.contains(p) && self.mesh.winding_number(p) > 0.5
     }
-}
-
-/// How often the surface winds around `p`: the solid angle of the surface seen from `p`, over 4π, summed over triangles as
-/// in A. van Oosterom and J. Strackee, "The solid angle of a plane triangle", 1983.
-fn winding_number(mesh: &TriMesh, p: &Point3<f64>) -> f64 {
-    let angle: f64 = (0..mesh.triangles().len())
-        .map(|i| {
-            let [a, b, c] = mesh.triangle(i).map(|v| v - p);
-            let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
-            let scale = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
-            2.0 * mp_math::atan2(a.dot(&b.cross(&c)), scale)
-        })
-        .sum();
-    angle / (4.0 * PI)
 }
 
 #[cfg(test)]

@@ -157,12 +157,7 @@ fn shape(
                     "the scale of {filename} is {x} {y} {z}: it must be finite and not zero"
                 ));
             }
-            let scaled = read.vertices().iter().map(|p| [p.x * x, p.y * y, p.z * z].into()).collect();
-            let mut triangles = read.triangles().to_vec();
-            if x * y * z < 0.0 {
-                triangles.iter_mut().for_each(|t| t.swap(1, 2));
-            }
-            return TriMesh::new(scaled, triangles).map_err(|error| error.to_string());
+            return read.scaled([x, y, z]).map_err(|error| error.to_string());
         }
     };
     made.map_err(|error| error.to_string())
