@@ -1,7 +1,7 @@
 //! COLLADA 1.4 and 1.5: the meshes of the visual scene. See `docs/formats/meshes.md`.
 //!
-//! Files are read as by assimp, the importer of OMPL.app, so that its problem files mean the same here:
-//! node transforms are applied, then the unit of length, then the up axis is turned to Y.
+//! Node transforms are applied, then the unit of length. Then the up axis is turned to Y, as by assimp, the importer of
+//! OMPL.app, so that its problem files mean the same here; or it is not, as for robot descriptions.
 
 pub(crate) mod center;
 mod document;
@@ -12,7 +12,7 @@ mod scene;
 mod tests;
 
 use crate::error::{Error, ErrorKind};
-use crate::mesh::{build, mesh_error};
+use crate::mesh::{Axes, build, mesh_error};
 use document::Document;
 use geometry::Geometry;
 use mp_geom::TriMesh;
@@ -34,6 +34,8 @@ pub(crate) struct Instance {
 /// The visual scene of a file.
 pub(crate) struct Scene {
     instances: Vec<Instance>,
+    /// What the file says of its coordinates.
+    pub(crate) asset: scene::Asset,
 }
 
 /// Reads `bytes`, the content of a COLLADA file that errors call `file`: all meshes of its visual scene, in
@@ -42,18 +44,33 @@ pub(crate) struct Scene {
 /// # Errors
 /// [`Error`] when it is not COLLADA or uses a feature that is not read here, with the line and column.
 pub fn parse_collada(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
-    Scene::parse(file, bytes)?.to_mesh(file)
+    Scene::parse(file, bytes, Axes::YUp)?.to_mesh(file)
 }
 
 impl Scene {
-    pub(crate) fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
+    pub(crate) fn parse(file: &str, bytes: &[u8], axes: Axes) -> Result<Self, Error> {
         let text = crate::files::decode(file, bytes)?;
         document::refuse_floods(file, text)?;
         let options = roxmltree::ParsingOptions { nodes_limit: document::MAX_NODES, ..Default::default() };
         let xml = roxmltree::Document::parse_with_options(text, options)
             .map_err(|e| document::xml_error(file, text, &e))?;
         let document = Document::new(file, text, &xml)?;
-        Ok(Self { instances: scene::instances(&document)? })
+        let asset = scene::asset(&document)?;
+        Ok(Self { instances: scene::instances(&document, asset.root(axes))?, asset })
+    }
+
+    /// What was made of axes and unit, for people.
+    pub(crate) fn remarks(&self, axes: Axes) -> Vec<String> {
+        let scene::Asset { unit, up, .. } = self.asset;
+        let turned = match axes {
+            Axes::OfFile => Some(format!("COLLADA with {up}, whose axes stay as they are")),
+            Axes::YUp if up == "Y_UP" => None,
+            Axes::YUp => Some(format!(
+                "COLLADA with {up}, turned so that Y is up; robots in URDF and problems in TOML keep the axes of a file"
+            )),
+        };
+        let scaled = (unit != 1.0).then(|| format!("COLLADA in units of {unit} m, by which coordinates are multiplied"));
+        turned.into_iter().chain(scaled).collect()
     }
 
     /// All instances in one mesh.

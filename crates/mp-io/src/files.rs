@@ -23,6 +23,10 @@ pub trait Files: Debug + Send + Sync {
         Interrupt::never()
     }
 
+    /// Takes a remark of a reader on the file at `path`, a few words for people: what was decided or passed over there. By
+    /// default nobody hears it.
+    fn note(&self, _path: &Path, _remark: &str) {}
+
     /// Whether there is a file at `path`.
     fn holds(&self, path: &Path) -> bool {
         self.read(path, MAX_MESH_BYTES).is_ok()
@@ -72,6 +76,9 @@ impl Files for Until<'_> {
     }
     fn interrupt(&self) -> Interrupt {
         self.interrupt.clone()
+    }
+    fn note(&self, path: &Path, remark: &str) {
+        self.files.note(path, remark);
     }
     fn holds(&self, path: &Path) -> bool {
         self.files.holds(path)

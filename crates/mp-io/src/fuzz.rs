@@ -10,6 +10,7 @@ use crate::{
     Environment, Error, ErrorKind, GridMap, JointPath, OffDocument, OmplProblem, PathFile, PlanarFile,
     RobotFile, RosMap, SceneDocument,
 };
+use crate::mesh::Axes;
 use crate::{csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
 use mp_geom::TriMesh;
 use std::fmt::Debug;
@@ -106,7 +107,7 @@ pub fn obj(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn collada(bytes: &[u8]) -> Result<(), Error> {
-    let scene = Scene::parse("f.dae", bytes)?;
+    let scene = Scene::parse("f.dae", bytes, Axes::YUp)?;
     let _ = scene.center();
     scene.to_mesh("f.dae").map(drop)
 }

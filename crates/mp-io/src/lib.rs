@@ -43,7 +43,7 @@ pub use drive::{Drive, Driven};
 pub use error::{Error, ErrorKind, one_line, shortened};
 pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, Until, read_text};
 pub use gempa::{Environment, Obstacle, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
-pub use mesh::{MAX_CORNERS, MeshFormat, read_mesh, read_mesh_of};
+pub use mesh::{Axes, MAX_CORNERS, MeshFormat, read_mesh, read_mesh_of, read_mesh_with};
 pub use obj::parse_obj;
 pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl, exported_files};

@@ -1,6 +1,6 @@
 //! Reading a mesh of any format, and making triangles of polygons.
 
-use crate::collada::parse_collada;
+use crate::collada::Scene;
 use crate::error::{Error, ErrorKind};
 use crate::files::{Disk, Files, MAX_MESH_BYTES};
 use crate::gempa::parse_gempa_mesh;
@@ -8,7 +8,6 @@ use crate::obj::parse_obj_until;
 use crate::off::OffDocument;
 use crate::stl::parse_stl_until;
 use mp_geom::{MeshError, TriMesh};
-use mp_stop::Interrupt;
 use nalgebra::Point3;
 use std::path::Path;
 
@@ -32,19 +31,36 @@ pub fn read_mesh(path: impl AsRef<Path>) -> Result<TriMesh, Error> {
 /// # Errors
 /// As [`read_mesh`].
 pub fn read_mesh_of(files: &dyn Files, path: &Path) -> Result<TriMesh, Error> {
-    let (bytes, interrupt) = (files.read(path, MAX_MESH_BYTES)?, files.interrupt());
-    let file = path.display().to_string();
-    read_until(path, &file, &bytes, &interrupt)
+    read_mesh_with(files, path, Axes::YUp)
 }
 
-/// The mesh in `bytes`, the content of the file at `path`.
-fn read_until(path: &Path, file: &str, bytes: &[u8], interrupt: &Interrupt) -> Result<TriMesh, Error> {
+/// What becomes of the axes of a COLLADA mesh, which says which of them is up. Other formats do not: their axes stay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// They stay as they are, whatever is up: those of a mesh in a robot description are the axes of the link.
+    OfFile,
+    /// They are turned so that Y is up, as assimp does for OMPL.app.
+    YUp,
+}
+
+/// As [`read_mesh_of`], with these axes if it is a COLLADA mesh.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_mesh_with(files: &dyn Files, path: &Path, axes: Axes) -> Result<TriMesh, Error> {
+    let (bytes, interrupt) = (files.read(path, MAX_MESH_BYTES)?, files.interrupt());
+    let (file, bytes, interrupt) = (path.display().to_string(), bytes.as_slice(), &interrupt);
+    let file = file.as_str();
     match MeshFormat::of(path, bytes) {
         Some(MeshFormat::Off) => OffDocument::parse_until(file, bytes, interrupt)?.to_mesh(file),
         Some(MeshFormat::Gempa) => parse_gempa_mesh(file, bytes),
         Some(MeshFormat::Stl) => parse_stl_until(file, bytes, interrupt),
         Some(MeshFormat::Obj) => parse_obj_until(file, bytes, interrupt),
-        Some(MeshFormat::Collada) => parse_collada(file, bytes),
+        Some(MeshFormat::Collada) => {
+            let scene = Scene::parse(file, bytes, axes)?;
+            scene.remarks(axes).iter().for_each(|remark| files.note(path, remark));
+            scene.to_mesh(file)
+        }
         None => Err(Error::new(ErrorKind::Unsupported, file, "this is not a mesh format that is read here")
             .expected("a file .off, .txt (GEMPA), .stl, .obj or .dae")
             .help("convert the mesh to one of these")),

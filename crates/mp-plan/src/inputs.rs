@@ -13,6 +13,28 @@ pub(crate) struct Recording<'a> {
     pub(crate) read: Mutex<Vec<PathBuf>>,
     /// Folders whose absolute names were asked for, with these.
     pub(crate) folders: Mutex<Vec<(PathBuf, PathBuf)>>,
+    /// What readers remarked, and of which files.
+    remarks: Mutex<Vec<(String, Vec<String>)>>,
+}
+
+impl<'a> Recording<'a> {
+    pub(crate) fn new(files: &'a dyn Files) -> Self {
+        Self { files, read: Mutex::default(), folders: Mutex::default(), remarks: Mutex::default() }
+    }
+
+    /// The remarks of readers, a sentence for each.
+    pub(crate) fn remarks(&self) -> Vec<String> {
+        const SHOWN: usize = 4;
+        let remarks = self.remarks.lock().map(|remarks| remarks.clone()).unwrap_or_default();
+        let sentence = |(remark, files): (String, Vec<String>)| {
+            let shown = files[..files.len().min(SHOWN)].join(", ");
+            match files.len().saturating_sub(SHOWN) {
+                0 => format!("{remark}: {shown}"),
+                more => format!("{remark}: {shown} and {more} more"),
+            }
+        };
+        remarks.into_iter().map(sentence).collect()
+    }
 }
 
 impl Files for Recording<'_> {
@@ -26,6 +48,18 @@ impl Files for Recording<'_> {
     }
     fn interrupt(&self) -> mp_cspace::Interrupt {
         self.files.interrupt()
+    }
+    fn note(&self, path: &Path, remark: &str) {
+        tracing::info!("{}: {remark}", path.display());
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        if let Ok(mut remarks) = self.remarks.lock() {
+            match remarks.iter_mut().find(|(known, _)| known == remark) {
+                Some((_, files)) if files.contains(&name) => {}
+                Some((_, files)) => files.push(name),
+                None => remarks.push((remark.to_owned(), vec![name])),
+            }
+        }
+        self.files.note(path, remark);
     }
     fn holds(&self, path: &Path) -> bool {
         self.files.holds(path)

@@ -6,7 +6,7 @@ use crate::kinds::of_kind;
 use crate::{Error, Scene, alone};
 use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RigidTask, RobotProblem, SceneDocument};
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::PoisonError;
 
 impl Scene {
     /// Reads a scene: a GEMPA environment (`.env`, `.txt`), an OMPL.app problem (`.cfg`), a robot problem, a rigid body or
@@ -31,7 +31,7 @@ impl Scene {
             Some(_) => e,
             None => e.context(format!("cannot plan in {}", file.display())),
         };
-        let recording = Recording { files, read: Mutex::default(), folders: Mutex::default() };
+        let recording = Recording::new(files);
         let files: &dyn Files = &recording;
         let scene = match alone::scene(files, file, &ending).map_err(of)? {
             Some(scene) => scene,
@@ -53,8 +53,9 @@ impl Scene {
             }
         };
         tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
-        let Recording { read, folders, .. } = recording;
         let mut scene = scene.with_file(file);
+        scene.remarks = recording.remarks().into();
+        let Recording { read, folders, .. } = recording;
         scene.inputs = read.into_inner().unwrap_or_else(PoisonError::into_inner).into();
         scene.folders = folders.into_inner().unwrap_or_else(PoisonError::into_inner).into();
         Ok(scene)
@@ -141,6 +142,9 @@ impl Files for OneText<'_> {
     }
     fn interrupt(&self) -> mp_cspace::Interrupt {
         self.files.interrupt()
+    }
+    fn note(&self, path: &Path, remark: &str) {
+        self.files.note(path, remark);
     }
     fn holds(&self, path: &Path) -> bool {
         path == self.file || self.files.holds(path)

@@ -43,6 +43,8 @@ pub struct Scene {
     /// What it was made from, if that is a document of an editor.
     document: Option<Arc<EditedScene>>,
     notes: Arc<[String]>,
+    /// What readers of its files remarked.
+    pub(crate) remarks: Arc<[String]>,
     feature: Option<&'static str>,
 }
 
@@ -73,6 +75,7 @@ impl Scene {
             shipped: false,
             document: None,
             notes: Arc::default(),
+            remarks: Arc::default(),
             feature: None,
         }
     }
@@ -198,10 +201,11 @@ impl Scene {
         self.robot.limits()
     }
 
-    /// Further facts about the scene, for people: name and text. The [notes](Self::notes) are among them.
+    /// Further facts about the scene, for people: name and text. The [notes](Self::notes), and what was remarked about its files,
+    /// are among them.
     #[must_use]
     pub fn details(&self) -> Vec<(String, String)> {
-        let notes = self.notes.iter().map(|note| ("note".to_owned(), note.clone()));
+        let notes = self.remarks.iter().chain(&*self.notes).map(|note| ("note".to_owned(), note.clone()));
         self.robot.details().into_iter().chain(notes).collect()
     }
 

@@ -4,6 +4,7 @@ use super::document::{Document, child};
 use super::geometry::Geometry;
 use super::{Instance, MAX_INSTANCED};
 use crate::error::{Error, ErrorKind};
+use crate::mesh::Axes;
 use crate::text::clipped;
 use nalgebra::{Matrix4, Rotation3, Unit, Vector3};
 use roxmltree::{Node, NodeId};
@@ -17,11 +18,11 @@ const MAX_VISITED: usize = 1_000_000;
 
 /// All instances of geometries, in the order of the importer: those of a node, then of its children, then
 /// of the nodes it instantiates.
-pub(super) fn instances<'a>(document: &Document<'a>) -> Result<Vec<Instance>, Error> {
+pub(super) fn instances<'a>(document: &Document<'a>, root: Matrix4<f64>) -> Result<Vec<Instance>, Error> {
     let scene = visual_scene(document)?;
     let mut walk =
         Walk { document, geometries: HashMap::new(), instances: Vec::new(), visited: 0, corners: 0 };
-    walk.node(scene, asset(document)?, 0)?;
+    walk.node(scene, root, 0)?;
     Ok(walk.instances)
 }
 
@@ -38,39 +39,61 @@ fn visual_scene<'a>(document: &Document<'a>) -> Result<Node<'a, 'a>, Error> {
     }
 }
 
-/// The transform from the file's unit and up axis to metres with Y up.
-fn asset(document: &Document<'_>) -> Result<Matrix4<f64>, Error> {
-    let Some(asset) = child(document.root, "asset") else { return Ok(Matrix4::identity()) };
-    let mut scale = 1.0;
-    if let Some((unit, meter)) = child(asset, "unit").and_then(|u| Some((u, u.attribute("meter")?))) {
-        scale = meter.trim().parse().ok().filter(|m: &f64| m.is_finite() && *m > 0.0).ok_or_else(|| {
+/// What `<asset>` says of the coordinates.
+#[derive(Clone, Copy)]
+pub(crate) struct Asset {
+    /// The unit of length, metres.
+    pub(crate) unit: f64,
+    /// `X_UP`, `Y_UP` or `Z_UP`; the second when the file does not say.
+    pub(crate) up: &'static str,
+    /// The turn of the up axis to Y.
+    turn: Matrix4<f64>,
+}
+
+impl Asset {
+    /// The transform from the file's unit and axes to metres and `axes`.
+    pub(super) fn root(&self, axes: Axes) -> Matrix4<f64> {
+        let scale = Matrix4::new_scaling(self.unit);
+        match axes {
+            Axes::OfFile => scale,
+            Axes::YUp => scale * self.turn,
+        }
+    }
+}
+
+pub(super) fn asset(document: &Document<'_>) -> Result<Asset, Error> {
+    let turn = Matrix4::identity();
+    let Some(asset) = child(document.root, "asset") else { return Ok(Asset { unit: 1.0, up: "Y_UP", turn }) };
+    let mut unit = 1.0;
+    if let Some((node, meter)) = child(asset, "unit").and_then(|u| Some((u, u.attribute("meter")?))) {
+        unit = meter.trim().parse().ok().filter(|m: &f64| m.is_finite() && *m > 0.0).ok_or_else(|| {
             let message = format!("meter=\"{}\" is not a length", clipped(meter));
-            document.error(unit, message).expected("a number above 0, the length of the unit in metres")
+            document.error(node, message).expected("a number above 0, the length of the unit in metres")
         })?;
     }
     let up = child(asset, "up_axis");
     let name = up.and_then(|u| document.words(u).next()).map_or("Y_UP", |w| w.text);
     #[rustfmt::skip]
-    let turn = match name {
-        "X_UP" => Matrix4::new(
+    let (up, turn) = match name {
+        "X_UP" => ("X_UP", Matrix4::new(
             0.0, -1.0, 0.0, 0.0,
             1.0,  0.0, 0.0, 0.0,
             0.0,  0.0, 1.0, 0.0,
             0.0,  0.0, 0.0, 1.0,
-        ),
-        "Z_UP" => Matrix4::new(
+        )),
+        "Z_UP" => ("Z_UP", Matrix4::new(
             1.0,  0.0, 0.0, 0.0,
             0.0,  0.0, 1.0, 0.0,
             0.0, -1.0, 0.0, 0.0,
             0.0,  0.0, 0.0, 1.0,
-        ),
-        "Y_UP" => Matrix4::identity(),
+        )),
+        "Y_UP" => ("Y_UP", turn),
         other => {
             let message = format!("`{}` is not an axis", clipped(other));
             return Err(document.error(up.unwrap_or(asset), message).expected("X_UP, Y_UP or Z_UP"));
         }
     };
-    Ok(Matrix4::new_scaling(scale) * turn)
+    Ok(Asset { unit, up, turn })
 }
 
 struct Walk<'d, 'a> {

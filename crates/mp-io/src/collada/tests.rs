@@ -2,6 +2,7 @@
 
 use super::{Scene, parse_collada};
 use crate::error::ErrorKind;
+use crate::mesh::Axes;
 use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
 
@@ -113,11 +114,11 @@ fn the_center_counts_a_corner_once_for_each_normal() {
     let input = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
     // Two coplanar triangles share two corners: four vertices, though the mesh has other positions as well.
     let flat = format!("<triangles>{input}<p>0 1 2 0 2 3</p></triangles>");
-    let center = Scene::parse("t.dae", dae(ASSET, &flat, PLAIN).as_bytes()).unwrap().center();
+    let center = Scene::parse("t.dae", dae(ASSET, &flat, PLAIN).as_bytes(), Axes::YUp).unwrap().center();
     assert!((center - Vector3::new(0.5, 0.5, 0.0)).norm() < 1e-7);
     // An upright triangle on the edge 0 1 has another normal: those two count again.
     let bent = format!("<triangles>{input}<p>0 1 2 0 2 3 0 1 4</p></triangles>");
-    let center = Scene::parse("t.dae", dae(ASSET, &bent, PLAIN).as_bytes()).unwrap().center();
+    let center = Scene::parse("t.dae", dae(ASSET, &bent, PLAIN).as_bytes(), Axes::YUp).unwrap().center();
     let expected = (Vector3::new(2.0, 2.0, 0.0) + Vector3::new(1.0, 0.0, 2.0)) / 7.0;
     assert!((center - expected).norm() < 1e-6, "{center}");
     // Normals of the file that agree join them.
@@ -125,7 +126,7 @@ fn the_center_counts_a_corner_once_for_each_normal() {
     let smooth = format!(
         "{normals}<triangles>{input}<input semantic=\"NORMAL\" source=\"#n\" offset=\"1\"/><p>0 0 1 0 2 0 0 0 2 0 3 0 0 0 1 0 4 0</p></triangles>"
     );
-    let center = Scene::parse("t.dae", dae(ASSET, &smooth, PLAIN).as_bytes()).unwrap().center();
+    let center = Scene::parse("t.dae", dae(ASSET, &smooth, PLAIN).as_bytes(), Axes::YUp).unwrap().center();
     let expected = (Vector3::new(2.0, 2.0, 0.0) + Vector3::new(0.0, 0.0, 2.0)) / 5.0;
     assert!((center - expected).norm() < 1e-6, "{center}");
 }
@@ -141,11 +142,11 @@ fn normals_of_vertices_count_too() {
             "<input semantic=\"POSITION\" source=\"#p\"/><input semantic=\"NORMAL\" source=\"#n\"/>",
         )
         .replace("0 0 2  1 0 2  1 1 2", "0 0 0  1 0 0  1 1 0");
-    let center = Scene::parse("t.dae", text.as_bytes()).unwrap().center();
+    let center = Scene::parse("t.dae", text.as_bytes(), Axes::YUp).unwrap().center();
     // Both sides of the first triangle share three vertices; the second has three of its own in the same places.
     assert!((center - Vector3::new(2.0 / 3.0, 1.0 / 3.0, 0.0)).norm() < 1e-6, "{center}");
     let uneven = text.replace("<p>0 1 2 0 2 1 4 5 6</p>", "<p>0 1 2 0 2 1 4 1 2</p>");
-    let center = Scene::parse("t.dae", uneven.as_bytes()).unwrap().center();
+    let center = Scene::parse("t.dae", uneven.as_bytes(), Axes::YUp).unwrap().center();
     assert!((center - Vector3::new(0.5, 0.25, 0.0)).norm() < 1e-6, "{center}");
 }
 
@@ -203,7 +204,7 @@ fn sketchup(lines: &str) -> String {
 }
 
 fn center(text: &str) -> Vector3<f64> {
-    Scene::parse("t.dae", text.as_bytes()).unwrap_or_else(|e| panic!("{e}")).center()
+    Scene::parse("t.dae", text.as_bytes(), Axes::YUp).unwrap_or_else(|e| panic!("{e}")).center()
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::config;
 use crate::collada::{Scene, center::center_of_mesh};
 use crate::error::{Error, ErrorKind};
 use crate::files::{Files, MAX_MESH_BYTES, stem};
-use crate::mesh::{MeshFormat, read_mesh_of};
+use crate::mesh::{Axes, MeshFormat, read_mesh_of};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind, check_mesh, check_size, cited};
 use crate::text::Text;
 use mp_geom::{Aabb, TriMesh};
@@ -78,7 +78,8 @@ fn mesh_and_center(files: &dyn Files, path: &Path) -> Result<(TriMesh, Vector3<f
     let bytes = files.read(path, MAX_MESH_BYTES)?;
     if MeshFormat::of(path, &bytes) == Some(MeshFormat::Collada) {
         let file = path.display().to_string();
-        let scene = Scene::parse(&file, &bytes)?;
+        let scene = Scene::parse(&file, &bytes, Axes::YUp)?;
+        scene.remarks(Axes::YUp).iter().for_each(|remark| files.note(path, remark));
         return Ok((scene.to_mesh(&file)?, scene.center()));
     }
     drop(bytes);

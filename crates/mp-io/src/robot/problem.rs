@@ -3,7 +3,7 @@
 use super::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart};
 use crate::error::Error;
 use crate::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
-use crate::mesh::read_mesh_of;
+use crate::mesh::{Axes, read_mesh_with};
 use crate::problem::{MAX_COORDINATE, PlacedBody, vertex_beyond};
 use crate::toml_problem::TomlText;
 use mp_geom::{TriMesh, pose_from_six, primitives};
@@ -125,7 +125,7 @@ impl<'a> Figures<'a> {
                 match self.read.iter().find(|(file, _)| *file == place) {
                     Some(seen) => seen.clone(),
                     None => {
-                        let mesh = read_mesh_of(self.files, &place).map_err(|e| {
+                        let mesh = read_mesh_with(self.files, &place, Axes::OfFile).map_err(|e| {
                             let message = format!("the mesh of {} is not usable: {e}", entry.name);
                             fault(&message, e.remedy_of_named_file()).with_kind(e.kind())
                         })?;

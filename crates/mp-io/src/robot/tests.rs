@@ -1,5 +1,8 @@
 use super::*;
+use crate::files::Files;
 use crate::toml_problem::tests::is_clear;
+use mp_geom::TriMesh;
+use nalgebra::Point3;
 
 const GOOD: &str = "[robot]\nurdf = \"arm.urdf\"\nbase = [0, 0, 0.5, 0, 0, 0]\nlimits = { elbow = [-1, 1.5] }\n\n\
                     [motion]\nstart = [0, 0.5]\ngoals = [[1, 0], [0.0, -1]]\n\n\
@@ -158,4 +161,88 @@ fn packages_are_found_where_they_are_installed() {
     }
     let lost = problem.mesh("file:///lost/arm.off").unwrap_err();
     assert!(lost.contains("/lost/arm.off") && lost.contains("no such file"), "{lost}");
+}
+
+/// Files in memory: a post of 0.2 × 0.2 × 1 from z = 0 on, in COLLADA with this `asset`, and problems that name it. It keeps what
+/// readers remark.
+#[derive(Debug)]
+struct Posts {
+    dae: String,
+    remarks: std::sync::Mutex<Vec<String>>,
+}
+
+impl Posts {
+    fn new(asset: &str, unit: f64) -> Self {
+        let post = mp_geom::primitives::cuboid(0.2 / unit, 0.2 / unit, 1.0 / unit).unwrap();
+        let up = |z: f64| z + 0.5 / unit;
+        let numbers: String = post.vertices().iter().map(|p| format!("{} {} {} ", p.x, p.y, up(p.z))).collect();
+        let corners: String = post.triangles().iter().flatten().map(|i| format!("{i} ")).collect();
+        let dae = format!(
+            "<COLLADA>{asset}<library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array \
+             id=\"a\">{numbers}</float_array></source><vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>\
+             <triangles count=\"12\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>{corners}</p></triangles></mesh>\
+             </geometry></library_geometries><library_visual_scenes><visual_scene id=\"s\"><node><instance_geometry \
+             url=\"#g\"/></node></visual_scene></library_visual_scenes></COLLADA>"
+        );
+        Self { dae, remarks: std::sync::Mutex::default() }
+    }
+}
+
+impl Files for Posts {
+    fn read(&self, path: &std::path::Path, limit: u64) -> Result<Vec<u8>, Error> {
+        let files = crate::InMemory(|name: &str| {
+            Some(match name {
+                "arm.urdf" => "<robot name=\"arm\"/>",
+                "arm.toml" => {
+                    "[robot]\nurdf = \"arm.urdf\"\n[motion]\nstart = [0]\ngoal = [1]\n[[obstacle]]\nmesh = \"post.dae\"\n"
+                }
+                "body.toml" => {
+                    "[robot]\nmesh = \"post.dae\"\n[motion]\nstart = [0, 0, 0, 0, 0, 0]\ngoal = [1, 0, 0, 0, 0, 0]\n\
+                     [[obstacle]]\nmesh = \"post.dae\"\npose = [5, 0, 0, 0, 0, 0]\n"
+                }
+                "post.env" => "Robot\npost.dae\n0 0 0 0 0 0\n1 0 0 0 0 0\n",
+                "post.dae" => self.dae.as_str(),
+                _ => return None,
+            })
+        });
+        files.read(path, limit)
+    }
+    fn note(&self, _: &std::path::Path, remark: &str) {
+        self.remarks.lock().unwrap().push(remark.to_owned());
+    }
+}
+
+#[test]
+fn robots_and_problems_in_toml_keep_the_axes_of_collada_and_scenes_turn_them() {
+    let asset = |up: &str, unit: f64| {
+        format!("<asset><unit meter=\"{unit}\"/><up_axis>{up}</up_axis></asset>")
+    };
+    let upright = [[-0.1, -0.1, 0.0], [0.1, 0.1, 1.0]];
+    for (asset, unit, turned, said) in [
+        (asset("Z_UP", 1.0), 1.0, [[-0.1, 0.0, -0.1], [0.1, 1.0, 0.1]], "Z_UP"),
+        (asset("X_UP", 1.0), 1.0, [[-0.1, -0.1, 0.0], [0.1, 0.1, 1.0]], "X_UP"),
+        (asset("Y_UP", 1.0), 1.0, upright, "Y_UP"),
+        (String::new(), 1.0, upright, "Y_UP"),
+        (asset("Z_UP", 0.001), 0.001, [[-0.1, 0.0, -0.1], [0.1, 1.0, 0.1]], "0.001 m"),
+    ] {
+        let files = Posts::new(&asset, unit);
+        let is = |what: &str, mesh: &TriMesh, corners: [[f64; 3]; 2]| {
+            let aabb = mesh.aabb();
+            let off = (aabb.min - Point3::from(corners[0])).amax().max((aabb.max - Point3::from(corners[1])).amax());
+            assert!(off < 1e-12, "{what} of {asset}: {aabb:?}");
+        };
+        let arm = RobotProblem::load_from(&files, "arm.toml".as_ref()).unwrap();
+        is("a link", &arm.mesh_from(&files, "post.dae").unwrap(), upright);
+        is("an obstacle beside an arm", &arm.obstacles[0].mesh, upright);
+        let body = crate::RigidTask::load_from(&files, "body.toml".as_ref()).unwrap();
+        is("a body", &body.problem.robot.mesh, upright);
+        is("an obstacle beside a body", &body.problem.obstacles[0].mesh, upright);
+        let heard = std::mem::take(&mut *files.remarks.lock().unwrap()).join("; ");
+        assert!(heard.contains(said) && heard.contains("stay as they are") && !heard.contains("turned"), "{heard}");
+        // As assimp reads them, for OMPL.app and old scenes.
+        let scene = crate::RigidProblem::load_from(&files, "post.env".as_ref()).unwrap();
+        is("a scene", &scene.robot.mesh, turned);
+        let heard = files.remarks.lock().unwrap().join("; ");
+        assert_eq!(heard.contains("turned so that Y is up"), !asset.is_empty() && said != "Y_UP", "{heard}");
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::RobotProblem;
 use crate::files::{Disk, Files};
-use crate::mesh::read_mesh_of;
+use crate::mesh::{Axes, read_mesh_with};
 use crate::problem::{MAX_COORDINATE, vertex_beyond};
 use mp_geom::TriMesh;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ impl RobotProblem {
     /// As [`mesh`](Self::mesh).
     pub fn mesh_from(&self, files: &dyn Files, name: &str) -> Result<TriMesh, String> {
         let place = self.place_of(files, name)?;
-        let mesh = read_mesh_of(files, &place).map_err(|e| match e.remedy() {
+        let mesh = read_mesh_with(files, &place, Axes::OfFile).map_err(|e| match e.remedy() {
             Some(remedy) => format!("{e} ({remedy})"),
             None => e.to_string(),
         })?;

@@ -1,5 +1,6 @@
 //! What is in a mesh file.
 
+use crate::inputs::Recording;
 use crate::{Error, brief, count};
 use mp_geom::TriMesh;
 use serde::Serialize;
@@ -15,6 +16,8 @@ pub struct MeshInfo {
     /// The properties of the mesh.
     #[serde(flatten)]
     pub surface: Surface,
+    /// What was decided or passed over when it was read.
+    pub notes: Vec<String>,
 }
 
 /// The properties of a mesh, in metres. Counts of defects are 0 for a sound solid.
@@ -64,8 +67,9 @@ impl MeshInfo {
     /// # Errors
     /// When the file cannot be read, or does not hold a valid mesh.
     pub fn read(file: &Path) -> Result<Self, Error> {
-        let mesh = mp_io::read_mesh(file)?;
-        Ok(Self { file: file.display().to_string(), surface: Surface::of(&mesh) })
+        let files = Recording::new(&mp_io::Disk);
+        let mesh = mp_io::read_mesh_of(&files, file)?;
+        Ok(Self { file: file.display().to_string(), surface: Surface::of(&mesh), notes: files.remarks() })
     }
 }
 
@@ -198,6 +202,7 @@ impl fmt::Display for MeshInfo {
                 "  sides     each triangle is there once for each side; warnings are those of one side"
             )?;
         }
+        self.notes.iter().try_for_each(|note| writeln!(f, "  note      {note}"))?;
         match s.warnings.is_empty() {
             true => Ok(()),
             false => writeln!(f, "  warning   {}", s.warnings.join("; ")),
