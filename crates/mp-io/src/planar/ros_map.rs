@@ -4,8 +4,14 @@ use super::{GUIDE, GridMap};
 use crate::error::{Error, ErrorKind};
 use crate::files::decode;
 use crate::problem::MAX_COORDINATE;
+use crate::text::clipped;
 use mp_geom::planar::Polygon;
 use nalgebra::Isometry2;
+use saphyr_parser::{Event, Parser, StrInput};
+use std::ops::Range;
+
+/// The largest YAML file of a map, bytes; they have some hundred.
+const MAX_BYTES: usize = 1 << 20;
 
 /// The content of the YAML file of a map.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,10 +39,7 @@ impl RosMap {
     /// [`Error`] with the line and column.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
-        let at = |start: usize, length: usize, message: String| {
-            Error::at(ErrorKind::Format, file, text, start, length.max(1), message).help(GUIDE)
-        };
-        let (mut image, mut resolution, mut origin) = (None, None, None);
+        let yaml = Yaml { file, text };
         let mut map = Self {
             image: String::new(),
             resolution: 0.0,
@@ -45,88 +48,75 @@ impl RosMap {
             occupied_thresh: 0.65,
             free_thresh: 0.196,
         };
-        let mut lines = Lines { text, at: 0 }.peekable();
-        while let Some((start, line)) = lines.next() {
-            let line = line.trim_end();
-            if line.is_empty() || line == "---" || line == "..." {
-                continue;
-            }
-            let Some((key, value)) = line.split_once(':') else {
-                let message = format!("`{}` has no key", crate::text::clipped(line));
-                return Err(at(start, line.len(), message).expected("lines of the form `key: value`"));
-            };
-            let place = start + key.len() + 1;
-            let (key, value) = (key.trim(), unquoted(value));
-            let number = |word: &str, what: &str| match word.trim().parse::<f64>() {
-                Ok(v) if v.is_finite() && v.abs() <= MAX_COORDINATE => Ok(v),
-                _ => {
-                    let message = format!("`{}` is not {what}", crate::text::clipped(word));
-                    Err(at(place, line.len() - key.len() - 1, message).expected("a finite number"))
-                }
-            };
-            let share = |word: &str| match number(word, "a probability")? {
-                v if (0.0..=1.0).contains(&v) => Ok(v),
-                v => Err(at(place, 1, format!("{v} is not a probability")).expected("a number from 0 to 1")),
-            };
-            match key {
-                "image" => image = Some(value.to_owned()),
+        let mut entries = yaml.entries()?;
+        for (key, value) in &entries {
+            match key.as_str() {
+                "image" => map.image = yaml.scalar(value)?.to_owned(),
                 "resolution" => {
-                    let v = number(value, "metres per pixel")?;
+                    let v = yaml.number(value, "metres per pixel")?;
                     if v <= 0.0 {
-                        return Err(
-                            at(place, 1, format!("the resolution is {v}")).expected("metres above zero")
-                        );
+                        return Err(yaml
+                            .error(&value.span, format!("the resolution is {v}"))
+                            .expected("metres above zero"));
                     }
-                    resolution = Some(v);
+                    map.resolution = v;
                 }
                 "origin" => {
-                    let mut words: Vec<String> = Vec::new();
-                    if value.is_empty() {
-                        while let Some((_, item)) = lines.next_if(|(_, l)| l.trim_start().starts_with('-')) {
-                            // The hyphen of the list, not that of a number.
-                            words.push(item.trim_start()[1..].trim().to_owned());
-                        }
-                    } else {
-                        let inner =
-                            value.strip_prefix('[').and_then(|v| v.strip_suffix(']')).unwrap_or(value);
-                        words.extend(inner.split(',').map(str::to_owned));
-                    }
-                    let [x, y, yaw] = words.as_slice() else {
-                        let message = format!("the origin has {} numbers", words.len());
-                        return Err(at(place, line.len() - key.len(), message).expected("`[x, y, yaw]`"));
-                    };
                     let what = "a number of the origin";
-                    origin = Some([number(x, what)?, number(y, what)?, number(yaw, what)?]);
+                    // Three numbers without brackets are no list in YAML, but mean one.
+                    let words = match &value.content {
+                        Content::List(items) => items.iter().map(|item| yaml.number(item, what)).collect(),
+                        Content::Scalar(text) => {
+                            text.split(',').map(|word| yaml.number_of(word, value, what)).collect()
+                        }
+                        Content::Other => Ok(Vec::new()),
+                    };
+                    let words: Vec<f64> = words?;
+                    map.origin = *words.as_array().ok_or_else(|| {
+                        let message = format!("the origin has {} numbers", words.len());
+                        yaml.error(&value.span, message).expected("`[x, y, yaw]`")
+                    })?;
                 }
                 "negate" => {
-                    map.negate = match value {
-                        "0" | "false" => false,
-                        "1" | "true" => true,
-                        _ => return Err(at(place, 1, "negate is neither 0 nor 1".into()).expected("0 or 1")),
+                    map.negate = match yaml.scalar(value)?.to_ascii_lowercase().as_str() {
+                        "0" | "0.0" | "false" | "no" | "off" | "n" => false,
+                        "1" | "1.0" | "true" | "yes" | "on" | "y" => true,
+                        _ => {
+                            let message = "negate is neither 0 nor 1".to_owned();
+                            return Err(yaml
+                                .error(&value.span, message)
+                                .expected("0 or 1, or false or true"));
+                        }
                     }
                 }
-                "occupied_thresh" => map.occupied_thresh = share(value)?,
-                "free_thresh" => map.free_thresh = share(value)?,
-                "mode" if value != "trinary" => {
-                    let message = format!("maps of mode `{}` are not read", crate::text::clipped(value));
-                    return Err(at(place, 1, message)
-                        .expected("`trinary`")
-                        .with_kind(ErrorKind::Unsupported));
+                "occupied_thresh" => map.occupied_thresh = yaml.share(value)?,
+                "free_thresh" => map.free_thresh = yaml.share(value)?,
+                "mode" => {
+                    let mode = yaml.scalar(value)?;
+                    if !mode.eq_ignore_ascii_case("trinary") {
+                        let message = format!("maps of mode `{}` are not read", clipped(mode));
+                        return Err(yaml
+                            .error(&value.span, message)
+                            .expected("`trinary`")
+                            .with_kind(ErrorKind::Unsupported));
+                    }
                 }
                 _ => {}
             }
         }
-        let missing = |what: &str| {
-            at(text.len(), 0, format!("the map has no `{what}`")).expected(format!("`{what}: …`"))
-        };
-        map.image = image.filter(|name| !name.is_empty()).ok_or_else(|| missing("image"))?;
-        map.resolution = resolution.ok_or_else(|| missing("resolution"))?;
-        map.origin = origin.ok_or_else(|| missing("origin"))?;
+        let end = text.chars().count();
+        entries.retain(|(_, value)| !matches!(&value.content, Content::Scalar(text) if matches!(text.as_str(), "" | "~")));
+        for key in ["image", "resolution", "origin"] {
+            if !entries.iter().any(|(known, _)| known == key) {
+                let message = format!("the map has no `{key}`");
+                return Err(yaml.error(&(end..end), message).expected(format!("`{key}: …`")));
+            }
+        }
         if map.free_thresh > map.occupied_thresh {
             let message = "free_thresh is above occupied_thresh".to_owned();
-            return Err(
-                at(0, 1, message).expected("the threshold of what is free below that of what is occupied")
-            );
+            return Err(yaml
+                .error(&(0..1), message)
+                .expected("the threshold of what is free below that of what is occupied"));
         }
         Ok(map)
     }
@@ -157,34 +147,156 @@ impl RosMap {
     }
 }
 
-/// A value without its comment and quotes.
-fn unquoted(value: &str) -> &str {
-    let value = value.trim();
-    for quote in ['"', '\''] {
-        if let Some(inner) = value.strip_prefix(quote).and_then(|v| v.split_once(quote)) {
-            return inner.0;
+/// A value of the file, and where it is, in characters.
+struct Value {
+    content: Content,
+    span: Range<usize>,
+}
+
+enum Content {
+    Scalar(String),
+    List(Vec<Value>),
+    /// A mapping, a list of lists, or a reference to another value: no key that is read has such values.
+    Other,
+}
+
+/// A YAML file that is a mapping.
+struct Yaml<'a> {
+    file: &'a str,
+    text: &'a str,
+}
+
+impl Yaml<'_> {
+    /// An error at characters of the text.
+    fn error(&self, span: &Range<usize>, message: String) -> Error {
+        let byte = |i| self.text.char_indices().nth(i).map_or(self.text.len(), |(at, _)| at);
+        let start = byte(span.start);
+        let length = byte(span.end).saturating_sub(start).max(1);
+        Error::at(ErrorKind::Format, self.file, self.text, start, length, message).help(GUIDE)
+    }
+
+    /// The keys of the first document and their values.
+    fn entries(&self) -> Result<Vec<(String, Value)>, Error> {
+        if self.text.len() > MAX_BYTES {
+            let message =
+                format!("the file has {} bytes, more than the {MAX_BYTES} of a map", self.text.len());
+            return Err(Error::new(ErrorKind::TooLarge, self.file, message).help(GUIDE));
+        }
+        let mut entries: Vec<(String, Value)> = Vec::new();
+        let mut key: Option<String> = None;
+        let mut events = Parser::new_from_str(self.text);
+        let mut inside = false;
+        while let Some((event, span)) = self.next(&mut events)? {
+            match event {
+                Event::MappingStart(..) if !inside => inside = true,
+                Event::Scalar(..) | Event::SequenceStart(..) | Event::MappingStart(..) | Event::Alias(_)
+                    if !inside =>
+                {
+                    let message = "the file is no mapping of keys to values".to_owned();
+                    return Err(self.error(&span, message).expected("lines of the form `key: value`"));
+                }
+                Event::MappingEnd if inside => return Ok(entries),
+                _ if !inside => {}
+                Event::Scalar(text, ..) if key.is_none() => key = Some(text.into_owned()),
+                event => {
+                    let value = self.value(event, span, &mut events)?;
+                    let Some(key) = key.take() else {
+                        let message = "a key is no word".to_owned();
+                        return Err(self
+                            .error(&value.span, message)
+                            .expected("lines of the form `key: value`"));
+                    };
+                    if entries.iter().any(|(known, _)| *known == key) {
+                        let message = format!("`{}` is there twice", clipped(&key));
+                        return Err(self.error(&value.span, message).expected("each key once"));
+                    }
+                    entries.push((key, value));
+                }
+            }
+        }
+        Ok(entries)
+    }
+
+    /// The value that begins with `event`.
+    fn value<'t>(
+        &self,
+        event: Event<'t>,
+        span: Range<usize>,
+        events: &mut Parser<'t, StrInput<'t>>,
+    ) -> Result<Value, Error> {
+        let content = match event {
+            Event::Scalar(text, ..) => Content::Scalar(text.into_owned()),
+            Event::SequenceStart(..) | Event::MappingStart(..) => {
+                let (mut depth, mut items, is_list) =
+                    (1, Vec::new(), matches!(event, Event::SequenceStart(..)));
+                let mut plain = is_list;
+                while let Some((event, span)) = self.next(events)? {
+                    match event {
+                        Event::SequenceStart(..) | Event::MappingStart(..) => {
+                            (depth, plain) = (depth + 1, false)
+                        }
+                        Event::SequenceEnd | Event::MappingEnd => depth -= 1,
+                        Event::Scalar(text, ..) => {
+                            items.push(Value { content: Content::Scalar(text.into_owned()), span });
+                        }
+                        _ => plain = false,
+                    }
+                    if depth == 0 {
+                        break;
+                    }
+                }
+                if plain { Content::List(items) } else { Content::Other }
+            }
+            _ => Content::Other,
+        };
+        Ok(Value { content, span })
+    }
+
+    fn next<'t>(
+        &self,
+        events: &mut Parser<'t, StrInput<'t>>,
+    ) -> Result<Option<(Event<'t>, Range<usize>)>, Error> {
+        match events.next() {
+            None => Ok(None),
+            Some(Ok((event, span))) => Ok(Some((event, span.start.index()..span.end.index()))),
+            Some(Err(e)) => {
+                let at = e.marker().index();
+                Err(self
+                    .error(&(at..at), format!("this is not YAML: {}", e.info()))
+                    .expected("lines of the form `key: value`"))
+            }
         }
     }
-    value.split(" #").next().unwrap_or(value).trim()
-}
 
-/// Lines and where they begin; a line that is a comment is empty.
-struct Lines<'a> {
-    text: &'a str,
-    at: usize,
-}
-
-impl<'a> Iterator for Lines<'a> {
-    type Item = (usize, &'a str);
-    fn next(&mut self) -> Option<Self::Item> {
-        if self.at >= self.text.len() {
-            return None;
+    fn scalar<'v>(&self, value: &'v Value) -> Result<&'v str, Error> {
+        match &value.content {
+            Content::Scalar(text) => Ok(text.trim()),
+            _ => Err(self
+                .error(&value.span, "this is no single value".to_owned())
+                .expected("a word or a number")),
         }
-        let start = self.at;
-        let rest = &self.text[start..];
-        let length = rest.find('\n').map_or(rest.len(), |i| i + 1);
-        self.at += length;
-        let line = &rest[..length];
-        Some((start, if line.trim_start().starts_with('#') { "" } else { line.trim_end() }))
+    }
+
+    fn number(&self, value: &Value, what: &str) -> Result<f64, Error> {
+        self.number_of(self.scalar(value)?, value, what)
+    }
+
+    fn number_of(&self, word: &str, value: &Value, what: &str) -> Result<f64, Error> {
+        match word.trim().parse::<f64>() {
+            Ok(v) if v.is_finite() && v.abs() <= MAX_COORDINATE => Ok(v),
+            _ => {
+                let message = format!("`{}` is not {what}", clipped(word));
+                Err(self.error(&value.span, message).expected("a finite number"))
+            }
+        }
+    }
+
+    fn share(&self, value: &Value) -> Result<f64, Error> {
+        match self.number(value, "a probability")? {
+            v if (0.0..=1.0).contains(&v) => Ok(v),
+            v => Err(self
+                .error(&value.span, format!("{v} is not a probability"))
+                .expected("a number from 0 to 1")),
+        }
     }
 }

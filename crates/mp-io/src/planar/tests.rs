@@ -103,17 +103,24 @@ fn faults_have_their_place() {
 
 #[test]
 fn maps_of_ros() {
-    let text = "# a map\nimage: \"a b.png\"  # here\nresolution: 0.05\norigin:\n  - -1.5\n  - 2\n- 0.1\nnegate: 1\nmode: trinary\nx: y\n";
+    let text = "# a map\nimage: \"a b.png\"  # here\nresolution: 0.05\norigin:\n- -1.5\n- 2\n- 0.1\nnegate: 1\nmode: trinary\nx: y\n";
     let map = RosMap::parse("m.yaml", text.as_bytes()).unwrap();
     assert_eq!((map.image.as_str(), map.origin, map.negate), ("a b.png", [-1.5, 2.0, 0.1], true));
     for (from, to, line, words) in [
         ("resolution: 0.05", "", 10, "no `resolution`"),
         ("0.05", "-1", 3, "resolution is -1"),
         ("0.05", "five", 3, "not metres"),
-        ("- 0.1", "", 4, "2 numbers"),
+        ("- 0.1\n", "", 5, "2 numbers"),
         ("negate: 1", "negate: 2", 8, "neither"),
         ("trinary", "scale", 9, "mode"),
-        ("x: y", "x", 10, "no key"),
+        ("x: y", "x", 10, "not YAML"),
+        ("negate: 1", "negate: [0, 1]", 8, "no single value"),
+        ("x: y", "negate: 0", 10, "`negate` is there twice"),
+        ("- 2", "- [2, 3]", 5, "0 numbers"),
+        ("- 2", "- two", 6, "`two` is not a number of the origin"),
+        ("0.05", ".nan", 3, "not metres"),
+        ("image: \"a b.png\"", "image: ~", 10, "no `image`"),
+        ("image: \"a b.png\"", "image: \"a", 2, "not YAML"),
         ("x: y", "occupied_thresh: 1.5", 10, "not a probability"),
         ("x: y", "free_thresh: 0.9", 1, "above"),
         ("image: \"a b.png\"", "", 10, "no `image`"),
@@ -121,5 +128,31 @@ fn maps_of_ros() {
         let error = RosMap::parse("m.yaml", text.replacen(from, to, 1).as_bytes()).unwrap_err();
         assert!(error.to_string().contains(words) && error.remedy().is_some(), "{error}");
         assert!(error.line().is_some_and(|l| l.abs_diff(line) <= 1), "{error}");
+    }
+    assert!(RosMap::parse("m.yaml", b"- image: a.png\n").unwrap_err().to_string().contains("m.yaml:1:1"));
+}
+
+#[test]
+fn maps_of_ros_in_other_spellings_of_yaml() {
+    let read = |text: &str| {
+        RosMap::parse("m.yaml", text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {}", e.report()))
+    };
+    let plain = read("image: m.pgm\nresolution: 0.05\norigin: [0, -1, 0.5]\n");
+    for text in [
+        "image: m.pgm\nresolution: .05\norigin: [0,\n  -1, 0.5]\n",
+        "image: 'm.pgm'\nresolution: 5e-2\norigin: [\n    0.0, # x\n    -1.,\n    5.0E-1,\n]\nnegate: False\n",
+        "%YAML 1.2\n---\n\"image\": \"m.pgm\"\n'resolution': \"0.05\"\norigin:\n    - 0\n    - -1\n    - +.5\nnegate: no\n...\n",
+        "{image: m.pgm, resolution: 0.05, origin: [0, -1, 0.5], negate: 0}",
+        "{\"image\": \"m.pgm\",\r\n \"resolution\": 0.05,\r\n \"origin\": [0, -1, 0.5]}\r\n",
+        "image: >-\n  m.pgm\nresolution:   # metres\n  0.05\norigin: &o [0, -1, 0.5]\nmode: Trinary\nother: {a: [1, 2], b: *o}\nnegate: OFF",
+        "# c\n\nimage: m.pgm # c\nresolution: 0.05\n\norigin: 0, -1, 0.5\nmore:\n  - [1, 2]\n  - {a: b}\n",
+        "\u{feff}image: m.pgm\nresolution: 0.05\norigin: [0, -1, 0.5]\nnote: \"a: b # c\"\n---\nimage: other.pgm\n",
+    ] {
+        assert_eq!(read(text), plain, "{text}");
+    }
+    for negated in ["1", "True", "true", "YES", "on"] {
+        assert!(
+            read(&format!("image: m.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: {negated}")).negate
+        );
     }
 }
