@@ -110,7 +110,7 @@ impl TriMesh {
     /// [`MassError`] when the mesh is not closed and consistently oriented, or encloses nothing.
     pub fn mass_properties(&self) -> Result<MassProperties, MassError> {
         let t = self.topology();
-        if !(t.closed && t.oriented) {
+        if t.edges > 0 && !(t.closed && t.oriented) {
             let (boundary, crowded) = (t.boundary_edges.len(), t.crowded_edges.len());
             return Err(MassError::NotSolid { boundary, crowded, misoriented: t.misoriented_edges.len() });
         }

@@ -32,7 +32,7 @@ pub struct Topology {
     pub vertices: usize,
     /// Number of distinct edges.
     pub edges: usize,
-    /// Every edge has an even number of triangles.
+    /// Every edge has an even number of triangles, and there are edges.
     pub closed: bool,
     /// No crowded edge and no pinched vertex: the surface is locally a disc or half disc.
     pub manifold: bool,
@@ -128,6 +128,7 @@ impl TriMesh {
             }
         }
         drop(uses);
+        out.closed &= out.edges > 0;
         out.oriented = out.misoriented_edges.is_empty();
         out.duplicates = duplicates(&triangles);
 
@@ -172,7 +173,7 @@ impl TriMesh {
         let triangles = || self.triangles().iter().map(|t| t.map(|v| names[v as usize])).filter(is_whole);
         let edges = || triangles().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
         let upward = edges().filter(|[a, b]| a < b).count();
-        if 2 * upward != edges().count() {
+        if upward == 0 || 2 * upward != edges().count() {
             return false;
         }
         // Some at a time: lists of all take more memory than the mesh.

@@ -49,8 +49,7 @@ pub fn parse_collada(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
 
 impl Scene {
     pub(crate) fn parse(file: &str, bytes: &[u8], axes: Axes) -> Result<Self, Error> {
-        let text = crate::files::decode(file, bytes)?;
-        document::refuse_floods(file, text)?;
+        let text = &*crate::xml::text(file, bytes)?;
         let options = roxmltree::ParsingOptions { nodes_limit: document::MAX_NODES, ..Default::default() };
         let xml = roxmltree::Document::parse_with_options(text, options)
             .map_err(|e| document::xml_error(file, text, &e))?;
@@ -69,7 +68,8 @@ impl Scene {
                 "COLLADA with {up}, turned so that Y is up; robots in URDF and problems in TOML keep the axes of a file"
             )),
         };
-        let scaled = (unit != 1.0).then(|| format!("COLLADA in units of {unit} m, by which coordinates are multiplied"));
+        let scaled = (unit != 1.0)
+            .then(|| format!("COLLADA in units of {unit} m, by which coordinates are multiplied"));
         turned.into_iter().chain(scaled).collect()
     }
 

@@ -6,11 +6,11 @@
 //! were found so, and with mutated ones (`docs/fuzzing.md`).
 
 use crate::collada::Scene;
+use crate::mesh::Axes;
 use crate::{
     Environment, Error, ErrorKind, GridMap, JointPath, OffDocument, OmplProblem, PathFile, PlanarFile,
     RobotFile, RosMap, SceneDocument,
 };
-use crate::mesh::Axes;
 use crate::{csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
 use mp_geom::TriMesh;
 use std::fmt::Debug;

@@ -17,6 +17,7 @@ mod collada;
 mod csv;
 mod document;
 mod drive;
+mod encoding;
 mod error;
 mod files;
 pub mod fuzz;
@@ -35,6 +36,7 @@ mod robot;
 mod stl;
 mod text;
 mod toml_problem;
+mod xml;
 
 pub use collada::parse_collada;
 pub use csv::{csv_text, parse_csv};

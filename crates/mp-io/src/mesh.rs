@@ -17,6 +17,9 @@ pub const MAX_CORNERS: usize = 4096;
 /// minute.
 const MAX_CUTTING: usize = 1_000_000_000;
 
+/// The remark on a mesh with points and segments among its faces.
+pub(crate) const LEFT_OUT: &str = "faces of fewer than three corners are left out";
+
 /// Reads the mesh `path`: OFF, GEMPA `.txt`, STL, OBJ or COLLADA. The extension of the name decides, or,
 /// when it is not known, the content.
 ///
@@ -52,10 +55,20 @@ pub fn read_mesh_with(files: &dyn Files, path: &Path, axes: Axes) -> Result<TriM
     let (file, bytes, interrupt) = (path.display().to_string(), bytes.as_slice(), &interrupt);
     let file = file.as_str();
     match MeshFormat::of(path, bytes) {
-        Some(MeshFormat::Off) => OffDocument::parse_until(file, bytes, interrupt)?.to_mesh(file),
+        Some(MeshFormat::Off) => {
+            let document = OffDocument::parse_until(file, bytes, interrupt)?;
+            if document.faces.iter().any(|face| face.corners.len() < 3) {
+                files.note(path, LEFT_OUT);
+            }
+            document.to_mesh(file)
+        }
         Some(MeshFormat::Gempa) => parse_gempa_mesh(file, bytes),
-        Some(MeshFormat::Stl) => parse_stl_until(file, bytes, interrupt),
-        Some(MeshFormat::Obj) => parse_obj_until(file, bytes, interrupt),
+        Some(MeshFormat::Stl) => {
+            parse_stl_until(file, bytes, interrupt, &mut |remark| files.note(path, remark))
+        }
+        Some(MeshFormat::Obj) => {
+            parse_obj_until(file, bytes, interrupt, &mut |remark| files.note(path, remark))
+        }
         Some(MeshFormat::Collada) => {
             let scene = Scene::parse(file, bytes, axes)?;
             scene.remarks(axes).iter().for_each(|remark| files.note(path, remark));

@@ -1,7 +1,8 @@
 //! Wavefront OBJ: polygons. See `docs/formats/meshes.md`.
 
+use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
-use crate::mesh::build;
+use crate::mesh::{LEFT_OUT, build};
 use crate::text::{Text, Token, clipped};
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
@@ -42,17 +43,25 @@ const CURVED: [&str; 13] =
 /// # Errors
 /// [`Error`] when it is not OBJ or has curved surfaces, with the line and column.
 pub fn parse_obj(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
-    parse_obj_until(file, bytes, &Interrupt::never())
+    parse_obj_until(file, bytes, &Interrupt::never(), &mut |_| ())
 }
 
-pub(crate) fn parse_obj_until(file: &str, bytes: &[u8], interrupt: &Interrupt) -> Result<TriMesh, Error> {
+/// As [`parse_obj`], until `interrupt` says to end; `remark` takes what was passed over.
+pub(crate) fn parse_obj_until(
+    file: &str,
+    bytes: &[u8],
+    interrupt: &Interrupt,
+    remark: &mut dyn FnMut(&str),
+) -> Result<TriMesh, Error> {
     let mut interrupt = interrupt.clone();
-    let text = Text::new(file, bytes, "meshes.md")?;
+    let decoded = decode_mesh(file, bytes)?;
+    let text = Text { file, text: &decoded, guide: "meshes.md" };
     // Faces may name vertices of later lines.
     let total = vertices_of(&text, &mut interrupt);
     let mut vertices = Vec::with_capacity(total);
     let mut corners: Vec<u32> = Vec::new();
-    let mut ends = Vec::new();
+    let mut ends: Vec<usize> = Vec::new();
+    let mut left_out = false;
     let mut lines = text.lines();
     let mut words = Vec::new();
     while let Some(line) = lines.next() {
@@ -65,13 +74,19 @@ pub(crate) fn parse_obj_until(file: &str, bytes: &[u8], interrupt: &Interrupt) -
         match keyword.text {
             "v" => vertices.push(vertex(&text, line, values)?),
             "f" | "fo" => {
-                if values.len() < 3 {
+                if values.is_empty() {
                     return Err(text
-                        .error(line, format!("a face with {} corners", values.len()))
+                        .error(line, "a face without corners")
                         .expected("three or more vertices: v, v/vt, v//vn or v/vt/vn"));
                 }
                 for value in values {
                     corners.push(corner(&text, *value, vertices.len(), total)?);
+                }
+                // Points and segments are not surfaces, as in OFF.
+                if values.len() < 3 {
+                    corners.truncate(ends.last().copied().unwrap_or(0));
+                    left_out = true;
+                    continue;
                 }
                 ends.push(corners.len());
             }
@@ -86,6 +101,9 @@ pub(crate) fn parse_obj_until(file: &str, bytes: &[u8], interrupt: &Interrupt) -
                 });
             }
         }
+    }
+    if left_out {
+        remark(LEFT_OUT);
     }
     let faces = ends.iter().enumerate().map(|(i, &end)| &corners[if i == 0 { 0 } else { ends[i - 1] }..end]);
     build(file, vertices, faces)
@@ -192,6 +210,34 @@ mod tests {
         // The group takes the next line: what is missing then is said with its line.
         let e = parse_obj("t.obj", b"v 0 0 0\ng a\\\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(5), Some(7)), "{e}");
+    }
+
+    /// What is read, in how many triangles, and what is remarked.
+    fn remarks(bytes: &[u8]) -> (Result<usize, String>, Vec<String>) {
+        let mut remarks = Vec::new();
+        let mesh = parse_obj_until("t.obj", bytes, &Interrupt::never(), &mut |r| remarks.push(r.to_owned()));
+        (mesh.map(|mesh| mesh.triangles().len()).map_err(|e| e.to_string()), remarks)
+    }
+
+    #[test]
+    fn faces_of_fewer_than_three_corners_are_left_out() {
+        let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
+        for faces in ["f 1 2\nf 1 2 3\n", "f 1 2 3\nf 3\nf 1//1 -1//1\n", "f 2 2\nf 1 2 3\nf 1 2\nf 2 3\n"] {
+            let said = vec![LEFT_OUT.to_owned()];
+            assert_eq!(remarks(format!("{corners}{faces}").as_bytes()), (Ok(1), said), "{faces}");
+        }
+        // Their corners must exist, and something must be left.
+        for bad in ["f 1 4\nf 1 2 3\n", "f\nf 1 2 3\n", "f 1 2\n"] {
+            assert!(remarks(format!("{corners}{bad}").as_bytes()).0.is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn names_and_comments_in_any_encoding() {
+        let text = b"# Gr\xfc\xdfe\nmtllib M\xf6bel.mtl\ng Geh\xe4use\nusemtl \x83n\nv 0 0 0 # \xb0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+        assert_eq!(remarks(text), (Ok(1), Vec::new()));
+        let e = parse_obj("t.obj", b"# \xe4\nv 0 \xe4 0\n").unwrap_err();
+        assert_eq!((e.line(), e.column()), (Some(2), Some(5)), "{e}");
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! STL, text and binary: a triangle soup. See `docs/formats/meshes.md`.
 
+use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
 use crate::mesh::mesh_error;
 use crate::number::Row;
-use crate::text::{Lexer, Text, Token, clipped};
+use crate::text::{Lexer, Text, Token, clipped, is_not_a_number};
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
 use nalgebra::Point3;
@@ -20,16 +21,25 @@ const TRIANGLE: usize = 50;
 /// # Errors
 /// [`Error`] when it is not STL: for text with line and column, for binary with the triangle.
 pub fn parse_stl(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
-    parse_stl_until(file, bytes, &Interrupt::never())
+    parse_stl_until(file, bytes, &Interrupt::never(), &mut |_| ())
 }
 
-pub(crate) fn parse_stl_until(file: &str, bytes: &[u8], interrupt: &Interrupt) -> Result<TriMesh, Error> {
+/// As [`parse_stl`], until `interrupt` says to end; `remark` takes what was passed over.
+pub(crate) fn parse_stl_until(
+    file: &str,
+    bytes: &[u8],
+    interrupt: &Interrupt,
+    remark: &mut dyn FnMut(&str),
+) -> Result<TriMesh, Error> {
     let mut interrupt = interrupt.clone();
-    // Binary files may begin with "solid" too, so their size decides.
-    let soup = if binary_size(bytes) == Some(bytes.len() as u64) || !begins_with_solid(bytes) {
-        binary(file, bytes, &mut interrupt)?
+    let soup = if is_binary(bytes) {
+        if begins_with_solid(bytes) {
+            remark("binary STL, although its header begins with `solid`");
+        }
+        binary(file, bytes, &mut interrupt, remark)?
     } else {
-        text(&Text::new(file, bytes, "meshes.md")?, (file, &mut interrupt))?
+        let decoded = decode_mesh(file, bytes)?;
+        text(&Text { file, text: &decoded, guide: "meshes.md" }, (file, &mut interrupt))?
     };
     if interrupt.ask() {
         return Err(Error::interrupted(file));
@@ -42,6 +52,14 @@ fn begins_with_solid(bytes: &[u8]) -> bool {
     head.get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"))
 }
 
+/// Binary files may begin with "solid" too. Then their size decides, or the last byte of the number of triangles: it is zero in
+/// all files that are small enough to be read, and no text has a zero byte.
+fn is_binary(bytes: &[u8]) -> bool {
+    binary_size(bytes) == Some(bytes.len() as u64)
+        || !begins_with_solid(bytes)
+        || bytes.get(HEAD - 1) == Some(&0)
+}
+
 /// The length of a binary file with this header, bytes.
 fn binary_size(bytes: &[u8]) -> Option<u64> {
     let count: [u8; 4] = bytes.get(HEAD - 4..HEAD)?.try_into().ok()?;
@@ -50,41 +68,70 @@ fn binary_size(bytes: &[u8]) -> Option<u64> {
 
 type Soup = Vec<[Point3<f64>; 3]>;
 
-/// The triangles of a binary file.
-fn binary(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Result<Soup, Error> {
+/// The triangles of a binary file. Bytes after them are passed over, unless they are more triangles.
+fn binary(
+    file: &str,
+    bytes: &[u8],
+    interrupt: &mut Interrupt,
+    remark: &mut dyn FnMut(&str),
+) -> Result<Soup, Error> {
     let bad = |message: String| Error::new(ErrorKind::Format, file, message);
     let Some(size) = binary_size(bytes) else {
         return Err(bad(format!("the file has {} bytes and does not begin with `solid`", bytes.len()))
             .expected("text STL, or binary STL with a header of 84 bytes")
             .help("the file may be cut short, or be of another format: export it again"));
     };
-    if size != bytes.len() as u64 {
-        let triangles = (size - HEAD as u64) / TRIANGLE as u64;
+    let triangles = (size - HEAD as u64) / TRIANGLE as u64;
+    if size > bytes.len() as u64 {
         return Err(bad(format!("the file has {} bytes", bytes.len()))
             .expected(format!(
                 "{size} bytes of binary STL for the {triangles} triangles its header announces"
             ))
             .help("the file may be cut short, or be of another format: export it again"));
     }
-    let mut soup = Vec::with_capacity((bytes.len() - HEAD) / TRIANGLE);
-    for (i, record) in bytes[HEAD..].chunks_exact(TRIANGLE).enumerate() {
+    let (records, rest) = bytes[HEAD..].split_at(size as usize - HEAD);
+    let more = rest.len() / TRIANGLE;
+    if rest.len() % TRIANGLE == 0 && rest.chunks_exact(TRIANGLE).any(|record| is_triangle(&corners(record))) {
+        return Err(bad(format!(
+            "the header announces {triangles} triangles, but {more} more seem to follow them"
+        ))
+        .expected("the number of all triangles in bytes 81 to 84")
+        .help("the program that wrote the file did not complete it: export it again"));
+    }
+    if !rest.is_empty() {
+        remark(&format!("{} bytes after the last triangle of binary STL are passed over", rest.len()));
+    }
+    let mut soup = Vec::with_capacity(records.len() / TRIANGLE);
+    for (i, record) in records.chunks_exact(TRIANGLE).enumerate() {
         if i % 1024 == 0 && interrupt.ask() {
             return Err(Error::interrupted(file));
         }
-        let mut triangle = [Point3::origin(); 3];
-        // 12 bytes of normal, then nine numbers, then two bytes that mean nothing.
-        for (k, number) in record[12..48].chunks_exact(4).enumerate() {
-            let v = f32::from_le_bytes([number[0], number[1], number[2], number[3]]);
+        let triangle = corners(record);
+        for (k, v) in triangle.iter().enumerate().flat_map(|(k, corner)| corner.iter().map(move |v| (k, v))) {
             if !v.is_finite() {
-                return Err(bad(format!("corner {} of triangle {i} is not finite: {v}", k / 3))
+                return Err(bad(format!("corner {k} of triangle {i} is not finite: {v}"))
                     .expected("finite coordinates")
                     .help("correct the program that wrote the file"));
             }
-            triangle[k / 3][k % 3] = f64::from(v);
         }
         soup.push(triangle);
     }
     Ok(soup)
+}
+
+/// The corners of a triangle of a binary file: 12 bytes of normal, then nine numbers, then two bytes that mean nothing.
+fn corners(record: &[u8]) -> [Point3<f64>; 3] {
+    let number = |i: usize| {
+        let at = 12 + 4 * i;
+        f64::from(f32::from_le_bytes([record[at], record[at + 1], record[at + 2], record[at + 3]]))
+    };
+    [0, 3, 6].map(|i| Point3::new(number(i), number(i + 1), number(i + 2)))
+}
+
+/// Whether these can be the corners of a triangle of a mesh: three places less than a million metres away. Bytes that are all the same give one place.
+fn is_triangle(corners: &[Point3<f64>; 3]) -> bool {
+    let [a, b, c] = corners;
+    a != b && b != c && c != a && corners.iter().flat_map(|p| p.iter()).all(|v| v.abs() < 1e6)
 }
 
 /// The triangles of a text file.
@@ -116,9 +163,9 @@ fn text(text: &Text<'_>, (file, interrupt): (&str, &mut Interrupt)) -> Result<So
 fn facet(text: &Text<'_>, lexer: &mut Lexer<'_>) -> Result<[Point3<f64>; 3], Error> {
     expect(text, lexer.next(), "normal")?;
     for _ in 0..3 {
-        // Normals are recomputed from the corners; writers put NaN here for thin triangles.
-        let word = lexer.next().ok_or_else(|| text.error_at_end("the normal, three numbers"))?;
-        if word.text.parse::<f64>().is_err() {
+        // Normals are recomputed from the corners; writers put what is no number here for thin triangles.
+        let word = lexer.next_unused().ok_or_else(|| text.error_at_end("the normal, three numbers"))?;
+        if word.text.parse::<f64>().is_err() && !is_not_a_number(word.text) {
             text.number(word, "the normal, three numbers")?;
         }
     }
@@ -225,6 +272,99 @@ mod tests {
             e.to_string(),
             "t.stl: the file has 283 bytes; expected 284 bytes of binary STL for the 4 triangles its header announces"
         );
+    }
+
+    /// What is read, in how many triangles, and what is remarked.
+    fn remarks(bytes: &[u8]) -> (Result<usize, String>, Vec<String>) {
+        let mut remarks = Vec::new();
+        let mesh = parse_stl_until("t.stl", bytes, &Interrupt::never(), &mut |r| remarks.push(r.to_owned()));
+        (mesh.map(|mesh| mesh.triangles().len()).map_err(|e| e.to_string()), remarks)
+    }
+
+    #[test]
+    fn bytes_after_binary_are_passed_over_and_said() {
+        let solid = as_binary(&tetrahedron());
+        let mut other = solid.clone();
+        other[..5].copy_from_slice(b"SOLID");
+        other[0] = b'X';
+        for tail in [
+            vec![0, 0],
+            vec![b'\n'],
+            b"made by some program".to_vec(),
+            vec![0; 50],
+            vec![b' '; 150],
+            vec![7; 4096],
+        ] {
+            let said = format!("{} bytes after the last triangle", tail.len());
+            let (read, remarked) = remarks(&[other.as_slice(), &tail].concat());
+            assert!(
+                read == Ok(4) && remarked.len() == 1 && remarked[0].starts_with(&said),
+                "{read:?} {remarked:?}"
+            );
+            // A header that begins as text does: said as well.
+            let (read, remarked) = remarks(&[solid.as_slice(), &tail].concat());
+            assert!(
+                read == Ok(4) && remarked.len() == 2 && remarked[0].contains("`solid`"),
+                "{read:?} {remarked:?}"
+            );
+        }
+        assert_eq!(remarks(&other), (Ok(4), Vec::new()));
+        // A file cut short is binary all the same.
+        let (read, _) = remarks(&solid[..200]);
+        assert_eq!(
+            read.unwrap_err(),
+            "t.stl: the file has 200 bytes; expected 284 bytes of binary STL for the 4 triangles its header announces"
+        );
+        // Triangles beyond the number in the header would be missing from the mesh.
+        for (announced, more) in [(3_u32, 1), (1, 3), (0, 4)] {
+            let mut short = solid.clone();
+            short[80..84].copy_from_slice(&announced.to_le_bytes());
+            let e = remarks(&short).0.unwrap_err();
+            assert!(e.contains(&format!("announces {announced} triangles, but {more} more")), "{e}");
+        }
+    }
+
+    #[test]
+    fn normals_that_are_no_numbers() {
+        let facet = |normal: &str| {
+            format!(
+                "solid a\nfacet normal {normal}\n outer loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid"
+            )
+        };
+        for word in [
+            "-nan(ind)",
+            "nan(snan)",
+            "-NaN(0x8000000000000)",
+            "nan",
+            "+nanq",
+            "-1.#IND",
+            "1.#QNAN",
+            "-1.#IND00",
+            "1.#SNAN",
+            "1.#INF",
+            "-inf",
+            "Infinity",
+            "1.#J",
+        ] {
+            assert_eq!(remarks(facet(&[word; 3].join(" ")).as_bytes()), (Ok(1), Vec::new()), "{word}");
+            assert_eq!(remarks(facet(&format!("0 {word} 1")).as_bytes()).0, Ok(1), "{word}");
+        }
+        for bad in ["0 0", "0 0 north", "x nan nan"] {
+            assert!(remarks(facet(bad).as_bytes()).0.is_err(), "{bad}");
+        }
+        // Coordinates are used.
+        let bad = facet("0 0 1").replace("vertex 1 0 0", "vertex 1 -nan(ind) 0");
+        assert!(remarks(bad.as_bytes()).0.is_err());
+    }
+
+    #[test]
+    fn names_in_any_encoding() {
+        let facet = "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet";
+        for name in [b"Geh\xe4use".as_slice(), "Gehäuse".as_bytes(), b"\x83n\x83E\x83W", b"\xb2\xbf\xbc\xfe"]
+        {
+            let text = [b"solid ", name, b"\n", facet.as_bytes(), b"\nendsolid ", name, b"\n"].concat();
+            assert_eq!(remarks(&text), (Ok(1), Vec::new()), "{name:?}");
+        }
     }
 
     #[test]

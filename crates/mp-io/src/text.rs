@@ -82,6 +82,12 @@ impl<'a> Text<'a> {
     }
 }
 
+/// Whether a word is how a C library writes infinity or what is no number: `-nan(ind)`, `nan(snan)`, `-1.#IND`, `1.#QNAN`, `inf`.
+pub(crate) fn is_not_a_number(word: &str) -> bool {
+    let word = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
+    ["nan", "ind", "inf", "qnan", "snan", "1.#"].iter().any(|start| word.starts_with(start))
+}
+
 /// At most 40 characters of `text`, with control characters replaced.
 pub(crate) fn clipped(text: &str) -> String {
     clipped_to(text, 40)
@@ -163,6 +169,16 @@ impl<'a> Lexer<'a> {
         }
     }
 
+    /// As [`next`](Self::next), for a number that is not used: `1.#IND` is one word.
+    pub(crate) fn next_unused(&mut self) -> Option<Token<'a>> {
+        let Token { at, .. } = self.next()?;
+        let bytes = self.text.as_bytes();
+        while self.at < bytes.len() && !is_blank(bytes[self.at]) && !is_break(bytes[self.at]) {
+            self.at += 1;
+        }
+        Some(Token { text: &self.text[at..self.at], at })
+    }
+
     /// The next word of this line; `None` at its end, where reading stays.
     pub(crate) fn next_on_line(&mut self) -> Option<Token<'a>> {
         let bytes = self.text.as_bytes();
@@ -231,6 +247,15 @@ mod tests {
         assert_eq!(lexer.next().unwrap().text, "3");
         assert_eq!(lexer.next(), None);
         assert_eq!(text.lines().map(|l| l.text).collect::<Vec<_>>(), ["OFF# x", "1\t2 # two", "3#"]);
+        let text = Text { guide: "f.md", file: "f", text: "# a\n-1.#IND 1.#QNAN#x 2#y\n3" };
+        let mut lexer = Lexer::new(&text);
+        let unused: Vec<_> = std::iter::from_fn(|| lexer.next_unused().map(|w| w.text)).collect();
+        assert_eq!(unused, ["-1.#IND", "1.#QNAN#x", "2#y", "3"]);
+    }
+
+    #[test]
+    fn places_of_words() {
+        let text = Text { guide: "f.md", file: "f", text: "OFF# x\r\n 1\t2 # two\r\r3#\n" };
         let line = text.lines().nth(1).unwrap();
         assert_eq!(line.words().map(|w| w.at).collect::<Vec<_>>(), [9, 11, 13, 15]);
     }

@@ -1,16 +1,12 @@
 //! The XML document: elements by id, numbers with their places, sources of vertex data.
 
 use crate::error::{Error, ErrorKind};
-use crate::text::{Text, Token, clipped};
+use crate::text::{Text, Token, clipped, is_not_a_number};
 use roxmltree::Node;
 use std::collections::HashMap;
 
 /// The most XML nodes of a document.
 pub(super) const MAX_NODES: u32 = 10_000_000;
-/// The most attributes of one element.
-const MAX_ATTRIBUTES: usize = 64;
-/// The most name space declarations of a document.
-const MAX_NAMESPACES: usize = 64;
 
 /// A parsed file and its elements by id.
 pub(super) struct Document<'a> {
@@ -28,6 +24,8 @@ pub(super) struct Source {
     /// The columns of x, y and z.
     xyz: [usize; 3],
     pub(super) count: usize,
+    /// The error of the first value that is no number, such as `-nan(ind)`: positions must have none.
+    pub(super) no_number: Option<Error>,
 }
 
 impl Source {
@@ -147,8 +145,17 @@ impl<'a> Document<'a> {
             .filter(|a| matches!(a.tag_name().name(), "float_array" | "int_array"))
             .ok_or_else(|| self.error(source, "<source> without numbers").expected("a <float_array>"))?;
         let mut values = Vec::new();
+        let mut no_number = None;
         for word in self.words(array) {
-            values.push(self.text.number(word, "a number of the array")?);
+            match self.text.number(word, "a number of the array") {
+                Ok(value) => values.push(value),
+                // Programs write it for normals of triangles without area.
+                Err(e) if is_not_a_number(word.text) => {
+                    values.push(f64::NAN);
+                    no_number.get_or_insert(e);
+                }
+                Err(e) => return Err(e),
+            }
         }
         if let Some(n) = self.count(array, "count")?.filter(|&n| n != values.len()) {
             let message = format!("the array has {} numbers", values.len());
@@ -180,7 +187,7 @@ impl<'a> Document<'a> {
             let message = format!("the array has {rows} rows of {stride} numbers from number {offset} on");
             return Err(self.error(place, message).expected(format!("{count}, as the accessor says")));
         }
-        Ok(Source { values, offset, stride, xyz, count })
+        Ok(Source { values, offset, stride, xyz, count, no_number })
     }
 }
 
@@ -208,51 +215,4 @@ pub(super) fn xml_error(file: &str, text: &str, error: &roxmltree::Error) -> Err
         return e.help("remove the <!DOCTYPE …>: document types and entities are not read");
     }
     e.help("the file is cut short or not COLLADA: export it again")
-}
-
-/// Refuses files on which the XML reader would spend time or memory out of proportion: thousands of attributes in one
-/// element, or many declarations of name spaces.
-pub(super) fn refuse_floods(file: &str, text: &str) -> Result<(), Error> {
-    let mut rest = text;
-    let mut namespaces = 0;
-    let flood = |at, message| {
-        Error::at(ErrorKind::TooLarge, file, text, at, 1, message)
-            .help("export the mesh with another program")
-    };
-    while let Some(open) = rest.find('<') {
-        let tag = &rest[open..];
-        let skip = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")]
-            .into_iter()
-            .find(|(s, _)| tag.starts_with(s));
-        if let Some((_, end)) = skip {
-            let Some(close) = tag.find(end) else { return Ok(()) }; // the XML reader says what is wrong
-            rest = &tag[close + end.len()..];
-            continue;
-        }
-        let (mut quote, mut attributes, mut close) = (None, 0, tag.len());
-        for (i, b) in tag.bytes().enumerate() {
-            match (quote, b) {
-                (Some(q), _) if q == b => quote = None,
-                (Some(_), _) => {}
-                (None, b'"' | b'\'') => quote = Some(b),
-                (None, b'=') => attributes += 1,
-                (None, b'>') => {
-                    close = i;
-                    break;
-                }
-                _ => {}
-            }
-            if attributes > MAX_ATTRIBUTES {
-                let message = format!("an element with more than {MAX_ATTRIBUTES} attributes");
-                return Err(flood(text.len() - tag.len(), message));
-            }
-        }
-        namespaces += tag[..close].matches("xmlns").count();
-        if namespaces > MAX_NAMESPACES {
-            let message = format!("more than {MAX_NAMESPACES} declarations of name spaces");
-            return Err(flood(text.len() - tag.len(), message));
-        }
-        rest = &tag[close..];
-    }
-    Ok(())
 }

@@ -77,6 +77,9 @@ impl<'d, 'a> Sources<'d, 'a> {
             let message = "the positions have less than three numbers";
             return Err(self.document.error(node, message).expected("X, Y and Z"));
         }
+        if let Some(e) = &source.no_number {
+            return Err(e.clone());
+        }
         let base = geometry.positions.len();
         if base + source.count > super::MAX_INSTANCED {
             return Err(self.document.error(node, "too many vertices").with_kind(ErrorKind::TooLarge));
@@ -280,13 +283,10 @@ impl<'d, 'r, 'a> Reader<'d, 'r, 'a> {
 
     /// Adds the polygon of `numbers`, `stride` of them for each corner.
     fn polygon(&mut self, place: Node<'_, '_>, numbers: &[u32]) -> Result<(), Error> {
-        let n = numbers.len() / self.stride;
-        if n < 3 {
-            return Err(self
-                .document
-                .error(place, format!("a polygon with {n} corners"))
-                .expected("three or more"));
+        if numbers.is_empty() {
+            return Err(self.document.error(place, "a polygon without corners").expected("three or more"));
         }
+        // One of fewer than three corners is no surface: it counts as a line.
         self.face(place, numbers)
     }
 

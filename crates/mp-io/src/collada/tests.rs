@@ -75,6 +75,67 @@ fn offsets_of_other_inputs_are_passed_over() {
 }
 
 #[test]
+fn normals_may_be_no_numbers_but_positions_may_not() {
+    let primitives = |word: &str| {
+        format!(
+            "<source id=\"n\"><float_array count=\"6\">0 0 1 {word} {word} {word}</float_array></source>\
+             <triangles count=\"1\"><input semantic=\"NORMAL\" source=\"#n\" offset=\"0\"/>\
+             <input semantic=\"VERTEX\" source=\"#v\" offset=\"1\"/><p>1 0 0 1 1 2</p></triangles>"
+        )
+    };
+    for word in ["-nan(ind)", "NaN", "-1.#IND", "1.#QNAN0"] {
+        let text = dae(ASSET, &primitives(word), PLAIN);
+        assert_eq!(parse(&text).triangles().len(), 1, "{word}");
+        assert!(
+            Scene::parse("t.dae", text.as_bytes(), Axes::YUp).unwrap().center().iter().all(|v| v.is_finite())
+        );
+        let text = dae(ASSET, TRIANGLE, PLAIN).replace("0 0 0  1 0 0", &format!("0 0 0  1 {word} 0"));
+        let e = parse_collada("t.dae", text.as_bytes()).unwrap_err();
+        assert!(e.to_string().contains(word) && e.line() == Some(5), "{e}");
+    }
+    assert!(parse_collada("t.dae", dae(ASSET, &primitives("north"), PLAIN).as_bytes()).is_err());
+}
+
+#[test]
+fn polygons_of_fewer_than_three_corners_are_left_out() {
+    let input = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
+    for primitives in [
+        format!("<polylist>{input}<vcount>2 3 1</vcount><p>4 5 0 1 2 7</p></polylist>"),
+        format!("<polygons>{input}<p>4 5</p><p>0 1 2</p></polygons>"),
+        format!("<polygons>{input}<p>7</p><p>0 1 2</p></polygons>"),
+    ] {
+        let mesh = parse(&dae(ASSET, &primitives, PLAIN));
+        assert_eq!((mesh.triangles().len(), mesh.vertices().len()), (1, 3), "{primitives}");
+    }
+    let none = format!("<polygons>{input}<p>4 5</p></polygons>");
+    assert!(parse_collada("t.dae", dae(ASSET, &none, PLAIN).as_bytes()).is_err());
+}
+
+#[test]
+fn a_file_is_read_in_the_encoding_that_it_declares() {
+    let text = dae(ASSET, TRIANGLE, PLAIN);
+    let declared = |encoding: &str| {
+        let head = format!("<?xml version=\"1.0\" encoding=\"{encoding}\"?><!-- # -->");
+        text.replace("<?xml version=\"1.0\"?>", &head)
+    };
+    for encoding in ["ISO-8859-1", "windows-1252"] {
+        let mut bytes = declared(encoding).into_bytes();
+        let comment = bytes.iter().position(|b| *b == b'#').unwrap();
+        bytes[comment] = 0xe4;
+        assert_eq!(parse_collada("t.dae", &bytes).unwrap().triangles().len(), 1, "{encoding}");
+    }
+    let wide: Vec<u8> = declared("UTF-16").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    assert_eq!(
+        parse_collada("t.dae", &[b"\xff\xfe".as_slice(), &wide].concat()).unwrap().triangles().len(),
+        1
+    );
+    let undeclared =
+        [b"<!-- \xe4 -->", text.trim_start_matches("<?xml version=\"1.0\"?>").as_bytes()].concat();
+    let e = parse_collada("t.dae", &undeclared).unwrap_err();
+    assert!(e.report().contains("declare its encoding"), "{}", e.report());
+}
+
+#[test]
 fn units_and_up_axes() {
     for (up, expected) in [("X_UP", [-2.0, 1.0, 0.0]), ("Y_UP", [1.0, 2.0, 0.0]), ("Z_UP", [1.0, 0.0, -2.0])]
     {

@@ -1,10 +1,11 @@
 //! Reading OFF.
 
 use super::{OffColor, OffDocument, OffFace};
+use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
 use crate::files::{MAX_MESH_BYTES, read_file};
 use crate::mesh;
-use crate::text::{Lexer, Text, Token, clipped};
+use crate::text::{Lexer, Text, Token, clipped, is_not_a_number};
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
 use nalgebra::{Point3, Vector3};
@@ -38,7 +39,8 @@ impl OffDocument {
 
     pub(crate) fn parse_until(file: &str, bytes: &[u8], interrupt: &Interrupt) -> Result<Self, Error> {
         refuse_binary(file, bytes)?;
-        let text = Text::new(file, bytes, "off.md")?;
+        let decoded = decode_mesh(file, bytes)?;
+        let text = Text { file, text: &decoded, guide: "off.md" };
         Reader { text, lexer: Lexer::new(&text), interrupt: interrupt.clone() }.document()
     }
 
@@ -185,7 +187,7 @@ impl<'a> Reader<'a> {
             let p = self.three(&what)?;
             doc.vertices.push(Point3::from(p));
             if header.normals {
-                doc.normals.push(Vector3::from(self.three(&|| format!("the normal of vertex {i}"))?));
+                doc.normals.push(self.normal(&|| format!("the normal of vertex {i}"))?);
             }
             if header.colors {
                 let color = self.vertex_color(i, header.texture)?;
@@ -289,6 +291,18 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// A normal, which is zero where the file has no number.
+    fn normal(&mut self, what: &dyn Fn() -> String) -> Result<Vector3<f64>, Error> {
+        let mut normal = Vector3::zeros();
+        for axis in 0..3 {
+            let word = self.lexer.next_unused().ok_or_else(|| self.text.error_at_end(what()))?;
+            if !is_not_a_number(word.text) {
+                normal[axis] = self.text.number(word, &what())?;
+            }
+        }
+        Ok(normal)
+    }
+
     fn three(&mut self, what: &dyn Fn() -> String) -> Result<[f64; 3], Error> {
         Ok([self.real(what)?, self.real(what)?, self.real(what)?])
     }
@@ -382,6 +396,20 @@ mod tests {
         assert_eq!(doc.colors, [OffColor::Rgb([9, 8, 7])]);
         assert_eq!(doc.texture, [[0.25, 0.75]]);
         assert_eq!(parse(&doc.to_text()), doc);
+    }
+
+    #[test]
+    fn normals_that_are_no_numbers_and_comments_in_any_encoding() {
+        for word in ["-nan(ind)", "-1.#IND", "nan", "1.#QNAN"] {
+            let doc = parse(&format!(
+                "NOFF 3 1 0\n0 0 0 {word} {word} {word}\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n"
+            ));
+            assert_eq!(doc.normals, [Vector3::zeros(), Vector3::z(), Vector3::z()], "{word}");
+            assert_eq!(doc.to_mesh("t.off").unwrap().triangles().len(), 1);
+        }
+        let doc =
+            OffDocument::parse("t.off", b"OFF # Geh\xe4use\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap();
+        assert_eq!(doc.comments, [" Gehäuse"]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart};
 use crate::error::Error;
-use crate::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
+use crate::files::{Disk, Files, MAX_TEXT_BYTES, stem};
 use crate::mesh::{Axes, read_mesh_with};
 use crate::problem::{MAX_COORDINATE, PlacedBody, vertex_beyond};
 use crate::toml_problem::TomlText;
@@ -65,10 +65,10 @@ impl RobotProblem {
         let folder = path.parent().unwrap_or(Path::new(""));
         let text = |part: RobotPart, name: &str| {
             let place = folder.join(name);
-            let read =
-                || Ok(decode(&place.display().to_string(), &files.read(&place, MAX_TEXT_BYTES)?)?.to_owned());
-            let read: Result<String, Error> = read();
-            read.map(|text| (place.clone(), text)).map_err(|e| unusable(&file, part, &e))
+            let read = files.read(&place, MAX_TEXT_BYTES);
+            read.and_then(|bytes| Ok(crate::xml::text(&place.display().to_string(), &bytes)?.into_owned()))
+                .map(|text| (place.clone(), text))
+                .map_err(|e| unusable(&file, part, &e))
         };
         let (urdf_file, urdf) = text(RobotPart::Urdf, &file.urdf)?;
         let srdf = match &file.srdf {

@@ -175,7 +175,8 @@ impl Posts {
     fn new(asset: &str, unit: f64) -> Self {
         let post = mp_geom::primitives::cuboid(0.2 / unit, 0.2 / unit, 1.0 / unit).unwrap();
         let up = |z: f64| z + 0.5 / unit;
-        let numbers: String = post.vertices().iter().map(|p| format!("{} {} {} ", p.x, p.y, up(p.z))).collect();
+        let numbers: String =
+            post.vertices().iter().map(|p| format!("{} {} {} ", p.x, p.y, up(p.z))).collect();
         let corners: String = post.triangles().iter().flatten().map(|i| format!("{i} ")).collect();
         let dae = format!(
             "<COLLADA>{asset}<library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array \
@@ -200,7 +201,7 @@ impl Files for Posts {
                     "[robot]\nmesh = \"post.dae\"\n[motion]\nstart = [0, 0, 0, 0, 0, 0]\ngoal = [1, 0, 0, 0, 0, 0]\n\
                      [[obstacle]]\nmesh = \"post.dae\"\npose = [5, 0, 0, 0, 0, 0]\n"
                 }
-                "post.env" => "Robot\npost.dae\n0 0 0 0 0 0\n1 0 0 0 0 0\n",
+                "post.env" => "Robot\npost.dae\n0 0 0 0 0 0\n1 0 0 0 0 0\nEnd\n",
                 "post.dae" => self.dae.as_str(),
                 _ => return None,
             })
@@ -214,9 +215,8 @@ impl Files for Posts {
 
 #[test]
 fn robots_and_problems_in_toml_keep_the_axes_of_collada_and_scenes_turn_them() {
-    let asset = |up: &str, unit: f64| {
-        format!("<asset><unit meter=\"{unit}\"/><up_axis>{up}</up_axis></asset>")
-    };
+    let asset =
+        |up: &str, unit: f64| format!("<asset><unit meter=\"{unit}\"/><up_axis>{up}</up_axis></asset>");
     let upright = [[-0.1, -0.1, 0.0], [0.1, 0.1, 1.0]];
     for (asset, unit, turned, said) in [
         (asset("Z_UP", 1.0), 1.0, [[-0.1, 0.0, -0.1], [0.1, 1.0, 0.1]], "Z_UP"),
@@ -228,7 +228,9 @@ fn robots_and_problems_in_toml_keep_the_axes_of_collada_and_scenes_turn_them() {
         let files = Posts::new(&asset, unit);
         let is = |what: &str, mesh: &TriMesh, corners: [[f64; 3]; 2]| {
             let aabb = mesh.aabb();
-            let off = (aabb.min - Point3::from(corners[0])).amax().max((aabb.max - Point3::from(corners[1])).amax());
+            let off = (aabb.min - Point3::from(corners[0]))
+                .amax()
+                .max((aabb.max - Point3::from(corners[1])).amax());
             assert!(off < 1e-12, "{what} of {asset}: {aabb:?}");
         };
         let arm = RobotProblem::load_from(&files, "arm.toml".as_ref()).unwrap();
@@ -238,7 +240,10 @@ fn robots_and_problems_in_toml_keep_the_axes_of_collada_and_scenes_turn_them() {
         is("a body", &body.problem.robot.mesh, upright);
         is("an obstacle beside a body", &body.problem.obstacles[0].mesh, upright);
         let heard = std::mem::take(&mut *files.remarks.lock().unwrap()).join("; ");
-        assert!(heard.contains(said) && heard.contains("stay as they are") && !heard.contains("turned"), "{heard}");
+        assert!(
+            heard.contains(said) && heard.contains("stay as they are") && !heard.contains("turned"),
+            "{heard}"
+        );
         // As assimp reads them, for OMPL.app and old scenes.
         let scene = crate::RigidProblem::load_from(&files, "post.env".as_ref()).unwrap();
         is("a scene", &scene.robot.mesh, turned);

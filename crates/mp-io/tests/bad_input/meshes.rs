@@ -249,8 +249,8 @@ fn other_meshes() {
         case(
             Mesh,
             "m.obj",
-            "v 0 0 0\nv 1 0 0\nf 1 2\n",
-            "m.obj:3:1: a face with 2 corners; expected three or more vertices: v, v/vt, v//vn or v/vt/vn",
+            "v 0 0 0\nv 1 0 0\nf\n",
+            "m.obj:3:1: a face without corners; expected three or more vertices: v, v/vt, v//vn or v/vt/vn",
             "the format is described in docs/formats/meshes.md",
         ),
         case(

@@ -78,12 +78,15 @@ impl Surface {
     #[must_use]
     pub fn of(mesh: &TriMesh) -> Self {
         let (t, aabb) = (mesh.topology(), mesh.aabb());
-        let area = (0..mesh.triangles().len())
+        let area: f64 = (0..mesh.triangles().len())
             .map(|i| {
                 let [a, b, c] = mesh.triangle(i);
                 0.5 * (b - a).cross(&(c - a)).norm()
             })
             .sum();
+        // Below this, the volume is only rounding.
+        let encloses = mesh.signed_volume().abs() > 1e-14 * area * aabb.diagonal();
+        let anything = t.degenerate.len() < mesh.triangles().len();
         let mut shape = Self {
             units: "metres",
             triangles: mesh.triangles().len(),
@@ -91,9 +94,9 @@ impl Surface {
             min: aabb.min.coords.into(),
             max: aabb.max.coords.into(),
             area,
-            watertight: t.closed && t.oriented,
-            manifold: t.manifold,
-            oriented: t.oriented,
+            watertight: t.closed && t.oriented && encloses,
+            manifold: t.manifold && anything,
+            oriented: t.oriented && anything,
             parts: t.components,
             boundary_edges: t.boundary_edges.len(),
             crowded_edges: t.crowded_edges.len(),
@@ -104,13 +107,18 @@ impl Surface {
             two_sided: false,
             warnings: Vec::new(),
         };
-        shape.warnings = match one_side(mesh) {
-            Some(side) => {
-                shape.two_sided = true;
-                Self::of(&side).warnings
-            }
-            None => shape.defects(),
-        };
+        if let Some(side) = one_side(mesh) {
+            let side = Self::of(&side);
+            (shape.two_sided, shape.watertight, shape.warnings) = (true, side.watertight, side.warnings);
+            return shape;
+        }
+        shape.warnings = shape.defects();
+        if anything && t.closed && t.oriented && !encloses {
+            shape.warnings.push("the surface is closed, but flat: it bounds no volume".to_owned());
+        }
+        if !anything {
+            shape.warnings.push("nothing is left of the surface: no triangle has an area".to_owned());
+        }
         shape
     }
 
