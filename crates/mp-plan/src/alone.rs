@@ -18,7 +18,8 @@ use std::path::{Path, PathBuf};
 /// When the file is such a file and cannot be read, or there is no free configuration.
 pub(crate) fn scene(files: &dyn Files, file: &Path, ending: &str) -> Result<Option<Scene>, Error> {
     match ending {
-        "urdf" => robot(files, file).map(Some),
+        // Robots of other formats are told by their content what they are.
+        "urdf" | "xml" | "sdf" | "world" | "mjcf" => robot(files, file).map(Some),
         "yaml" | "yml" => map(files, file).map(Some),
         "png" | "pgm" | "pbm" | "ppm" => map(files, &beside(files, file)?).map(Some),
         "xacro" => Err(Error::new(format!("{} is a robot description with macros", file.display()))

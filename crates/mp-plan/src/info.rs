@@ -64,8 +64,8 @@ enum FileContent {
 fn content(file: &Path) -> Result<FileContent, Error> {
     let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     match ending.as_str() {
-        "env" | "cfg" | "toml" | "urdf" | "yaml" | "yml" | "png" | "pgm" | "pbm" | "ppm" | "xacro"
-        | "srdf" => {
+        "env" | "cfg" | "toml" | "urdf" | "xml" | "sdf" | "world" | "mjcf" | "yaml" | "yml" | "png"
+        | "pgm" | "pbm" | "ppm" | "xacro" | "srdf" => {
             return Ok(FileContent::Scene);
         }
         "csv" => return Ok(FileContent::Path(PathFormat::Joints)),

@@ -86,6 +86,104 @@ fn txt_files_are_told_apart_by_how_they_begin() {
 }
 
 #[test]
+fn what_bounds_nothing_is_not_watertight() {
+    let dir = tempfile::tempdir().unwrap();
+    let surface = |text: &str| {
+        let file = dir.path().join("m.obj");
+        std::fs::write(&file, text).unwrap();
+        MeshInfo::read(&file).unwrap().surface
+    };
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 0 0\nv 0 0 1\n";
+    for (faces, said) in [
+        ("f 1 1 2\n", "nothing is left"),
+        ("f 1 1 1\nf 2 2 3\n", "nothing is left"),
+        ("f 1 2 5\nf 1 5 2\n", "nothing is left"),
+        // Both sides of a sheet, and a tetrahedron pressed flat.
+        ("f 1 2 3\nf 1 3 2\n", "boundary edges"),
+        ("f 1 2 3\nf 1 3 2\nf 2 4 3\nf 2 3 4\n", "boundary edges"),
+        ("f 1 2 3\nf 2 4 3\nf 1 4 2\nf 1 3 4\n", "bounds no volume"),
+    ] {
+        let surface = surface(&format!("{corners}{faces}"));
+        assert!(!surface.watertight && surface.warnings.join("; ").contains(said), "{faces}: {surface:?}");
+    }
+    // A tetrahedron does, also with each triangle on both sides.
+    let solid = "f 1 3 2\nf 1 2 6\nf 2 3 6\nf 3 1 6\n";
+    assert!(surface(&format!("{corners}{solid}")).watertight);
+    let both = surface(&format!("{corners}{solid}f 1 2 3\nf 1 6 2\nf 2 6 3\nf 3 6 1\n"));
+    assert!(both.watertight && both.two_sided && both.warnings.is_empty(), "{both:?}");
+}
+
+#[test]
+fn what_readers_passed_over_is_in_the_notes() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, bytes: &[u8]| std::fs::write(dir.path().join(name), bytes).unwrap();
+    let mut binary = vec![b' '; 80];
+    binary.extend(1_u32.to_le_bytes());
+    binary.extend([0; 12]);
+    [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().for_each(|v| binary.extend(v.to_le_bytes()));
+    binary.extend([0; 2]);
+    binary.extend(b"\r\n");
+    write("tail.stl", &binary);
+    write("edge.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\nf 1 2 3\n");
+    for (name, said) in
+        [("tail.stl", "2 bytes after the last triangle"), ("edge.obj", "fewer than three corners")]
+    {
+        let shown = Info::read(&dir.path().join(name)).unwrap().to_string();
+        assert!(shown.contains("note ") && shown.contains(said) && shown.contains(name), "{shown}");
+    }
+    // A scene says it of the files that it names, each once.
+    write(
+        "body.toml",
+        b"[robot]\nmesh = \"tail.stl\"\n[motion]\nstart = [0, 0, 0, 0, 0, 0]\ngoal = [1, 0, 0, 0, 0, 0]\n\
+          [[obstacle]]\nmesh = \"tail.stl\"\npose = [9, 0, 0, 0, 0, 0]\n[[obstacle]]\nmesh = \"edge.obj\"\npose = [9, 9, 0, 0, 0, 0]\n",
+    );
+    let shown = Info::read(&dir.path().join("body.toml")).unwrap().to_string();
+    assert_eq!(
+        shown.matches("2 bytes after the last triangle of binary STL are passed over: tail.stl\n").count(),
+        1,
+        "{shown}"
+    );
+    assert!(shown.contains("fewer than three corners are left out: edge.obj"), "{shown}");
+}
+
+#[test]
+fn robots_of_other_formats_are_told_what_they_are() {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, text, said, remedy) in [
+        (
+            "r.sdf",
+            "<?xml version=\"1.0\"?>\n<sdf version=\"1.6\"><model name=\"m\"/></sdf>",
+            "SDF, the format of Gazebo",
+            "URDF of the robot",
+        ),
+        (
+            "r.world",
+            "<sdf version=\"1.6\"><world name=\"w\"/></sdf>",
+            "SDF, the format of Gazebo",
+            "URDF of the robot",
+        ),
+        (
+            "r.xml",
+            "<!-- m -->\n<mujoco model=\"m\"><worldbody/></mujoco>",
+            "MJCF, the format of MuJoCo",
+            "URDF of the robot",
+        ),
+        ("r.urdf", "<mujoco model=\"m\"/>", "MJCF, the format of MuJoCo", "URDF of the robot"),
+        ("sdf.urdf", "<sdf version=\"1.9\"/>", "SDF, the format of Gazebo", "URDF of the robot"),
+        ("a.launch.xml", "<launch/>", "a launch file", "names"),
+    ] {
+        let file = dir.path().join(name);
+        std::fs::write(&file, text).unwrap();
+        let e = Info::read(&file).unwrap_err().report();
+        assert!(e.contains(said) && e.contains(remedy) && !e.contains("xacro"), "{name}: {e}");
+    }
+    // What is URDF is read, whatever its name.
+    let file = dir.path().join("robot.xml");
+    std::fs::write(&file, "<robot name=\"r\"/>").unwrap();
+    assert!(Info::read(&file).unwrap_err().report().contains("at least one link"), "it has nothing");
+}
+
+#[test]
 fn lengths_and_motions() {
     assert_eq!("20%".parse::<Length>().unwrap(), Length::Fraction(0.2));
     assert_eq!("0.5".parse::<Length>().unwrap(), Length::Absolute(0.5));

@@ -200,6 +200,18 @@ pub enum UrdfError {
         /// What is wrong.
         message: String,
     },
+    /// The text is XML of another format.
+    #[error("line {line}: this is {format}, not {what}")]
+    Other {
+        /// "a URDF" or "an SRDF".
+        what: &'static str,
+        /// Where its first element is.
+        line: u32,
+        /// Its format.
+        format: &'static str,
+        /// What to do about it.
+        remedy: &'static str,
+    },
     /// A joint has a kind that is not handled.
     #[error(
         "line {line}: joint \"{joint}\" is {kind}: only revolute, continuous, prismatic and fixed joints are handled; for a base \
@@ -257,7 +269,7 @@ impl UrdfError {
     pub fn line(&self) -> Option<u32> {
         match self {
             Self::Syntax { line, .. } => *line,
-            Self::Kind { line, .. } | Self::Shape { line, .. } => Some(*line),
+            Self::Other { line, .. } | Self::Kind { line, .. } | Self::Shape { line, .. } => Some(*line),
             Self::Arm(_) => None,
         }
     }
@@ -279,6 +291,7 @@ impl UrdfError {
             Self::Syntax { .. } => {
                 "correct this place, or export the robot again; xacro files must be expanded by xacro first"
             }
+            Self::Other { remedy, .. } => remedy,
             Self::Kind { .. } => "change the type of the joint",
             Self::Shape { .. } => "correct the shape, or remove this <collision> if nothing can touch it",
             Self::Arm(_) => "correct the links and joints of the URDF",

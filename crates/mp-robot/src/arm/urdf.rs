@@ -6,7 +6,8 @@ use super::compile::MAX_LENGTH;
 use super::{ArmModel, Joint, JointKind, Link, UrdfError};
 use extract::{Extract, extract, some};
 use mp_geom::{TriMesh, primitives};
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use std::collections::HashMap;
 use urdf_rs::{Geometry, JointType};
 
 /// Segments around a cylinder or a capsule. The mesh contains the shape.
@@ -24,7 +25,8 @@ impl ArmModel {
     ///   [`with_limits`](Self::with_limits) gives them other limits;
     /// - which joints that mimic others had their limits ignored, because neither joint could move within both limits.
     ///
-    /// Round shapes become meshes of flat faces that contain them. They are larger by less than 1% of the radius (2% for
+    /// A shape without volume is a sheet or a line, which can be hit; one of no extent at all is left out, and a note says so. Round
+    /// shapes become meshes of flat faces that contain them. They are larger by less than 1% of the radius (2% for
     /// spheres).
     ///
     /// `mesh` is called with each mesh file name as written, often `package://robot/part.stl`. It returns the mesh, or a
@@ -43,6 +45,7 @@ impl ArmModel {
             message: error.to_string(),
         })?;
         let mut model = Self { notes, ..Self::default() };
+        let mut empty: Vec<String> = Vec::new();
         for (link, lines) in robot.links.iter().zip(&links) {
             let mut made = Link::new(&link.name);
             for (i, (collision, &line)) in link.collision.iter().zip(lines).enumerate() {
@@ -52,7 +55,14 @@ impl ArmModel {
                     number: i + 1,
                     message,
                 };
-                let shape = shape(&collision.geometry, &mut mesh).map_err(fail)?;
+                let made_shape = match without_volume(&collision.geometry) {
+                    Some(thin) => thin,
+                    None => shape(&collision.geometry, &mut mesh).map(Some),
+                };
+                let Some(shape) = made_shape.map_err(fail)? else {
+                    empty.extend((empty.last() != Some(&link.name)).then(|| link.name.clone()));
+                    continue;
+                };
                 let origin = pose(&collision.origin);
                 if !super::kinematics::is_pose(&origin, MAX_LENGTH) {
                     return Err(fail("its origin is no pose: numbers must be finite".to_owned()));
@@ -60,6 +70,11 @@ impl ArmModel {
                 made = made.with(&shape, &origin);
             }
             model.links.push(made);
+        }
+        if !empty.is_empty() {
+            let note =
+                format!("shapes of size 0 are left out, for there is nothing to touch, in {}", some(&empty));
+            model.notes.push(note);
         }
         for (joint, &line) in robot.joints.iter().zip(&joints) {
             let limits = (joint.limit.lower, joint.limit.upper);
@@ -95,14 +110,13 @@ impl ArmModel {
     /// Drops the limits of joints that mimic others where they leave no range to move in. The joint that is followed keeps
     /// its own limits.
     fn drop_conflicting_limits(&mut self) {
+        let leaders = self.joints.iter().filter(|j| j.mimic.is_none());
+        let leaders: HashMap<String, _> = leaders.map(|j| (j.name.clone(), j.kind.limits())).collect();
         let mut aside = Vec::new();
         for i in 0..self.joints.len() {
             let Some(mimic) = &self.joints[i].mimic else { continue };
-            let Some(leader) = self.joints.iter().find(|j| j.name == mimic.joint && j.mimic.is_none()) else {
-                continue;
-            };
-            let (Some([own_low, own_high]), Some([low, high])) =
-                (self.joints[i].kind.limits(), leader.kind.limits())
+            let (Some([own_low, own_high]), Some(&Some([low, high]))) =
+                (self.joints[i].kind.limits(), leaders.get(&mimic.joint))
             else {
                 continue;
             };
@@ -135,12 +149,61 @@ fn pose(pose: &urdf_rs::Pose) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(Vector3::from(pose.xyz.0)), turn)
 }
 
+/// What there is of a shape with lengths of zero, in its own frame: a sheet or a line, for these can be hit, or `None` for a
+/// point. The whole is `None` for all other shapes.
+fn without_volume(geometry: &Geometry) -> Option<Result<Option<TriMesh>, String>> {
+    let sides = match geometry {
+        Geometry::Box { size } => size.0,
+        Geometry::Sphere { radius } => [2.0 * radius; 3],
+        Geometry::Cylinder { radius, length } => [2.0 * radius, 2.0 * radius, *length],
+        Geometry::Capsule { radius, length } if *length == 0.0 && *radius > 0.0 => {
+            return Some(ball(*radius).map(Some));
+        }
+        Geometry::Capsule { radius, length } => [2.0 * radius, 2.0 * radius, *length],
+        Geometry::Mesh { .. } => return None,
+    };
+    if !sides.contains(&0.0) || sides.iter().any(|side| !side.is_finite() || *side < 0.0) {
+        return None;
+    }
+    let axes: Vec<usize> = (0..3).filter(|&axis| sides[axis] > 0.0).collect();
+    let corners: Vec<Point3<f64>> = match (axes.as_slice(), geometry) {
+        ([], _) => return Some(Ok(None)),
+        (&[x, y], Geometry::Cylinder { radius, .. }) => (0..SEGMENTS)
+            .map(|i| {
+                let (sin, cos) = mp_math::sin_cos(std::f64::consts::TAU * f64::from(i) / f64::from(SEGMENTS));
+                let mut corner = Point3::origin();
+                (corner[x], corner[y]) = (radius * grown() * cos, radius * grown() * sin);
+                corner
+            })
+            .collect(),
+        (axes, _) => [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]][..2 * axes.len()]
+            .iter()
+            .map(|signs| {
+                let mut corner = Point3::origin();
+                axes.iter().zip(signs).for_each(|(&axis, sign)| corner[axis] = 0.5 * sign * sides[axis]);
+                corner
+            })
+            .collect(),
+    };
+    // A line is a triangle with two corners in one place.
+    let triangles = match corners.len() as u32 {
+        2 => vec![[0, 1, 1]],
+        n => (1..n - 1).map(|i| [0, i, i + 1]).collect(),
+    };
+    Some(TriMesh::new(corners, triangles).map(Some).map_err(|error| error.to_string()))
+}
+
+/// How much larger than a circle the polygon of [`SEGMENTS`] sides around it is.
+fn grown() -> f64 {
+    1.0 / mp_math::cos(std::f64::consts::PI / f64::from(SEGMENTS))
+}
+
 /// The shape as a mesh, in its own frame.
 fn shape(
     geometry: &Geometry,
     mesh: &mut impl FnMut(&str) -> Result<TriMesh, String>,
 ) -> Result<TriMesh, String> {
-    let grown = 1.0 / mp_math::cos(std::f64::consts::PI / f64::from(SEGMENTS));
+    let grown = grown();
     let made = match geometry {
         Geometry::Box { size } => primitives::cuboid(size[0], size[1], size[2]),
         Geometry::Cylinder { radius, length } => primitives::cylinder(radius * grown, *length, SEGMENTS),

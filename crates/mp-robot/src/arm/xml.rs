@@ -43,9 +43,12 @@ impl<'a> Text<'a> {
         let root = document.root_element();
         let found = root.tag_name().name();
         if found != "robot" {
-            let message =
-                format!("its first element is <{found}>, not <robot>; xacro must be expanded first");
-            return Err(self.error(&root, message));
+            return Err(match other_format(found) {
+                Some((format, remedy)) => {
+                    UrdfError::Other { what: self.what, line: line(&root), format, remedy }
+                }
+                None => self.error(&root, format!("its first element is <{found}>, not <robot>")),
+            });
         }
         let mut stack = vec![(root, 1)];
         while let Some((node, depth)) = stack.pop() {
@@ -65,6 +68,23 @@ impl<'a> Text<'a> {
     fn wrong(&self, line: Option<u32>, message: String) -> UrdfError {
         UrdfError::Syntax { what: self.what, line, message }
     }
+}
+
+/// The format of documents with this root, and what to do about them, if it is one that is taken for URDF.
+fn other_format(root: &str) -> Option<(&'static str, &'static str)> {
+    Some(match root {
+        "sdf" | "gazebo" | "world" | "model" => (
+            "SDF, the format of Gazebo",
+            "take the URDF of the robot, which mostly comes with it, or convert the model to one, such as by sdf2urdf of pysdf",
+        ),
+        "mujoco" | "mujocoinclude" => (
+            "MJCF, the format of MuJoCo",
+            "take the URDF of the robot, which mostly comes with it, or convert the model to one, such as by mjcf-urdf-simple-converter",
+        ),
+        "launch" => ("a launch file of ROS", "take the robot description that it names"),
+        "COLLADA" => ("COLLADA, a mesh", "name it in a <mesh> of a URDF, or as an obstacle"),
+        _ => return None,
+    })
 }
 
 /// The line of `node`, counted from 1.

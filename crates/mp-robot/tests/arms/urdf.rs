@@ -119,6 +119,70 @@ fn limits_can_be_set_and_pairs_given() {
     assert!(noted(model.clone()) && !noted(ArmModel { floating: Some(bounds), ..model }));
 }
 
+/// An arm that slides along X, with this collision geometry.
+fn slider(geometry: &str) -> String {
+    format!(
+        "<robot name=\"r\"><link name=\"base\"><collision><geometry>{geometry}</geometry></collision></link><link name=\"arm\">\
+         <collision><geometry>{geometry}</geometry></collision></link><joint name=\"j\" type=\"prismatic\"><parent link=\"base\"/>\
+         <child link=\"arm\"/><axis xyz=\"1 0 0\"/><limit lower=\"-2\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint></robot>"
+    )
+}
+
+#[test]
+fn shapes_without_volume_are_sheets_and_lines_and_points_are_left_out() {
+    for point in [
+        "<box size=\"0 0 0\"/>",
+        "<sphere radius=\"0\"/>",
+        "<cylinder radius=\"0.0\" length=\"0\"/>",
+        "<capsule radius=\"0\" length=\"0\"/>",
+        "<box size=\"0 -0.0 0e3\"/>",
+    ] {
+        let model = read(&slider(point)).unwrap();
+        assert!(model.links.iter().all(|link| link.shapes.is_empty()), "{point}");
+        assert!(
+            model.notes.iter().any(|n| n.contains("size 0") && n.contains("\"base\", \"arm\"")),
+            "{:?}",
+            model.notes
+        );
+        Arm::new(&model, []).unwrap();
+    }
+    // What has an extent can be hit: by a post at x = 1, where the arm is with j = 1, and not with j = 0.
+    for (thin, size) in [
+        ("<box size=\"0.2 0.2 0\"/>", [0.2, 0.2, 0.0]),
+        ("<box size=\"0 0.2 0.4\"/>", [0.0, 0.2, 0.4]),
+        ("<box size=\"0.2 0 0\"/>", [0.2, 0.0, 0.0]),
+        ("<cylinder radius=\"0\" length=\"0.4\"/>", [0.0, 0.0, 0.4]),
+        ("<cylinder radius=\"0.1\" length=\"0\"/>", [0.2, 0.2, 0.0]),
+        ("<capsule radius=\"0\" length=\"0.4\"/>", [0.0, 0.0, 0.4]),
+        ("<capsule radius=\"0.1\" length=\"0\"/>", [0.2, 0.2, 0.2]),
+    ] {
+        let model = read(&slider(thin)).unwrap();
+        assert!(model.notes.is_empty(), "{:?}", model.notes);
+        let aabb = model.links[1].shapes[0].aabb();
+        for (found, wanted) in (aabb.max - aabb.min).iter().zip(size) {
+            // Round shapes are a little larger.
+            assert!(*found >= wanted - 1e-15 && *found <= 1.03 * wanted, "{thin}: {aabb:?}");
+        }
+        let post = cuboid(0.05, 0.05, 0.3).unwrap();
+        let mut arm =
+            Arm::new(&model, [("post".to_owned(), post, nalgebra::Isometry3::translation(1.0, 0.0, 0.0))])
+                .unwrap();
+        for (j, free) in [(1.0, false), (0.95, size[0] == 0.0), (0.0, true)] {
+            let q = nalgebra::DVector::from_vec(vec![j]);
+            assert_eq!(mp_cspace::Validity::is_valid(&mut arm, &q), free, "{thin} at {j}");
+        }
+    }
+    // Other lengths are wrong.
+    for bad in [
+        "<box size=\"0 0 -1\"/>",
+        "<sphere radius=\"-0.1\"/>",
+        "<cylinder radius=\"0\" length=\"nan\"/>",
+        "<box size=\"0 inf 1\"/>",
+    ] {
+        assert!(read(&slider(bad)).is_err(), "{bad}");
+    }
+}
+
 #[test]
 fn faults_are_named() {
     let says = |from: &str, to: &str, words: &[&str]| {

@@ -2,7 +2,7 @@
 //! document is parsed, so that errors in it do not matter.
 
 use super::super::UrdfError;
-use super::super::xml::{Text, line};
+use super::super::xml::Text;
 use roxmltree::{Attribute, Node};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -33,7 +33,8 @@ const JOINTS: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floa
 pub(super) fn extract(text: &str) -> Result<Extract, UrdfError> {
     let text = Text::new("a URDF", text)?;
     let document = text.parse()?;
-    let mut writer = Writer { text: &text, out: String::new(), links: Vec::new(), joints: Vec::new() };
+    let ends = document.input_text().match_indices('\n').map(|(at, _)| at).collect();
+    let mut writer = Writer { text: &text, ends, out: String::new(), links: Vec::new(), joints: Vec::new() };
     let mut left_out = LeftOut::default();
     let robot = document.root_element();
     writer.open(&robot, "robot", &["name", "version"]);
@@ -84,6 +85,8 @@ fn attribute<'a>(node: &Node<'a, '_>, name: &str) -> Option<&'a str> {
 
 struct Writer<'t, 'a> {
     text: &'t Text<'a>,
+    /// Where lines end.
+    ends: Vec<usize>,
     out: String,
     links: Vec<Vec<u32>>,
     joints: Vec<u32>,
@@ -96,7 +99,7 @@ impl Writer<'_, '_> {
         let mut lines = Vec::new();
         let shapes = node.children().filter(|c| c.is_element() && is_own(c));
         for collision in shapes.filter(|c| c.tag_name().name() == "collision") {
-            lines.push(line(&collision));
+            lines.push(self.line(&collision));
             self.open(&collision, "collision", &[]);
             self.origin(&collision)?;
             self.geometry(&collision)?;
@@ -105,6 +108,12 @@ impl Writer<'_, '_> {
         self.out.push_str("</link>");
         self.links.push(lines);
         Ok(())
+    }
+
+    /// The line of `node`, counted from 1.
+    fn line(&self, node: &Node<'_, '_>) -> u32 {
+        let start = node.range().start;
+        self.ends.partition_point(|&end| end < start) as u32 + 1
     }
 
     fn geometry(&mut self, collision: &Node<'_, '_>) -> Result<(), UrdfError> {
@@ -176,7 +185,7 @@ impl Writer<'_, '_> {
             self.out.push_str("/>");
         }
         self.out.push_str("</joint>");
-        self.joints.push(line(node));
+        self.joints.push(self.line(node));
         Ok(())
     }
 
