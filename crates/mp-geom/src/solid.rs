@@ -52,6 +52,7 @@ impl TriMesh {
             let found = self.topology();
             return Err(match found.misoriented_edges.len() {
                 edges if found.closed => SolidError::NotOriented { edges },
+                _ if found.edges == 0 => SolidError::Flat,
                 _ => SolidError::Open { edges: found.boundary_edges.len().max(1) },
             });
         }
