@@ -73,7 +73,7 @@ pub(crate) struct Plan {
     /// The seed of all random numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Stop after this many seconds, loading, shortening and verifying included. Planning may take nine tenths of them.
+    /// Stop after this many seconds, loading, shortening and verifying included. The search may take nine tenths of them.
     #[arg(long, value_name = "S", default_value = "60", value_parser = positive_number)]
     pub(crate) time: f64,
     /// Stop when the program takes this much memory, such as 500MB or 1.5GiB.

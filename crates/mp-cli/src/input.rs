@@ -1,7 +1,7 @@
 //! Scenes and paths from files and from standard input.
 
 use crate::output::note;
-use mp_plan::{Error, Interrupt, PathFileKind, PathRows, Scene, StopReason};
+use mp_plan::{Error, Interrupt, PathFileKind, PathRows, Scene, StopReason, Verdict};
 use std::path::Path;
 
 /// Whether a name stands for standard input or output.
@@ -28,29 +28,34 @@ pub(crate) fn refuse_two_standard_inputs(scene: &Path, path: Option<&Path>) -> R
 /// The scene that an argument names; `-` is standard input. What was chosen for a robot or a map alone is said to the person
 /// watching.
 pub(crate) fn scene(given: &Path) -> Result<Scene, Error> {
-    scene_until(given, &Interrupt::never())
-}
-
-/// As [`scene`], unless `interrupt` says to end.
-pub(crate) fn scene_until(given: &Path, interrupt: &Interrupt) -> Result<Scene, Error> {
-    let scene = match is_standard(given) {
-        true => Scene::parse_until("stdin", &standard_input()?, Path::new(""), interrupt),
-        false => Scene::find_until(given, interrupt),
-    };
-    let scene = match (scene, interrupt.raised()) {
-        (scene, None) => scene?,
-        (_, Some(StopReason::Deadline)) => {
-            let message = format!("the time was up while {} was loaded", given.display());
-            return Err(Error::new(message).help("give more time by --time, or simplify the file"));
-        }
-        (_, Some(StopReason::Memory)) => {
-            let message = format!("the memory was used up while {} was loaded", given.display());
-            return Err(Error::new(message).help("give more memory by --memory, or simplify the file"));
-        }
-        (_, Some(_)) => return Err(Error::new(format!("interrupted while {} was loaded", given.display()))),
-    };
+    let scene = read(given, &Interrupt::never())?;
     scene.notes().iter().for_each(|line| note(&format!("note: {line}")));
     Ok(scene)
+}
+
+/// As [`scene`], ready to plan in.
+///
+/// # Errors
+/// Inside: what ended it, if `interrupt` said to end.
+pub(crate) fn scene_until(given: &Path, interrupt: &Interrupt) -> Result<Result<Scene, StopReason>, Error> {
+    let scene = read(given, interrupt);
+    if let Ok(scene) = &scene {
+        // Whether it was told to end is asked below.
+        let _ = scene.make_ready(interrupt);
+    }
+    if let Some(reason) = interrupt.raised() {
+        return Ok(Err(reason));
+    }
+    let scene = scene?;
+    scene.notes().iter().for_each(|line| note(&format!("note: {line}")));
+    Ok(Ok(scene))
+}
+
+fn read(given: &Path, interrupt: &Interrupt) -> Result<Scene, Error> {
+    match is_standard(given) {
+        true => Scene::parse_until("stdin", &standard_input()?, Path::new(""), interrupt),
+        false => Scene::find_until(given, interrupt),
+    }
 }
 
 /// The path that an argument names; `-` is standard input, in any format.
@@ -67,12 +72,12 @@ pub(crate) fn path(scene: &Scene, given: &Path) -> Result<PathRows, Error> {
     PathRows::parse("standard input", text.as_bytes(), kind, scene.path_format())
 }
 
-/// The path that an argument names, and what is wrong with it. If anything is, this is said to the person watching.
-pub(crate) fn judged_path(scene: &Scene, given: &Path) -> Result<(PathRows, Vec<String>), Error> {
+/// The path that an argument names, and the verdict about it. If anything is wrong, this is said to the person watching.
+pub(crate) fn judged_path(scene: &Scene, given: &Path) -> Result<(PathRows, Verdict), Error> {
     let path = path(scene, given)?;
     let verdict = scene.check(&path)?;
     if !verdict.free {
         note(&format!("warning: this path would not pass `mp check`: {}", verdict.faults.join("; ")));
     }
-    Ok((path, verdict.faults))
+    Ok((path, verdict))
 }

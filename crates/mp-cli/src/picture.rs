@@ -5,7 +5,7 @@ use crate::page_planner::PagePlanner;
 use crate::progress::Line;
 use mp_plan::{
     Cancel, Error, Film, FilmKind, GrownRoadmap, Look, PICTURE_SIZE, PathRows, PictureKind, Progress, Report,
-    Scene, SearchEvent, Stage, Watch,
+    Scene, SearchEvent, Stage, Verdict, Watch,
 };
 use mp_view::{GrownTrees, SceneFile};
 use std::path::Path;
@@ -30,6 +30,8 @@ pub(crate) enum Picture {
 pub(crate) struct Shown<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) path: Option<&'a PathRows>,
+    /// Of a path that is not that of the report.
+    pub(crate) verdict: Option<&'a Verdict>,
     pub(crate) report: Option<&'a Report>,
     pub(crate) caption: &'a str,
 }
@@ -165,7 +167,7 @@ impl Picture {
         cancel: &Cancel,
         line: &Line,
     ) -> Result<Option<Vec<u8>>, Error> {
-        let Shown { scene, path, report, caption } = *shown;
+        let Shown { scene, path, verdict, report, caption } = *shown;
         match self {
             Self::Drawn(kind, look) => return scene.picture(path, caption, *kind, look).map(Some),
             Self::Film(film) => {
@@ -176,9 +178,11 @@ impl Picture {
             _ => {}
         }
         let mut file = SceneFile::of(scene)?;
-        match (report, path) {
-            (Some(report), _) => file.add_report(scene, report)?,
-            (None, Some(path)) => file.add_path(scene, "path", path)?,
+        match (report, path.zip(verdict)) {
+            (Some(report), _) => file.add_run(scene, report)?,
+            (None, Some((path, verdict))) => {
+                file.add_judged_path(scene, "path", path, verdict.free, verdict.path_length)?;
+            }
             (None, None) => {}
         }
         if let Some(grown) = grown {

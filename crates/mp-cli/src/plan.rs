@@ -57,16 +57,24 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
             return Err(Error::new("--out -: there is a file for each route").help("name a file"));
         }
     }
-    // Each scene may take the whole time.
-    let load = |given: &PathBuf| {
+    let (mut scenes, mut not_loaded) = (Vec::new(), Vec::new());
+    for given in &named {
+        // Each scene may take the whole time.
         let (cancel, clock) = (cancel.clone(), mp_plan::Clock::default());
+        let began = clock.now();
         let interrupt = match request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok()) {
             None => Interrupt::new(cancel),
-            Some(time) => Interrupt::by(cancel, clock, clock.now().saturating_add(time)),
+            Some(time) => Interrupt::by(cancel, clock, began.saturating_add(time)),
         };
-        scene_until(given, &interrupt)
-    };
-    let scenes = named.iter().map(load).collect::<Result<Vec<_>, _>>()?;
+        match scene_until(given, &interrupt)? {
+            Ok(scene) => scenes.push(scene),
+            Err(reason) => {
+                let name = given.file_stem().unwrap_or(given.as_os_str()).to_string_lossy();
+                let report = Report::not_loaded(&name, &request, reason, clock.now().saturating_sub(began));
+                not_loaded.push(Report { scene_file: Some(given.display().to_string()), ..report });
+            }
+        }
+    }
     let requests =
         scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
     let jobs: Vec<(usize, u64)> =
@@ -82,16 +90,17 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     }
 
     // Several runs have the whole time each.
-    let spent = if jobs.len() == 1 { mp_plan::Clock::default().now() - began } else { Duration::ZERO };
+    let single = jobs.len() + not_loaded.len() == 1;
+    let spent = if single { mp_plan::Clock::default().now() - began } else { Duration::ZERO };
     if let (Some(count), [scene], [request]) = (args.routes, scenes.as_slice(), requests.as_slice()) {
         return routes(args, scene, request, count, (&cancel, spent), &files);
     }
-    let single = jobs.len() == 1;
     // Runs have a thread each when there are several.
     let threads = if single { args.threads } else { 1 };
     let how = How { args, files: &files, watched: single, threads };
     let job = |(i, seed): (usize, u64)| one(&scenes[i], &requests[i], seed, (&cancel, spent), &how);
-    let reports = match jobs.as_slice() {
+    let mut reports = match jobs.as_slice() {
+        [] => Vec::new(),
         [only] => vec![job(*only)?],
         _ => {
             let line = Line::new("runs", None, true);
@@ -106,7 +115,9 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
             all.into_iter().flatten().collect::<Result<Vec<_>, _>>()?
         }
     };
-    let (missing, solved) = (jobs.len() - reports.len(), reports.iter().all(|r| r.solved));
+    let missing = jobs.len() - reports.len();
+    reports.extend(not_loaded);
+    let solved = reports.iter().all(|r| r.solved);
     show(args, reports, single)?;
     if missing > 0 {
         note(&format!("{}: {missing} of {} runs were not started", ended_by(&cancel), jobs.len()));
@@ -147,8 +158,13 @@ fn routes(
             }
             if let Some(file) = file {
                 let picture = Picture::of(scene, &file, &drawing, true)?;
-                let shown =
-                    Shown { scene, path: Some(&path), report: Some(&report), caption: &caption(&report) };
+                let shown = Shown {
+                    scene,
+                    path: Some(&path),
+                    verdict: None,
+                    report: Some(&report),
+                    caption: &caption(&report),
+                };
                 if let Some(bytes) = picture.bytes(&shown, None, cancel, &line)? {
                     write(&file, &bytes)?;
                     report.picture_file = Some(file.display().to_string());
@@ -265,7 +281,13 @@ fn one(
         note(&format!("{}: {} was not drawn", StoppedBy::Memory, file.display()));
     } else if let Some((picture, file)) = picture {
         line.say("drawing the picture");
-        let shown = Shown { scene, path: Some(&path), report: Some(&report), caption: &caption(&report) };
+        let shown = Shown {
+            scene,
+            path: Some(&path),
+            verdict: None,
+            report: Some(&report),
+            caption: &caption(&report),
+        };
         match picture.bytes(&shown, grown, cancel, &line)? {
             Some(bytes) => {
                 write(&file, &bytes)?;

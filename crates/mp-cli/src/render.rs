@@ -19,16 +19,16 @@ pub(crate) fn run(args: &Render) -> Result<bool, Error> {
     claims.output("--picture", &args.picture)?;
     let judged = args.path.as_ref().map(|file| judged_path(&scene, file)).transpose()?;
     let mut caption = String::new();
-    if let Some((path, faults)) = &judged {
+    if let Some((path, verdict)) = &judged {
         caption = mp_plan::count(path.rows.len(), "configuration");
-        if let Some(fault) = faults.first() {
+        if let Some(fault) = verdict.faults.first() {
             // The place is in the warning.
             let what = fault.split(" between ").next().unwrap_or(fault);
             caption += &format!("; NOT A VALID PATH: {}", mp_io::shortened(what, 80));
         }
     }
-    let path = judged.as_ref().map(|(path, _)| path);
-    let shown = Shown { scene: &scene, path, report: None, caption: &caption };
+    let (path, verdict) = judged.as_ref().map(|(path, verdict)| (path, verdict)).unzip();
+    let shown = Shown { scene: &scene, path, verdict, report: None, caption: &caption };
     let cancel = if picture.takes_long() { interrupt::flag() } else { Cancel::new() };
     let line = Line::new(scene.name(), None, true);
     let Some(bytes) = picture.bytes(&shown, None, &cancel, &line)? else {

@@ -8,6 +8,13 @@ pub(crate) fn summary(report: &Report) -> String {
     let by = format!("{}, seed {}", report.planner, report.seed);
     match report.stopped_by {
         None => lines.push(format!("{}: solved in {} by {by}", report.scene, seconds(report.time_s))),
+        Some(reason) if report.is_not_begun() => {
+            let (by, all) = (explained(reason), reason == StoppedBy::Time);
+            let when = if all { ": loading took all of it" } else { " while the scene was loaded" };
+            lines.push(format!("{}: not planned: {by}{when}", report.scene));
+            lines.push(format!("  {:<11}{}", "stages", stages(report)));
+            return lines.join("\n");
+        }
         Some(reason) => lines.push(format!(
             "{}: not solved in {} by {by}: {}",
             report.scene,

@@ -169,6 +169,31 @@ fn what_cannot_be_solved_is_not_and_nothing_is_written() {
     assert!(!dir.exists("p.txt") && !dir.exists("out"));
 }
 
+/// Loading counts: a budget that it uses up is one that is used up.
+#[test]
+fn loading_may_take_all_of_the_time() {
+    let dir = Dir::new();
+    let told = mp(&dir, &["plan", "closed.env", "--time", "1e-9"]);
+    assert_eq!(told.code, 1, "{told:?}");
+    assert!(
+        told.stdout.starts_with("closed: not planned: the time is up (--time): loading took all of it\n")
+    );
+    assert!(told.stdout.contains("until the time was up\n  nothing was written"), "{told:?}");
+    let report = mp(&dir, &["plan", "closed.env", "--time", "1e-9", "--json", "--out", "p.txt"]);
+    assert_eq!(report.code, 1, "{report:?}");
+    let report = report.json();
+    assert_fields(&report, false);
+    assert_eq!((&report["stopped_by"], &report["stages"][0]["stage"]), (&"time".into(), &"loading".into()));
+    assert_eq!(report["stages"][0]["ended_by"], "time");
+    assert!(!dir.exists("p.txt"));
+    // Each of several scenes by itself.
+    let both = mp(&dir, &["plan", "closed.env", "arm", "--time", "1e-9", "--json"]);
+    assert_eq!((both.code, both.json()["runs"].as_array().unwrap().len()), (1, 2), "{both:?}");
+    // What is wrong with a file is said nevertheless, if there is time.
+    let wrong = mp(&dir, &["plan", "no-such-scene", "--time", "1e-9"]);
+    assert_eq!(wrong.code, 2, "{wrong:?}");
+}
+
 #[test]
 fn every_planner_metric_and_motion_check_gives_a_certified_path() {
     let dir = Dir::new();

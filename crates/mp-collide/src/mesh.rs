@@ -35,8 +35,7 @@ impl CollisionMesh {
     #[must_use]
     pub fn new_until(mesh: &TriMesh, interrupt: &Interrupt) -> Option<Self> {
         let mut interrupt = interrupt.clone();
-        let go_on = || if interrupt.ask() { Err(()) } else { Ok(()) };
-        Self::of(mesh, go_on).ok()
+        Self::of(mesh, || interrupt.go_on()).ok()
     }
 
     /// The mesh of `triangles`: at least one, at most `u32::MAX`.
@@ -55,7 +54,11 @@ impl CollisionMesh {
         Self::built(count, |i| copied[i], go_on)
     }
 
-    fn built<E>(
+    /// Of so many triangles, at least one and at most `u32::MAX`.
+    ///
+    /// # Errors
+    /// That of `go_on`, which is called often.
+    pub(crate) fn built<E>(
         count: usize,
         triangle: impl Fn(usize) -> Triangle,
         go_on: impl FnMut() -> Result<(), E>,
@@ -63,6 +66,12 @@ impl CollisionMesh {
         let _span = tracing::debug_span!("build", triangles = count).entered();
         let tree = Arc::new(Tree::build(count, triangle, go_on)?);
         Ok(Self { tree, filled: false, parts: Arc::default() })
+    }
+
+    /// Whether both share one tree, and either both are solids or none: not whether they are equal.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.tree, &other.tree) && self.filled == other.filled
     }
 
     /// How many triangles there are.

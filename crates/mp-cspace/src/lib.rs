@@ -96,7 +96,7 @@ pub use metric::{
     Euclidean, Manhattan, MaxDisplacement, Metric, MetricFn, ScaledEuclidean, SweptVolume, WithMetric,
 };
 pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
-pub use mp_stop::{Cancel, Clock, Interrupt, SparseClock, StopReason};
+pub use mp_stop::{Cancel, Clock, Interrupt, Interrupted, SparseClock, StopReason};
 pub use nn::{DefaultNn, Embed, Hit, KdTree, Linear, MetricTree, NearestNeighbors, NodeId};
 pub use numbers::StateVector;
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};

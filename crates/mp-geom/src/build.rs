@@ -4,8 +4,10 @@
 //! strips and fans share them.
 
 use crate::{MeshError, TriMesh, triangulate::triangulate};
+use mp_stop::{Interrupt, Interrupted};
 use nalgebra::Point3;
 use std::collections::HashMap;
+use std::convert::Infallible;
 
 /// Gives equal positions equal numbers, in order of first appearance.
 #[derive(Default)]
@@ -37,16 +39,38 @@ impl TriMesh {
     /// # Errors
     /// As [`TriMesh::new`].
     pub fn from_soup(soup: &[[Point3<f64>; 3]]) -> Result<Self, MeshError> {
+        let Ok(made) = Self::of_soup(soup, || Ok::<(), Infallible>(()));
+        made
+    }
+
+    /// As [`from_soup`](Self::from_soup), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// When it was told to end. Inside, as [`TriMesh::new`].
+    pub fn from_soup_until(
+        soup: &[[Point3<f64>; 3]],
+        interrupt: &Interrupt,
+    ) -> Result<Result<Self, MeshError>, Interrupted> {
+        let mut interrupt = interrupt.clone();
+        Self::of_soup(soup, || interrupt.go_on())
+    }
+
+    /// `go_on` is called for each thousand triangles.
+    fn of_soup<E>(
+        soup: &[[Point3<f64>; 3]],
+        mut go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<Result<Self, MeshError>, E> {
         if u32::try_from(soup.len().saturating_mul(3)).is_err() {
-            return Err(MeshError::TooLarge {
-                what: "triangle corners",
-                count: soup.len().saturating_mul(3),
-            });
+            let count = soup.len().saturating_mul(3);
+            return Ok(Err(MeshError::TooLarge { what: "triangle corners", count }));
         }
         let mut welder = Welder::default();
         let mut vertices = Vec::new();
         let mut triangles = Vec::with_capacity(soup.len());
-        for corners in soup {
+        for (i, corners) in soup.iter().enumerate() {
+            if i % 1024 == 0 {
+                go_on()?;
+            }
             triangles.push(corners.map(|p| {
                 let i = welder.number(&p);
                 if i as usize == vertices.len() {
@@ -55,7 +79,7 @@ impl TriMesh {
                 i
             }));
         }
-        Self::new(vertices, triangles)
+        Ok(Self::new(vertices, triangles))
     }
 
     /// A mesh from triangle strips: corners k, k+1, k+2 of a strip are a triangle, every second one turned

@@ -59,6 +59,14 @@ fn check_count(what: &'static str, count: usize) -> Result<(), MeshError> {
     if u32::try_from(count).is_ok() { Ok(()) } else { Err(MeshError::TooLarge { what, count }) }
 }
 
+/// An error for the first vertex with a coordinate that is not finite.
+pub(crate) fn check_finite(vertices: &[Point3<f64>]) -> Result<(), MeshError> {
+    match vertices.iter().enumerate().find(|(_, p)| p.iter().any(|c| !c.is_finite())) {
+        Some((vertex, p)) => Err(MeshError::NotFinite { vertex, x: p.x, y: p.y, z: p.z }),
+        None => Ok(()),
+    }
+}
+
 /// An indexed triangle mesh (boundary representation): a soup, with no promise of being closed,
 /// manifold, oriented or free of degenerate triangles.
 ///
@@ -97,10 +105,7 @@ impl TriMesh {
         }
         check_count("vertices", vertices.len())?;
         check_count("triangles", triangles.len())?;
-        if let Some((vertex, p)) = vertices.iter().enumerate().find(|(_, p)| p.iter().any(|c| !c.is_finite()))
-        {
-            return Err(MeshError::NotFinite { vertex, x: p.x, y: p.y, z: p.z });
-        }
+        check_finite(&vertices)?;
         for (triangle, t) in triangles.iter().enumerate() {
             if let Some(&index) = t.iter().find(|&&i| i as usize >= vertices.len()) {
                 return Err(MeshError::IndexOutOfRange { triangle, index, vertices: vertices.len() });

@@ -1,5 +1,6 @@
 //! Meshes as solids: which triangles have an inside.
 
+use crate::mesh::check_finite;
 use crate::{MeshError, TriMesh};
 use nalgebra::Point3;
 use std::f64::consts::PI;
@@ -92,12 +93,13 @@ impl TriMesh {
     /// # Errors
     /// When a coordinate is no longer finite.
     pub fn scaled(&self, [x, y, z]: [f64; 3]) -> Result<Self, MeshError> {
-        let vertices = self.vertices.iter().map(|p| Point3::new(x * p.x, y * p.y, z * p.z)).collect();
-        let mut triangles = self.triangles.to_vec();
+        let vertices: Vec<_> = self.vertices.iter().map(|p| Point3::new(x * p.x, y * p.y, z * p.z)).collect();
+        check_finite(&vertices)?;
+        let mut scaled = Self { vertices: vertices.into(), ..self.clone() };
         if [x, y, z].iter().filter(|s| **s < 0.0).count() % 2 == 1 {
-            triangles.iter_mut().for_each(|t| t.swap(1, 2));
+            Arc::make_mut(&mut scaled.triangles).iter_mut().for_each(|t| t.swap(1, 2));
         }
-        Ok(Self { solids: Arc::clone(&self.solids), ..Self::new(vertices, triangles)? })
+        Ok(scaled)
     }
 
     /// How often the surface winds around `p`: the solid angle of the surface seen from `p`, over 4π, summed over triangles as

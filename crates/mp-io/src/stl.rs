@@ -41,10 +41,8 @@ pub(crate) fn parse_stl_until(
         let decoded = decode_mesh(file, bytes)?;
         text(&Text { file, text: &decoded, guide: "meshes.md" }, (file, &mut interrupt))?
     };
-    if interrupt.ask() {
-        return Err(Error::interrupted(file));
-    }
-    TriMesh::from_soup(&soup).map_err(|e| mesh_error(file, &e))
+    let mesh = TriMesh::from_soup_until(&soup, &interrupt).map_err(|_| Error::interrupted(file))?;
+    mesh.map_err(|e| mesh_error(file, &e))
 }
 
 fn begins_with_solid(bytes: &[u8]) -> bool {

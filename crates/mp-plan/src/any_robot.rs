@@ -17,7 +17,7 @@ use crate::{
     Body, Column, Control, Error, Explanation, Finished, Length, PathFormat, PathRows, Report, Request,
     RobotKind, Sweep, Track, Verdict,
 };
-use mp_cspace::{Demand, Interrupt, Rng, Space, Validity};
+use mp_cspace::{Demand, Interrupt, Interrupted, Rng, Space, Validity};
 use mp_geom::Aabb;
 use mp_io::RigidProblem;
 use nalgebra::{Isometry3, Point3};
@@ -90,6 +90,7 @@ pub(crate) trait AnyRobot: Send + Sync {
     ) -> Result<Certificate, Error>;
     fn explain(&self, row: &[f64]) -> Result<Explanation, Error>;
     fn check_ends(&self) -> Result<Vec<String>, Error>;
+    fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted>;
     fn lint(&self) -> Vec<String>;
     fn bodies(&self) -> Vec<Body>;
     fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error>;
@@ -232,6 +233,9 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     }
     fn check_ends(&self) -> Result<Vec<String>, Error> {
         check_ends(self)
+    }
+    fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
+        RobotKind::make_ready(self, interrupt)
     }
     fn lint(&self) -> Vec<String> {
         lint(self)

@@ -65,7 +65,8 @@ pub(crate) fn finish_given<K: RobotKind>(
     let rest = left(control);
     let relaxed = relax_if_requested(kind, request, given, control, rest)?;
     let rest = left(control);
-    finish(kind, &relaxed, request, control, rest, &mut Vec::new())?.map_err(ended)
+    let planned = control.clock.now().saturating_sub(began);
+    finish(kind, &relaxed, request, control, rest, planned, &mut Vec::new())?.map_err(ended)
 }
 
 /// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](RobotKind::shortcut_clearance) or is an
@@ -86,14 +87,14 @@ pub fn shorten<K: RobotKind>(
     let mut check: AnyCheck<'_, K::State> = match kind.sampled() {
         None => {
             let check = Certified::new(kind.space(), checker, kind.shortcut_clearance())?;
-            Box::new(Possible { kind, check, interrupt })
+            Box::new(Possible { kind, check, interrupt, deadlines: None })
         }
         Some(length) => {
             let checker = Counted::new(checker, &unused).with_interrupt(interrupt.clone());
             let check: AnyCheck<'_, K::State> = Box::new(Discrete::new(&space, checker, resolution(length))?);
             let verifier: AnyCheck<'_, K::State> = Box::new(kind.verifier()?);
             let check = Both { check, verifier };
-            Box::new(Possible { kind, check, interrupt })
+            Box::new(Possible { kind, check, interrupt, deadlines: None })
         }
     };
     let mut rng = Rng::stream(seed, STREAM);
@@ -129,7 +130,7 @@ fn shorten_by<C: Factored>(
 }
 
 /// Shortens `found` if the request says so, and verifies what will be written, within the time `left`. If the shortened path does
-/// not pass, or not in time, `found` itself is used. `stages` gets what was done.
+/// not pass, or not in time, `found` itself is used. `stages` gets what was done. A proof of `found` takes less than the time `planned`.
 ///
 /// # Errors
 /// Inside: why there is no path. `found`, written and read again, does not pass either, or not in time.
@@ -139,18 +140,32 @@ pub(crate) fn finish<K: RobotKind>(
     request: &Request,
     control: &mut Control<'_>,
     left: Option<Duration>,
+    planned: Duration,
     stages: &mut Vec<StageTime>,
 ) -> Result<Result<Finished, StoppedBy>, Error> {
     control.stage(Stage::Finishing);
     let mut timed = Timed { control, stages, began: control.clock.now(), left };
+    let mut proved = None;
     if request.finish == Finish::Shorten {
-        let rest = timed.left.map_or(Duration::ZERO, |left| left.mul_f64(1.0 - SHORT_PART));
+        // The planner has proved what it has found. What is read back is another path as a rule, of about the same proof: that comes first
+        // where half of the time left may be too little for it.
+        let written = Written::of(kind, found)?;
+        let known = written.read.states == found.states;
+        if !known && left.is_some_and(|left| left < planned.saturating_mul(4)) {
+            let interrupt = timed.interrupt(1.0);
+            proved = verified_as_written(kind, found, &written, false, &interrupt)?.ok();
+            timed.ends(RunStage::Verifying, &interrupt);
+        }
+        let for_short = if known || proved.is_some() { 1.0 } else { SHORT_PART };
+        let rest = timed.left.map_or(Duration::ZERO, |left| left.mul_f64(1.0 - for_short));
         let interrupt = timed.interrupt(SHORTENING_PART);
         let short = shorten(kind, found, request.seed, &interrupt)?;
         timed.ends(RunStage::Shortening, &interrupt);
         if short.states != found.states {
             let interrupt = timed.interrupt_before(rest);
-            let finished = verified_as_written(kind, &short, true, &interrupt)?;
+            let written = Written::of(kind, &short)?;
+            let finished = verified_as_written(kind, &short, &written, true, &interrupt)?
+                .map(|finished| measured(kind, &written, finished, &interrupt));
             timed.ends(RunStage::Verifying, &interrupt);
             if let Ok(finished) = finished {
                 return Ok(Ok(finished));
@@ -158,13 +173,21 @@ pub(crate) fn finish<K: RobotKind>(
             tracing::info!("the shortened path does not pass the verifier: the path as found is written");
         }
     }
+    let written = Written::of(kind, found)?;
+    if let Some(proved) = proved {
+        return Ok(Ok(measured(kind, &written, proved, &timed.interrupt(1.0))));
+    }
     let interrupt = timed.interrupt(1.0);
-    let mut finished = verified_as_written(kind, found, false, &interrupt)?;
+    let prove = |interrupt: &Interrupt| {
+        let finished = verified_as_written(kind, found, &written, false, interrupt)?;
+        Ok::<_, Error>(finished.map(|finished| measured(kind, &written, finished, interrupt)))
+    };
+    let mut finished = prove(&interrupt)?;
     timed.ends(RunStage::Verifying, &interrupt);
     // A cancelled run keeps its path, even if this takes as long as the verification, and the memory that it needs.
     if matches!(finished, Err(StoppedBy::Interrupted | StoppedBy::Memory)) {
         let interrupt = timed.interrupt_by_deadline();
-        finished = verified_as_written(kind, found, false, &interrupt)?;
+        finished = prove(&interrupt)?;
         timed.ends(RunStage::Verifying, &interrupt);
     }
     Ok(finished.map_err(|by| if by == StoppedBy::Time { StoppedBy::Unverified } else { by }))
@@ -215,29 +238,42 @@ impl Timed<'_, '_> {
     }
 }
 
-/// `path` written as text and read again, if the verifier passes the result.
+/// A path written as text, and read again.
+struct Written<S> {
+    rows: PathRows,
+    read: Path<S>,
+}
+
+impl<S> Written<S> {
+    fn of<K: RobotKind<State = S>>(kind: &K, path: &Path<S>) -> Result<Self, Error> {
+        let rows = PathRows { format: kind.path_format(), columns: kind.columns(), rows: kind.rows(path) };
+        let rows = rows.read_back()?;
+        let read = Path::straight(rows.rows.iter().map(|row| kind.state(row)).collect());
+        Ok(Self { rows, read })
+    }
+}
+
+/// `path` as it is `written`, if the verifier passes that.
 ///
 /// # Errors
 /// Inside: whether it does not pass, or was not verified because `interrupt` said to end.
 fn verified_as_written<K: RobotKind>(
     kind: &K,
     path: &Path<K::State>,
+    written: &Written<K::State>,
     shortened: bool,
     interrupt: &Interrupt,
 ) -> Result<Result<Finished, StoppedBy>, Error> {
     let _span = tracing::info_span!("verify").entered();
-    let rows = PathRows { format: kind.path_format(), columns: kind.columns(), rows: kind.rows(path) };
-    let rows = rows.read_back()?;
-    let read = Path::straight(rows.rows.iter().map(|row| kind.state(row)).collect());
-    let report = verified(kind, &read, interrupt)?;
-    let (length, cut) = (path.length(kind.space()), interrupt.raised());
+    let Written { rows, read } = written;
+    let report = verified(kind, read, interrupt)?;
+    let finished =
+        |clearance| Finished { path: rows.clone(), length: path.length(kind.space()), clearance, shortened };
     if let Some(fault) = report.fault {
         // The planner has verified each edge of the path as found. Where writing and reading change nothing, that holds for what is
         // written.
-        return Ok(match cut {
-            Some(_) if !shortened && read.states == path.states => {
-                Ok(Finished { path: rows, length, clearance: None, shortened })
-            }
+        return Ok(match interrupt.raised() {
+            Some(_) if !shortened && read.states == path.states => Ok(finished(None)),
             Some(reason) => Err(reason.into()),
             None => {
                 tracing::info!("{fault}");
@@ -245,8 +281,17 @@ fn verified_as_written<K: RobotKind>(
             }
         });
     }
-    let clearance = clearance(kind, &read, kind.accuracy(), interrupt)
-        .map_or(report.clearance, |c| c.max(report.clearance));
-    let clearance = kind.sampled().is_none().then_some(clearance);
-    Ok(Ok(Finished { path: rows, length, clearance, shortened }))
+    Ok(Ok(finished(kind.sampled().is_none().then_some(report.clearance))))
+}
+
+/// With a better bound on the clearance, if there is time for one.
+fn measured<K: RobotKind>(
+    kind: &K,
+    written: &Written<K::State>,
+    finished: Finished,
+    interrupt: &Interrupt,
+) -> Finished {
+    let Some(known) = finished.clearance else { return finished };
+    let clearance = clearance(kind, &written.read, kind.accuracy(), interrupt);
+    Finished { clearance: Some(clearance.map_or(known, |c| c.max(known))), ..finished }
 }

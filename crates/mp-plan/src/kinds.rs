@@ -55,11 +55,7 @@ impl Scene {
     }
 
     /// The scene of `problem`, which is an edited problem of the scene `before`: what did not change is shared with it.
-    pub(crate) fn of_problem(before: Option<&Self>, problem: RigidProblem) -> Result<Self, Error> {
-        Self::of_problem_until(before, problem, &Interrupt::never())
-    }
-
-    fn of_problem_until(
+    pub(crate) fn of_problem_until(
         before: Option<&Self>,
         problem: RigidProblem,
         interrupt: &Interrupt,
@@ -81,11 +77,19 @@ impl Scene {
     /// # Errors
     /// When the bounds of the position are empty, a mesh, a pose or a time is not valid, or a mesh in the plane is to move by inputs.
     pub fn from_task(task: RigidTask) -> Result<Self, Error> {
+        Self::from_task_until(task, &Interrupt::never())
+    }
+
+    /// As [`from_task`](Self::from_task), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`from_task`](Self::from_task), and when it was told to end.
+    pub fn from_task_until(task: RigidTask, interrupt: &Interrupt) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %task.problem.name).entered();
         match (task.problem.space, &task.driven) {
-            (SpaceKind::Se3, Some(_)) => driven_body(task),
-            (SpaceKind::Se3, None) => body(task, space),
-            (SpaceKind::Se2, None) => body::<Planar>(task, plane),
+            (SpaceKind::Se3, Some(_)) => driven_body(task, interrupt),
+            (SpaceKind::Se3, None) => body(task, space, interrupt),
+            (SpaceKind::Se2, None) => body::<Planar>(task, plane, interrupt),
             (SpaceKind::Se2, Some(_)) => Err(Error::new("a mesh in the plane cannot move by inputs")
                 .help("take a polygon in a world of the plane: docs/formats/planar-world.md")),
         }
@@ -128,10 +132,11 @@ fn disc(scene: PlanarScene<DiscRobot>) -> Result<Scene, Error> {
 fn body<M: RigidSpace>(
     task: RigidTask,
     still: fn(RigidScene<M>) -> Result<Scene, Error>,
+    interrupt: &Interrupt,
 ) -> Result<Scene, Error> {
-    let scene = RigidScene::<M>::new(task.problem)?.with_goals(task.goals);
+    let scene = RigidScene::<M>::after_until(None, task.problem, interrupt)?.with_goals(task.goals);
     match &task.timing {
-        Some(timing) => Ok(of_kind!("moving", scene.among_moving(&task.moving, timing)?)),
+        Some(timing) => Ok(of_kind!("moving", scene.among_moving_until(&task.moving, timing, interrupt)?)),
         None => still(scene),
     }
 }
@@ -153,17 +158,17 @@ fn world<B: PlanarBody>(
 }
 
 /// The scene of a rigid body in space that moves by inputs.
-fn driven_body(mut task: RigidTask) -> Result<Scene, Error> {
+fn driven_body(mut task: RigidTask, interrupt: &Interrupt) -> Result<Scene, Error> {
     let Some(driven) = task.driven.take() else {
         return Err(Error::new("the robot does not move by inputs"));
     };
     let places = task.goals.iter().map(|goal| goal.iter().copied().take(6).collect()).collect();
-    let scene = RigidScene::<Spatial>::new(task.problem)?.with_goals(places);
+    let scene = RigidScene::<Spatial>::after_until(None, task.problem, interrupt)?.with_goals(places);
     let Some(timing) = &mut task.timing else {
         let scene = DrivenScene::new(scene, &driven, &task.velocity, task.goals)?;
         return Ok(of_kind!("driven", scene));
     };
     timing.speed = Some(greatest_speed(RobotKind::space(&scene), &driven));
-    let scene = scene.among_moving(&task.moving, timing)?;
+    let scene = scene.among_moving_until(&task.moving, timing, interrupt)?;
     Ok(of_kind!("driven-moving", scene.driven(&driven, &task.velocity, task.goals)?))
 }

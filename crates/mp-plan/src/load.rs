@@ -38,14 +38,16 @@ impl Scene {
             None if RobotProblem::is_named(file) => match PlanarProblem::is_planar_world_in(files, file) {
                 true => planar(files, file).map_err(of)?,
                 false if RigidTask::is_one(files, file) => {
-                    Self::from_task(RigidTask::load_from(files, file)?).map_err(of)?
+                    Self::from_task_until(RigidTask::load_from(files, file)?, &files.interrupt())
+                        .map_err(of)?
                 }
                 false => arm(files, file)?,
             },
             None if ending == "json" => {
                 let folder = file.parent().unwrap_or(Path::new(""));
                 let mesh = |name: &str| mp_io::read_mesh_of(files, &folder.join(name));
-                Self::from_document(SceneDocument::load_from(files, file)?, &mesh).map_err(of)?
+                let document = SceneDocument::load_from(files, file)?;
+                Self::of_document(None, document, &mesh, &files.interrupt()).map_err(of)?
             }
             None => {
                 let problem = RigidProblem::load_from(files, file)?;

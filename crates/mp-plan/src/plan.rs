@@ -1,5 +1,6 @@
 //! Planning: runs a request, finishes the path and makes the report.
 
+use crate::explain::check_ends;
 use crate::finish::finish;
 #[cfg(feature = "ranks")]
 use crate::relax::relax_if_requested;
@@ -8,7 +9,7 @@ use crate::report::{RunStage, StageTime};
 use crate::run::FoundRun;
 use crate::run::PLANNING_PART;
 use crate::search::{Search, search_within};
-use crate::{Control, Error, REPORT_VERSION, Report, Request, RobotKind, StoppedBy};
+use crate::{Column, Control, Error, REPORT_VERSION, Report, Request, RobotKind, StoppedBy};
 use mp_cspace::{Outcome, StopReason};
 #[cfg(feature = "ranks")]
 use mp_cspace::{Path, StateVector};
@@ -20,15 +21,103 @@ pub(crate) fn plan<K: RobotKind>(
     request: &Request,
     control: &mut Control<'_>,
 ) -> Result<Report, Error> {
+    let began = control.time_if_limited(request);
+    let interrupt = control.interrupt_of(request);
+    let ready = kind.make_ready(&interrupt);
+    if ready.is_ok() {
+        check_ends(kind)?;
+    }
+    control.spend_since(began);
+    let nothing_left = || (control.left_of(request)? == Duration::ZERO).then_some(StopReason::Deadline);
+    if let Some(reason) = interrupt.raised().or_else(nothing_left) {
+        let space = (RobotKind::space_name(kind), RobotKind::columns(kind));
+        return Ok(Report::not_begun(RobotKind::name(kind), Some(space), request, reason, control.spent));
+    }
     let found = search_within(kind, request, control, PLANNING_PART)?;
     let left = left(request, control, &found);
     reported(kind, request, found, None, control, left)
 }
 
+impl Report {
+    /// The report of a run that did not begin: `reason` ended the loading of the scene called `scene`, which took the time `spent`. Of a
+    /// scene that was not loaded, space and columns are not known; they are empty then.
+    #[must_use]
+    pub fn not_loaded(scene: &str, request: &Request, reason: StopReason, spent: Duration) -> Self {
+        Self::not_begun(scene, None, request, reason, spent)
+    }
+
+    fn not_begun(
+        scene: &str,
+        space: Option<(String, Vec<Column>)>,
+        request: &Request,
+        reason: StopReason,
+        spent: Duration,
+    ) -> Self {
+        let (by, (space, columns)) = (StoppedBy::from(reason), space.unwrap_or_default());
+        Self {
+            scene: scene.to_owned(),
+            space,
+            columns,
+            stopped_by: Some(by),
+            why: Some(match by {
+                StoppedBy::Time => format!("{by}: loading took all of it"),
+                _ => format!("{by} while the scene was loaded"),
+            }),
+            planner: request.planner.clone(),
+            metric: request.metric.to_string(),
+            motion: request.motion.to_string(),
+            seed: request.seed,
+            stages: vec![StageTime::new(RunStage::Loading, spent, Some(reason))],
+            ..Self::empty()
+        }
+    }
+
+    /// Of nothing.
+    fn empty() -> Self {
+        Self {
+            version: REPORT_VERSION,
+            scene: String::new(),
+            scene_file: None,
+            space: String::new(),
+            solved: false,
+            verified: false,
+            stopped_by: None,
+            why: None,
+            planner: String::new(),
+            metric: String::new(),
+            motion: String::new(),
+            seed: 0,
+            iterations: 0,
+            nodes: 0,
+            edges: None,
+            components: None,
+            motion_checks: 0,
+            collision_checks: 0,
+            rejected: 0,
+            time_s: 0.0,
+            finish_s: 0.0,
+            stages: Vec::new(),
+            first_s: None,
+            first_length: None,
+            first_path: None,
+            path_length_found: None,
+            path_length: None,
+            clearance: None,
+            shortened: false,
+            fingerprint: None,
+            path_file: None,
+            picture_file: None,
+            certificate_file: None,
+            columns: Vec::new(),
+            path: None,
+            portfolio: None,
+        }
+    }
+}
+
 /// What is left of the budget of time after a search.
 pub(crate) fn left<S>(request: &Request, control: &Control<'_>, found: &Search<S>) -> Option<Duration> {
-    let time = Duration::try_from_secs_f64(request.budget.time_s?).ok()?;
-    Some(time.saturating_sub(control.spent).saturating_sub(found.time))
+    Some(control.left_of(request)?.saturating_sub(found.time))
 }
 
 /// Finishes the path of a search, if there is one, and makes the report. `why` is a better reason than the outcome gives
@@ -42,14 +131,8 @@ pub(crate) fn reported<K: RobotKind>(
     left: Option<Duration>,
 ) -> Result<Report, Error> {
     let mut report = Report {
-        version: REPORT_VERSION,
         scene: RobotKind::name(kind).to_owned(),
-        scene_file: None,
         space: RobotKind::space_name(kind),
-        solved: false,
-        verified: false,
-        stopped_by: None,
-        why: None,
         planner: crate::planners::PlannerKind::new(&request.planner)?.to_string(),
         metric: request.metric.to_string(),
         motion: crate::prepared::motion(kind, request).to_string(),
@@ -62,22 +145,12 @@ pub(crate) fn reported<K: RobotKind>(
         collision_checks: found.queries,
         rejected: found.progress.rejected,
         time_s: found.time.as_secs_f64(),
-        finish_s: 0.0,
         stages: stages(&found, control),
         first_s: found.first.as_ref().map(|(time, ..)| time.as_secs_f64()),
         first_length: found.first.as_ref().map(|(_, length, _)| *length),
         first_path: found.first.as_ref().map(|(.., path)| kind.rows(path)),
-        path_length_found: None,
-        path_length: None,
-        clearance: None,
-        shortened: false,
-        fingerprint: None,
-        path_file: None,
-        picture_file: None,
-        certificate_file: None,
         columns: RobotKind::columns(kind),
-        path: None,
-        portfolio: None,
+        ..Report::empty()
     };
     let path = match found.outcome {
         Outcome::Stopped(reason) => {
@@ -95,7 +168,7 @@ pub(crate) fn reported<K: RobotKind>(
     };
     report.path_length_found = Some(path.length(kind.space()));
     let began = control.clock.now();
-    let finished = finish(kind, &path, request, control, left, &mut report.stages)?;
+    let finished = finish(kind, &path, request, control, left, found.time, &mut report.stages)?;
     report.finish_s = control.clock.now().saturating_sub(began).as_secs_f64();
     let finished = match finished {
         Ok(finished) => finished,

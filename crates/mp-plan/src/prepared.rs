@@ -32,6 +32,7 @@ pub(crate) struct Prepared<'k, K: RobotKind> {
     counts_exactly: bool,
     /// What the run asks whether to end.
     interrupt: Mutex<Interrupt>,
+    deadlines: Deadlines,
     /// Whether the verification of a path was told to end.
     unverified: AtomicBool,
 }
@@ -45,7 +46,19 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         let (verifier, queries) = (kind.verifier()?, AtomicU64::new(0));
         let counts_exactly = matches!(planner, PlannerKind::Roadmap(_));
         let (interrupt, unverified) = (Mutex::default(), AtomicBool::new(false));
-        Ok(Self { kind, request, space, index, verifier, queries, counts_exactly, interrupt, unverified })
+        let deadlines = Deadlines::default();
+        Ok(Self {
+            kind,
+            request,
+            space,
+            index,
+            verifier,
+            queries,
+            counts_exactly,
+            interrupt,
+            deadlines,
+            unverified,
+        })
     }
 
     /// What the run asks whether to end. Problems made from now on do.
@@ -83,11 +96,18 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
                 Box::new(build_error(Discrete::new(&self.space, counted(), resolution(length)))?)
             }
         };
-        let check: AnyCheck<'_, K::State> = Box::new(Possible { kind, check, interrupt: interrupt.clone() });
+        let deadlines = Some(&self.deadlines);
+        let check: AnyCheck<'_, K::State> =
+            Box::new(Possible { kind, check, interrupt: interrupt.clone(), deadlines });
         let local = Straight::new(&self.space, check);
         let mut verifier: AnyCheck<'_, K::State> = Box::new(self.verifier.clone());
         verifier.interrupt_by(&interrupt);
-        let verifier = Verifying { verifier, interrupt: interrupt.clone(), unverified: &self.unverified };
+        let verifier = Verifying {
+            verifier,
+            interrupt: interrupt.clone(),
+            unverified: &self.unverified,
+            deadlines: &self.deadlines,
+        };
         let problem = Problem::new(&self.space, local, verifier, kind.start().clone(), goals::of_kind(kind));
         let problem = problem.map_err(|e| written(kind, e))?;
         let problem = problem.with_obstacles(kind.obstacles(&counted)).with_interrupt(interrupt);
@@ -140,6 +160,15 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         Some(time.saturating_sub(control.spent).saturating_sub(spent))
     }
 
+    /// Moves the deadlines of a run, which ends after the time `left`, if there is one; `whole` is for proving the path that it has found
+    /// by then.
+    pub(crate) fn move_deadlines(&self, now: Duration, left: Option<Duration>, whole: Option<Duration>) {
+        if let (Some(left), Some(whole)) = (left, whole) {
+            self.deadlines.set(now.saturating_add(left), now.saturating_add(whole));
+            self.interrupt().move_deadline(now.saturating_add(left));
+        }
+    }
+
     /// Calls `run` with the stop and the observer of a run. It is stopped by the budget of the request, by its token and by the flag
     /// of `control`, and reported to the watch of `control`.
     pub(crate) fn watched<T>(
@@ -164,17 +193,61 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
     }
 }
 
+/// Until when a run searches, and until when it proves a path that it has found by then: times of its clock in nanoseconds, 0 where there
+/// is no such time.
+///
+/// A run asks one token. Its deadline is that of the search, but while a path is proved.
+#[derive(Debug, Default)]
+pub(crate) struct Deadlines {
+    search: AtomicU64,
+    proof: AtomicU64,
+    proving: AtomicBool,
+}
+
+impl Deadlines {
+    fn set(&self, search: Duration, proof: Duration) {
+        let nanoseconds = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
+        self.search.store(nanoseconds(search), Ordering::Relaxed);
+        self.proof.store(nanoseconds(proof), Ordering::Relaxed);
+        self.proving.store(false, Ordering::Relaxed);
+    }
+
+    /// A path is proved from now on.
+    fn prove(&self, interrupt: &Interrupt) {
+        self.enter(true, &self.proof, interrupt);
+    }
+
+    /// The search goes on.
+    #[inline]
+    fn search(&self, interrupt: &Interrupt) {
+        if self.proving.load(Ordering::Relaxed) {
+            self.enter(false, &self.search, interrupt);
+        }
+    }
+
+    fn enter(&self, proving: bool, deadline: &AtomicU64, interrupt: &Interrupt) {
+        let at = deadline.load(Ordering::Relaxed);
+        if at > 0 && self.proving.swap(proving, Ordering::Relaxed) != proving {
+            interrupt.move_deadline(Duration::from_nanos(at));
+        }
+    }
+}
+
 /// The verifier of paths, which notes when it was told to end.
 struct Verifying<'a, S> {
     verifier: AnyCheck<'a, S>,
     interrupt: Interrupt,
     unverified: &'a AtomicBool,
+    deadlines: &'a Deadlines,
 }
 
 impl<S: PartialEq> MotionValidity<S> for Verifying<'_, S> {
     fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
-        let check = self.verifier.check_motion(from, to);
         // A single state is a start or a goal, not a path.
+        if from != to {
+            self.deadlines.prove(&self.interrupt);
+        }
+        let check = self.verifier.check_motion(from, to);
         if !check.is_free() && from != to && self.interrupt.raised().is_some() {
             self.unverified.store(true, Ordering::Relaxed);
         }
@@ -187,6 +260,8 @@ pub(crate) struct Possible<'k, K, M> {
     pub(crate) kind: &'k K,
     pub(crate) check: M,
     pub(crate) interrupt: Interrupt,
+    /// Those of the run that it is a part of.
+    pub(crate) deadlines: Option<&'k Deadlines>,
 }
 
 impl<K: RobotKind, M: MotionValidity<K::State>> MotionValidity<K::State> for Possible<'_, K, M> {
@@ -194,6 +269,9 @@ impl<K: RobotKind, M: MotionValidity<K::State>> MotionValidity<K::State> for Pos
         self.check_extension(from, to, KnownFree::Neither)
     }
     fn check_extension(&mut self, from: &K::State, to: &K::State, known: KnownFree) -> MotionCheck {
+        if let Some(deadlines) = self.deadlines {
+            deadlines.search(&self.interrupt);
+        }
         match !self.interrupt.ask() && self.kind.can_move(from, to) {
             true => self.check.check_extension(from, to, known),
             false => MotionCheck::Unproven { at: 0.0 },

@@ -79,7 +79,8 @@ fn relaxed<K: RobotKind>(
     let unused = AtomicU64::new(0);
     let gradient = gradient(kind, &unused, interrupt)?;
     let check = Certified::new(kind.space(), kind.checker().clone(), kind.tolerance())?;
-    let mut check: AnyCheck<'_, K::State> = Box::new(Possible { kind, check, interrupt: interrupt.clone() });
+    let mut check: AnyCheck<'_, K::State> =
+        Box::new(Possible { kind, check, interrupt: interrupt.clone(), deadlines: None });
     let space = AnySpace::new(kind.space());
     let short = reduce(&space, &mut check, &path);
     let range = RELAX_RANGE * space.extent();

@@ -237,6 +237,12 @@ impl Report {
         times != [0.0; 2] || self.first_s.is_some() || self.stages.iter().any(timed)
     }
 
+    /// Whether the run did not begin: its budget was used up, or it was interrupted, while its scene was loaded.
+    #[must_use]
+    pub fn is_not_begun(&self) -> bool {
+        matches!(self.stages.as_slice(), [only] if only.stage == RunStage::Loading)
+    }
+
     /// The report as one line of JSON.
     ///
     /// # Errors

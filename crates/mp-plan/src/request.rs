@@ -54,7 +54,7 @@ pub struct Request {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Budget {
-    /// Seconds of wall-clock time for all of a run, shortening and verifying included; planning has nine tenths of them. `None` for no
+    /// Seconds of wall-clock time for all of a run, shortening and verifying included; the search has nine tenths of them. `None` for no
     /// limit.
     pub time_s: Option<f64>,
     /// Iterations of the planner's loop.

@@ -21,8 +21,8 @@ use crate::roadmaps::RoadmapState;
 use crate::{Error, Length, MetricName};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
-    DefaultNn, Demand, Factored, InputSystem, MotionClearance, MotionValidity, ObstacleKnowledge, Space as _,
-    StateVector, Validity,
+    DefaultNn, Demand, Factored, InputSystem, Interrupt, Interrupted, MotionClearance, MotionValidity,
+    ObstacleKnowledge, Space as _, StateVector, Validity,
     nn::Embed,
     obstacles::{ClearanceGradient, ObstacleHints},
 };
@@ -252,6 +252,14 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
 
     /// The checker. Clone it to use it.
     fn checker(&self) -> &Self::Checker;
+    /// Makes what the first [`verifier`](Self::verifier) would make otherwise, if that takes long, unless `interrupt` says to end: it is a
+    /// part of loading. By default nothing.
+    ///
+    /// # Errors
+    /// When it was told to end.
+    fn make_ready(&self, _interrupt: &Interrupt) -> Result<(), Interrupted> {
+        Ok(())
+    }
     /// A verifier.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ use crate::search::Search;
 use crate::watch::Events;
 use crate::{Control, Error, Finish, Report, Request, RobotKind, Stage, StoppedBy};
 use mp_cspace::erased::AnySpace;
-use mp_cspace::{Interrupt, Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
+use mp_cspace::{Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
 use mp_tree::{TreeState, improve};
 use std::fmt;
 use std::sync::atomic::Ordering;
@@ -172,7 +172,6 @@ pub(crate) struct RobotRun<'p, 'k, K: RobotKind> {
     part: f64,
     /// The time taken so far.
     time: Duration,
-    interrupt: Interrupt,
     /// The counts after the last whole iteration, where another one was cut short.
     whole: Option<Progress>,
     found: Found<K::State>,
@@ -226,7 +225,7 @@ impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
         };
         let time = control.clock.now().saturating_sub(began);
         let rng = Rng::seed(request.seed);
-        Ok(Self { prepared, made, rng, file, part, time, interrupt, whole: None, found })
+        Ok(Self { prepared, made, rng, file, part, time, whole: None, found })
     }
 
     /// Plans on until `pause` stops it or the run is over. Returns whether it is over. On the way it writes checkpoints of the
@@ -251,9 +250,8 @@ impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
             let (rng, found, whole) = (&mut self.rng, &mut self.found, &mut self.whole);
             let (prepared, first_only) = (self.prepared, self.prepared.request.first_only);
             // Time between two calls does not count.
-            if let Some(left) = prepared.time_left(control, self.part, spent) {
-                self.interrupt.move_deadline(began.saturating_add(left));
-            }
+            let [left, for_proof] = [self.part, 1.0].map(|part| prepared.time_left(control, part, spent));
+            prepared.move_deadlines(began, left, for_proof);
             prepared.watched(control, |stop, events| {
                 let mut stop = Pausing { stop, pause, paused: false, whole: Progress::default() };
                 let time = || spent + clock.now().saturating_sub(began);

@@ -9,8 +9,8 @@ use crate::{
     Body, Certificate, Column, Control, Error, Explanation, Finished, Length, PathFormat, PathRows,
     PreparedRun, RelaxField, Report, Request, RobotKind, Sweep, Track, Verdict,
 };
-use mp_cspace::Interrupt;
 use mp_cspace::registry::PlannerInfo;
+use mp_cspace::{Interrupt, Interrupted};
 use mp_geom::{Aabb, TriMesh, short_six_from_pose};
 use mp_io::{DocumentShape, SceneDocument};
 use nalgebra::{Isometry3, Point3};
@@ -89,7 +89,7 @@ impl Scene {
         document: SceneDocument,
         mesh: &dyn Fn(&str) -> Result<TriMesh, mp_io::Error>,
     ) -> Result<Self, Error> {
-        Self::of_document(None, document, mesh)
+        Self::of_document(None, document, mesh, &Interrupt::never())
     }
 
     /// The scene of `document`, which is an edited document of this scene. What did not change is shared with this scene, so
@@ -102,13 +102,14 @@ impl Scene {
         document: SceneDocument,
         mesh: &dyn Fn(&str) -> Result<TriMesh, mp_io::Error>,
     ) -> Result<Self, Error> {
-        Self::of_document(Some(self), document, mesh)
+        Self::of_document(Some(self), document, mesh, &Interrupt::never())
     }
 
-    fn of_document(
+    pub(crate) fn of_document(
         before: Option<&Self>,
         mut document: SceneDocument,
         mesh: &dyn Fn(&str) -> Result<TriMesh, mp_io::Error>,
+        interrupt: &Interrupt,
     ) -> Result<Self, Error> {
         let meshes = document.meshes(mesh)?;
         for body in document.bodies_mut() {
@@ -116,7 +117,8 @@ impl Scene {
                 *off = None;
             }
         }
-        let scene = Self::of_problem(before, document.problem_among(&document.name, &meshes)?)?;
+        let problem = document.problem_among(&document.name, &meshes)?;
+        let scene = Self::of_problem_until(before, problem, interrupt)?;
         Ok(Self { document: Some(Arc::new(EditedScene { document, meshes })), ..scene })
     }
 
@@ -285,9 +287,6 @@ impl Scene {
     /// # Errors
     /// As [`plan`](Self::plan).
     pub fn plan_with(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
-        let began = control.time_if_limited(request);
-        self.check_ends()?;
-        control.spend_since(began);
         let mut report = self.robot.plan(request, control)?;
         report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(report)
@@ -484,6 +483,14 @@ impl Scene {
     /// When one is not free: what touches, how deep, and the nearest free configuration.
     pub fn check_ends(&self) -> Result<Vec<String>, Error> {
         self.robot.check_ends()
+    }
+
+    /// Makes what planning in large meshes needs and would make at its beginning otherwise, unless `interrupt` says to end. Clones share it.
+    ///
+    /// # Errors
+    /// When it was told to end.
+    pub fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
+        self.robot.make_ready(interrupt)
     }
 
     /// What is wrong or odd about the scene, in sentences. Empty when nothing is.

@@ -19,14 +19,58 @@ pub struct Sweep {
     pub trace: Vec<Point3<f64>>,
 }
 
+/// A path of more configurations is thinned for pictures and films.
+const MOST_SHOWN: usize = 10_000;
+/// Thinned, it has at most so many parts.
+const PARTS: f64 = 5_000.0;
+
+/// The configurations of a path that are shown.
+struct Shown<S> {
+    states: Vec<S>,
+    /// How far (m) the robot moves at most from each to the next.
+    lengths: Vec<f64>,
+    /// The same, or how long (s) that takes where states say so.
+    ways: Vec<f64>,
+}
+
+impl<S: Clone> Shown<S> {
+    /// All of at most 10⁴. Of more of them, each at which no point of the robot has moved by 1/5000 of the whole way since the last one
+    /// shown is left out: what is drawn is nowhere farther from the path than that.
+    fn of<K: RobotKind<State = S>>(kind: &K, path: &PathRows) -> Result<Self, Error> {
+        let states = states(kind, path)?;
+        let robot = kind.checker();
+        let edges = states.windows(2).map(|w| {
+            let length = robot.motion_bound(&w[0], &w[1]);
+            (length, kind.seconds(&w[0], &w[1]).unwrap_or(length))
+        });
+        let (lengths, ways): (Vec<f64>, Vec<f64>) = edges.unzip();
+        if states.len() <= MOST_SHOWN {
+            return Ok(Self { states, lengths, ways });
+        }
+        let least = lengths.iter().sum::<f64>() / PARTS;
+        let mut shown = Self { states: vec![states[0].clone()], lengths: Vec::new(), ways: Vec::new() };
+        let (mut length, mut way) = (0.0, 0.0);
+        for (edge, state) in states.iter().skip(1).enumerate() {
+            (length, way) = (length + lengths[edge], way + ways[edge]);
+            if length >= least || edge + 2 == states.len() {
+                shown.states.push(state.clone());
+                shown.lengths.push(std::mem::take(&mut length));
+                shown.ways.push(std::mem::take(&mut way));
+            }
+        }
+        Ok(shown)
+    }
+}
+
 /// Poses along a path.
 pub(crate) fn sweep<K: RobotKind>(kind: &K, path: Option<&PathRows>) -> Result<Sweep, Error> {
-    let states = path.map(|path| states(kind, path)).transpose()?.unwrap_or_default();
-    let robot = kind.checker();
-    let lengths: Vec<f64> = states.windows(2).map(|w| robot.motion_bound(&w[0], &w[1])).collect();
+    let shown = path.map(|path| Shown::of(kind, path)).transpose()?;
+    let (states, lengths) = shown.map(|shown| (shown.states, shown.lengths)).unwrap_or_default();
     let at = |edge: usize, t: f64| kind.space().interpolate(&states[edge], &states[edge + 1], t);
     let places = evenly(&lengths, kind.picture_spacing());
-    let fine = |edge: usize| (0..=16).map(move |k| (edge, f64::from(k) / 16.0));
+    // Many edges are short.
+    let parts = if lengths.len() > 2_000 { 2 } else { 16 };
+    let fine = |edge: usize| (0..=parts).map(move |k| (edge, f64::from(k) / f64::from(parts)));
     let trace = (0..lengths.len()).flat_map(fine);
     let (start, goal) = (states.first().unwrap_or(kind.start()), states.last().unwrap_or(&kind.goals()[0]));
     Ok(Sweep {
@@ -77,9 +121,8 @@ const MAX_BETWEEN: f64 = 2000.0;
 
 /// Configurations along a path, neighbours so near that poses between them may be interpolated linearly.
 pub(crate) fn track<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Track, Error> {
-    let states = states(kind, path)?;
+    let Shown { states, lengths, ways } = Shown::of(kind, path)?;
     let mut checker = kind.checker().clone();
-    let lengths: Vec<f64> = states.windows(2).map(|w| checker.motion_bound(&w[0], &w[1])).collect();
     let total: f64 = lengths.iter().sum();
     let spacing = (0.1 * kind.picture_spacing()).max(total / MAX_BETWEEN);
     let mut track = Track::default();
@@ -93,7 +136,7 @@ pub(crate) fn track<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Track, Er
     let mut way = 0.0;
     for (edge, length) in lengths.iter().enumerate() {
         let parts = (length / spacing).ceil().clamp(1.0, MAX_BETWEEN) as u32;
-        let length = kind.seconds(&states[edge], &states[edge + 1]).unwrap_or(*length);
+        let length = ways[edge];
         for k in 0..parts {
             let t = f64::from(k) / f64::from(parts);
             add(&kind.space().interpolate(&states[edge], &states[edge + 1], t), way + length * t);

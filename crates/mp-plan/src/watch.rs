@@ -174,6 +174,20 @@ impl<'a> Control<'a> {
         self.spent += began.map_or(Duration::ZERO, |began| self.clock.now().saturating_sub(began));
     }
 
+    /// What is left of the budget of time of a request, if it has one.
+    pub(crate) fn left_of(&self, request: &Request) -> Option<Duration> {
+        let time = Duration::try_from_secs_f64(request.budget.time_s?).ok()?;
+        Some(time.saturating_sub(self.spent))
+    }
+
+    /// A token that ends work when the time of a request is up, or when the run is cancelled.
+    pub(crate) fn interrupt_of(&self, request: &Request) -> Interrupt {
+        match self.left_of(request) {
+            None => Interrupt::new(self.cancel.clone()),
+            Some(left) => self.interrupt_within(left),
+        }
+    }
+
     /// A token that ends work after the time `left`, or when the run is cancelled.
     pub(crate) fn interrupt_within(&self, left: Duration) -> Interrupt {
         Interrupt::by(self.cancel.clone(), self.clock, self.clock.now().saturating_add(left))

@@ -162,6 +162,86 @@ fn an_iteration_cut_short_counts_for_nothing() {
     assert!(compared > 200 && begun > 150 && solved > 20 && maps > 10, "{compared} {begun} {solved} {maps}");
 }
 
+/// Plans with a budget of time of so many readings of the clock.
+fn within(scene: &Scene, request: &Request, readings: u64) -> Report {
+    READ.store(0, Ordering::SeqCst);
+    LAST.store(u64::MAX, Ordering::SeqCst);
+    let mut request = request.clone();
+    request.budget.time_s = Some((STEP * u32::try_from(readings).unwrap()).as_secs_f64());
+    let mut control = Control { clock: Clock::new(now), ..Control::default() };
+    scene.plan_with(&request, &mut control).unwrap()
+}
+
+/// The search may take nine tenths of the time, but a path that it has found by then is proved in all of it.
+#[test]
+fn a_path_that_was_found_is_proved_within_the_whole_time() {
+    let _alone = alone();
+    let (mut late, mut alike) = (0, 0);
+    // Where the proof takes more than a tenth of planning.
+    for name in ["arm", "easy"] {
+        let scene = Scene::find(name).unwrap();
+        for seed in 1..=8 {
+            let request = Request::new("rrt-connect").seed(seed).finish(mp_plan::Finish::AsFound);
+            let whole = within(&scene, &request, 100_000_000);
+            assert!(whole.solved, "{name} {seed}: {:?}", whole.why);
+            // Planning ends with the proof of its path.
+            let planned = (whole.time_s / STEP.as_secs_f64()) as u64;
+            let cut = within(&scene, &request, planned + planned / 20 + 30);
+            assert_ne!(cut.stopped_by, Some(StoppedBy::Time), "{name} {seed}: {:?}", cut.stages);
+            late += usize::from(cut.time_s > 0.9 * cut.stages.iter().map(|stage| stage.time_s).sum::<f64>());
+            alike += usize::from(cut.solved && cut.path == whole.path);
+        }
+    }
+    assert!(late > 6 && alike > 6, "{late} {alike}");
+}
+
+/// A path that was not verified in time had all of the time.
+#[test]
+fn what_is_unverified_had_all_of_the_time() {
+    let _alone = alone();
+    let (mut unverified, mut solved) = (0, 0);
+    for name in ["easy", "maze", "arm"] {
+        let scene = Scene::find(name).unwrap();
+        for seed in 1..=3 {
+            let request = Request::new("rrt-connect").seed(seed);
+            let planned = (within(&scene, &request, 100_000_000).time_s / STEP.as_secs_f64()) as u64;
+            for more in [2, 5, 10, 20, 40, 80, 160, 320, 640, 1280] {
+                let readings = planned + more * (planned / 100 + 1) + 10;
+                let report = within(&scene, &request, readings);
+                solved += usize::from(report.solved);
+                if report.stopped_by == Some(StoppedBy::Unverified) {
+                    let used: f64 = report.stages.iter().map(|stage| stage.time_s).sum();
+                    let all = (STEP * u32::try_from(readings).unwrap()).as_secs_f64();
+                    assert!(used > 0.9 * all - 0.1, "{name} {seed} {readings}: {:?}", report.stages);
+                    unverified += 1;
+                }
+            }
+        }
+    }
+    assert!(solved > 20, "{solved} solved, {unverified} unverified");
+}
+
+/// A budget that is used up before planning begins.
+#[test]
+fn loading_that_takes_all_of_the_time_is_said() {
+    let _alone = alone();
+    for name in ["easy", "arm", "docks", "blade"] {
+        let scene = Scene::find(name).unwrap();
+        let request = Request::new(scene.default_planner());
+        let report = within(&scene, &request, 1);
+        assert!(report.is_not_begun() && !report.solved, "{name}: {report:?}");
+        assert_eq!((report.stopped_by, report.iterations), (Some(StoppedBy::Time), 0));
+        assert_eq!(report.stages[0].ended_by, Some(StoppedBy::Time));
+        assert_eq!(report.why.as_deref(), Some("the time is up: loading took all of it"));
+        assert_eq!((report.scene.as_str(), report.columns.len()), (scene.name(), scene.columns().len()));
+        let cancelled = Control::default();
+        cancelled.cancel.cancel();
+        let mut cancelled = cancelled;
+        let report = Scene::find(name).unwrap().plan_with(&request, &mut cancelled).unwrap();
+        assert_eq!(report.stopped_by, Some(StoppedBy::Interrupted), "{name}");
+    }
+}
+
 /// The time that this thread has worked.
 fn worked() -> Duration {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);

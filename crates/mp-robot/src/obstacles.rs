@@ -3,8 +3,11 @@
 use crate::solid_obstacle::{SolidObstacle, is_solid};
 use mp_collide::reference::RefMesh;
 use mp_collide::{Body, BodyId, CollisionMesh, Scene, SceneError};
+use mp_cspace::{Interrupt, Interrupted};
 use mp_geom::{Aabb, TriMesh};
 use nalgebra::Isometry3;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::{Arc, OnceLock};
 
 /// The most triangles of robot and obstacles together: what a reference mesh can hold.
@@ -38,26 +41,35 @@ impl Obstacles {
     /// world. The trees of meshes that `known` has are taken from there, and all of `known` if nothing differs.
     ///
     /// # Errors
-    /// That of `build`, which builds the tree of a mesh. `too_many`, of the number of triangles, when there are more than [`MAX_TRIANGLES`]; or when an obstacle cannot be
-    /// placed.
-    pub(crate) fn new<E: From<SceneError>>(
+    /// `too_many`, of the number of triangles, when there are more than [`MAX_TRIANGLES`]; when an obstacle cannot be placed, or
+    /// `interrupt` says to end.
+    pub(crate) fn new<E: From<SceneError> + From<Interrupted>>(
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
         triangles: usize,
         too_many: impl Fn(usize) -> E,
         known: Option<&Arc<Self>>,
-        build: impl Fn(&TriMesh) -> Result<CollisionMesh, E>,
+        interrupt: &Interrupt,
     ) -> Result<Arc<Self>, E> {
         let (mut scene, mut placed, mut own, mut count) = (Scene::new(), Vec::new(), Vec::new(), triangles);
-        let mut unchanged = true;
+        let (mut unchanged, mut asked) = (true, interrupt.clone());
+        // Meshes that share their memory have one tree.
+        let mut trees: HashMap<[usize; 3], (CollisionMesh, IsSolid)> = HashMap::new();
         for (i, (name, mesh, pose)) in obstacles.into_iter().enumerate() {
             count = count.saturating_add(mesh.triangles().len());
             if count > MAX_TRIANGLES {
                 return Err(too_many(count));
             }
+            asked.go_on()?;
             let same = known.and_then(|known| known.find(i, &mesh));
             let (tree, solid) = match same {
                 Some((body, _, solid)) => (body.mesh().clone(), Arc::clone(solid)),
-                None => (build(&mesh)?, Arc::default()),
+                None => match trees.entry(memory(&mesh)) {
+                    Entry::Occupied(known) => known.get().clone(),
+                    Entry::Vacant(new) => {
+                        let tree = CollisionMesh::new_until(&mesh, interrupt).ok_or(Interrupted)?;
+                        new.insert((tree, Arc::default())).clone()
+                    }
+                },
             };
             let in_world = match same {
                 Some((body, in_world, _)) if *body.pose() == pose => Arc::clone(in_world),
@@ -78,7 +90,7 @@ impl Obstacles {
         if let Some(known) = known.filter(|known| unchanged && known.placed.len() == placed.len()) {
             return Ok(Arc::clone(known));
         }
-        scene.merge_static();
+        scene.merge_static_until(interrupt)?;
         let bounds = placed.iter().map(|(_, mesh)| mesh.aabb()).fold(Aabb::empty(), |a, b| a.union(&b));
         let (solids, reference) = (OnceLock::new(), OnceLock::new());
         Ok(Arc::new(Self { scene, placed, own, bounds, solids, reference }))
@@ -108,8 +120,23 @@ impl Obstacles {
 
     /// All obstacles as one mesh for verifiers; `None` when there are no obstacles.
     pub(crate) fn reference(&self) -> Option<Arc<RefMesh>> {
-        let merged = || TriMesh::merged(self.placed.iter().map(|(_, mesh)| &**mesh));
-        self.reference.get_or_init(|| merged().map(|mesh| Arc::new(RefMesh::new(&mesh)))).clone()
+        self.reference.get_or_init(|| self.merged().map(|mesh| Arc::new(RefMesh::new(&mesh)))).clone()
+    }
+
+    /// All obstacles as one mesh; `None` when there are none.
+    fn merged(&self) -> Option<TriMesh> {
+        TriMesh::merged(self.placed.iter().map(|(_, mesh)| &**mesh))
+    }
+
+    /// Makes the [`reference`](Self::reference), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// When it was told to end.
+    pub(crate) fn make_reference(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
+        make_once(&self.reference, interrupt, || {
+            let reference = |mesh: TriMesh| RefMesh::new_until(&mesh, interrupt).map(Arc::new);
+            self.merged().map(|mesh| reference(mesh).ok_or(Interrupted)).transpose()
+        })
     }
 
     /// The largest coordinate of the obstacles by magnitude; zero when there are none.
@@ -117,6 +144,28 @@ impl Obstacles {
         let Aabb { min, max } = &self.bounds;
         if self.bounds.is_empty() { 0.0 } else { min.coords.amax().max(max.coords.amax()) }
     }
+}
+
+/// The memory that a mesh shares with its clones.
+fn memory(mesh: &TriMesh) -> [usize; 3] {
+    [mesh.vertices().as_ptr().addr(), mesh.triangles().as_ptr().addr(), mesh.solids().as_ptr().addr()]
+}
+
+/// Makes what `cell` holds, if it holds nothing yet, unless `interrupt` says to end.
+///
+/// # Errors
+/// When it was told to end.
+pub(crate) fn make_once<T>(
+    cell: &OnceLock<T>,
+    interrupt: &Interrupt,
+    make: impl FnOnce() -> Result<T, Interrupted>,
+) -> Result<(), Interrupted> {
+    if cell.get().is_none() {
+        interrupt.clone().go_on()?;
+        // Another thread may have been first, with the same.
+        let _ = cell.set(make()?);
+    }
+    Ok(())
 }
 
 /// The tolerance `wanted`, or the least that coordinates as large as `farthest` can resolve, if that is more.
@@ -133,9 +182,37 @@ mod tests {
     type Named = (String, TriMesh, Isometry3<f64>);
 
     fn made(obstacles: &[Named], known: Option<&Arc<Obstacles>>) -> Arc<Obstacles> {
-        let too_many = |_| SceneError::Full;
-        Obstacles::new(obstacles.iter().cloned(), 0, too_many, known, |mesh| Ok(CollisionMesh::new(mesh)))
-            .unwrap()
+        let too_many = |_| crate::RobotError::from(SceneError::Full);
+        Obstacles::new(obstacles.iter().cloned(), 0, too_many, known, &Interrupt::never()).unwrap()
+    }
+
+    /// Clones of a mesh have one tree, whatever their poses; equal meshes in other memory have their own.
+    #[test]
+    fn clones_of_a_mesh_share_a_tree() {
+        let ball = |radius| mp_geom::primitives::sphere(radius, 2).unwrap();
+        let (one, other, row) = (ball(0.1), ball(0.1), |i: usize| Isometry3::translation(i as f64, 0.0, 0.0));
+        let named = |meshes: &[&TriMesh]| -> Vec<Named> {
+            meshes.iter().enumerate().map(|(i, mesh)| (i.to_string(), (*mesh).clone(), row(i))).collect()
+        };
+        // What its tree is made of is all in one place.
+        let trees = |meshes: &[&TriMesh]| -> Vec<usize> {
+            let obstacles = made(&named(meshes), None);
+            let alone: Vec<_> = obstacles.scene.bodies().map(|(_, body)| body.mesh().clone()).collect();
+            let number = |mesh: &CollisionMesh| alone.iter().position(|known| known.is_same(mesh)).unwrap();
+            alone.iter().map(number).collect()
+        };
+        assert_eq!(trees(&[&one, &other, &one, &one.clone(), &ball(0.2)]), [0, 1, 0, 0, 4]);
+        // Answers do not depend on it.
+        let (shared, own) = (made(&named(&[&one, &one, &one]), None), {
+            let copies = [ball(0.1), ball(0.1), ball(0.1)];
+            made(&named(&[&copies[0], &copies[1], &copies[2]]), None)
+        });
+        let (mut query, probe) = (mp_collide::Query::default(), CollisionMesh::new(&ball(0.05)));
+        for i in 0..60 {
+            let at = Isometry3::translation(0.05 * f64::from(i), 0.12, 0.0);
+            let clearance = |o: &Obstacles, query: &mut _| o.scene.clearance(query, &probe, &at, 1.0);
+            assert_eq!(clearance(&shared, &mut query), clearance(&own, &mut query));
+        }
     }
 
     /// What did not change is taken from the obstacles before; what changed is as if made anew.

@@ -1,12 +1,14 @@
 //! A rigid body among obstacles that stand still.
 
 use crate::features::SceneFeatures;
-use crate::obstacles::{MAX_TRIANGLES, Obstacles, resolved_tolerance};
+use crate::obstacles::{MAX_TRIANGLES, Obstacles, make_once, resolved_tolerance};
 use crate::solid_obstacle::SolidObstacle;
 use crate::{BodyRadii, CheckCounters, Placement, Planar, Point, Spatial};
 use mp_collide::reference::RefMesh;
 use mp_collide::{BodyId, CollisionMesh, IntervalCheck, Query, RigidMotion, Scene, SceneError};
-use mp_cspace::{Clearance, Interrupt, IntervalClearance, MotionClearance, MotionInterval, Validity};
+use mp_cspace::{
+    Clearance, Interrupt, Interrupted, IntervalClearance, MotionClearance, MotionInterval, Validity,
+};
 use mp_geom::{Aabb, MeshError, TriMesh};
 use nalgebra::{Isometry3, Point3};
 use std::marker::PhantomData;
@@ -42,6 +44,12 @@ pub enum RobotError {
         /// The largest possible (m).
         max: f64,
     },
+}
+
+impl From<Interrupted> for RobotError {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
+    }
 }
 
 /// The immutable part of a [`RigidBody`], shared by all clones.
@@ -183,11 +191,11 @@ impl<P: Placement> RigidBody<P> {
         }
         let too_many = |count| RobotError::TooManyTriangles { count, max: MAX_TRIANGLES };
         let known = before.map(|before| &before.obstacles);
-        let tree = |mesh: &TriMesh| CollisionMesh::new_until(mesh, interrupt).ok_or(RobotError::Interrupted);
-        let obstacles = Obstacles::new(obstacles, robot.triangles().len(), too_many, known, tree)?;
+        let obstacles = Obstacles::new(obstacles, robot.triangles().len(), too_many, known, interrupt)?;
+        let tree = || CollisionMesh::new_until(robot, interrupt).ok_or(RobotError::Interrupted);
         let shared = Shared {
             robot_mesh: robot.clone(),
-            robot: same.map_or_else(|| tree(robot), |same| Ok(same.robot.clone()))?,
+            robot: same.map_or_else(tree, |same| Ok(same.robot.clone()))?,
             radii,
             obstacles,
             reference: same.map(|same| Arc::clone(&same.reference)).unwrap_or_default(),
@@ -200,6 +208,19 @@ impl<P: Placement> RigidBody<P> {
             poses: Vec::new(),
             placement: PhantomData,
         })
+    }
+
+    /// Makes what a [`Verifier`](crate::Verifier) would make at its first use, which takes long for large meshes, unless `interrupt`
+    /// says to end. Clones share it.
+    ///
+    /// # Errors
+    /// When it was told to end.
+    pub fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
+        let shared = &*self.shared;
+        make_once(&shared.reference, interrupt, || {
+            RefMesh::new_until(&shared.robot_mesh, interrupt).map(Arc::new).ok_or(Interrupted)
+        })?;
+        shared.obstacles.make_reference(interrupt)
     }
 
     /// The robot, in its own frame.

@@ -176,6 +176,18 @@ pub struct Interrupt {
     clock: Option<SparseClock>,
 }
 
+/// Work was told to end by an [`Interrupt`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Interrupted;
+
+impl fmt::Display for Interrupted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the work was told to end")
+    }
+}
+
+impl std::error::Error for Interrupted {}
+
 /// What the clones of an [`Interrupt`] share.
 #[derive(Debug)]
 struct Shared {
@@ -249,6 +261,15 @@ impl Interrupt {
         // The first reason stays.
         let _ = shared.told.compare_exchange(0, why, Ordering::Relaxed, Ordering::Relaxed);
         true
+    }
+
+    /// As [`ask`](Self::ask), for work that returns errors by `?`.
+    ///
+    /// # Errors
+    /// When work is to end now.
+    #[inline]
+    pub fn go_on(&mut self) -> Result<(), Interrupted> {
+        if self.ask() { Err(Interrupted) } else { Ok(()) }
     }
 
     /// Why work was told to end, if any of the clones was. Looks neither at the flag nor at the clock.

@@ -70,8 +70,22 @@ impl SceneFile {
     /// When the path is of another robot.
     pub fn add_path(&mut self, scene: &Scene, name: &str, path: &PathRows) -> Result<(), Error> {
         let verdict = scene.check(path)?;
-        let track = scene.track(path)?;
-        self.paths.push(PathTrack::of(name, verdict.free, Some(verdict.path_length), track));
+        self.add_judged_path(scene, name, path, verdict.free, verdict.path_length)
+    }
+
+    /// As [`add_path`](Self::add_path), for a path of this length whose verdict is known.
+    ///
+    /// # Errors
+    /// As [`add_path`](Self::add_path).
+    pub fn add_judged_path(
+        &mut self,
+        scene: &Scene,
+        name: &str,
+        path: &PathRows,
+        verified: bool,
+        length: f64,
+    ) -> Result<(), Error> {
+        self.paths.push(PathTrack::of(name, verified, Some(length), scene.track(path)?));
         Ok(())
     }
 
@@ -81,11 +95,34 @@ impl SceneFile {
     /// # Errors
     /// When the path is of another robot.
     pub fn add_report(&mut self, scene: &Scene, report: &Report) -> Result<(), Error> {
-        if let Some(rows) = report.path.clone() {
-            let path = PathRows { format: scene.path_format(), columns: report.columns.clone(), rows };
-            self.add_path(scene, &report.planner, &path)?;
+        let verdict = path_of(scene, report).map(|path| scene.check(&path)).transpose()?;
+        self.put_report(scene, report, verdict.map(|verdict| (verdict.free, verdict.path_length)))
+    }
+
+    /// As [`add_report`](Self::add_report), of a run of this program: its path was verified, and is not checked again.
+    ///
+    /// # Errors
+    /// When the path is of another robot.
+    pub fn add_run(&mut self, scene: &Scene, report: &Report) -> Result<(), Error> {
+        self.put_report(scene, report, report.path_length.map(|length| (report.verified, length)))
+    }
+
+    fn put_report(
+        &mut self,
+        scene: &Scene,
+        report: &Report,
+        judged: Option<(bool, f64)>,
+    ) -> Result<(), Error> {
+        let mut written = serde_json::to_value(report).ok();
+        if let (Some(path), Some((verified, length))) = (path_of(scene, report), judged) {
+            self.add_judged_path(scene, &report.planner, &path, verified, length)?;
+            // A path that is too long to be shown whole is too long to be written here whole.
+            let shown = self.paths.last().map_or(0, |track| track.travel.as_ref().map_or(0, Vec::len));
+            if shown < path.rows.len() {
+                written.iter_mut().for_each(|report| report["path"] = serde_json::Value::Null);
+            }
         }
-        self.report = serde_json::to_value(report).ok();
+        self.report = written;
         Ok(())
     }
 
@@ -136,6 +173,12 @@ impl PathTrack {
             travel: Some(track.travel.into_iter().map(|s| s as f32).collect()),
         }
     }
+}
+
+/// The path of a report.
+fn path_of(scene: &Scene, report: &Report) -> Option<PathRows> {
+    let rows = report.path.clone()?;
+    Some(PathRows { format: scene.path_format(), columns: report.columns.clone(), rows })
 }
 
 /// A configuration with the poses of the robot's bodies.

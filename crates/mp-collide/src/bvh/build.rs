@@ -18,11 +18,11 @@ impl Tree {
     /// Triangles of which there are more than a million take at most 200 bytes each meanwhile, with those of the finished tree.
     ///
     /// # Errors
-    /// That of `go_on`, which is called often.
+    /// That of `go_on`, which is called after each pass over all triangles, and for each node.
     pub(crate) fn build<E>(
         count: usize,
         triangle: impl Fn(usize) -> Triangle,
-        go_on: impl FnMut() -> Result<(), E>,
+        mut go_on: impl FnMut() -> Result<(), E>,
     ) -> Result<Self, E> {
         let all = || (0..count).map(&triangle);
         let corners = || all().flatten();
@@ -31,12 +31,15 @@ impl Tree {
             lo = lo.inf(&p.coords);
             hi = hi.sup(&p.coords);
         }
+        go_on()?;
         let center = Point3::from(lo * 0.5 + hi * 0.5);
         let up = 1.0 + 1e-15;
         // A mesh moved by a pose that is not finite has NaN coordinates: they count as infinitely far away.
         let farthest = |far: f64, r: f64| if r.is_nan() { f64::INFINITY } else { far.max(r) };
         let radius = corners().map(|p| p.coords.norm()).fold(0.0, farthest) * up;
+        go_on()?;
         let radius_center = corners().map(|p| (p - center).norm()).fold(0.0, farthest) * up;
+        go_on()?;
         // Meshes so small that this overflows are not decided by boxes (`Frames::fits_f32`).
         let scale = Some(radius_center.recip()).filter(|s| s.is_finite()).unwrap_or(1.0);
         let in_unit = |p: Point3<f64>| {
@@ -45,8 +48,9 @@ impl Tree {
         };
         let items = all().enumerate().map(|(i, t)| BuildTriangle { corners: t.map(in_unit), id: i as u32 });
         let mut items: Vec<BuildTriangle> = items.collect();
-        let binary = split_all(&mut items, go_on)?;
+        let binary = split_all(&mut items, &mut go_on)?;
         let choices = choose(&binary);
+        go_on()?;
         let leaves = binary.iter().filter(|b| b.children() == 0).count();
         let mut tree = Self {
             nodes: Vec::new(),
@@ -54,7 +58,7 @@ impl Tree {
             node_boxes: Vec::new(),
             leaf_boxes: Vec::with_capacity(leaves),
             root: 0,
-            bounding: RootBox::fit(all()),
+            bounding: RootBox::fit(all(), &mut go_on)?,
             triangles: Vec::new(),
             ids: Vec::new(),
             center,
@@ -67,7 +71,7 @@ impl Tree {
         if count <= SMALL {
             tree.triangles = items.iter().map(in_order).collect();
         }
-        tree.root = tree.emit(&triangle, &items, &binary, &choices, 0, obb);
+        tree.root = tree.emit(&triangle, &items, &binary, &choices, 0, obb, &mut go_on)?;
         drop((binary, choices));
         tree.nodes.shrink_to_fit();
         tree.node_boxes.shrink_to_fit();
@@ -80,7 +84,8 @@ impl Tree {
     }
 
     /// Adds binary node `n`, whose box is `obb`, and all below; returns the reference to it.
-    fn emit(
+    #[expect(clippy::too_many_arguments, reason = "it calls itself with all of them but two")]
+    fn emit<E>(
         &mut self,
         triangle: &impl Fn(usize) -> Triangle,
         items: &[BuildTriangle],
@@ -88,7 +93,9 @@ impl Tree {
         choices: &[Choice],
         n: usize,
         obb: NodeBox,
-    ) -> u32 {
+        go_on: &mut impl FnMut() -> Result<(), E>,
+    ) -> Result<u32, E> {
+        go_on()?;
         let b = &binary[n];
         if b.children() == 0 {
             let own = b.range().map(|i| match self.triangles.get(i) {
@@ -98,17 +105,17 @@ impl Tree {
             let leaf = leaf(own, b.range().start, &self.center, &obb);
             self.leaves.push(leaf);
             self.leaf_boxes.push(obb);
-            return LEAF | (self.leaves.len() - 1) as u32;
+            return Ok(LEAF | (self.leaves.len() - 1) as u32);
         }
         let me = self.nodes.len();
         self.nodes.push(Node::EMPTY);
         self.node_boxes.push(obb);
         for (lane, &root) in children(binary, choices, n).iter().enumerate() {
             let obb = binary[root].obb(items, self.radius_center);
-            let child = self.emit(triangle, items, binary, choices, root, obb);
+            let child = self.emit(triangle, items, binary, choices, root, obb, go_on)?;
             self.nodes[me].set(lane, child, &obb);
         }
-        me as u32
+        Ok(me as u32)
     }
 }
 
@@ -174,6 +181,33 @@ mod tests {
             }
         }
         triangles
+    }
+
+    /// However large the mesh: between two questions no triangle is looked at more often than a few times, and after the last one none.
+    #[test]
+    fn building_ends_when_it_is_told_to() {
+        let mesh = primitives::torus(1.0, 0.3, 120, 60).unwrap();
+        let count = mesh.triangles().len();
+        let (looked, mut asked) = (std::cell::Cell::new(0_usize), 0_usize);
+        let triangle = |i: usize| {
+            looked.set(looked.get() + 1);
+            mesh.triangle(i)
+        };
+        let mut last = 0;
+        let all = Tree::build(count, triangle, || {
+            assert!(looked.get() - last <= 2 * count, "{} after {asked} questions", looked.get() - last);
+            (last, asked) = (looked.get(), asked + 1);
+            Ok::<(), ()>(())
+        });
+        assert!(all.is_ok() && asked * 8 > count, "{asked}");
+        for end in [1, 2, 3, 4, 5, 8, asked / 3, asked / 2, asked - 10, asked] {
+            let (mut questions, mut last) = (0, 0);
+            let ended = Tree::build(count, triangle, || {
+                (questions, last) = (questions + 1, looked.get());
+                if questions == end { Err(()) } else { Ok(()) }
+            });
+            assert!(ended.is_err() && questions == end && looked.get() == last, "{end}");
+        }
     }
 
     #[test]

@@ -19,20 +19,26 @@ pub(crate) struct RootBox {
 impl RootBox {
     /// A small box around `triangles`: the one of least surface along several frames (the principal axes of the surface,
     /// the frame of the largest triangle, the axes of the mesh). O(n).
-    pub(crate) fn fit(triangles: impl Iterator<Item = Triangle> + Clone) -> Self {
-        let frames = [
-            principal_axes(triangles.clone()),
-            largest_triangle_axes(triangles.clone()),
-            [Vector3::x(), Vector3::y(), Vector3::z()],
-        ];
-        let mut best = Self::around(triangles.clone(), frames[0]);
-        for frame in &frames[1..] {
-            let other = Self::around(triangles.clone(), *frame);
+    ///
+    /// # Errors
+    /// That of `go_on`, which is called after each pass.
+    pub(crate) fn fit<E>(
+        triangles: impl Iterator<Item = Triangle> + Clone,
+        go_on: &mut impl FnMut() -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let principal = principal_axes(triangles.clone());
+        go_on()?;
+        let of_largest = largest_triangle_axes(triangles.clone());
+        go_on()?;
+        let mut best = Self::around(triangles.clone(), principal);
+        for frame in [of_largest, [Vector3::x(), Vector3::y(), Vector3::z()]] {
+            go_on()?;
+            let other = Self::around(triangles.clone(), frame);
             if other.surface() < best.surface() {
                 best = other;
             }
         }
-        best
+        Ok(best)
     }
 
     /// The smallest box with these axes.

@@ -12,9 +12,11 @@ mod swept_triangle;
 mod triangle;
 
 use mp_geom::TriMesh;
+use mp_stop::Interrupt;
 use nalgebra::{Isometry3, IsometryMatrix3, Point3, Vector3};
 use std::cmp::Ordering;
 use std::collections::HashSet;
+use std::convert::Infallible;
 
 pub use sweep::{Sweep, SweepCheck};
 pub use triangle::triangle_distance;
@@ -80,11 +82,22 @@ impl RefMesh {
     /// 9 to 15 bytes each; then answers take two to three times as long, and building nearly twice.
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
-        Self::storing(mesh, if mesh.triangles().len() > LARGE { FEW } else { 0 })
+        let Ok(made) = Self::storing(mesh, few_of(mesh), &mut || Ok::<(), Infallible>(()));
+        made
+    }
+
+    /// As [`new`](Self::new); `None` when `interrupt` says to end.
+    #[must_use]
+    pub fn new_until(mesh: &TriMesh, interrupt: &Interrupt) -> Option<Self> {
+        let mut interrupt = interrupt.clone();
+        Self::storing(mesh, few_of(mesh), &mut || interrupt.go_on()).ok()
     }
 
     /// Stores the balls around more than `few` triangles, and the triangles if `few` is 0. Answers do not depend on that.
-    fn storing(mesh: &TriMesh, few: u32) -> Self {
+    ///
+    /// # Errors
+    /// That of `go_on`, which is called for each ball.
+    fn storing<E>(mesh: &TriMesh, few: u32, go_on: &mut impl FnMut() -> Result<(), E>) -> Result<Self, E> {
         let count = mesh.triangles().len();
         let triangles = || (0..count).map(|i| mesh.triangle(i));
         let mut tree = Self {
@@ -97,19 +110,20 @@ impl RefMesh {
             corners: distinct(triangles().flatten()),
         };
         let mut order = std::mem::take(&mut tree.order);
-        tree.sort(&mut order);
+        tree.sort(&mut order, go_on)?;
         tree.order = order;
-        tree.root = tree.store(0, count as u32, few);
+        tree.root = tree.store(0, count as u32, few, go_on)?;
         if few == 0 {
             tree.order = Vec::new();
         }
-        tree
+        Ok(tree)
     }
 
     /// Puts triangles in the order of the leaves: those on the lower side of the median first, and so on within both halves.
-    fn sort(&self, order: &mut [u32]) {
+    fn sort<E>(&self, order: &mut [u32], go_on: &mut impl FnMut() -> Result<(), E>) -> Result<(), E> {
+        go_on()?;
         if order.len() < 2 {
-            return;
+            return Ok(());
         }
         let middle = |i: u32, k: usize| self.triangle(i, &mut None).iter().map(|p| p[k] / 3.0).sum::<f64>();
         let extent = |k: usize| {
@@ -124,21 +138,31 @@ impl RefMesh {
             middle(x, widest).total_cmp(&middle(y, widest)).then(x.cmp(&y))
         });
         let (low, high) = order.split_at_mut(order.len() / 2);
-        self.sort(low);
-        self.sort(high);
+        self.sort(low, go_on)?;
+        self.sort(high, go_on)
     }
 
     /// Adds the balls around `count` triangles from the place `first` of the order on, children first. Returns that around them all.
-    fn store(&mut self, first: u32, count: u32, few: u32) -> Node {
+    fn store<E>(
+        &mut self,
+        first: u32,
+        count: u32,
+        few: u32,
+        go_on: &mut impl FnMut() -> Result<(), E>,
+    ) -> Result<Node, E> {
+        go_on()?;
         if count <= few {
-            return Node::Few { first, count: count as u16 };
+            return Ok(Node::Few { first, count: count as u16 });
         }
         let content = match halves(first, count) {
             None => Content::Triangle(self.order[first as usize]),
-            Some(parts) => Content::Parts(parts.map(|(first, count)| self.store(first, count, few))),
+            Some([(low, below), (high, above)]) => {
+                let low = self.store(low, below, few, go_on)?;
+                Content::Parts([low, self.store(high, above, few, go_on)?])
+            }
         };
         self.balls.push(self.enclosing_ball(first, count, content));
-        Node::Stored(self.balls.len() as u32 - 1)
+        Ok(Node::Stored(self.balls.len() as u32 - 1))
     }
 
     /// A ball, put into `made` unless it is stored.
@@ -343,6 +367,11 @@ impl Search<'_> {
     }
 }
 
+/// How many triangles a ball must be around to be stored.
+fn few_of(mesh: &TriMesh) -> u32 {
+    if mesh.triangles().len() > LARGE { FEW } else { 0 }
+}
+
 /// Whether `pose` is a rigid motion within the limits, for meshes of that size.
 fn is_usable(pose: &Isometry3<f64>, size: f64) -> bool {
     let rigid = (pose.rotation.quaternion().norm() - 1.0).abs() < 1e-6;
@@ -388,7 +417,10 @@ mod tests {
 
     /// One mesh with a tree for each number of balls stored; the first one stores them all.
     fn trees(mesh: &TriMesh) -> [RefMesh; 4] {
-        let trees = [0, 1, FEW, 1000].map(|few| RefMesh::storing(mesh, few));
+        let trees = [0, 1, FEW, 1000].map(|few| {
+            let Ok(tree) = RefMesh::storing(mesh, few, &mut || Ok::<(), Infallible>(()));
+            tree
+        });
         let (all, stored) = (2 * mesh.triangles().len() - 1, trees.each_ref().map(|tree| tree.balls.len()));
         assert!(stored[0] == all && stored[1] < all && stored[2] < all / 3, "{stored:?}");
         let counted = |few| larger_balls(mesh.triangles().len(), few as usize);

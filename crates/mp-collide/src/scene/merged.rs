@@ -14,18 +14,25 @@ pub(super) struct Merged {
 
 impl Merged {
     /// One mesh of `bodies`; `None` when there are none, or it would be too large.
-    pub(super) fn of(bodies: &[(BodyId, &Body)]) -> Option<Self> {
+    ///
+    /// # Errors
+    /// That of `go_on`, which is called often.
+    pub(super) fn of<E>(
+        bodies: &[(BodyId, &Body)],
+        mut go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<Option<Self>, E> {
         let (mut triangles, mut starts) = (Vec::new(), Vec::new());
         for (id, body) in bodies {
+            go_on()?;
             starts.push((triangles.len(), *id));
             triangles.extend(body.mesh.triangles().iter().map(|t| t.map(|p| to_world(&body.pose, &p))));
         }
         if triangles.is_empty() || u32::try_from(triangles.len()).is_err() {
-            return None;
+            return Ok(None);
         }
-        let mesh = CollisionMesh::from_triangles(&triangles);
+        let mesh = CollisionMesh::built(triangles.len(), |i| triangles[i], go_on)?;
         // A large mesh far away may be beyond the limit in the world, though mesh and pose are each within it.
-        (mesh.radius() <= LIMIT).then_some(Self { mesh, starts })
+        Ok((mesh.radius() <= LIMIT).then_some(Self { mesh, starts }))
     }
 
     /// The body a triangle of the mesh belongs to.

@@ -8,6 +8,7 @@ mod queries;
 use std::collections::BTreeSet;
 
 use mp_geom::Aabb;
+use mp_stop::{Interrupt, Interrupted};
 use nalgebra::Isometry3;
 use thiserror::Error;
 
@@ -267,8 +268,19 @@ impl Scene {
     /// mesh are rounded to the world frame, so answers may differ by that rounding. Does nothing when there are no static
     /// bodies, or their coordinates in the world are beyond 1e75, or they have more than `u32::MAX` triangles.
     pub fn merge_static(&mut self) {
-        let fixed: Vec<_> = self.bodies().filter(|(_, body)| !body.movable).collect();
-        self.merged = Merged::of(&fixed);
+        // Nothing ends it.
+        let _: Result<(), Interrupted> = self.merge_static_until(&Interrupt::never());
+    }
+
+    /// As [`merge_static`](Self::merge_static), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// When it was told to end. Then nothing is merged.
+    pub fn merge_static_until(&mut self, interrupt: &Interrupt) -> Result<(), Interrupted> {
+        let (fixed, mut interrupt): (Vec<_>, _) =
+            (self.bodies().filter(|(_, body)| !body.movable).collect(), interrupt.clone());
+        self.merged = Merged::of(&fixed, || interrupt.go_on())?;
+        Ok(())
     }
 
     /// Whether static bodies are merged at the moment.

@@ -8,6 +8,7 @@ use crate::problem::{MAX_COORDINATE, PlacedBody, vertex_beyond};
 use crate::toml_problem::TomlText;
 use mp_geom::{TriMesh, pose_from_six, primitives};
 use nalgebra::Isometry3;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// Segments of the mesh around a cylinder; the mesh contains the cylinder.
@@ -93,12 +94,16 @@ pub(crate) struct Figures<'a> {
     path: &'a Path,
     /// The meshes read so far, with their files.
     read: Vec<(PathBuf, TriMesh)>,
+    /// The primitives made so far, by the bits of their sizes: equal ones share a mesh.
+    made: HashMap<(&'static str, [u64; 3]), TriMesh>,
+    /// A unit sphere, and the radius of the ball inside, once there is a sphere.
+    ball: Option<(f64, TriMesh)>,
 }
 
 impl<'a> Figures<'a> {
     /// For the problem in the file `path`, to which names are relative.
     pub(crate) fn new(files: &'a dyn Files, path: &'a Path) -> Self {
-        Self { files, path, read: Vec::new() }
+        Self { files, path, read: Vec::new(), made: HashMap::new(), ball: None }
     }
 
     /// The file and the mesh of an obstacle. Spheres and cylinders become meshes that contain them.
@@ -108,16 +113,13 @@ impl<'a> Figures<'a> {
         entry: &ObstacleEntry,
     ) -> Result<(PathBuf, TriMesh), Error> {
         let fault = |message: &str, help: &str| source.error(&entry.span, message).help(help);
-        let primitive = |made: Result<TriMesh, primitives::PrimitiveError>| {
-            made.map(|mesh| (self.path.to_owned(), mesh))
-                .map_err(|e| fault(&e.to_string(), "give sizes in metres, not too small"))
-        };
         let (from, mesh) = match &entry.shape {
-            ObstacleShape::Box([x, y, z]) => primitive(primitives::cuboid(*x, *y, *z))?,
-            ObstacleShape::Sphere(radius) => primitive(ball(*radius))?,
+            ObstacleShape::Box(sizes) => (self.path.to_owned(), self.primitive("box", *sizes, &fault)?),
+            ObstacleShape::Sphere(radius) => {
+                (self.path.to_owned(), self.primitive("sphere", [*radius, 0.0, 0.0], &fault)?)
+            }
             ObstacleShape::Cylinder([radius, height]) => {
-                let around = radius / mp_math::cos(std::f64::consts::PI / f64::from(SEGMENTS));
-                primitive(primitives::cylinder(around, *height, SEGMENTS))?
+                (self.path.to_owned(), self.primitive("cylinder", [*radius, *height, 0.0], &fault)?)
             }
             ObstacleShape::Mesh(name) => {
                 let place = self.path.parent().unwrap_or(Path::new("")).join(name);
@@ -141,6 +143,42 @@ impl<'a> Figures<'a> {
         }
         Ok((from, mesh))
     }
+
+    /// The mesh of a primitive with these sizes: sides; a radius; a radius and a height.
+    fn primitive(
+        &mut self,
+        kind: &'static str,
+        sizes @ [x, y, z]: [f64; 3],
+        fault: &dyn Fn(&str, &str) -> Error,
+    ) -> Result<TriMesh, Error> {
+        if self.files.interrupt().ask() {
+            return Err(Error::interrupted(self.path.display()));
+        }
+        let key = (kind, sizes.map(f64::to_bits));
+        if let Some(known) = self.made.get(&key) {
+            return Ok(known.clone());
+        }
+        let made = match kind {
+            "box" => primitives::cuboid(x, y, z),
+            "sphere" => self.ball(x),
+            _ => {
+                let around = x / mp_math::cos(std::f64::consts::PI / f64::from(SEGMENTS));
+                primitives::cylinder(around, y, SEGMENTS)
+            }
+        };
+        let made = made.map_err(|e| fault(&e.to_string(), "give sizes in metres, not too small"))?;
+        self.made.insert(key, made.clone());
+        Ok(made)
+    }
+
+    /// A mesh around a ball.
+    fn ball(&mut self, radius: f64) -> Result<TriMesh, primitives::PrimitiveError> {
+        let (inner, unit) = match &self.ball {
+            Some(known) => known,
+            None => self.ball.insert(unit_sphere()?),
+        };
+        Ok(unit.scaled([primitives::positive("radius", radius / inner)?; 3])?)
+    }
 }
 
 /// The error of a file that cannot be used, at the place that names it.
@@ -148,12 +186,12 @@ fn unusable(file: &RobotFile, part: RobotPart, e: &Error) -> Error {
     file.fault(part, &format!("this file is not usable: {e}"), e.remedy_of_named_file()).with_kind(e.kind())
 }
 
-/// A mesh around a ball.
-fn ball(radius: f64) -> Result<TriMesh, primitives::PrimitiveError> {
+/// A unit sphere, and the radius of the largest ball about its middle that it contains.
+fn unit_sphere() -> Result<(f64, TriMesh), primitives::PrimitiveError> {
     let unit = primitives::sphere(1.0, 3)?;
     let inner = (0..unit.triangles().len()).map(|i| {
         let [a, b, c] = unit.triangle(i);
         (b - a).cross(&(c - a)).normalize().dot(&a.coords)
     });
-    primitives::sphere(radius / inner.fold(1.0, f64::min), 3)
+    Ok((inner.fold(1.0, f64::min), unit))
 }

@@ -38,6 +38,31 @@ fn a_problem_and_its_files() {
     assert_eq!((error.line(), error.column(), error.remedy()), (Some(8), Some(18), Some("move it")));
 }
 
+/// Equal primitives share the memory of one mesh; others have their own, and are the meshes that they always were.
+#[test]
+fn equal_primitives_share_a_mesh() {
+    let figures = ["sphere = 0.25", "sphere = 0.25", "sphere = 0.5", "box = [1, 2, 3]", "box = [1, 2, 3]"];
+    let more = ["box = [3, 2, 1]", "cylinder = [0.25, 1]", "cylinder = [0.25, 1]", "cylinder = [1, 0.25]"];
+    let shapes: Vec<&str> = figures.into_iter().chain(more).collect();
+    let obstacles: String = shapes.iter().map(|shape| format!("[[obstacle]]\n{shape}\n")).collect();
+    let (_dir, path) = folder(&GOOD.replace("[[obstacle]]\nmesh = \"wall.off\"\n\n", &obstacles));
+    let problem = RobotProblem::load(&path).unwrap();
+    let meshes: Vec<_> = problem.obstacles[2..][..shapes.len()].iter().map(|o| &o.mesh).collect();
+    for (i, a) in meshes.iter().enumerate() {
+        for (j, b) in meshes.iter().enumerate() {
+            let shared = std::ptr::eq(a.vertices().as_ptr(), b.vertices().as_ptr());
+            assert_eq!(shared, shapes[i] == shapes[j], "{} and {}", shapes[i], shapes[j]);
+        }
+    }
+    let unit = mp_geom::primitives::sphere(1.0, 3).unwrap();
+    let inner = (0..unit.triangles().len()).map(|i| {
+        let [a, b, c] = unit.triangle(i);
+        (b - a).cross(&(c - a)).normalize().dot(&a.coords)
+    });
+    let around = 0.5 / inner.fold(1.0, f64::min);
+    assert_eq!(*meshes[2], mp_geom::primitives::sphere(around, 3).unwrap());
+}
+
 #[test]
 fn faults_have_their_place() {
     let mut wrong = Vec::new();

@@ -8,8 +8,9 @@ use super::{
 use crate::goals::{GoalPart, examples, rows};
 use crate::{Error, MetricName, brief};
 use mp_cspace::{
-    Clearance, Euclidean, Factored, FloatingJoints, Halton, JointRange, Joints, Manhattan, MotionClearance,
-    ObstacleKnowledge, Rng, Sampler, ScaledEuclidean, Space, TrueMetric, WithMetric,
+    Clearance, Euclidean, Factored, FloatingJoints, Halton, Interrupt, Interrupted, JointRange, Joints,
+    Manhattan, MotionClearance, ObstacleKnowledge, Rng, Sampler, ScaledEuclidean, Space, TrueMetric,
+    WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{Disk, Files, GoalEntry, PlacedBody, RobotPart, RobotProblem};
@@ -176,10 +177,10 @@ impl<C: LinkedSpace> LinkedScene<C> {
         Self::from_problem_in(&Disk, problem)
     }
 
-    /// As [`from_problem`](Self::from_problem), with the meshes of the robot read through `files`.
+    /// As [`from_problem`](Self::from_problem), with the meshes of the robot read through `files`, unless their token says to end.
     ///
     /// # Errors
-    /// As [`from_problem`](Self::from_problem).
+    /// As [`from_problem`](Self::from_problem), and when it was told to end.
     pub fn from_problem_in(files: &dyn Files, problem: RobotProblem) -> Result<Self, Error> {
         let of = &|e: Error| e.context(what(&problem));
         let arm = Self::arm_of(files, &problem)?;
@@ -263,7 +264,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
             })?;
         }
         let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
-        Arm::new(&model, bodies).map_err(|e| {
+        Arm::new_until(&model, bodies, &files.interrupt()).map_err(|e| {
             let line = e.element().and_then(|(element, name)| line_of(&problem.urdf, element, name));
             in_urdf(problem, line, e.to_string(), "correct the links and joints of the URDF")
         })
@@ -500,6 +501,9 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
 
     fn checker(&self) -> &Arm {
         &self.arm
+    }
+    fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
+        self.arm.make_ready(interrupt)
     }
     fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
         Ok(ArmVerifier::new(&self.space, &self.arm)?)

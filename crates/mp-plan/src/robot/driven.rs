@@ -12,7 +12,8 @@ use crate::{Error, MetricName};
 use check::{DrivenChecker, DrivenVerifier};
 use mp_cspace::shorten::Effort;
 use mp_cspace::{
-    AnyFlow, Demand, Embed, InputSystem, MotionCheck, MotionValidity, Path, Rng, Space, StateVector,
+    AnyFlow, Demand, Embed, InputSystem, Interrupt, Interrupted, MotionCheck, MotionValidity, Path, Rng,
+    Space, StateVector,
 };
 use mp_geom::Aabb;
 use mp_io::{Drive, Driven};
@@ -237,6 +238,9 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
 
     fn checker(&self) -> &DrivenChecker<K> {
         &self.checker
+    }
+    fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
+        self.robot.make_ready(interrupt)
     }
     fn verifier(&self) -> Result<DrivenVerifier<'_, K>, Error> {
         Ok(DrivenVerifier { scene: self, verifier: self.robot.verifier()? })

@@ -9,7 +9,10 @@ use super::{
 use crate::goals::{GoalPart, examples};
 use crate::{Error, MetricName};
 use mp_cspace::space_time::SpaceTime;
-use mp_cspace::{AsVectors, Clearance, Demand, Embed, MotionCheck, MotionValidity, Space, StateVector};
+use mp_cspace::{
+    AsVectors, Clearance, Demand, Embed, Interrupt, Interrupted, MotionCheck, MotionValidity, Space,
+    StateVector,
+};
 use mp_geom::Aabb;
 use mp_io::{Driven, Timing};
 use mp_robot::Trajectory;
@@ -223,6 +226,9 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
 
     fn checker(&self) -> &Self::Checker {
         &self.among
+    }
+    fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
+        self.still.make_ready(interrupt)
     }
     fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
         Ok(OnVectors::new(self.still.among_verifier(&self.space.0, self.among.inner())?))

@@ -13,8 +13,8 @@ use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
-    DefaultNn, Embed, Euclidean, Factored, Interrupt, Linear, Manhattan, MaxDisplacement, Metric,
-    MotionCheck, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume,
+    DefaultNn, Embed, Euclidean, Factored, Interrupt, Interrupted, Linear, Manhattan, MaxDisplacement,
+    Metric, MotionCheck, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume,
     TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, displacement_bound, pose_from_six, six_from_pose, six_tuples};
@@ -187,6 +187,19 @@ impl<M: RigidSpace> RigidScene<M> {
     /// # Errors
     /// When a mesh is too large, or a path or a time is not valid.
     pub fn among_moving(self, moving: &[RigidMoving], timing: &Timing) -> Result<MovingScene<Self>, Error> {
+        self.among_moving_until(moving, timing, &Interrupt::never())
+    }
+
+    /// As [`among_moving`](Self::among_moving), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`among_moving`](Self::among_moving), and when it was told to end.
+    pub fn among_moving_until(
+        self,
+        moving: &[RigidMoving],
+        timing: &Timing,
+        interrupt: &Interrupt,
+    ) -> Result<MovingScene<Self>, Error> {
         let meshes = moving.iter().map(|m| {
             let pose = |row: &[f64; 7]| (row[0], pose_from_six(std::array::from_fn(|i| row[i + 1])));
             let trajectory = Trajectory::new(m.path.iter().map(pose))
@@ -195,7 +208,7 @@ impl<M: RigidSpace> RigidScene<M> {
         });
         let meshes: Vec<_> = meshes.collect::<Result<_, Error>>()?;
         let last = moving.iter().filter_map(|m| m.path.last()).map(|row| row[0]).fold(0.0, f64::max);
-        let among = AmongMoving::new(self.robot.clone(), meshes)?;
+        let among = AmongMoving::new_until(self.robot.clone(), meshes, interrupt)?;
         let body = |m: &RigidMoving| Body {
             name: m.name.clone(),
             shape: BodyShape::Mesh(m.mesh.clone()),
@@ -324,6 +337,9 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
 
     fn checker(&self) -> &RigidBody<M> {
         &self.robot
+    }
+    fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
+        self.robot.make_ready(interrupt)
     }
     fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
         Ok(Verifier::new(&self.space, &self.robot)?)

@@ -1,7 +1,7 @@
 //! Errors of arms, and of the texts that they are read from.
 
 use mp_collide::SceneError;
-use mp_cspace::SpaceError;
+use mp_cspace::{Interrupted, SpaceError};
 use mp_geom::MeshError;
 use thiserror::Error;
 
@@ -39,6 +39,9 @@ pub enum ArmError {
         /// The one that is missing.
         missing: String,
     },
+    /// The work was told to end.
+    #[error("preparing the robot was ended")]
+    Interrupted,
     /// There are no links.
     #[error("an arm needs at least one link and one joint that moves; this one has no links")]
     NoLinks,
@@ -184,6 +187,12 @@ pub enum ArmError {
     /// The ranges of the joints do not form a space.
     #[error(transparent)]
     Space(#[from] SpaceError),
+}
+
+impl From<Interrupted> for ArmError {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
+    }
 }
 
 /// Why a URDF or SRDF could not be read as an arm.

@@ -6,11 +6,13 @@ use super::travel::{Chain, axes_into};
 use super::verify::ReferenceArm;
 use super::{ArmError, ArmModel};
 use crate::CheckCounters;
-use crate::obstacles::{MAX_TRIANGLES, Obstacles, resolved_tolerance};
+use crate::obstacles::{MAX_TRIANGLES, Obstacles, make_once, resolved_tolerance};
+use mp_collide::reference::RefMesh;
 use mp_collide::{BodyId, CollisionMesh, Query, Scene};
-use mp_cspace::{Coordinates, FloatingJoints, Joints};
+use mp_cspace::{Coordinates, FloatingJoints, Interrupt, Interrupted, Joints};
 use mp_geom::{Aabb, Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Vector3};
+use std::convert::Infallible;
 use std::sync::{Arc, OnceLock};
 
 /// Largest link, metres.
@@ -70,7 +72,7 @@ pub(super) struct SharedArm {
 }
 
 impl SharedArm {
-    fn new(model: &ArmModel) -> Result<Self, ArmError> {
+    fn new(model: &ArmModel, interrupt: &Interrupt) -> Result<Self, ArmError> {
         let kinematics = Kinematics::new(model)?;
         let mut bodies = Vec::new();
         let (mut first, mut count, mut reach) = (0, 0_usize, 0.0_f64);
@@ -95,12 +97,13 @@ impl SharedArm {
             }
             reach = reach.max(radius);
             let entries = chain.steps.len() + 1;
-            let (ball, tree) = (mesh.bounding_sphere(), CollisionMesh::new(&mesh));
+            let tree = CollisionMesh::new_until(&mesh, interrupt).ok_or(Interrupted)?;
+            let ball = mesh.bounding_sphere();
             let ball = Sphere { radius: ball.radius * (1.0 + 1e-9), ..ball };
             bodies.push(LinkBody { link: i, frame: place.frame, mesh, tree, ball, chain, first });
             first += entries;
         }
-        let pairs = pairs(&kinematics, &bodies, model)?;
+        let pairs = pairs(&kinematics, &bodies, model, interrupt)?;
         Ok(Self { kinematics, bodies, pairs, reach, model: model.clone(), reference: OnceLock::new() })
     }
 
@@ -108,10 +111,11 @@ impl SharedArm {
     fn obstacles(
         &self,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
+        interrupt: &Interrupt,
     ) -> Result<Arc<Obstacles>, ArmError> {
         let triangles = self.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
         let too_many = |count| ArmError::TooManyTriangles { count, max: MAX_TRIANGLES };
-        Obstacles::new(obstacles, triangles, too_many, None, |mesh| Ok(CollisionMesh::new(mesh)))
+        Obstacles::new(obstacles, triangles, too_many, None, interrupt)
     }
 
     /// The links that can collide with obstacles: those that move. The last ones move most, so they come first.
@@ -133,6 +137,10 @@ impl SharedArm {
             body.chain.near(&travels, &ball, axes, near);
             balls.push(ball);
         }
+    }
+
+    fn checked_pairs(&self) -> impl Iterator<Item = [&str; 2]> {
+        self.pairs.iter().map(|pair| pair.bodies.map(|body| self.name(body)))
     }
 
     pub(super) fn name(&self, body: usize) -> &str {
@@ -212,8 +220,20 @@ impl Arm {
         model: &ArmModel,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
     ) -> Result<Self, ArmError> {
-        let robot = SharedArm::new(model)?;
-        let obstacles = robot.obstacles(obstacles)?;
+        Self::new_until(model, obstacles, &Interrupt::never())
+    }
+
+    /// As [`new`](Self::new), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and [`Interrupted`](ArmError::Interrupted) when it was told to end.
+    pub fn new_until(
+        model: &ArmModel,
+        obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
+        interrupt: &Interrupt,
+    ) -> Result<Self, ArmError> {
+        let robot = SharedArm::new(model, interrupt)?;
+        let obstacles = robot.obstacles(obstacles, interrupt)?;
         Ok(Self {
             robot: Arc::new(robot),
             obstacles,
@@ -231,10 +251,46 @@ impl Arm {
         &self,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
     ) -> Result<Self, ArmError> {
-        let obstacles = self.robot.obstacles(obstacles)?;
+        self.among_until(obstacles, &Interrupt::never())
+    }
+
+    /// As [`among`](Self::among), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`among`](Self::among), and [`Interrupted`](ArmError::Interrupted) when it was told to end.
+    pub fn among_until(
+        &self,
+        obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
+        interrupt: &Interrupt,
+    ) -> Result<Self, ArmError> {
+        let obstacles = self.robot.obstacles(obstacles, interrupt)?;
         let mut other = Self { obstacles, ..self.clone() };
         other.take_counters();
         Ok(other)
+    }
+
+    /// Makes what an [`ArmVerifier`](crate::ArmVerifier) would make at its first use, which takes long for large meshes, unless
+    /// `interrupt` says to end. Clones share it.
+    ///
+    /// # Errors
+    /// When it was told to end.
+    pub fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
+        let (robot, mut asked) = (&*self.robot, interrupt.clone());
+        make_once(&robot.reference, interrupt, || {
+            let tree = |mesh: &TriMesh| RefMesh::new_until(mesh, interrupt).ok_or(Interrupted);
+            ReferenceArm::new(&robot.model, robot.checked_pairs(), tree, || asked.go_on()).map(Arc::new)
+        })?;
+        self.obstacles.make_reference(interrupt)
+    }
+
+    /// The arm as verifiers see it.
+    pub(super) fn reference(&self) -> Arc<ReferenceArm> {
+        let robot = &*self.robot;
+        Arc::clone(robot.reference.get_or_init(|| {
+            let tree = |mesh: &TriMesh| Ok::<_, Infallible>(RefMesh::new(mesh));
+            let Ok(made) = ReferenceArm::new(&robot.model, robot.checked_pairs(), tree, || Ok(()));
+            Arc::new(made)
+        }))
     }
 
     /// The model that it was made from.
@@ -293,7 +349,7 @@ impl Arm {
     /// The names of the pairs of links that must not touch.
     #[must_use]
     pub fn checked_pairs(&self) -> Vec<[&str; 2]> {
-        self.robot.pairs.iter().map(|pair| pair.bodies.map(|body| self.robot.name(body))).collect()
+        self.robot.checked_pairs().collect()
     }
 
     /// An upper bound (m) on the distance of any of its points from the base in any configuration, from the lengths of

@@ -1,11 +1,11 @@
 //! The independent check of arm motions.
 
-use super::{Arm, ArmModel, JointKind};
+use super::{Arm, ArmModel, JointKind, Link};
 use mp_collide::reference::RefMesh;
 use mp_cspace::{Coordinates, Interrupt, MotionCheck, MotionValidity, ParameterError, Space};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Matrix3, Matrix4, Rotation3, Translation3, UnitQuaternion, Vector3};
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -14,6 +14,8 @@ use std::sync::Arc;
 pub(super) struct ReferenceArm {
     /// Parents before children.
     links: Vec<ReferenceLink>,
+    /// The pairs of links that must not touch.
+    pairs: Vec<CheckedPair>,
     coordinates: Vec<bool>,
     base: Matrix4<f64>,
     /// How many numbers of a configuration are the pose of the base.
@@ -26,8 +28,9 @@ const POSE: usize = 7;
 /// A link and the joint above it.
 #[derive(Debug)]
 struct ReferenceLink {
-    name: String,
     parent: Option<usize>,
+    /// How many links are above it.
+    depth: usize,
     origin: Matrix4<f64>,
     axis: Vector3<f64>,
     motion: JointMotion,
@@ -46,11 +49,21 @@ enum JointMotion {
 }
 
 impl ReferenceArm {
-    pub(super) fn new(model: &ArmModel) -> Self {
+    /// `checked` are the names of the links of each pair that must not touch, and `make` makes the tree of a mesh.
+    ///
+    /// # Errors
+    /// That of `make`, or of `go_on`, which is called for each link and each pair.
+    pub(super) fn new<'n, E>(
+        model: &ArmModel,
+        checked: impl Iterator<Item = [&'n str; 2]>,
+        mut make: impl FnMut(&TriMesh) -> Result<RefMesh, E>,
+        mut go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<Self, E> {
         let own = model.joints.iter().filter(|j| j.kind != JointKind::Fixed && j.mimic.is_none());
         let own: Vec<_> = own.filter(|j| j.kind.held().is_none()).collect();
         let mut tree = Self {
             links: Vec::new(),
+            pairs: Vec::new(),
             coordinates: own.iter().map(|j| j.kind == JointKind::Continuous).collect(),
             base: model.base.to_homogeneous(),
             pose: if model.floating.is_some() { POSE } else { 0 },
@@ -73,16 +86,18 @@ impl ReferenceArm {
                 at.clone_from(&mimic.joint);
             }
         };
-        let above = |link: &str| model.joints.iter().find(|j| j.child == link);
-        let mut todo: Vec<usize> = (0..model.links.len()).collect();
+        let above: HashMap<&str, _> = model.joints.iter().map(|j| (j.child.as_str(), j)).collect();
+        let mut places: HashMap<&str, usize> = HashMap::new();
+        let mut todo: Vec<&Link> = model.links.iter().collect();
         while !todo.is_empty() {
             let before = todo.len();
-            todo.retain(|&i| {
-                let link = &model.links[i];
-                let joint = above(&link.name);
-                let parent = joint.and_then(|j| tree.links.iter().position(|p| p.name == j.parent));
+            for link in std::mem::take(&mut todo) {
+                go_on()?;
+                let joint = above.get(link.name.as_str()).copied();
+                let parent = joint.and_then(|j| places.get(j.parent.as_str()).copied());
                 if joint.is_some() && parent.is_none() {
-                    return true;
+                    todo.push(link);
+                    continue;
                 }
                 let mesh = TriMesh::merged(&link.shapes);
                 let motion = match joint.map(|j| j.kind) {
@@ -90,9 +105,10 @@ impl ReferenceArm {
                     Some(JointKind::Prismatic { .. }) => JointMotion::Slides,
                     Some(_) => JointMotion::Turns,
                 };
+                places.insert(&link.name, tree.links.len());
                 tree.links.push(ReferenceLink {
-                    name: link.name.clone(),
                     parent,
+                    depth: parent.map_or(0, |p| tree.links[p].depth + 1),
                     origin: joint.map_or_else(Matrix4::identity, |j| j.origin.to_homogeneous()),
                     axis: joint.map_or_else(Vector3::x, |j| j.axis.normalize()),
                     motion,
@@ -102,15 +118,29 @@ impl ReferenceArm {
                         .flat_map(|m| m.vertices())
                         .map(|p| p.coords.norm())
                         .fold(0.0, f64::max),
-                    mesh: mesh.as_ref().map(RefMesh::new),
+                    mesh: mesh.as_ref().map(&mut make).transpose()?,
                 });
-                false
-            });
+            }
             if todo.len() == before {
                 break;
             }
         }
-        tree
+        for [a, b] in checked {
+            go_on()?;
+            if let (Some(&link), Some(&other)) = (places.get(a), places.get(b)) {
+                tree.pairs.push(CheckedPair { link, other: Some(other), meet: tree.meet(link, other) });
+            }
+        }
+        Ok(tree)
+    }
+
+    /// The nearest link above both, which may be one of them.
+    fn meet(&self, mut a: usize, mut b: usize) -> Option<usize> {
+        while a != b {
+            let lower = if self.links[a].depth < self.links[b].depth { &mut b } else { &mut a };
+            *lower = self.links[*lower].parent?;
+        }
+        Some(a)
     }
 
     /// The poses of the links in the world, as homogeneous matrices.
@@ -174,10 +204,6 @@ impl ReferenceArm {
     /// The links from `link` up to the root, `link` first.
     fn above(&self, link: usize) -> Vec<usize> {
         std::iter::successors(Some(link), |&i| self.links[i].parent).collect()
-    }
-
-    fn find(&self, name: &str) -> Option<usize> {
-        self.links.iter().position(|link| link.name == name)
     }
 
     /// Whether any joint above the link moves it.
@@ -299,8 +325,7 @@ where
             let (name, expected) = ("the tolerance", "positive and finite");
             return Err(ParameterError { name, expected, value: tolerance });
         }
-        let tree =
-            Arc::clone(arm.robot.reference.get_or_init(|| Arc::new(ReferenceArm::new(&arm.robot.model))));
+        let tree = arm.reference();
         let world = arm.obstacles.reference();
         let mut pairs = Vec::new();
         let solid = |i: &usize| tree.links[*i].mesh.is_some() && (tree.pose > 0 || tree.is_moved(*i));
@@ -309,13 +334,7 @@ where
                 pairs.push(CheckedPair { link, other: None, meet: None });
             }
         }
-        for [a, b] in arm.checked_pairs() {
-            if let (Some(link), Some(other)) = (tree.find(a), tree.find(b)) {
-                let on_b = tree.above(other);
-                let meet = tree.above(link).into_iter().find(|i| on_b.contains(i));
-                pairs.push(CheckedPair { link, other: Some(other), meet });
-            }
-        }
+        pairs.extend_from_slice(&tree.pairs);
         Ok(Self { space, tree, world, pairs, tolerance, parts: 0, interrupt: Interrupt::never() })
     }
 

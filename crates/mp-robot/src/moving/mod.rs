@@ -9,7 +9,7 @@ pub use verify::MovingVerifier;
 use crate::{CheckCounters, Placement, RigidBody, RobotError};
 use mp_collide::reference::RefMesh;
 use mp_collide::{CollisionMesh, Query, Scene};
-use mp_cspace::{Clearance, MotionClearance, Validity};
+use mp_cspace::{Clearance, Interrupt, Interrupted, MotionClearance, Validity};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 use std::sync::Arc;
@@ -53,16 +53,25 @@ impl<P: Placement> AmongMoving<P> {
         body: RigidBody<P>,
         moving: impl IntoIterator<Item = (String, TriMesh, Trajectory)>,
     ) -> Result<Self, RobotError> {
+        Self::new_until(body, moving, &Interrupt::never())
+    }
+
+    /// As [`new`](Self::new), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and [`Interrupted`](RobotError::Interrupted) when it was told to end.
+    pub fn new_until(
+        body: RigidBody<P>,
+        moving: impl IntoIterator<Item = (String, TriMesh, Trajectory)>,
+        interrupt: &Interrupt,
+    ) -> Result<Self, RobotError> {
         let make = |(name, mesh, trajectory): (String, TriMesh, Trajectory)| {
             let mut scene = Scene::new();
-            scene.insert(name, CollisionMesh::new(&mesh), Isometry3::identity())?;
+            let tree = CollisionMesh::new_until(&mesh, interrupt).ok_or(Interrupted)?;
+            scene.insert(name, tree, Isometry3::identity())?;
             let radius = mesh.radius_about(&Point3::origin());
-            Ok(MovingObstacle {
-                scene: Arc::new(scene),
-                trajectory,
-                radius,
-                reference: Arc::new(RefMesh::new(&mesh)),
-            })
+            let reference = Arc::new(RefMesh::new_until(&mesh, interrupt).ok_or(Interrupted)?);
+            Ok(MovingObstacle { scene: Arc::new(scene), trajectory, radius, reference })
         };
         let moving: Vec<MovingObstacle> = moving.into_iter().map(make).collect::<Result<_, RobotError>>()?;
         Ok(Self { body, moving: moving.into(), query: Query::default(), counters: CheckCounters::default() })

@@ -43,7 +43,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
             tolerance: standing.tolerance(),
             standing,
             interrupt: Interrupt::never(),
-            robot: Arc::new(RefMesh::new(mesh)),
+            robot: robot.body().shared.reference(),
             radius,
             moving: Arc::clone(robot.moving()),
         })
