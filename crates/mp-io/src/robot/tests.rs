@@ -276,3 +276,35 @@ fn robots_and_problems_in_toml_keep_the_axes_of_collada_and_scenes_turn_them() {
         assert_eq!(heard.contains("turned so that Y is up"), !asset.is_empty() && said != "Y_UP", "{heard}");
     }
 }
+
+#[test]
+fn descriptions_that_would_take_hours_are_refused_at_once() {
+    let attributes: String = (0..200_000).map(|i| format!(" a{i}=\"1\"")).collect();
+    let spaces: String = (0..20_000).map(|i| format!("<link xmlns:n{i}=\"{i}\"/>")).collect();
+    for (robot, words) in [
+        (format!("<robot name=\"a\"{attributes}/>"), "more than 64 attributes"),
+        (format!("<robot>\n<link{attributes}/></robot>"), "more than 64 attributes"),
+        (format!("<robot><!-- a=\"1\" --><gazebo{attributes}></gazebo></robot>"), "more than 64 attributes"),
+        (format!("<robot>{spaces}</robot>"), "more than 64 declarations"),
+    ] {
+        let files = crate::InMemory(|name: &str| match name {
+            "arm.urdf" => Some(robot.as_bytes().to_vec()),
+            "arm.toml" => Some(b"[robot]\nurdf = \"arm.urdf\"\n[motion]\nstart = [0]\ngoal = [1]\n".to_vec()),
+            _ => None,
+        });
+        let e = RobotProblem::load_from(&files, "arm.toml".as_ref()).unwrap_err();
+        assert!(e.to_string().contains(words) && e.kind() == crate::ErrorKind::TooLarge, "{e}");
+    }
+    // The SRDF as well.
+    let srdf = format!("<robot name=\"a\"{attributes}/>");
+    let files = crate::InMemory(|name: &str| match name {
+        "arm.urdf" => Some(b"<robot/>".to_vec()),
+        "arm.srdf" => Some(srdf.as_bytes().to_vec()),
+        _ => Some(
+            b"[robot]\nurdf = \"arm.urdf\"\nsrdf = \"arm.srdf\"\n[motion]\nstart = [0]\ngoal = [1]\n"
+                .to_vec(),
+        ),
+    });
+    let e = RobotProblem::load_from(&files, "arm.toml".as_ref()).unwrap_err();
+    assert!(e.to_string().contains("more than 64 attributes"), "{e}");
+}

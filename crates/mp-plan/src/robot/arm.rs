@@ -247,7 +247,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
     /// The arm of a problem among its obstacles.
     fn arm_of(files: &dyn Files, problem: &RobotProblem) -> Result<Arm, Error> {
         let mut mesh = |name: &str| problem.mesh_from(files, name);
-        let mut model = from_urdf(problem, &mut mesh)?;
+        let mut model = from_urdf(problem, &mut mesh, &files.interrupt())?;
         for note in &model.notes {
             tracing::info!("{}: {note}", problem.urdf_file.display());
         }
@@ -403,8 +403,9 @@ fn free_near(arm: &Arm, space: &Joints<Configuration>, q: &Configuration) -> Opt
 fn from_urdf(
     problem: &RobotProblem,
     mesh: impl FnMut(&str) -> Result<TriMesh, String>,
+    interrupt: &mp_cspace::Interrupt,
 ) -> Result<ArmModel, Error> {
-    ArmModel::from_urdf(&problem.urdf, mesh)
+    ArmModel::from_urdf_until(&problem.urdf, mesh, interrupt)
         .map_err(|e| in_urdf(problem, e.line().map(|line| line as usize), e.message(), e.remedy()))
 }
 
@@ -431,7 +432,11 @@ fn line_of(urdf: &str, element: &str, name: &str) -> Option<usize> {
 }
 
 #[cfg(not(feature = "urdf"))]
-fn from_urdf(_: &RobotProblem, _: impl FnMut(&str) -> Result<TriMesh, String>) -> Result<ArmModel, Error> {
+fn from_urdf(
+    _: &RobotProblem,
+    _: impl FnMut(&str) -> Result<TriMesh, String>,
+    _: &mp_cspace::Interrupt,
+) -> Result<ArmModel, Error> {
     Err(Error::new("this program was built without the feature `urdf`, which reads arms")
         .help("build it with the feature, which is on by default"))
 }

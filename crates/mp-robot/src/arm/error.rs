@@ -221,6 +221,9 @@ pub enum UrdfError {
         /// What to do about it.
         remedy: &'static str,
     },
+    /// The reader was told to end.
+    #[error("the time was up, or the work interrupted, while the robot was read")]
+    Interrupted,
     /// A joint has a kind that is not handled.
     #[error(
         "line {line}: joint \"{joint}\" is {kind}: only revolute, continuous, prismatic and fixed joints are handled; for a base \
@@ -279,7 +282,7 @@ impl UrdfError {
         match self {
             Self::Syntax { line, .. } => *line,
             Self::Other { line, .. } | Self::Kind { line, .. } | Self::Shape { line, .. } => Some(*line),
-            Self::Arm(_) => None,
+            Self::Arm(_) | Self::Interrupted => None,
         }
     }
 
@@ -300,6 +303,7 @@ impl UrdfError {
             Self::Syntax { .. } => {
                 "correct this place, or export the robot again; xacro files must be expanded by xacro first"
             }
+            Self::Interrupted => "give more time, or simplify the file",
             Self::Other { remedy, .. } => remedy,
             Self::Kind { .. } => "change the type of the joint",
             Self::Shape { .. } => "correct the shape, or remove this <collision> if nothing can touch it",

@@ -5,6 +5,7 @@ mod extract;
 use super::compile::MAX_LENGTH;
 use super::{ArmModel, Joint, JointKind, Link, UrdfError};
 use extract::{Extract, extract, some};
+use mp_cspace::Interrupt;
 use mp_geom::{TriMesh, primitives};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::collections::HashMap;
@@ -36,19 +37,43 @@ impl ArmModel {
     /// [`UrdfError`], which names the line and the joint or link.
     pub fn from_urdf(
         text: &str,
-        mut mesh: impl FnMut(&str) -> Result<TriMesh, String>,
+        mesh: impl FnMut(&str) -> Result<TriMesh, String>,
     ) -> Result<Self, UrdfError> {
-        let Extract { urdf, links, joints, notes } = extract(text)?;
-        let robot = urdf_rs::read_from_string(&urdf).map_err(|error| UrdfError::Syntax {
-            what: "a URDF",
-            line: None,
-            message: error.to_string(),
-        })?;
+        Self::from_urdf_until(text, mesh, &Interrupt::never())
+    }
+
+    /// As [`from_urdf`](Self::from_urdf), unless `interrupt` says to end. Takes time in proportion to the length of the text.
+    ///
+    /// # Errors
+    /// As [`from_urdf`](Self::from_urdf), and [`UrdfError::Interrupted`] when it was told to end.
+    pub fn from_urdf_until(
+        text: &str,
+        mut mesh: impl FnMut(&str) -> Result<TriMesh, String>,
+        interrupt: &Interrupt,
+    ) -> Result<Self, UrdfError> {
+        let mut interrupt = interrupt.clone();
+        let Extract { parts, links, joints, notes } = extract(text, &mut interrupt)?;
+        let (mut read_links, mut read_joints) = (Vec::new(), Vec::new());
+        for part in parts {
+            if interrupt.ask() {
+                return Err(UrdfError::Interrupted);
+            }
+            let part = urdf_rs::read_from_string(&part).map_err(|error| UrdfError::Syntax {
+                what: "a URDF",
+                line: None,
+                message: error.to_string(),
+            })?;
+            read_links.extend(part.links);
+            read_joints.extend(part.joints);
+        }
         let mut model = Self { notes, ..Self::default() };
         let mut empty: Vec<String> = Vec::new();
-        for (link, lines) in robot.links.iter().zip(&links) {
+        for (link, lines) in read_links.iter().zip(&links) {
             let mut made = Link::new(&link.name);
             for (i, (collision, &line)) in link.collision.iter().zip(lines).enumerate() {
+                if interrupt.ask() {
+                    return Err(UrdfError::Interrupted);
+                }
                 let fail = |message: String| UrdfError::Shape {
                     line,
                     link: link.name.clone(),
@@ -76,7 +101,7 @@ impl ArmModel {
                 format!("shapes of size 0 are left out, for there is nothing to touch, in {}", some(&empty));
             model.notes.push(note);
         }
-        for (joint, &line) in robot.joints.iter().zip(&joints) {
+        for (joint, &line) in read_joints.iter().zip(&joints) {
             let limits = (joint.limit.lower, joint.limit.upper);
             let refused = |kind| Err(UrdfError::Kind { line, joint: joint.name.clone(), kind });
             let kind = match joint.joint_type {

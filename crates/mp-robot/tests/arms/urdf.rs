@@ -183,6 +183,51 @@ fn shapes_without_volume_are_sheets_and_lines_and_points_are_left_out() {
     }
 }
 
+/// Readings of the clock.
+static READ: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
+
+#[test]
+fn long_descriptions_hear_the_token_and_take_time_in_proportion() {
+    use std::fmt::Write as _;
+    use std::sync::atomic::Ordering::SeqCst;
+    use std::time::Duration;
+    // Steps of two milliseconds between readings, so that each question is one.
+    let until = |n: u64| {
+        READ.store(0, SeqCst);
+        let clock = mp_cspace::Clock::new(|| Duration::from_millis(2 * READ.fetch_add(1, SeqCst)));
+        mp_cspace::Interrupt::by(mp_cspace::Cancel::new(), clock, Duration::from_millis(2 * n))
+    };
+    let of = |n: usize| {
+        let mut text = String::from("<robot name=\"r\"><link name=\"l\"/>");
+        for i in 0..n {
+            let _ = writeln!(
+                text,
+                "<link name=\"l{i}\"><collision><geometry><box size=\".1 .1 .1\"/></geometry></collision></link>\n<joint \
+                 name=\"j{i}\" type=\"revolute\"><parent link=\"l\"/><child link=\"l{i}\"/><limit lower=\"-1\" upper=\"1\"/></joint>"
+            );
+        }
+        text + "</robot>"
+    };
+    let text = of(400);
+    let whole = ArmModel::from_urdf_until(&text, finger, &until(u64::from(u32::MAX))).unwrap();
+    let questions = READ.load(SeqCst);
+    assert!(questions > 1000, "one for each element and each shape, and some more: {questions}");
+    // The parts that are read one after the other make the same robot.
+    assert_eq!((whole.links.len(), whole.joints.len()), (401, 400));
+    assert!(
+        whole.joints.iter().enumerate().all(|(i, j)| j.name == format!("j{i}") && j.child == format!("l{i}"))
+    );
+    for part in [0.0, 0.1, 0.5, 0.7, 0.99] {
+        let n = 1 + (part * (questions - 1) as f64) as u64;
+        let error = ArmModel::from_urdf_until(&text, finger, &until(n)).unwrap_err();
+        assert_eq!(error, UrdfError::Interrupted, "at {n} of {questions}");
+        assert_eq!(READ.load(SeqCst), n + 1, "the clock is read after the end");
+    }
+    // Lines of errors are those of the text, whatever part they are in.
+    let wrong = text.replace("name=\"j399\" type=\"revolute\"", "name=\"j399\" type=\"planar\"");
+    assert_eq!(read(&wrong).unwrap_err().line(), Some(800));
+}
+
 #[test]
 fn faults_are_named() {
     let says = |from: &str, to: &str, words: &[&str]| {

@@ -3,14 +3,15 @@
 
 use super::super::UrdfError;
 use super::super::xml::Text;
+use mp_cspace::Interrupt;
 use roxmltree::{Attribute, Node};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 /// A URDF reduced to the parts that planning needs.
 pub(super) struct Extract {
-    /// The reduced document.
-    pub(super) urdf: String,
+    /// The reduced document, in parts that are documents themselves: a reader cannot be told to end within one.
+    pub(super) parts: Vec<String>,
     /// For each link, the lines of its collision shapes in the original text.
     pub(super) links: Vec<Vec<u32>>,
     /// The lines of the joints.
@@ -29,16 +30,31 @@ const SHAPES: [(&str, &[(&str, usize)]); 5] = [
 ];
 const JOINTS: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
 
-/// Extracts from `text` the parts that planning needs.
-pub(super) fn extract(text: &str) -> Result<Extract, UrdfError> {
+/// About how long (bytes) a part of a document becomes.
+const PART: usize = 1 << 14;
+
+/// Extracts from `text` the parts that planning needs, unless `interrupt` says to end.
+pub(super) fn extract(text: &str, interrupt: &mut Interrupt) -> Result<Extract, UrdfError> {
     let text = Text::new("a URDF", text)?;
     let document = text.parse()?;
     let ends = document.input_text().match_indices('\n').map(|(at, _)| at).collect();
-    let mut writer = Writer { text: &text, ends, out: String::new(), links: Vec::new(), joints: Vec::new() };
+    let mut writer = Writer {
+        text: &text,
+        ends,
+        head: 0,
+        out: String::new(),
+        parts: Vec::new(),
+        links: Vec::new(),
+        joints: Vec::new(),
+    };
     let mut left_out = LeftOut::default();
     let robot = document.root_element();
     writer.open(&robot, "robot", &["name", "version"]);
+    writer.head = writer.out.len();
     for node in robot.children().filter(Node::is_element) {
+        if interrupt.ask() {
+            return Err(UrdfError::Interrupted);
+        }
         if !is_own(&node) {
             writer.refuse_macro(&node)?;
             left_out.elements.insert(space(&node));
@@ -57,10 +73,13 @@ pub(super) fn extract(text: &str) -> Result<Extract, UrdfError> {
             left_out.attributes.extend(inner.attributes().filter_map(|a| a.namespace().map(str::to_owned)));
         }
         left_out.unread(&node);
+        if writer.out.len() > writer.head + PART {
+            writer.end_part();
+        }
     }
-    writer.out.push_str("</robot>");
-    let Writer { out: urdf, links, joints, .. } = writer;
-    Ok(Extract { urdf, links, joints, notes: left_out.notes() })
+    writer.end_part();
+    let Writer { parts, links, joints, .. } = writer;
+    Ok(Extract { parts, links, joints, notes: left_out.notes() })
 }
 
 /// Whether the element is in the name space of the document, as elements of URDF are.
@@ -87,7 +106,10 @@ struct Writer<'t, 'a> {
     text: &'t Text<'a>,
     /// Where lines end.
     ends: Vec<usize>,
+    /// The part that is being written, and how much of it opens the document.
     out: String,
+    head: usize,
+    parts: Vec<String>,
     links: Vec<Vec<u32>>,
     joints: Vec<u32>,
 }
@@ -108,6 +130,13 @@ impl Writer<'_, '_> {
         self.out.push_str("</link>");
         self.links.push(lines);
         Ok(())
+    }
+
+    /// Ends a part, and begins the next one as this one began.
+    fn end_part(&mut self) {
+        let next = self.out[..self.head].to_owned();
+        self.out.push_str("</robot>");
+        self.parts.push(std::mem::replace(&mut self.out, next));
     }
 
     /// The line of `node`, counted from 1.
