@@ -5,7 +5,7 @@ use clap::Args;
 use mp_plan::{Error, ListedProblems, ManyOptions, ManyOutcome, Shard, Tally, positive_number};
 use mp_ranks::Link;
 use mp_stop::Cancel;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The options of `mp many`.
 #[derive(Clone, Debug, Args)]
@@ -46,8 +46,14 @@ pub(crate) fn run(args: &Many, link: &dyn Link, cancel: &Cancel) -> Result<bool,
             format!("{items} of {} done: {solved} solved, {unsolved} unsolved, {failed} failed", now.items)
         });
     };
-    let ran =
-        ListedProblems::run_on(link, &args.out, &options, cancel, || loaded(&args.list, cancel), progress)?;
+    let ran = ListedProblems::run_on(
+        link,
+        &args.out,
+        &options,
+        cancel,
+        || ListedProblems::load(&args.list, cancel),
+        progress,
+    )?;
     // Only the master knows.
     let Some(ran) = ran else { return Ok(true) };
     let (tally, items) = (ran.outcome.tally, ran.outcome.items);
@@ -61,11 +67,4 @@ pub(crate) fn run(args: &Many, link: &dyn Link, cancel: &Cancel) -> Result<bool,
         shard => format!("shard {shard}: {tally}"),
     })?;
     Ok(true)
-}
-
-/// The list with its scenes. What was chosen for a robot or a map alone is said to the person watching.
-fn loaded(file: &Path, cancel: &Cancel) -> Result<ListedProblems, Error> {
-    let problems = ListedProblems::load(file, cancel)?;
-    problems.scenes().iter().flat_map(|scene| scene.notes()).for_each(|line| note(&format!("note: {line}")));
-    Ok(problems)
 }

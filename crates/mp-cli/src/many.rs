@@ -5,7 +5,7 @@ use crate::input::is_standard;
 use crate::interrupt;
 use crate::output::{Claims, note, print};
 use crate::progress::Line;
-use mp_plan::{Cancel, Error, ListedProblems, ManyOptions, ManyOutcome, Shard, Tally, merge_results};
+use mp_plan::{Error, ListedProblems, ManyOptions, ManyOutcome, Shard, Tally, merge_results};
 use std::path::Path;
 
 /// Plans the problems of a list. True when all are planned, solved or not.
@@ -13,7 +13,7 @@ pub(crate) fn run(args: &Many) -> Result<bool, Error> {
     not_standard("the list", &args.list)?;
     not_standard("--out", &args.out)?;
     let cancel = interrupt::flag();
-    let problems = loaded(&args.list, &cancel)?;
+    let problems = ListedProblems::load(&args.list, &cancel)?;
     let mut claims = Claims::default();
     problems.inputs().iter().for_each(|file| claims.input(file));
     claims.output("--out", &args.out)?;
@@ -98,13 +98,6 @@ fn exported(args: &Export) -> Result<bool, Error> {
 fn exported(_: &Export) -> Result<bool, Error> {
     Err(Error::new("this program was compiled without Parquet")
         .help("install it with: cargo install --path crates/mp-cli --features parquet"))
-}
-
-/// The list with its scenes. What was chosen for a robot or a map alone is said to the person watching.
-fn loaded(file: &Path, cancel: &Cancel) -> Result<ListedProblems, Error> {
-    let problems = ListedProblems::load(file, cancel)?;
-    problems.scenes().iter().flat_map(|scene| scene.notes()).for_each(|line| note(&format!("note: {line}")));
-    Ok(problems)
 }
 
 /// Refuses standard input and output, with which nobody can go on.

@@ -131,6 +131,7 @@ impl TriMesh {
     /// # Panics
     /// When `i` is out of range.
     #[must_use]
+    #[inline]
     pub fn triangle(&self, i: usize) -> [Point3<f64>; 3] {
         self.triangles[i].map(|v| self.vertices[v as usize])
     }

@@ -27,6 +27,11 @@ pub trait Files: Debug + Send + Sync {
     /// default nobody hears it.
     fn note(&self, _path: &Path, _remark: &str) {}
 
+    /// Whether it only matters which files are read. Then readers of meshes read files as always, and return any small mesh.
+    fn only_reads(&self) -> bool {
+        false
+    }
+
     /// Whether there is a file at `path`.
     fn holds(&self, path: &Path) -> bool {
         self.read(path, MAX_MESH_BYTES).is_ok()
@@ -79,6 +84,9 @@ impl Files for Until<'_> {
     }
     fn note(&self, path: &Path, remark: &str) {
         self.files.note(path, remark);
+    }
+    fn only_reads(&self) -> bool {
+        self.files.only_reads()
     }
     fn holds(&self, path: &Path) -> bool {
         self.files.holds(path)

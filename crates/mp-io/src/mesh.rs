@@ -37,6 +37,13 @@ pub fn read_mesh_of(files: &dyn Files, path: &Path) -> Result<TriMesh, Error> {
     read_mesh_with(files, path, Axes::YUp)
 }
 
+/// The mesh in place of one that is not needed: so small that it is in nothing's way.
+pub(crate) fn stand_in(file: &str) -> Result<TriMesh, Error> {
+    let corner = Point3::new(1e-9, 1e-9, 1e-9);
+    let corners = vec![corner, corner * 2.0, Point3::origin()];
+    TriMesh::new(corners, vec![[0, 1, 2]]).map_err(|e| mesh_error(file, &e))
+}
+
 /// What becomes of the axes of a COLLADA mesh, which says which of them is up. Other formats do not: their axes stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
@@ -54,6 +61,9 @@ pub fn read_mesh_with(files: &dyn Files, path: &Path, axes: Axes) -> Result<TriM
     let (bytes, interrupt) = (files.read(path, MAX_MESH_BYTES)?, files.interrupt());
     let (file, bytes, interrupt) = (path.display().to_string(), bytes.as_slice(), &interrupt);
     let file = file.as_str();
+    if files.only_reads() {
+        return stand_in(file);
+    }
     match MeshFormat::of(path, bytes) {
         Some(MeshFormat::Off) => {
             let document = OffDocument::parse_until(file, bytes, interrupt)?;

@@ -24,14 +24,9 @@ impl Scene {
     /// # Errors
     /// As [`find`](Self::find), and when it was told to end.
     pub fn find_until(given: impl AsRef<Path>, interrupt: &Interrupt) -> Result<Self, Error> {
-        Self::find_in(Path::new(""), given.as_ref(), interrupt)
-    }
-
-    /// As [`find_until`](Self::find_until), where files are relative to `folder`. The scene names its files so too.
-    pub(crate) fn find_in(folder: &Path, given: &Path, interrupt: &Interrupt) -> Result<Self, Error> {
         let until = |files| Until { files, interrupt: interrupt.clone() };
-        match locate(folder, given)? {
-            Location::Disk(file) => Self::load_from(&until(&InFolder(folder)), &file),
+        match locate(Path::new(""), given.as_ref())? {
+            Location::Disk(file) => Self::load_from(&until(&Disk), &file),
             #[cfg(feature = "scenes")]
             Location::Memory(file) => {
                 let mut scene = Self::load_from(&until(&shipped_files()), Path::new(file))?;
@@ -64,7 +59,7 @@ pub fn find_problem(given: impl AsRef<Path>) -> Result<mp_io::RigidProblem, Erro
 }
 
 /// Where a scene is.
-enum Location {
+pub(crate) enum Location {
     Disk(PathBuf),
     #[cfg(feature = "scenes")]
     Memory(&'static str),
@@ -92,7 +87,7 @@ impl Files for InFolder<'_> {
 }
 
 /// Where the scene `given` is, if files are relative to `folder`; so is the file that it returns.
-fn locate(folder: &Path, given: &Path) -> Result<Location, Error> {
+pub(crate) fn locate(folder: &Path, given: &Path) -> Result<Location, Error> {
     if let Some(file) = file_of(folder, given) {
         return Ok(Location::Disk(file));
     }

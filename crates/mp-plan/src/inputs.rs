@@ -61,6 +61,9 @@ impl Files for Recording<'_> {
         }
         self.files.note(path, remark);
     }
+    fn only_reads(&self) -> bool {
+        self.files.only_reads()
+    }
     fn holds(&self, path: &Path) -> bool {
         self.files.holds(path)
     }

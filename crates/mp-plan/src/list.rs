@@ -256,6 +256,11 @@ impl ProblemList {
     }
 }
 
+/// A file of a list is not what it was when the list was read.
+fn changed(file: &Path) -> Error {
+    Error::new(format!("{} has changed since the list was read", file.display())).help("start again")
+}
+
 /// What is wrong with a line of JSON: with the column, as the line is known.
 fn json_fault(error: &serde_json::Error) -> String {
     let text = error.to_string();

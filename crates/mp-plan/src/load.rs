@@ -25,6 +25,11 @@ impl Scene {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn load_from(files: &dyn Files, file: &Path) -> Result<Self, Error> {
+        Self::load_after(files, file, None)
+    }
+
+    /// As [`load_from`](Self::load_from). The robot is taken from the scene `before`, if that has the same: an arm of the same files.
+    pub(crate) fn load_after(files: &dyn Files, file: &Path, before: Option<&Self>) -> Result<Self, Error> {
         let _span = tracing::info_span!("load", file = %file.display()).entered();
         let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         let of = |e: Error| match e.file() {
@@ -41,7 +46,7 @@ impl Scene {
                     Self::from_task_until(RigidTask::load_from(files, file)?, &files.interrupt())
                         .map_err(of)?
                 }
-                false => arm(files, file)?,
+                false => arm(files, file, before)?,
             },
             None if ending == "json" => {
                 let folder = file.parent().unwrap_or(Path::new(""));
@@ -107,13 +112,14 @@ fn planar(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
 
 /// The scene of an arm, whose base stands still or floats.
 #[cfg(feature = "urdf")]
-fn arm(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
+fn arm(files: &dyn Files, file: &Path, before: Option<&Scene>) -> Result<Scene, Error> {
     let problem = mp_io::RobotProblem::load_from(files, file)?;
     if problem.file.floating.is_some() {
-        let scene = crate::FloatingScene::from_problem_in(files, problem)?;
+        let before = before.and_then(Scene::robot);
+        let scene = crate::FloatingScene::from_problem_after(files, problem, before)?;
         return Ok(of_kind!("floating", scene));
     }
-    let scene = crate::ArmScene::from_problem_in(files, problem)?;
+    let scene = crate::ArmScene::from_problem_after(files, problem, before.and_then(Scene::robot))?;
     Ok(match scene.driven()? {
         Some(driven) => of_kind!("driven", driven),
         None => of_kind!("arms", scene),
@@ -126,7 +132,7 @@ fn planar(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
 }
 
 #[cfg(not(feature = "urdf"))]
-fn arm(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
+fn arm(_: &dyn Files, _: &Path, _: Option<&Scene>) -> Result<Scene, Error> {
     Err(crate::kinds::left_out("urdf"))
 }
 
@@ -147,6 +153,9 @@ impl Files for OneText<'_> {
     }
     fn note(&self, path: &Path, remark: &str) {
         self.files.note(path, remark);
+    }
+    fn only_reads(&self) -> bool {
+        self.files.only_reads()
     }
     fn holds(&self, path: &Path) -> bool {
         path == self.file || self.files.holds(path)

@@ -2,6 +2,7 @@
 
 use crate::explain::check_ends;
 use crate::finish::finish;
+use crate::planners::PlannerKind;
 #[cfg(feature = "ranks")]
 use crate::relax::relax_if_requested;
 use crate::report::{RunStage, StageTime};
@@ -23,10 +24,11 @@ pub(crate) fn plan<K: RobotKind>(
 ) -> Result<Report, Error> {
     let began = control.time_if_limited(request);
     let interrupt = control.interrupt_of(request);
-    let ready = kind.make_ready(&interrupt);
-    if ready.is_ok() {
-        check_ends(kind)?;
-    }
+    request.check()?;
+    PlannerKind::new(&request.planner)?;
+    // Whether it was told to end is asked below.
+    let _ = kind.make_ready(&interrupt);
+    check_ends(kind)?;
     control.spend_since(began);
     let nothing_left = || (control.left_of(request)? == Duration::ZERO).then_some(StopReason::Deadline);
     if let Some(reason) = interrupt.raised().or_else(nothing_left) {
@@ -133,7 +135,7 @@ pub(crate) fn reported<K: RobotKind>(
     let mut report = Report {
         scene: RobotKind::name(kind).to_owned(),
         space: RobotKind::space_name(kind),
-        planner: crate::planners::PlannerKind::new(&request.planner)?.to_string(),
+        planner: PlannerKind::new(&request.planner)?.to_string(),
         metric: request.metric.to_string(),
         motion: crate::prepared::motion(kind, request).to_string(),
         seed: request.seed,

@@ -17,6 +17,11 @@ pub(crate) const MAX_TRIANGLES: usize = 1 << 30;
 /// would have to be built again when one of them is edited.
 const MAX_MERGED: usize = 50_000;
 
+/// Where all others have more triangles than this together, as a thousand spheres have, so do obstacles with more than [`FEW`] of them:
+/// one tree of all takes more time and memory than they take themselves.
+const MAX_TOGETHER: usize = 500_000;
+const FEW: usize = 200;
+
 /// Whether a mesh is a solid, once that is known.
 type IsSolid = Arc<OnceLock<bool>>;
 
@@ -54,6 +59,10 @@ impl Obstacles {
         let (mut unchanged, mut asked) = (true, interrupt.clone());
         // Meshes that share their memory have one tree.
         let mut trees: HashMap<[usize; 3], (CollisionMesh, IsSolid)> = HashMap::new();
+        let obstacles: Vec<_> = obstacles.into_iter().collect();
+        let sizes = obstacles.iter().map(|(_, mesh, _)| mesh.triangles().len());
+        let together = sizes.filter(|size| *size <= MAX_MERGED).fold(0, usize::saturating_add);
+        let most = if together > MAX_TOGETHER { FEW } else { MAX_MERGED };
         for (i, (name, mesh, pose)) in obstacles.into_iter().enumerate() {
             count = count.saturating_add(mesh.triangles().len());
             if count > MAX_TRIANGLES {
@@ -80,7 +89,7 @@ impl Obstacles {
                     Arc::ptr_eq(before, &in_world) && known.scene.body(*id).is_some_and(|b| b.name() == name)
                 })
             });
-            let id = match mesh.triangles().len() > MAX_MERGED {
+            let id = match mesh.triangles().len() > most {
                 true => scene.insert_movable(name, tree, pose)?,
                 false => scene.insert(name, tree, pose)?,
             };
@@ -212,6 +221,29 @@ mod tests {
             let at = Isometry3::translation(0.05 * f64::from(i), 0.12, 0.0);
             let clearance = |o: &Obstacles, query: &mut _| o.scene.clearance(query, &probe, &at, 1.0);
             assert_eq!(clearance(&shared, &mut query), clearance(&own, &mut query));
+        }
+    }
+
+    /// A crowd of obstacles is as near as it is when it is one tree, and boxes among it still are one.
+    #[test]
+    fn a_crowd_is_not_one_tree() {
+        let (ball, cube) = (mp_geom::primitives::sphere(0.1, 3).unwrap(), cuboid(0.1, 0.2, 0.1).unwrap());
+        let crowd = |count: usize| -> Vec<Named> {
+            let place =
+                |i: usize| Isometry3::translation((i % 20) as f64, (i / 20) as f64, 0.5 * (i % 3) as f64);
+            let mesh = |i: usize| if i.is_multiple_of(7) { cube.clone() } else { ball.clone() };
+            (0..count).map(|i| (i.to_string(), mesh(i), place(i))).collect()
+        };
+        let (few, many) = (made(&crowd(300), None), made(&crowd(600), None));
+        let movable = |o: &Obstacles| o.scene.bodies().filter(|(_, body)| body.is_movable()).count();
+        assert_eq!((movable(&few), movable(&many)), (0, 600 - 600_usize.div_ceil(7)));
+        let (mut query, probe) =
+            (mp_collide::Query::default(), CollisionMesh::new(&cuboid(0.5, 0.1, 0.1).unwrap()));
+        for i in 0..200 {
+            // Among those that both have.
+            let at = Isometry3::translation(0.1 * f64::from(i % 60), 0.05 * f64::from(i), 0.3);
+            let [a, b] = [&few, &many].map(|o| o.scene.clearance(&mut query, &probe, &at, 0.4).0);
+            assert!((a.min(0.4) - b.min(0.4)).abs() < 1e-9, "{i}: {a} {b}");
         }
     }
 

@@ -110,6 +110,25 @@ fn arm(mesh: &TriMesh) -> ArmModel {
     }
 }
 
+/// A search for a free configuration where there is none ends within few queries of being told to, wherever it is.
+#[test]
+fn a_search_for_a_free_configuration_ends() {
+    let robot = primitives::cuboid(0.2, 0.2, 0.2).unwrap();
+    let around = obstacle("around", primitives::cuboid(9.0, 9.0, 9.0).unwrap(), [0.0; 6]);
+    let (model, cancel) = (arm(&robot), Cancel::new());
+    let none = Arm::new(&model, [around]).unwrap();
+    let space = none.space::<nalgebra::DVector<f64>>().unwrap();
+    let q = nalgebra::DVector::zeros(3);
+    let queries = |cancel: &Cancel| {
+        let mut arm = none.clone().with_interrupt(Interrupt::new(cancel.clone()));
+        let _ = arm.nearest_free(&q, &space, 10.0);
+        arm.counters().clearance_checks
+    };
+    assert!(queries(&cancel) > 1000, "{}", queries(&cancel));
+    cancel.cancel();
+    assert!(queries(&cancel) < 50, "{}", queries(&cancel));
+}
+
 /// What is told to end while it makes what verifiers need leaves nothing half made.
 #[test]
 fn what_was_ended_is_made_again() {

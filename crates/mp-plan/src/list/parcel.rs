@@ -1,13 +1,15 @@
 //! Scenes, and a list with its scenes, as bytes, for ranks that need not see the same disk.
 
-use super::scenes::hexadecimal;
-use super::{ListedProblems, ProblemList, SceneFingerprint};
+use super::scenes::{Known, SceneFiles, Source, hexadecimal};
+use super::{ListedProblems, ProblemList, SceneFingerprint, changed};
+use crate::find::InFolder;
 use crate::inputs::fingerprint_of;
 use crate::{Error, Request, Scene};
 use mp_io::{ErrorKind, Files};
 use mp_ranks::{Link, broadcast};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// What such bytes begin with.
 const FORMAT: &str = "mp parcel 1";
@@ -25,8 +27,38 @@ impl ListedProblems {
         }
         parcel.path(self.list.file());
         parcel.bytes(&list);
+        // Each file once, however many scenes are made of it.
+        let mut files: Vec<_> = self.known.iter().collect();
+        files.sort_unstable_by_key(|(path, _)| *path);
+        parcel.number(files.len());
+        for (path, known) in files {
+            parcel.path(path);
+            match known {
+                Ok(hash) => {
+                    let bytes = InFolder(self.list.folder()).read(path, mp_io::MAX_MESH_BYTES)?;
+                    if xxhash_rust::xxh3::xxh3_64(&bytes) != *hash {
+                        return Err(changed(path));
+                    }
+                    parcel.number(1);
+                    parcel.bytes(&bytes);
+                }
+                Err(message) => {
+                    parcel.number(0);
+                    parcel.text(message);
+                }
+            }
+        }
         for (scene, known) in self.scenes.iter().zip(&self.fingerprints) {
-            parcel.scene(scene, self.list.folder(), Path::new(&known.file), &known.fingerprint)?;
+            parcel.path(&scene.file);
+            parcel.number(usize::from(scene.shipped));
+            parcel.text(&known.fingerprint);
+            parcel.number(scene.inputs.len());
+            scene.inputs.iter().for_each(|file| parcel.path(file));
+            parcel.number(scene.folders.len());
+            for (folder, absolute) in &scene.folders {
+                parcel.path(folder);
+                parcel.path(absolute);
+            }
         }
         Ok(parcel.0)
     }
@@ -34,20 +66,56 @@ impl ListedProblems {
     /// The list and the scenes of [packed](Self::packed) bytes. They are the same, or refused.
     ///
     /// # Errors
-    /// When they are of another version, are not whole, or a scene cannot be loaded or is not the same here.
+    /// When they are of another version, are not whole, or a scene is not the same here.
     pub(super) fn unpacked(bytes: &[u8]) -> Result<Self, Error> {
         let mut parcel = Reader::new(bytes)?;
         let file = parcel.path()?;
         let list = ProblemList::parse(file, parcel.bytes()?)?;
+        let (mut sent, mut known) = (Sent::default(), Known::new());
+        for _ in 0..parcel.number()? {
+            let path = parcel.path()?;
+            if parcel.number()? == 1 {
+                sent.files.insert(path, parcel.bytes()?.to_vec());
+            } else {
+                known.insert(path, Err(parcel.text()?.to_owned()));
+            }
+        }
         let (mut scenes, mut fingerprints) = (Vec::new(), Vec::new());
         for name in &list.scenes {
-            let (scene, file, fingerprint) = parcel.scene()?;
-            let (scene_name, file) = (name.clone(), file.display().to_string());
-            fingerprints.push(SceneFingerprint { scene: scene_name, file, fingerprint });
-            scenes.push(scene);
+            let (file, shipped) = (parcel.path()?, parcel.number()? == 1);
+            let fingerprint = parcel.text()?.to_owned();
+            let inputs = (0..parcel.number()?).map(|_| parcel.path()).collect::<Result<Vec<_>, _>>()?;
+            let mut folders = Vec::new();
+            for _ in 0..parcel.number()? {
+                let (folder, absolute) = (parcel.path()?, parcel.path()?);
+                sent.folders.insert(folder.clone(), absolute.clone());
+                folders.push((folder, absolute));
+            }
+            let read = |name: &PathBuf| match shipped {
+                #[cfg(feature = "scenes")]
+                true => crate::find::shipped_files().read(name, mp_io::MAX_MESH_BYTES).map_err(Error::from),
+                _ => sent.read(name, mp_io::MAX_MESH_BYTES).map_err(Error::from),
+            };
+            same(&file, &hexadecimal(fingerprint_of(inputs.iter().map(read))?), &fingerprint)?;
+            let name = name.clone();
+            fingerprints.push(SceneFingerprint {
+                scene: name,
+                file: file.display().to_string(),
+                fingerprint,
+            });
+            scenes.push(SceneFiles { file, shipped, inputs, folders });
         }
-        Ok(Self { list, scenes, fingerprints })
+        Ok(Self::new(list, scenes, fingerprints, Source::Sent(Arc::new(sent)), known))
     }
+}
+
+/// An error unless both fingerprints of the scene in `file` are the same.
+fn same(file: &Path, here: &str, fingerprint: &str) -> Result<(), Error> {
+    if here == fingerprint {
+        return Ok(());
+    }
+    let message = format!("the scene {} has the fingerprint {here}, not {fingerprint}", file.display());
+    Err(Error::new(message).help("start the same program on all nodes"))
 }
 
 impl Scene {
@@ -100,19 +168,15 @@ impl Scene {
     }
 }
 
-fn changed(file: &Path) -> Error {
-    Error::new(format!("{} has changed since it was loaded", file.display())).help("start again")
-}
-
-/// The files of a scene, sent by another rank.
+/// Files of scenes, sent by another rank.
 #[derive(Debug, Default)]
-struct Sent<'b> {
-    files: HashMap<PathBuf, &'b [u8]>,
+pub(super) struct Sent {
+    files: HashMap<PathBuf, Vec<u8>>,
     /// Absolute names of folders, where the files come from.
     folders: HashMap<PathBuf, PathBuf>,
 }
 
-impl Files for Sent<'_> {
+impl Files for Sent {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
         match self.files.get(path) {
             Some(bytes) if bytes.len() as u64 <= limit => Ok(bytes.to_vec()),
@@ -206,7 +270,7 @@ impl<'b> Reader<'b> {
         let fingerprint = self.text()?.to_owned();
         let mut sent = Sent::default();
         for _ in 0..self.number()? {
-            sent.files.insert(self.path()?, self.bytes()?);
+            sent.files.insert(self.path()?, self.bytes()?.to_vec());
         }
         for _ in 0..self.number()? {
             sent.folders.insert(self.path()?, self.path()?);
@@ -214,11 +278,7 @@ impl<'b> Reader<'b> {
         let scene = Scene::load_from(&sent, &file)?;
         let read = |name: &PathBuf| sent.read(name, mp_io::MAX_MESH_BYTES).map_err(Error::from);
         let here = hexadecimal(fingerprint_of(scene.inputs().iter().map(read))?);
-        if here != fingerprint {
-            let message =
-                format!("the scene {} has the fingerprint {here}, not {fingerprint}", file.display());
-            return Err(Error::new(message).help("start the same program on all nodes"));
-        }
+        same(&file, &here, &fingerprint)?;
         Ok((scene, file, fingerprint))
     }
     fn number(&mut self) -> Result<usize, Error> {

@@ -64,6 +64,8 @@ impl ListedProblems {
             // One rank needs to send nothing.
             let parcel =
                 if link.ranks() == 1 || begun.is_complete() { Vec::new() } else { problems.packed()? };
+            // The same for all, also where files change meanwhile.
+            let problems = if parcel.is_empty() { problems } else { Self::unpacked(&parcel)? };
             Ok((problems, begun, parcel))
         });
         let (problems, begun, parcel) = match begun {

@@ -4,6 +4,7 @@ use super::reader::{Next, ResultsReader};
 use super::results::{end_line, line};
 use super::{ItemResult, ListedProblems, ResultsHeader, Shard, Tally};
 use crate::{Cancel, Control, Error, Report, in_order};
+use mp_cspace::Interrupt;
 use mp_io::shortened;
 use mp_store::{Journal, Lock};
 use std::fs::File;
@@ -134,13 +135,17 @@ impl ListedProblems {
         cancel: &Cancel,
     ) -> Option<Result<Planned, Error>> {
         let plan = || {
-            let (scene, request) = self.problem(item, options.time_s)?;
+            let (scene, request) =
+                self.problem_until(item, options.time_s, &Interrupt::new(cancel.clone()))?;
             scene.plan_with(&request, &mut Control { cancel: cancel.clone(), ..Control::default() })
         };
         let report = plan();
         // A run that was cut short found less than it would have.
         if cancel.is_raised() {
             return None;
+        }
+        if let Some(file) = self.changed() {
+            return Some(Err(super::changed(file)));
         }
         let of = |report: &Report| (report.time_s + report.finish_s, report.collision_checks);
         let (seconds, checks) = report.as_ref().map_or((0.0, 0), of);

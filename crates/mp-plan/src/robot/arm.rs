@@ -182,8 +182,25 @@ impl<C: LinkedSpace> LinkedScene<C> {
     /// # Errors
     /// As [`from_problem`](Self::from_problem), and when it was told to end.
     pub fn from_problem_in(files: &dyn Files, problem: RobotProblem) -> Result<Self, Error> {
+        Self::from_problem_after(files, problem, None)
+    }
+
+    /// As [`from_problem_in`](Self::from_problem_in). The arm is that of the scene `before`, if that has the same among other obstacles.
+    pub(crate) fn from_problem_after(
+        files: &dyn Files,
+        problem: RobotProblem,
+        before: Option<&Self>,
+    ) -> Result<Self, Error> {
         let of = &|e: Error| e.context(what(&problem));
-        let arm = Self::arm_of(files, &problem)?;
+        let known =
+            before.filter(|before| before.source.as_ref().is_some_and(|known| known.same_robot(&problem)));
+        let arm = match known {
+            Some(before) => {
+                let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
+                before.arm.among_until(bodies, &files.interrupt())?
+            }
+            None => Self::arm_of(files, &problem)?,
+        };
         let names = Self::names(&arm);
         let file = &problem.file;
         let driven = file.driven.as_ref();
@@ -341,8 +358,10 @@ impl ArmScene {
                 .help("say in an SRDF which links may touch, and name it in a robot problem: docs/formats/robot-problem.md")
                 .context(what(&problem))
         };
+        let interrupt = files.interrupt();
+        let search = arm.clone().with_interrupt(interrupt.clone());
         let wanted = DVector::from(arm.kinematics().neutral());
-        let start = free_near(&arm, &space, &wanted).ok_or_else(none)?;
+        let start = free_near(&search, &space, &wanted).ok_or_else(none)?;
         let half_way = |(joint, at): (&Coordinate, &f64)| match joint.range {
             JointRange::Interval { low, high } if high - at >= at - low => 0.5 * (at + high),
             JointRange::Interval { low, .. } => 0.5 * (at + low),
@@ -350,7 +369,10 @@ impl ArmScene {
         };
         let far: Vec<f64> = arm.coordinates().iter().zip(start.iter()).map(half_way).collect();
         let far = space.wrapped(&DVector::from(far));
-        let goal = free_near(&arm, &space, &far).ok_or_else(none)?;
+        let goal = free_near(&search, &space, &far).ok_or_else(none)?;
+        if interrupt.raised().is_some() {
+            return Err(Error::new("the search for free configurations was ended").context(what(&problem)));
+        }
         let nearest = |chosen: &Configuration, wanted: &Configuration| match chosen == wanted {
             true => "",
             false => ", or rather the nearest configuration found at which no links touch",

@@ -201,8 +201,6 @@ fn what_cannot_begin_ends_on_all_ranks() {
     std::fs::remove_file(dir.at("cut.jsonl")).unwrap();
     dir.write("problems.jsonl", LIST);
     refused("cut.jsonl", "cut.jsonl.ahead: it belongs to another job");
-    std::fs::remove_file(dir.at("wall.off")).unwrap();
-    refused("new.jsonl", "wall.off");
     std::fs::remove_file(dir.at("problems.jsonl")).unwrap();
     refused("new.jsonl", "problems.jsonl");
     assert!(!dir.at("new.jsonl").exists());

@@ -1,6 +1,6 @@
 //! Runs: what they write, and how they go on.
 
-use crate::{Dir, LIST, WALL, whole};
+use crate::{Dir, LIST, STICK, WALL, whole};
 use mp_plan::{
     Cancel, Interrupt, ItemResult, ListResults, ManyOptions, ManyOutcome, ProblemList, Report, Shard,
 };
@@ -90,6 +90,122 @@ fn results_are_read_item_by_item() {
     assert!(items.len() == 3 && error.unwrap().message().contains("line 5"));
     dir.write("bad.jsonl", "{}\n");
     assert!(ListResults::open(&dir.at("bad.jsonl")).unwrap_err().message().contains("is no file of results"));
+}
+
+/// What is wrong with a scene is said at its items, in the same words wherever the list is, and the others are planned.
+#[test]
+fn scenes_that_cannot_be_loaded_fail_at_their_items() {
+    let list = r#"{"scene": "broken.env"}
+{"scene": "easy", "seeds": [1, 2]}
+{"scene": "torn.env", "seeds": [3, 4]}
+{"scene": "wall"}
+{"scene": "problems.jsonl"}
+"#;
+    let written = || {
+        let dir = Dir::new();
+        dir.write("problems.jsonl", list);
+        dir.write("broken.env", crate::SCENE.replace("wall.off", "missing.off"));
+        dir.write("torn.env", crate::SCENE.replace("wall.off", "torn.off"));
+        dir.write("torn.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n");
+        dir
+    };
+    let (one, other) = (written(), written());
+    let tally = one.run("r.jsonl", &whole()).unwrap().tally;
+    assert_eq!([tally.items, tally.solved, tally.failed], [7, 3, 4]);
+    other.run("r.jsonl", &ManyOptions { threads: 3, ..whole() }).unwrap();
+    assert_eq!(one.read("r.jsonl"), other.read("r.jsonl"));
+    let lines: Vec<Value> =
+        one.read("r.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    for (item, words) in [(0, "missing.off"), (3, "torn.off"), (4, "torn.off"), (6, "problems.jsonl")] {
+        let message = lines[1 + item]["error"]["message"].as_str().unwrap();
+        assert!(message.contains(words) && !message.contains("/"), "{message}");
+    }
+    // Another byte of a file that is there now, and of one that was not.
+    let begun: String = one.read("r.jsonl").lines().take(3).map(|line| format!("{line}\n")).collect();
+    for (name, text) in [("torn.off", "OFF\n"), ("missing.off", WALL)] {
+        let dir = written();
+        dir.write("r.jsonl", &begun);
+        dir.write(name, text);
+        assert!(dir.run("r.jsonl", &whole()).unwrap_err().message().contains("a file has changed"), "{name}");
+    }
+}
+
+/// A file that changes after the list was read ends the run: its items would not be those of the header.
+#[test]
+fn a_file_that_changes_meanwhile_ends_the_run() {
+    let dir = Dir::new();
+    dir.write("problems.jsonl", "{\"scene\": \"easy\"}\n{\"scene\": \"wall\"}\n");
+    for (file, text) in
+        [("wall.off", WALL.replace("0.1 -1 -1", "0.2 -1 -1")), ("wall.env", crate::SCENE.to_owned() + "\n")]
+    {
+        let (problems, out) = (dir.problems(), dir.at("r.jsonl"));
+        let mut now = 0;
+        let change = |outcome: &ManyOutcome| {
+            now = outcome.tally.items;
+            if now == 1 {
+                dir.write(file, &text);
+            }
+        };
+        let e = problems.run(&out, &whole(), &Cancel::new(), change).unwrap_err();
+        assert!(now == 1 && e.message().contains("has changed since the list was read"), "{file}: {e}");
+        std::fs::remove_file(&out).unwrap();
+        dir.write("wall.off", WALL);
+        dir.write("wall.env", crate::SCENE);
+    }
+}
+
+/// Scenes come when they are needed, few are there at a time, and each is let go after its last item; robots are shared. What is there
+/// needs its files no longer.
+#[test]
+fn few_of_many_scenes_are_there_at_a_time() {
+    let dir = Dir::new();
+    let joint = "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/><axis xyz=\"1 0 0\"/>\
+                 <limit lower=\"-2\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>";
+    let shape = "<collision><geometry><mesh filename=\"stick.off\"/></geometry></collision>";
+    let urdf = format!("<robot name=\"r\"><link name=\"a\"/><link name=\"b\">{shape}</link>{joint}</robot>");
+    let mut list = String::new();
+    for i in 0..40 {
+        let motion = "[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = [-1]\ngoal = [1]\n[[obstacle]]\n";
+        dir.write(&format!("s{i}.toml"), format!("{motion}sphere = 0.1\npose = [{i}, 2, 0, 0, 0, 0]\n"));
+        list += &format!("{{\"scene\": \"s{i}\", \"seeds\": [1, 2]}}\n");
+    }
+    dir.write("problems.jsonl", &list);
+    dir.write("r.urdf", &urdf);
+    let gone = |name: &str| std::fs::remove_file(dir.at(name)).unwrap();
+
+    let (problems, untouched) = (dir.problems(), dir.problems());
+    let loads = |item| problems.problem(item, None).is_ok();
+    assert!(loads(0));
+    // The robot has been read.
+    gone("stick.off");
+    assert!(untouched.problem(0, None).is_err());
+    for i in 0..20 {
+        assert!(loads(2 * i), "{i}");
+        gone(&format!("s{i}.toml"));
+    }
+    // Of these twenty the last sixteen are there; the last item lets them go.
+    for i in 0..20 {
+        assert_eq!(loads(2 * i), i >= 4, "{i}");
+        assert_eq!((loads(2 * i + 1), loads(2 * i + 1)), (i >= 4, false), "{i}");
+    }
+    assert!(loads(79) && loads(79));
+    assert_eq!(problems.problem(60, None).unwrap().0.inputs().len(), 3, "also the files of the robot");
+
+    // Alone, each comes to the same.
+    dir.write("stick.off", STICK);
+    for i in 0..20 {
+        let text = std::fs::read_to_string(dir.at("s30.toml")).unwrap();
+        dir.write(&format!("s{i}.toml"), text.replace("[30,", &format!("[{i},")));
+    }
+    dir.run("r.jsonl", &whole()).unwrap();
+    let lines: Vec<Value> =
+        dir.read("r.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    for item in [0, 17, 79_usize] {
+        let scene = mp_plan::Scene::load(dir.at(&format!("s{}.toml", item / 2))).unwrap();
+        let request = mp_plan::Request::new("rrt-connect").seed(item as u64 % 2 + 1);
+        let fingerprint = scene.plan(&request).unwrap().fingerprint;
+        assert_eq!(lines[1 + item]["report"]["fingerprint"].as_str(), fingerprint.as_deref());
+    }
 }
 
 #[test]

@@ -46,8 +46,8 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
     /// The least distance of links from obstacles and from each other.
     fn clearance(&mut self, q: &Q, enough: f64) -> f64 {
         self.counters.clearance_checks += 1;
-        let Self { robot, obstacles, query, scratch, .. } = self;
-        if !robot.kinematics.is_configuration(q.as_slice()) {
+        let Self { robot, obstacles, query, scratch, interrupt, .. } = self;
+        if interrupt.ask() || !robot.kinematics.is_configuration(q.as_slice()) {
             return 0.0;
         }
         let frames = &mut scratch.frames;
@@ -190,7 +190,7 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
     /// Link by link and pair by pair, as [`interval_clearance`](Self::interval_clearance): what keeps enough clearance over a
     /// part of the motion is not looked at again in its halves.
     fn least_along(&mut self, search: &ClearanceSearch<'_, Q>) -> LeastClearance {
-        let Self { robot, obstacles, query, scratch, counters } = self;
+        let Self { robot, obstacles, query, scratch, counters, .. } = self;
         let kinematics = &robot.kinematics;
         let ends = [search.from, search.to].map(Q::as_slice);
         if !ends.into_iter().all(|q| kinematics.is_configuration(q)) {

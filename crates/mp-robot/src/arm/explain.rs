@@ -65,7 +65,8 @@ impl Arm {
     ///
     /// The search moves along each degree of freedom and in many other directions by growing amounts, then goes back toward
     /// `q`.
-    /// The same input gives the same result. Some thousands of clearance queries: meant for messages.
+    /// The same input gives the same result, unless the arm is [told to end](Arm::with_interrupt): then the result is any configuration. Some
+    /// thousands of clearance queries: meant for messages.
     pub fn nearest_free<C>(&mut self, q: &C::State, space: &C, margin: f64) -> Option<C::State>
     where
         C: Space,
@@ -93,7 +94,9 @@ impl Arm {
             let moved = |direction: Vec<f64>| space.moved(q, &direction, radius);
             along.chain(others).filter_map(moved).collect()
         };
-        let suits = |p: &C::State| space.contains(p) && self.clearance(p, margin) >= margin;
+        // Told to end, it ends with any answer.
+        let mut told = self.interrupt.clone();
+        let suits = |p: &C::State| told.ask() || (space.contains(p) && self.clearance(p, margin) >= margin);
         search_shells(space, q, &shells, candidates, suits)
     }
 }

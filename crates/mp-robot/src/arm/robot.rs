@@ -209,6 +209,8 @@ pub struct Arm {
     pub(super) query: Query,
     pub(super) counters: CheckCounters,
     pub(super) scratch: Scratch,
+    /// What checks of clearance ask whether to end.
+    pub(super) interrupt: Interrupt,
 }
 
 impl Arm {
@@ -240,7 +242,14 @@ impl Arm {
             query: Query::default(),
             counters: CheckCounters::default(),
             scratch: Scratch::default(),
+            interrupt: Interrupt::never(),
         })
+    }
+
+    /// The same arm, whose clearance is zero once `interrupt` says to end: searches for a free configuration end soon then.
+    #[must_use]
+    pub fn with_interrupt(self, interrupt: Interrupt) -> Self {
+        Self { interrupt, ..self }
     }
 
     /// The same arm among other obstacles. Counters start at zero.
