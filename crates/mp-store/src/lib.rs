@@ -4,6 +4,7 @@
 //!   before anything is read.
 //! - [`write`](fn@write) replaces a file in one step, [`write_parts`] one that is large, and [`writable`] says before a
 //!   long run whether that will work.
+//! - [`check_name`] decides what the name of a file inside a folder may be, and [`write_all`] writes several files into one, all or none.
 //! - [`FileId`] tells whether two names lead to the same file.
 //! - [`Lock`] keeps other processes from growing the same file or folder.
 //! - [`Journal`] is a file that grows by whole lines.
@@ -26,6 +27,7 @@ mod error;
 mod id;
 mod journal;
 mod lock;
+mod name;
 mod read;
 mod temporary;
 mod write;
@@ -34,5 +36,6 @@ pub use error::{Error, ErrorKind};
 pub use id::FileId;
 pub use journal::Journal;
 pub use lock::Lock;
+pub use name::{check_name, in_folder, write_all};
 pub use read::{open, read, read_stream};
 pub use write::{folder_of, make_folder, writable, write, write_parts};

@@ -43,6 +43,15 @@ impl Temporary {
         }
     }
 
+    /// Another name for the file at `path`, in its folder, which keeps it when that is replaced.
+    pub(crate) fn of(path: &Path) -> io::Result<Self> {
+        let kept = Self::new_in(crate::write::folder_of(path))?;
+        // The name is only ours, and free in between.
+        std::fs::remove_file(&kept.path)?;
+        std::fs::hard_link(path, &kept.path)?;
+        Ok(kept)
+    }
+
     /// Gives it the name `target`, in the same folder, in place of the file that may be there.
     pub(crate) fn rename(mut self, target: &Path) -> io::Result<()> {
         std::fs::rename(&self.path, target)?;

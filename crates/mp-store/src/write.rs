@@ -69,10 +69,23 @@ pub fn write_parts<B: AsRef<[u8]>, E: From<Error>>(
 ) -> Result<(), E> {
     let (target, old) = target(path)?;
     let folder = folder_of(&target);
-    let failed = |e: io::Error| write_failed(path, folder, &e);
     sweep(folder);
+    let new = filled(path, folder, old.as_ref(), parts)?;
+    new.rename(&target).map_err(|e| write_failed(path, folder, &e))?;
+    sync_folder(folder);
+    Ok(())
+}
+
+/// A temporary file in `folder` with these parts, which is on the disk: what `path` will be, in place of the file `old`.
+pub(crate) fn filled<B: AsRef<[u8]>, E: From<Error>>(
+    path: &Path,
+    folder: &Path,
+    old: Option<&Metadata>,
+    parts: impl IntoIterator<Item = Result<B, E>>,
+) -> Result<Temporary, E> {
+    let failed = |e: io::Error| write_failed(path, folder, &e);
     let mut new = Temporary::new_in(folder).map_err(failed)?;
-    if let Some(old) = &old {
+    if let Some(old) = old {
         keep_access(&new, old).map_err(failed)?;
     }
     let mut bytes = 0;
@@ -85,10 +98,8 @@ pub fn write_parts<B: AsRef<[u8]>, E: From<Error>>(
     file.flush().map_err(failed)?;
     drop(file);
     new.file.sync_all().map_err(failed)?;
-    new.rename(&target).map_err(failed)?;
-    sync_folder(folder);
     tracing::debug!(file = %path.display(), bytes, "written");
-    Ok(())
+    Ok(new)
 }
 
 /// Refuses a path that [`write`](fn@write) would not be able to write: for programs that work for long before they write. The
@@ -111,7 +122,7 @@ pub fn writable(path: &Path) -> Result<(), Error> {
 }
 
 /// The regular file that writing to `path` replaces, and what is known about it if it exists.
-fn target(path: &Path) -> Result<(PathBuf, Option<Metadata>), Error> {
+pub(crate) fn target(path: &Path) -> Result<(PathBuf, Option<Metadata>), Error> {
     let failed = |e: io::Error| write_failed(path, folder_of(path), &e);
     let target = followed(path).map_err(failed)?;
     let refused = |what: &str, remedy: &str| {
@@ -149,7 +160,7 @@ pub(crate) fn followed(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("too many links lead from one to the next"))
 }
 
-fn write_failed(path: &Path, folder: &Path, error: &io::Error) -> Error {
+pub(crate) fn write_failed(path: &Path, folder: &Path, error: &io::Error) -> Error {
     let remedy = match error.kind() {
         io::ErrorKind::NotFound => format!("create the folder {}", folder.display()),
         io::ErrorKind::NotADirectory => "name a file in a folder".to_owned(),
@@ -181,7 +192,7 @@ fn keep_access(new: &Temporary, old: &Metadata) -> io::Result<()> {
 }
 
 /// Makes the entries of a folder permanent, as far as the system can do that.
-fn sync_folder(folder: &Path) {
+pub(crate) fn sync_folder(folder: &Path) {
     #[cfg(unix)]
     if let Err(e) = std::fs::File::open(folder).and_then(|folder| folder.sync_all()) {
         tracing::debug!(folder = %folder.display(), error = %e, "the folder was not synced");

@@ -1,6 +1,6 @@
 //! What a session has open, and the requests about it.
 
-use super::files::{Named, Written, plain_name, written};
+use super::files::{Named, format_of, plain_name};
 use super::mesh::{is_mesh, scene_of_mesh};
 use super::{number_of, text_of};
 use crate::bytes::path_head;
@@ -313,31 +313,30 @@ impl Desk {
             })?,
         };
         let mesh = |name: &str| known_mesh(&self.meshes, name);
-        let files = match text_of(&request.head, "format")? {
+        let files = match format_of(request, &["own", "gempa"], "scenes")? {
             "own" => {
                 let document = SceneDocument { name: name.clone(), ..document };
                 document.problem(&name, &mesh)?;
                 vec![(format!("{name}.mp.json"), document.with_meshes(&mesh)?.to_text())]
             }
-            "gempa" => document.to_gempa(&name, &mesh)?,
-            other => {
-                return Err(Error::new(format!("there is no format `{other}` for scenes"))
-                    .help("take `own` or `gempa`"));
-            }
+            _ => document.to_gempa(&name, &mesh)?,
         };
         self.written(request, files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect())
     }
 
     fn save_path(&self, request: &Message) -> Answer {
         let scene = &self.opened()?.scene;
-        let (name, format) = (plain_name(request)?, text_of(&request.head, "format")?);
-        let file = format!("{name}.{format}");
+        let name = plain_name(request)?;
+        let (ending, kind) = match format_of(request, &["txt", "json", "csv"], "paths")? {
+            "json" => ("json", PathFileKind::Json),
+            "csv" => ("csv", PathFileKind::Csv),
+            _ => ("txt", PathFileKind::Text),
+        };
         let rows = rows_of(&request.head, "rows")?;
         let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
         // The same checks as for a path from a file: of this robot, and finite.
         scene.track(&path)?;
-        let text = path.to_file(PathFileKind::of(Path::new(&file))?);
-        self.written(request, vec![(file, text.into_bytes())])
+        self.written(request, vec![(format!("{name}.{ending}"), path.to_file(kind).into_bytes())])
     }
 
     fn export(&self, request: &Message) -> Answer {
@@ -351,23 +350,23 @@ impl Desk {
             let path = PathRows { format, columns: open.scene.columns(), rows };
             file.add_path(&open.scene, text_of(&members, "name")?, &path)?;
         }
-        let (ending, bytes) = match text_of(&request.head, "format")? {
+        let (ending, bytes) = match format_of(request, &["html", "mpv"], "exports")? {
             "html" => ("html", file.to_html().into_bytes()),
-            "mpv" => ("mpv", file.to_bytes()),
-            other => {
-                return Err(Error::new(format!("there is no format `{other}` for exports"))
-                    .help("take `html` or `mpv`"));
-            }
+            _ => ("mpv", file.to_bytes()),
         };
         self.written(request, vec![(format!("{name}.{ending}"), bytes)])
     }
 
-    /// The reply with these files: written into the folder, or their content.
+    /// The reply with these files: written into the folder, all or none, or their content.
     fn written(&self, request: &Message, files: Vec<(String, Vec<u8>)>) -> Answer {
         let mut reply = Message::default();
+        files.iter().try_for_each(|(name, _)| mp_store::check_name(name))?;
         if let Some(folder) = &self.folder {
             let overwrite = request.head.get("overwrite").and_then(Value::as_bool).unwrap_or(false);
-            let Written(names) = written(folder, &files, overwrite)?;
+            let names: Vec<String> = files.iter().map(|file| file.0.clone()).collect();
+            // The scene comes last: then all that it names is there.
+            let files = files.into_iter().rev().map(|(name, bytes)| (name, [Ok::<_, Error>(bytes)]));
+            mp_store::write_all(folder, files, overwrite)?;
             return Ok(reply.with("written", names));
         }
         let files: Vec<Value> =

@@ -108,37 +108,18 @@ impl Named {
     }
 }
 
-/// The name of the files to be written, from a request: a plain name without an ending.
+/// The name of the files to be written, from a request, without an ending. The names that are made of it are checked when they are written.
 pub(crate) fn plain_name(request: &Message) -> Result<String, Error> {
     let name = request.head.get("name").and_then(Value::as_str).unwrap_or("scene").trim();
-    let allowed = |c: char| c.is_alphanumeric() || "-_ .()+,@".contains(c);
-    let reserved = ["con", "prn", "aux", "nul"].contains(&name.to_ascii_lowercase().as_str());
-    let good = !name.is_empty() && name.len() <= 200 && !name.starts_with('.') && name.chars().all(allowed);
-    if good && !reserved {
-        return Ok(name.to_owned());
-    }
-    Err(Error::new(format!("`{name}` is no name for a file here"))
-        .help("take letters, digits, blanks, `-` and `_`, and no folders"))
+    mp_store::check_name(name)?;
+    Ok(name.to_owned())
 }
 
-/// The names of files that were written.
-pub(crate) struct Written(pub(crate) Vec<String>);
-
-/// Writes files into a folder: all of them, or, if one would overwrite a file and must not, none.
-pub(crate) fn written(folder: &Path, files: &[(String, Vec<u8>)], overwrite: bool) -> Result<Written, Error> {
-    for (name, _) in files {
-        let path = folder.join(name);
-        // A link could lead out of the folder.
-        if path.is_symlink() {
-            return Err(Error::new(format!("{} is a link", path.display())).help("take another name"));
-        }
-        if !overwrite && path.exists() {
-            return Err(Error::new(format!("{} exists already", path.display()))
-                .help("take another name, or say that it may be overwritten"));
-        }
-    }
-    for (name, bytes) in files {
-        mp_plan::write_file(&folder.join(name), bytes)?;
-    }
-    Ok(Written(files.iter().map(|file| file.0.clone()).collect()))
+/// The format that a request asks for: one of these, for `what`.
+pub(crate) fn format_of<'f>(request: &Message, formats: &[&'f str], what: &str) -> Result<&'f str, Error> {
+    let asked = text_of(&request.head, "format")?;
+    formats.iter().find(|format| **format == asked).copied().ok_or_else(|| {
+        Error::new(format!("there is no format `{asked}` for {what}"))
+            .help(format!("take {}", formats.join(" or ")))
+    })
 }
