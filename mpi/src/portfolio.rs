@@ -17,7 +17,7 @@ use std::path::PathBuf;
 pub(crate) struct Race {
     #[command(flatten)]
     problem: Problem,
-    /// How many runs there are at most.
+    /// How many runs there are. As many follow until the time is up when their caps are reached, unless there is another budget.
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u64).range(1..=1 << 30))]
     runs: u64,
     /// How many iterations each run may make: as many as it needs (`none`), or units by a schedule.

@@ -111,6 +111,7 @@ fn explained(reason: StoppedBy) -> String {
         StoppedBy::Time | StoppedBy::Unverified => " (--time)",
         StoppedBy::Iterations => " (--iterations)",
         StoppedBy::Memory => " (--memory)",
+        StoppedBy::Schedule => " (--portfolio, --unit)",
         _ => "",
     };
     format!("{reason}{option}")

@@ -44,6 +44,10 @@ const MAX_UNIT: u64 = 1_000_000_000_000;
 /// 3. a lane that is an eighth ahead of the one that is furthest behind waits for it, which must come as far as the winner anyway;
 /// 4. when a lane is done, the others hear of its best run.
 ///
+/// Where the request has no budget of iterations, queries or nodes, a portfolio of which no run has a path when all have reached their caps
+/// goes on with as many further runs, until its time is up: their caps are the next ones of the schedule; of the wide one, those of
+/// the runs before twice over.
+///
 /// So a round costs each run as many iterations as the winner needs, and at most a sixteenth or an eighth of that more, or what is made
 /// until news have spread. A round keeps the trees of all its runs.
 ///
@@ -63,7 +67,7 @@ const MAX_UNIT: u64 = 1_000_000_000_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Portfolio {
-    /// How many runs there are at most, 1 to 2^30.
+    /// How many runs there are, 1 to 2^30; at most as many where the request has a budget of iterations, queries or nodes.
     pub runs: u64,
     /// Their caps.
     pub schedule: PortfolioSchedule,
@@ -96,7 +100,7 @@ impl Portfolio {
         range("the unit", self.unit, MAX_UNIT)
     }
 
-    /// The caps of the runs, that of run 1 first; `None` for a run without one.
+    /// The caps of the runs, that of run 1 first, without end; `None` for a run without one.
     fn caps(&self, seed: u64) -> impl Iterator<Item = Option<u64>> {
         let schedule = match self.schedule {
             PortfolioSchedule::None => None,
@@ -107,21 +111,32 @@ impl Portfolio {
         };
         let mut lengths = schedule.map(|schedule| schedule.lengths(Rng::stream(seed, 0)));
         let (runs, wide, unit) = (self.runs, schedule == Some(Schedule::Wide), self.unit);
-        (1..=runs).map(move |run| {
-            let length = if wide { runs / run } else { lengths.as_mut()?.next()? };
+        (0..).map(move |before: u64| {
+            let length = match wide {
+                true => (runs / (before % runs + 1)).saturating_mul(1 << (before / runs).min(62)),
+                false => lengths.as_mut()?.next()?,
+            };
             Some(length.saturating_mul(unit))
         })
     }
 
-    /// How many rounds there are at most.
+    /// How many rounds all runs are.
     fn rounds(&self) -> u64 {
         self.runs.div_ceil(self.round)
     }
 
-    /// The runs of a round, counted from 0.
+    /// The runs of a round, counted from 0. Those after the [last](Self::rounds) are of runs that follow.
     fn round_runs(&self, round: u64) -> std::ops::RangeInclusive<u64> {
-        let before = round.saturating_mul(self.round);
-        before + 1..=before.saturating_add(self.round).min(self.runs)
+        let (turn, round) = (round / self.rounds(), round % self.rounds());
+        let first = turn.saturating_mul(self.runs);
+        let before = first.saturating_add(round.saturating_mul(self.round));
+        before + 1..=before.saturating_add(self.round).min(first.saturating_add(self.runs))
+    }
+
+    /// The round of a run.
+    fn round_of(&self, run: u64) -> u64 {
+        let (turn, run) = ((run - 1) / self.runs, (run - 1) % self.runs);
+        turn * self.rounds() + run / self.round
     }
 }
 
@@ -239,8 +254,14 @@ impl Scene {
         drop(self.prepared(&request)?.begin(Rng::seed(request.seed), control)?);
         let identity = self.portfolio_identity(&request, portfolio)?;
         let threads = options.threads.max(1);
-        let dealt =
-            Dealt { portfolio: *portfolio, seed: request.seed, lanes: (threads * link.ranks()) as u64 };
+        let budget = &request.budget;
+        let goes_on = budget.iterations.is_none() && budget.queries.is_none() && budget.nodes.is_none();
+        let dealt = Dealt {
+            portfolio: *portfolio,
+            seed: request.seed,
+            lanes: (threads * link.ranks()) as u64,
+            goes_on,
+        };
         let clocks = Clocks { clock: control.clock, began, spent: control.spent };
         // The others wait for the first rank.
         let refused = |e: Error| {
@@ -267,11 +288,16 @@ impl Scene {
             return Ok(None);
         }
         let cancelled = ran.cancelled.then(|| control.cancel.reason().unwrap_or(StopReason::Cancelled));
-        let (found, counts, work) = rounds.into_found(cancelled);
+        let (found, counts, work, by_schedule) = rounds.into_found(cancelled);
         let time = control.clock.now().saturating_sub(began);
         let complete = found.ended_by.is_none_or(|reason| !is_of_machine(reason));
         let mut report = self.found_report(&request, found, time, control)?;
         report.portfolio = Some(counts);
+        if by_schedule {
+            let by = StoppedBy::Schedule;
+            (report.stopped_by, report.why) = (Some(by), Some(by.to_string()));
+            report.stages.iter_mut().for_each(|stage| stage.ended_by = stage.ended_by.map(|_| by));
+        }
         if let (Some(checkpoint), true) = (checkpoint, complete) {
             checkpoint.delete()?;
         }
@@ -294,6 +320,8 @@ struct Dealt {
     portfolio: Portfolio,
     seed: u64,
     lanes: u64,
+    /// Whether further runs follow when no run has a path.
+    goes_on: bool,
 }
 
 impl Dealt {

@@ -19,7 +19,8 @@ pub enum PortfolioSchedule {
     Counter,
     /// Length t with probability 6/(π·t)² (the same); lengths are drawn from stream *(seed, 0)*.
     Zeta,
-    /// Wide search (Ashur and Har-Peled 2025) up to the beginning of its last run: of N runs, run i has ⌊N/i⌋ units.
+    /// Wide search (Ashur and Har-Peled 2025) up to the beginning of its last run: of N runs, run i has ⌊N/i⌋ units; of further N runs twice
+    /// as many.
     Wide,
 }
 
@@ -60,7 +61,7 @@ impl FromStr for PortfolioSchedule {
 /// of threads and ranks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PortfolioCounts {
-    /// The most runs.
+    /// How many runs it has, unless it goes on.
     pub runs: u64,
     /// Their caps.
     pub schedule: PortfolioSchedule,

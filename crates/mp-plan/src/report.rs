@@ -150,6 +150,8 @@ pub enum StoppedBy {
     Queries,
     /// The budget of memory.
     Memory,
+    /// The schedule of a portfolio: all of its runs have made as many iterations as it gives them.
+    Schedule,
     /// Another budget.
     Budget,
     /// It was cancelled from outside.
@@ -174,6 +176,7 @@ impl StoppedBy {
             Self::Nodes => "nodes",
             Self::Queries => "queries",
             Self::Memory => "memory",
+            Self::Schedule => "schedule",
             Self::Budget => "budget",
             Self::Interrupted => "interrupted",
             Self::Exhausted => "exhausted",
@@ -193,6 +196,9 @@ impl fmt::Display for StoppedBy {
             Self::Nodes => "the nodes are used up",
             Self::Queries => "the collision queries are used up",
             Self::Memory => "the memory is used up",
+            Self::Schedule => {
+                "all runs have made the iterations that the schedule of the portfolio gives them"
+            }
             Self::Budget => "the budget is used up",
             Self::Interrupted => "interrupted",
             Self::Exhausted => "the planner has tried all it can by its own rule",

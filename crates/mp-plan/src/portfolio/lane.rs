@@ -2,8 +2,8 @@
 
 use super::{Clocks, Dealt, RunOutcome, rounds::Rounds};
 use crate::run::AnyRun;
-use crate::{Control, Error, Request, Scene};
-use mp_cspace::{Iterations, Rng, StopReason};
+use crate::{Control, Error, Request, Scene, StoppedBy};
+use mp_cspace::{Iterations, Rng};
 use mp_ranks::{Hand, Link, Pace};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
@@ -151,11 +151,10 @@ impl Lane<'_> {
                     racer.run = Some(run);
                     continue;
                 }
-                let mut found = run.into_found()?;
-                if !over && racer.iterations >= racer.cap {
-                    found.ended_by = Some(StopReason::Iterations);
+                let mut outcome = RunOutcome::of(racer.number, run.into_found()?);
+                if !over && racer.iterations >= racer.cap && outcome.path.is_none() {
+                    outcome.stopped_by = Some(StoppedBy::Schedule);
                 }
-                let mut outcome = RunOutcome::of(racer.number, found);
                 match (outcome.rank(), best) {
                     (Some(rank), Some(other)) if other < rank => outcome.path = None,
                     (Some(rank), _) => {

@@ -3,7 +3,7 @@
 use super::lane::LaneResult;
 use super::{Dealt, Known, RankWork, RunOutcome, is_of_machine, reason_of};
 use crate::run::FoundRun;
-use crate::{Error, PortfolioCounts, Watch};
+use crate::{Error, PortfolioCounts, StoppedBy, Watch};
 use mp_cspace::{Progress, StopReason};
 use mp_ranks::{Checkpoint, Job};
 use std::collections::{HashMap, HashSet, VecDeque};
@@ -62,7 +62,9 @@ impl<'a, 'w> Rounds<'a, 'w> {
         let mut outcomes = Known::new();
         for (run, bytes) in checkpoint.into_iter().flat_map(|checkpoint| checkpoint.known()) {
             match serde_json::from_slice::<RunOutcome>(bytes) {
-                Ok(outcome) if outcome.run == *run && (1..=dealt.portfolio.runs).contains(run) => {
+                Ok(outcome)
+                    if outcome.run == *run && *run > 0 && (dealt.goes_on || *run <= dealt.portfolio.runs) =>
+                {
                     outcomes.insert(*run, outcome);
                 }
                 _ => {
@@ -73,7 +75,7 @@ impl<'a, 'w> Rounds<'a, 'w> {
         }
         // Runs that were outrun count only with the best run by which they were.
         let mut best: HashMap<u64, u64> = HashMap::new();
-        let round_of = |run: u64| (run - 1) / dealt.portfolio.round;
+        let round_of = |run: u64| dealt.portfolio.round_of(run);
         for outcome in outcomes.values().filter(|outcome| outcome.path.is_some()) {
             let best = best.entry(round_of(outcome.run)).or_insert(u64::MAX);
             *best = outcome.iterations.min(*best);
@@ -135,8 +137,13 @@ impl<'a, 'w> Rounds<'a, 'w> {
     /// Whether the present round is the last: it has a path, time has ended it, or there are no further runs.
     fn is_last(&self) -> bool {
         self.best.is_some()
-            || self.round + 1 >= self.dealt.portfolio.rounds()
+            || (self.round + 1 >= self.dealt.portfolio.rounds() && !self.goes_on())
             || !self.of_round().all(RunOutcome::is_lasting)
+    }
+
+    /// Whether runs follow those that there are: not where all of the last have tried all they can.
+    fn goes_on(&self) -> bool {
+        self.dealt.goes_on && self.of_round().any(|run| run.stopped_by != Some(StoppedBy::Exhausted))
     }
 
     fn next_round(&mut self) {
@@ -148,12 +155,16 @@ impl<'a, 'w> Rounds<'a, 'w> {
         self.round += 1;
     }
 
-    /// What was found, the counts, and what each rank did. `cancelled` is why it was cancelled, if it was.
+    /// What was found, the counts, what each rank did, and whether the schedule is what ended it. `cancelled` is why it was cancelled, if it
+    /// was.
     pub(super) fn into_found(
         self,
         cancelled: Option<StopReason>,
-    ) -> (FoundRun, PortfolioCounts, Vec<RankWork>) {
-        let ended = self.of_round().filter_map(|run| run.stopped_by.map(reason_of));
+    ) -> (FoundRun, PortfolioCounts, Vec<RankWork>, bool) {
+        let of_schedule = |run: &&RunOutcome| run.stopped_by == Some(StoppedBy::Schedule);
+        let capped = self.of_round().any(|run| of_schedule(&run));
+        let ended =
+            self.of_round().filter(|run| !of_schedule(run)).filter_map(|run| run.stopped_by.map(reason_of));
         let ended: Vec<StopReason> = ended.collect();
         let of_machine = cancelled.or_else(|| ended.iter().copied().find(|reason| is_of_machine(*reason)));
         let mut sums = self.before;
@@ -170,6 +181,7 @@ impl<'a, 'w> Rounds<'a, 'w> {
             winner: self.best.map(|(_, run)| run),
             iterations: self.before.iterations + needed,
         };
+        let mut by_schedule = false;
         let winner = self.best.and_then(|(_, run)| self.outcomes.get(&run));
         let found = match winner {
             Some(run) => {
@@ -183,12 +195,14 @@ impl<'a, 'w> Rounds<'a, 'w> {
                 progress.rejected = sums.rejected;
                 // Where all runs have tried all they can, that is why; otherwise what ended the first that has not.
                 let last = ended.iter().copied().find(|reason| *reason != StopReason::Exhausted);
-                let reason = of_machine.or(last).or(ended.first().copied());
+                let reason = of_machine.or(last);
+                by_schedule = reason.is_none() && capped;
+                let reason = reason.or(capped.then_some(StopReason::Iterations)).or(ended.first().copied());
                 let ended_by = Some(reason.unwrap_or(StopReason::Cancelled));
                 FoundRun { progress, queries: sums.queries, map: None, path: None, ended_by }
             }
         };
-        (found, counts, self.work)
+        (found, counts, self.work, by_schedule)
     }
 }
 

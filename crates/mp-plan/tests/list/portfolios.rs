@@ -110,7 +110,8 @@ fn rounds_follow_until_one_has_a_path() {
     let (winner, begun) = (counts(&report).winner.unwrap(), counts(&report).begun);
     assert!(report.solved && begun > 8 && begun.is_multiple_of(8) && (begun - 7..=begun).contains(&winner));
     // The rounds before have none, and cost all of their caps.
-    let before = alone(&scene, &request, &Portfolio { runs: begun - 8, ..portfolio });
+    let limited = request.clone().iterations(1 << 40);
+    let before = alone(&scene, &limited, &Portfolio { runs: begun - 8, ..portfolio });
     assert_eq!((before.solved, counts(&before).begun), (false, begun - 8));
     let lengths = [1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8, 1, 1, 2, 1, 1, 2, 4, 1, 1];
     let caps: u64 = lengths.iter().cycle().take((begun - 8) as usize).sum();
@@ -137,6 +138,51 @@ fn rounds_follow_until_one_has_a_path() {
         };
         assert!(!report.solved);
         assert_eq!(report.iterations, caps.iter().sum::<u64>(), "{schedule}");
+    }
+}
+
+/// What ends a portfolio whose runs all reach their caps: nothing, unless a budget was given; then it is named.
+#[test]
+fn a_schedule_goes_on_unless_a_budget_says_otherwise() {
+    let (scene, request) = twisty();
+    for (schedule, runs, round) in [
+        (PortfolioSchedule::Luby, 3, 2),
+        (PortfolioSchedule::Luby, 8, 64),
+        (PortfolioSchedule::Counter, 5, 3),
+        (PortfolioSchedule::Zeta, 4, 4),
+        (PortfolioSchedule::Wide, 4, 1),
+    ] {
+        let portfolio = Portfolio { runs, schedule, unit: 10, round };
+        let report = alone(&scene, &request, &portfolio);
+        let winner = counts(&report).winner.unwrap();
+        assert!(report.solved && report.verified && winner > runs, "{schedule}: run {winner}");
+        assert!((winner..winner + round.min(runs)).contains(&counts(&report).begun));
+        for (ranks, threads) in [(1, 2), (3, 1)] {
+            let again = on(ranks, threads, &scene, &request, &portfolio).report.without_times();
+            assert_eq!(again, report, "{schedule} on {ranks} × {threads}");
+        }
+        // Budgets that no run reaches.
+        for limited in [
+            request.clone().iterations(1 << 40),
+            Request { budget: mp_plan::Budget { nodes: Some(1 << 40), ..request.budget }, ..request.clone() },
+        ] {
+            let ended = alone(&scene, &limited, &portfolio);
+            assert_eq!(
+                (ended.stopped_by, counts(&ended).begun),
+                (Some(StoppedBy::Schedule), runs),
+                "{schedule}"
+            );
+            assert!(ended.why.as_ref().is_some_and(|why| why.contains("schedule")), "{:?}", ended.why);
+            assert!(ended.stages.iter().all(|stage| stage.ended_by == Some(StoppedBy::Schedule)));
+        }
+        // One that some reach is what ends it.
+        let few = alone(&scene, &request.clone().iterations(7), &portfolio);
+        assert_eq!((few.stopped_by, few.iterations), (Some(StoppedBy::Iterations), 7 * runs), "{schedule}");
+        // Time ends it, and is named.
+        let walled =
+            Request { settings: [("step".to_owned(), "0.01%".to_owned())].into(), ..request.clone() };
+        let ended = alone(&scene, &walled.time(0.2), &portfolio);
+        assert_eq!((ended.solved, ended.stopped_by), (false, Some(StoppedBy::Time)), "{schedule}");
     }
 }
 
