@@ -39,9 +39,9 @@ fn text(bytes: &[u8]) -> Result<&str, String> {
     std::str::from_utf8(bytes).map_err(|e| e.to_string())
 }
 
-/// A disc that stands still beside a wall of two triangles.
-const STILL: &str = r#"{"certificate":1,"scene":"still","columns":["x [m]","y [m]"],"model":{"steps":[{"line":0},{"line":1}],"time":null,
+/// A rounded triangle beside a wall of two triangles.
+const STILL: &str = r#"{"certificate":2,"scene":"still","columns":["x [m]","y [m]"],"model":{"steps":[{"line":0},{"line":1}],"time":null,
 "drive":null,"frames":[{"plane":{"first":0,"yaw":null}},{"fixed":{"parent":null,"pose":[0,0,0,0,0,0,1]}}],"bodies":[{"name":"robot",
-"frame":0,"of_robot":true,"radius":0.5,"solid":false,"vertices":[[0,0,0]],"pieces":[[0]]},{"name":"wall","frame":1,"of_robot":false,
-"radius":0,"solid":false,"vertices":[[2,0,0],[2,1,0],[2,1,1],[2,0,1]],"pieces":[[0,1,2],[0,2,3]]}],"pairs":[{"body":0,"others":[1]}]},
+"frame":0,"of_robot":true,"radius":0.4,"vertices":[[0,0,0],[0.1,0,0],[0,0.1,0]],"pieces":[[0,1,2]],"parts":[{"surface":1}]},{"name":"wall","frame":1,"of_robot":false,
+"radius":0,"vertices":[[2,0,0],[2,1,0],[2,1,1],[2,0,1]],"pieces":[[0,1,2],[0,2,3]],"parts":[{"surface":2}]}],"pairs":[{"body":0,"others":[1]}]},
 "path":[[0,0],[0.5,0.25]],"clearance":0.5,"edges":[[[[1,0.8]]]]"#;

@@ -44,7 +44,8 @@ pub(crate) enum Command {
     /// Run benchmarks, with the program `mp-bench`.
     #[command(disable_help_flag = true)]
     Bench(Passed),
-    /// Replay a certificate, with the program `mp-verify-certificate`: exit 0 only if it proves its path free.
+    /// Replay a certificate, with the program `mp-verify-certificate`: exit 0 only if it proves its path free. With `--scene SCENE` also compare
+    /// it with a scene: its bodies, where they stand, what is kept apart, and the ends of its path.
     #[command(disable_help_flag = true)]
     VerifyCertificate(Passed),
     /// Print completions for a shell.
@@ -103,7 +104,8 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "DISTANCE", default_value = "10%", requires = "routes", value_parser = parsed::<Length>)]
     pub(crate) apart: Length,
     /// Race this many runs with random numbers of their own: the one with the fewest iterations wins, whichever is ready first. For
-    /// problems that some seeds solve many times sooner than others.
+    /// problems that some seeds solve many times sooner than others. As many more follow when a schedule ends them without a path, until
+    /// the time is up; with `--iterations` none do.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 30),
           conflicts_with_all = ["routes", "roadmap"])]
     pub(crate) portfolio: Option<u64>,

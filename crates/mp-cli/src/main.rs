@@ -43,7 +43,7 @@ fn main() -> ExitCode {
         Command::View(args) => view::run(args),
         Command::Scenes => scenes(),
         Command::Bench(args) => programs::run(programs::BENCH, args),
-        Command::VerifyCertificate(args) => programs::run(programs::VERIFY_CERTIFICATE, args),
+        Command::VerifyCertificate(args) => programs::verify_certificate(args),
         Command::Completions { shell } => completions(*shell),
         Command::Man => man(),
     };

@@ -2,14 +2,77 @@
 //! code with this one.
 
 use crate::cli::Passed;
+use crate::input::scene;
+use crate::output::print;
 use mp_plan::Error;
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
 
 /// The program with the benchmarks, and its folder in the repository.
 pub(crate) const BENCH: [&str; 2] = ["mp-bench", "crates/mp-bench"];
 /// The program that replays certificates.
-pub(crate) const VERIFY_CERTIFICATE: [&str; 2] = ["mp-verify-certificate", "crates/mp-verify-certificate"];
+const VERIFY_CERTIFICATE: [&str; 2] = ["mp-verify-certificate", "crates/mp-verify-certificate"];
+
+/// The most bytes of a certificate.
+const MAX_CERTIFICATE_BYTES: u64 = 1 << 32;
+
+/// Replays a certificate, and compares it with the scene that `--scene` names: that program does not know scenes.
+pub(crate) fn verify_certificate(args: &Passed) -> Result<bool, Error> {
+    let (mut passed, mut named, mut file) = (Vec::new(), None, None);
+    let mut words = args.arguments.iter();
+    while let Some(word) = words.next() {
+        let text = word.to_string_lossy();
+        let given = match text.strip_prefix("--scene=") {
+            Some(scene) => Some(OsString::from(scene)),
+            None if text == "--scene" => words.next().cloned(),
+            None => {
+                passed.push(word.clone());
+                match &*text {
+                    "--path" | "--mesh" => passed.extend(words.next().cloned()),
+                    option if option.starts_with("--") => {}
+                    _ => file = file.or(Some(PathBuf::from(word))),
+                }
+                continue;
+            }
+        };
+        let one = given.filter(|given| named.is_none() && !given.is_empty());
+        named =
+            Some(one.ok_or_else(|| {
+                Error::new("--scene needs one scene").help("--scene SCENE: a file or a name")
+            })?);
+    }
+    let Some(named) = named else { return run(VERIFY_CERTIFICATE, args) };
+    let named = PathBuf::from(named);
+    let scene = scene(&named)?;
+    let file = file.ok_or_else(|| {
+        Error::new("no certificate is named").help("mp verify-certificate FILE --scene SCENE")
+    })?;
+    passed.push("--scene-compared".into());
+    if !run(VERIFY_CERTIFICATE, &Passed { arguments: passed })? {
+        return Ok(false);
+    }
+    let text = String::from_utf8_lossy(&mp_store::read(&file, MAX_CERTIFICATE_BYTES)?).into_owned();
+    let differences = scene.certificate_differences(&text)?;
+    let name = named.display();
+    match differences.as_slice() {
+        [] => print(&format!("  bodies, poses, pairs and ends are those of {name}"))?,
+        all => {
+            let lines: Vec<&str> = all.iter().take(20).map(String::as_str).collect();
+            let more = if all.len() > 20 {
+                format!("\n  and {} differences more", all.len() - 20)
+            } else {
+                String::new()
+            };
+            print(&format!(
+                "{}: refused, it is not about {name}\n  {}{more}",
+                file.display(),
+                lines.join("\n  ")
+            ))?;
+        }
+    }
+    Ok(differences.is_empty())
+}
 
 /// Runs a program with the arguments, from the folder of this program or from the search path. True when it succeeds.
 pub(crate) fn run([program, folder]: [&str; 2], args: &Passed) -> Result<bool, Error> {

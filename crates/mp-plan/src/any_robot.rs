@@ -88,6 +88,7 @@ pub(crate) trait AnyRobot: Send + Sync {
         clearance: f64,
         interrupt: &Interrupt,
     ) -> Result<Certificate, Error>;
+    fn certificate_differences(&self, certificate: &str) -> Result<Vec<String>, Error>;
     fn explain(&self, row: &[f64]) -> Result<Explanation, Error>;
     fn check_ends(&self) -> Result<Vec<String>, Error>;
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted>;
@@ -227,6 +228,9 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         interrupt: &Interrupt,
     ) -> Result<Certificate, Error> {
         certificate(self, path, clearance, interrupt)
+    }
+    fn certificate_differences(&self, text: &str) -> Result<Vec<String>, Error> {
+        crate::certificate::differences(self, text)
     }
     fn explain(&self, row: &[f64]) -> Result<Explanation, Error> {
         Ok(explain(self, &state(self, row)?))

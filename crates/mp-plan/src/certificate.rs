@@ -4,6 +4,7 @@
 //! program; it shares no code with this crate. The proof is that of Schwarzer, Saha and Latombe, *Adaptive dynamic collision
 //! checking* (2005): what is farther apart than it can move stays apart.
 
+mod compare;
 mod motion;
 mod prove;
 
@@ -15,8 +16,10 @@ use prove::Prover;
 use serde::Serialize;
 use xxhash_rust::xxh3::xxh3_128;
 
+pub(crate) use compare::differences;
+
 /// The version of the file.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// The member that ends a certificate: a hash of all bytes before it.
 const CHECKSUM: &str = ",\n\"checksum\":";
@@ -100,12 +103,11 @@ pub(crate) fn certificate<K: RobotKind>(
         prover.edge(from, to).map_err(|why| fault(why).help("check the path with `mp check`"))
     });
     let edges: Vec<_> = edges.collect::<Result<_, _>>().map_err(|e| e.context(what()))?;
-    let columns = kind.columns().iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect();
     let proved = (!model.pairs.is_empty()).then_some(margin);
     let file = File {
         certificate: VERSION,
         scene: kind.name(),
-        columns,
+        columns: columns(kind),
         model: &model,
         path: &path.rows,
         clearance: proved,
@@ -117,6 +119,11 @@ pub(crate) fn certificate<K: RobotKind>(
     let intervals = edges.iter().flatten().map(Vec::len).sum();
     tracing::info!(edges = edges.len(), intervals, "certified");
     Ok(Certificate { text, edges: edges.len(), intervals, clearance: proved })
+}
+
+/// Name and unit of each number of a row.
+fn columns<K: RobotKind>(kind: &K) -> Vec<String> {
+    kind.columns().iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect()
 }
 
 /// The model must place the bodies of the robot where the robot has them.

@@ -85,16 +85,10 @@ pub(crate) fn clearance<K: RobotKind>(
     interrupt.raised().is_none().then_some(tightest.clearance)
 }
 
-/// Checks that a path is free and leads from the start to a goal. Where `interrupt` says to end, the path has a fault.
-pub(crate) fn check<K: RobotKind>(
-    kind: &K,
-    path: &PathRows,
-    interrupt: &Interrupt,
-) -> Result<Verdict, Error> {
-    let _span = tracing::info_span!("check", scene = kind.name()).entered();
-    let states = Path::straight(states(kind, path)?);
+/// Whether a path, which has a state, begins elsewhere than at the start, or ends elsewhere than at a goal.
+pub(crate) fn end_faults<K: RobotKind>(kind: &K, states: &[K::State]) -> Vec<String> {
     let mut faults = Vec::new();
-    let (first, last) = (&states.states[0], &states.states[states.states.len() - 1]);
+    let (first, last) = (&states[0], &states[states.len() - 1]);
     let start = kind.mismatch(first, kind.start());
     if !start.is_near() {
         faults.push(format!("does not begin at the start: {}{} off", brief(start.off), start.unit));
@@ -110,6 +104,18 @@ pub(crate) fn check<K: RobotKind>(
         let which = if kind.goals().len() > 1 { "a goal" } else { "the goal" };
         faults.push(format!("does not end at {which}: {}{} off", brief(goal.off), goal.unit));
     }
+    faults
+}
+
+/// Checks that a path is free and leads from the start to a goal. Where `interrupt` says to end, the path has a fault.
+pub(crate) fn check<K: RobotKind>(
+    kind: &K,
+    path: &PathRows,
+    interrupt: &Interrupt,
+) -> Result<Verdict, Error> {
+    let _span = tracing::info_span!("check", scene = kind.name()).entered();
+    let states = Path::straight(states(kind, path)?);
+    let mut faults = end_faults(kind, &states.states);
     faults.extend(kind.odd_rows(&path.rows));
     let report = verified(kind, &states, interrupt)?;
     faults.extend(report.fault.map(|fault| fault_text(kind, &states, fault)));

@@ -148,9 +148,9 @@ pub use request::{Budget, Finish, Length, MetricName, MotionValidator, RelaxFiel
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
     ArmScene, Body, BodyShape, Checker, Column, Counted, Drive, DriveModel, DrivenScene, End, FloatingScene,
-    LinkedScene, LinkedSpace, Measured, Mismatch, ModelBody, ModelFrame, ModelPair, MotionModel, MovingScene,
-    PathFormat, PlanarBody, PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, SpeedBound, Step, Touch,
-    WithMoving,
+    LinkedScene, LinkedSpace, Measured, Mismatch, ModelBody, ModelFrame, ModelPair, ModelPart, MotionModel,
+    MovingScene, PathFormat, PlanarBody, PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, SpeedBound,
+    Step, Touch, WithMoving,
 };
 pub use run::{PreparedRun, Run};
 pub use runs::{Medians, Runs, median, medians};

@@ -11,7 +11,7 @@ mod vectors;
 pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace};
 pub(crate) use driven::greatest_speed;
 pub use driven::{DrivenScene, SpeedBound};
-pub use model::{Drive, DriveModel, ModelBody, ModelFrame, ModelPair, MotionModel, Step};
+pub use model::{Drive, DriveModel, ModelBody, ModelFrame, ModelPair, ModelPart, MotionModel, Step};
 pub use moving::{MovingScene, WithMoving};
 pub use planar::{PlanarBody, PlanarScene};
 pub use rigid::{RigidScene, RigidSpace};

@@ -469,6 +469,28 @@ impl Scene {
         self.robot.certificate(path, clearance, interrupt)
     }
 
+    /// In what a certificate differs from this scene, a sentence for each difference; nothing if it is about this scene. Compared are the numbers
+    /// of a configuration and how they move the robot; all bodies, their radii, shapes and solids, to the last bit; where they stand and
+    /// what moves them; which bodies are kept apart; and whether the path leads from the start to a goal within the bounds, as the robot
+    /// can move. What the certificate proves of all that is not looked at here: `mp-verify-certificate` does that.
+    ///
+    /// ```
+    /// use mp_plan::{Interrupt, PathRows, Request, Scene};
+    /// let (scene, other) = (Scene::find("rrs-low")?, Scene::find("rrs-high")?);
+    /// let report = scene.plan(&Request::new("rrt-connect"))?;
+    /// let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows: report.path.unwrap_or_default() };
+    /// let certificate = scene.certificate(&path, report.clearance.unwrap_or(0.0), &Interrupt::never())?;
+    /// assert_eq!(scene.certificate_differences(certificate.to_json())?, Vec::<String>::new());
+    /// assert!(!other.certificate_differences(certificate.to_json())?.is_empty());
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the text is no certificate of this version; when the kind of robot is your own and has no model.
+    pub fn certificate_differences(&self, certificate: &str) -> Result<Vec<String>, Error> {
+        self.robot.certificate_differences(certificate)
+    }
+
     /// Explains a configuration: whether it is free, how near to contact, what touches, and where it would be free.
     ///
     /// # Errors

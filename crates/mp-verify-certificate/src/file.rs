@@ -6,7 +6,8 @@ use xxhash_rust::xxh3::xxh3_128;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Certificate {
-    pub(crate) certificate: u32,
+    #[serde(rename = "certificate")]
+    _version: u32,
     pub(crate) scene: String,
     pub(crate) columns: Vec<String>,
     pub(crate) model: Model,
@@ -91,9 +92,19 @@ pub(crate) struct Body {
     pub(crate) frame: usize,
     pub(crate) of_robot: bool,
     pub(crate) radius: f64,
-    pub(crate) solid: bool,
     pub(crate) vertices: Vec<[f64; 3]>,
     pub(crate) pieces: Vec<Vec<usize>>,
+    pub(crate) parts: Vec<Part>,
+}
+
+/// So many pieces, one after the other.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Part {
+    /// What they enclose belongs to the body too.
+    Solid(usize),
+    /// Only they do.
+    Surface(usize),
 }
 
 #[derive(Debug, Deserialize)]
@@ -121,6 +132,12 @@ impl Frame {
     }
 }
 
+/// What every version has.
+#[derive(Deserialize)]
+struct Version {
+    certificate: u32,
+}
+
 /// Reads a certificate and checks that nobody has changed it, and that it makes sense.
 pub(crate) fn read(text: &str) -> Result<Certificate, String> {
     let end =
@@ -129,10 +146,18 @@ pub(crate) fn read(text: &str) -> Result<Certificate, String> {
     if text[end..].trim_end() != hash {
         return Err("it was changed after it was written: its checksum is another".to_owned());
     }
-    let file: Certificate = serde_json::from_str(text).map_err(|e| format!("it cannot be read: {e}"))?;
-    if file.certificate != 1 {
-        return Err(format!("it is of version {}, and this program knows version 1", file.certificate));
+    let unread = |e: serde_json::Error| format!("it cannot be read: {e}");
+    match serde_json::from_str(text).map_err(unread)? {
+        Version { certificate: 2 } => {}
+        Version { certificate: 1 } => {
+            let old = "it is of version 1, which does not say which bodies are solid, so that one may be inside of another: write it anew";
+            return Err(old.to_owned());
+        }
+        Version { certificate } => {
+            return Err(format!("it is of version {certificate}, and this program knows version 2"));
+        }
     }
+    let file: Certificate = serde_json::from_str(text).map_err(unread)?;
     file.check().map(|()| file)
 }
 
@@ -181,40 +206,78 @@ impl Certificate {
         let single = |i: usize| {
             model.steps.iter().any(|step| matches!(step, Step::Line(j) | Step::Circle(j) if *j == i))
         };
+        // What has lines or single points is a world of the plane z = 0.
+        let flat = model.bodies.iter().flat_map(|body| &body.pieces).any(|piece| piece.len() < 3);
+        let turns_flat = |p: &[f64]| !flat || p[2..5].iter().all(|x| *x == 0.0);
         let wheels = model.drive.as_ref().is_some_and(|d| matches!(d.by, By::Car { .. } | By::Unicycle));
         sound(!wheels || (0..3).all(single), "it has no wheels")?;
         for (i, frame) in model.frames.iter().enumerate() {
             sound(frame.parent().is_none_or(|parent| parent < i), "a frame comes before its parent")?;
             let right = match frame {
-                Frame::Fixed { pose: p, .. } => pose(p),
-                Frame::Pose { first } => model.steps.iter().any(|s| matches!(s, Step::Pose(f) if f == first)),
+                Frame::Fixed { pose: p, .. } => pose(p) && turns_flat(p),
+                Frame::Pose { first } => {
+                    !flat && model.steps.iter().any(|s| matches!(s, Step::Pose(f) if f == first))
+                }
                 Frame::Plane { first, yaw } if wheels => *first == 0 && *yaw == Some(2),
-                Frame::Plane { first, yaw } => single(*first) && single(first + 1) && yaw.is_none_or(single),
+                Frame::Plane { first, yaw } => {
+                    let apart = yaw.is_none_or(|yaw| single(yaw) && yaw != *first && yaw != first + 1);
+                    single(*first) && single(first + 1) && apart
+                }
                 Frame::Joint { origin, axis, column, factor, offset, .. } => {
                     let length: f64 = axis.iter().map(|x| x * x).sum();
                     let unit = (length - 1.0).abs() < 1e-9;
                     let moves = column.is_none_or(|column| single(column) && !wheels);
-                    unit && pose(origin) && finite(&[*factor, *offset]) && moves
+                    !flat && unit && pose(origin) && finite(&[*factor, *offset]) && moves
                 }
                 Frame::Track { time, poses } => {
                     let later = poses.windows(2).all(|pair| pair[0][0] < pair[1][0]);
-                    let finite = poses.iter().all(|p| finite(&p[..1]) && pose(&p[1..]));
+                    let finite =
+                        poses.iter().all(|p| finite(&p[..1]) && pose(&p[1..]) && turns_flat(&p[1..]));
                     model.time == Some(*time) && later && finite && !poses.is_empty()
                 }
             };
             sound(right, &format!("frame {i} is odd"))?;
         }
-        for body in &model.bodies {
-            let corners =
-                |p: &Vec<usize>| matches!(p.len(), 1..=3) && p.iter().all(|v| *v < body.vertices.len());
-            let indices = body.pieces.iter().all(corners);
-            let right = indices && body.frame < model.frames.len() && body.radius >= 0.0;
-            let finite = finite(&[body.radius]) && body.vertices.iter().all(|v| finite(v));
-            sound(right && finite && !body.pieces.is_empty(), &format!("the body {} is odd", body.name))?;
+        for step in &model.steps {
+            let moved = |frame: &Frame| match (step, frame) {
+                (Step::Pose(i), Frame::Pose { first }) => first == i,
+                (Step::Line(i) | Step::Circle(i), Frame::Plane { first, yaw }) => {
+                    i == first || *i == first + 1 || *yaw == Some(*i)
+                }
+                (Step::Line(i) | Step::Circle(i), Frame::Joint { column, .. }) => *column == Some(*i),
+                _ => false,
+            };
+            sound(model.frames.iter().any(moved), "a degree of freedom moves nothing")?;
         }
+        for body in &model.bodies {
+            let corners = |p: &Vec<usize>| {
+                let many = if flat { 1..=2 } else { 3..=3 };
+                many.contains(&p.len()) && p.iter().all(|v| *v < body.vertices.len())
+            };
+            let vertex = |v: &[f64; 3]| finite(v) && !(flat && v[2] != 0.0);
+            let right = body.pieces.iter().all(corners) && body.vertices.iter().all(vertex);
+            let right = right && body.frame < model.frames.len() && !body.pieces.is_empty();
+            let right = right && finite(&[body.radius]) && body.radius >= 0.0;
+            sound(right, &format!("the body {} is odd", body.name))?;
+        }
+        // The robot hangs from one frame, which moves as a whole if any does, and no obstacle is carried by it.
+        let root = |frame: usize| {
+            std::iter::successors(Some(frame), |i| model.frames[*i].parent()).last().unwrap_or(frame)
+        };
+        let robot = model.bodies.iter().find(|body| body.of_robot).map(|body| root(body.frame));
+        let hangs = |body: &Body| (robot == Some(root(body.frame))) == body.of_robot;
+        sound(model.bodies.iter().all(hangs), "a body hangs from another frame than the robot or the world")?;
+        let free = |(i, frame): (usize, &Frame)| {
+            !matches!(frame, Frame::Pose { .. } | Frame::Plane { .. }) || robot.is_none_or(|robot| robot == i)
+        };
+        sound(model.frames.iter().enumerate().all(free), "a frame moves, and the robot is not in it")?;
         let known = |i: &usize| *i < model.bodies.len();
         let pairs = model.pairs.iter().all(|p| known(&p.body) && p.others.iter().all(known));
         sound(pairs, "a pair has no body")?;
+        let mut seen = std::collections::HashSet::new();
+        let each = model.pairs.iter().flat_map(|p| p.others.iter().map(|other| [p.body, *other]));
+        let once = each.into_iter().all(|[a, b]| a != b && seen.insert([a.min(b), a.max(b)]));
+        sound(once, "a pair is there twice, or is of one body")?;
         sound(self.edges.len() == (self.path.len() - 1).max(1), "there is not a proof for each edge")?;
         let proved = self.edges.iter().all(|edge| edge.len() == model.pairs.len());
         sound(proved, "there is not a proof for each pair of bodies")

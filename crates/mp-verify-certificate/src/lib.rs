@@ -19,6 +19,7 @@ mod mesh;
 mod motion;
 mod replay;
 mod shape;
+mod solid;
 
 pub use replay::Proved;
 

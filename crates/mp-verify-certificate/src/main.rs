@@ -9,6 +9,8 @@ use std::process::ExitCode;
 const HELP: &str = "\
 Replays a certificate of `mp plan --certificate FILE`: proves again, with code of its own, that the path is free of collision.
 
+It says nothing of your scene: `mp verify-certificate FILE --scene SCENE` also compares bodies, poses, pairs and ends with one.
+
 usage: mp-verify-certificate FILE [--path PATH] [--mesh NAME=MESH]…
 
   FILE              the certificate
@@ -17,13 +19,19 @@ usage: mp-verify-certificate FILE [--path PATH] [--mesh NAME=MESH]…
 
 exit code: 0 proved, 1 refused, 2 bad input";
 
+/// What a replay cannot know.
+const NOT_COMPARED: &str = "\n  not compared with a scene: which bodies there are, where they stand and how they move, which may touch, and where the path \
+                            begins and ends. `mp verify-certificate FILE --scene SCENE` does that";
+
 fn main() -> ExitCode {
-    let (mut files, mut path, mut meshes) = (Vec::new(), None, Vec::new());
+    let (mut files, mut path, mut meshes, mut compared) = (Vec::new(), None, Vec::new(), false);
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         match (word.as_str(), words.len()) {
             ("-h" | "--help", _) => return say(HELP, 0),
             ("--path", 1..) if path.is_none() => path = words.next(),
+            // By `mp`, which does that.
+            ("--scene-compared", _) => compared = true,
             ("--mesh", 1..) => meshes.extend(words.next()),
             (option, _) if option.starts_with("--") => return say(HELP, 2),
             _ => files.push(word),
@@ -45,7 +53,7 @@ fn main() -> ExitCode {
         (Err(e), ..) | (_, Err(e), _) | (.., Err(e)) => return say(&e, 2),
     };
     match replayed(&text, path.as_deref(), &meshes) {
-        Ok(told) => say(&format!("{file}: {told}"), 0),
+        Ok(told) => say(&format!("{file}: {told}{}", if compared { "" } else { NOT_COMPARED }), 0),
         Err(why) => say(&format!("{file}: refused\n  {why}"), 1),
     }
 }

@@ -212,21 +212,24 @@ impl<'c> Edge<'c> {
         strayed
     }
 
-    /// How far the row that follows is from where the input leads: metres, of any point of the bodies; and the velocities.
+    /// How far the row that follows is from where the edge leads: metres, of any point of the robot; and the velocities and the time.
     pub(crate) fn jump(&self) -> f64 {
-        let Some(drive) = &self.model.drive else { return 0.0 };
         let (arrived, mut start) = (self.frames(1.0), self.to.to_vec());
-        start[drive.duration] = 0.0;
+        if let Some(drive) = &self.model.drive {
+            start[drive.duration] = 0.0;
+        }
         let Ok(there) = Edge::new(self.model, &start, &start) else { return f64::INFINITY };
         let there = there.frames(0.0);
-        let off = self.model.bodies.iter().flat_map(|body| {
+        let off = self.model.bodies.iter().filter(|body| body.of_robot).flat_map(|body| {
             let [a, b] = [&arrived, &there].map(|frames| frames[body.frame]);
             let at = move |v: &[f64; 3]| Vec3::from_array(*v);
             body.vertices.iter().map(move |v| (a.transform_point(at(v)) - b.transform_point(at(v))).length())
         });
-        let velocities = (drive.velocities..drive.inputs).map(|i| {
-            let after = self.from[i] + self.duration * self.to[drive.inputs + i - drive.velocities];
-            (after - self.to[i]).abs()
+        let velocities = self.model.drive.iter().flat_map(|drive| {
+            (drive.velocities..drive.inputs).map(|i| {
+                let after = self.from[i] + self.duration * self.to[drive.inputs + i - drive.velocities];
+                (after - self.to[i]).abs()
+            })
         });
         let late = self.model.time.map(|time| (self.from[time] + self.duration - self.to[time]).abs());
         off.chain(velocities).chain(late).fold(0.0, f64::max)

@@ -1,8 +1,10 @@
 //! Replays a proof: every part of every edge, every pair of bodies.
 
-use crate::file::{Certificate, Frame, Model};
+use crate::file::{Body, Certificate, Frame, Model};
 use crate::motion::{Ball, Edge};
 use crate::shape::Shape;
+use crate::solid::{Solid, solids, witnesses};
+use parry3d_f64::math::Vec3;
 
 /// What a certificate proves.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +29,8 @@ pub struct Proved {
 pub(crate) fn replay(file: &Certificate) -> Result<Proved, String> {
     let model = &file.model;
     covers(model)?;
+    let of_body = |body: &Body| solids(body).map_err(|why| format!("the body {} is odd: {why}", body.name));
+    let inside: Vec<Vec<Solid>> = model.bodies.iter().map(of_body).collect::<Result<_, _>>()?;
     let shapes: Vec<Shape> = model.bodies.iter().map(Shape::new).collect();
     let balls: Vec<Ball> = model.bodies.iter().map(Ball::new).collect();
     let clearance = file.clearance.unwrap_or(0.0);
@@ -36,13 +40,13 @@ pub(crate) fn replay(file: &Certificate) -> Result<Proved, String> {
         let place = |why: String| format!("between configurations {} and {}: {why}", i + 1, i + 2);
         let edge = Edge::new(model, from, to).map_err(place)?;
         if i == 0 {
-            begins_outside(model, &shapes, &edge)?;
+            begins_outside(model, &inside, &edge)?;
         }
         let jump = edge.jump();
         // What jumps less far than it is clear of everything crosses nothing.
         let crosses_nothing = jump <= 1e-6 && jump <= clearance;
         if !(crosses_nothing || model.pairs.is_empty()) {
-            return Err(place(format!("the input leads {jump} m away from the next configuration")));
+            return Err(place(format!("it leads {jump} m away from the next configuration")));
         }
         for (pair, proof) in model.pairs.iter().zip(proof) {
             let body = &model.bodies[pair.body];
@@ -114,14 +118,18 @@ fn covers(model: &Model) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether no body is inside of another where the path begins. None can get there later: it would have to cross its boundary.
-fn begins_outside(model: &Model, shapes: &[Shape], edge: &Edge<'_>) -> Result<(), String> {
+/// Whether nothing of a body is inside of another where the path begins. Nothing can get there later: it would have to cross a boundary.
+fn begins_outside(model: &Model, solids: &[Vec<Solid>], edge: &Edge<'_>) -> Result<(), String> {
     let frames = edge.frames(0.0);
+    let corners: Vec<Vec<Vec3>> = model.bodies.iter().map(witnesses).collect();
     for pair in &model.pairs {
         for other in &pair.others {
             for (outer, inner) in [(*other, pair.body), (pair.body, *other)] {
                 let (a, b) = (&model.bodies[outer], &model.bodies[inner]);
-                if a.solid && shapes[outer].holds(&frames[a.frame], &shapes[inner], &frames[b.frame]) {
+                let pose = frames[a.frame].inverse() * frames[b.frame];
+                let held =
+                    |corner: &Vec3| solids[outer].iter().any(|s| s.holds(pose.transform_point(*corner)));
+                if corners[inner].iter().any(held) {
                     return Err(format!("the path begins with {} inside of {}", b.name, a.name));
                 }
             }

@@ -110,34 +110,6 @@ impl Shape {
         }
         true
     }
-
-    /// Whether a corner of `other` is inside of this body, which encloses an area of the plane z = 0, or a volume.
-    pub(crate) fn holds(&self, at: &Pose, other: &Self, other_at: &Pose) -> bool {
-        let pose = at.inverse() * *other_at;
-        let corners = other.pieces.iter().flat_map(|piece| &piece.0);
-        corners.into_iter().any(|corner| self.winds_around(pose.transform_point(*corner)))
-    }
-
-    /// Whether the pieces wind around a point: edges an odd number of times, triangles by the solid angle that they fill.
-    fn winds_around(&self, p: Vec3) -> bool {
-        let (mut odd, mut angle) = (false, 0.0);
-        for piece in &self.pieces {
-            match *piece.0.as_slice() {
-                [a, b] => {
-                    let crosses = (a.y > p.y) != (b.y > p.y);
-                    odd ^= crosses && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
-                }
-                [a, b, c] => {
-                    let [a, b, c] = [a - p, b - p, c - p];
-                    let [l, m, n] = [a, b, c].map(Vec3::length);
-                    let below = l * m * n + a.dot(b) * n + b.dot(c) * l + c.dot(a) * m;
-                    angle += 2.0 * a.dot(b.cross(c)).atan2(below);
-                }
-                _ => {}
-            }
-        }
-        odd || angle.abs() > std::f64::consts::TAU
-    }
 }
 
 /// Whether two boxes are apart by at least `enough`: along the axes of one, or along `axes`, those of the other.

@@ -3,11 +3,11 @@
 use mp_geom::TriMesh;
 use mp_robot::Trajectory;
 use nalgebra::{Isometry3, Point2, Point3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A robot among its obstacles, and how they move. It says everything that decides whether a path is free, without a word of how
 /// paths are found. docs/formats/certificate.md describes its JSON form.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionModel {
     /// The degrees of freedom, and how each goes from one row of a path to the next unless inputs move them.
     pub steps: Vec<Step>,
@@ -24,7 +24,7 @@ pub struct MotionModel {
 }
 
 /// How numbers of a row go evenly from one row to the next.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Step {
     /// Six columns from this one on: x, y, z straight, and α, β, γ by the shortest turn.
@@ -36,7 +36,7 @@ pub enum Step {
 }
 
 /// The columns of a robot that is moved by inputs. Those of the configuration come first.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drive {
     /// How inputs move it.
     pub by: DriveModel,
@@ -49,7 +49,7 @@ pub struct Drive {
 }
 
 /// How inputs move a robot.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DriveModel {
     /// A car: x, y, yaw; speed (m/s) and steering angle (rad).
@@ -66,7 +66,7 @@ pub enum DriveModel {
 }
 
 /// A frame, and how it moves.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ModelFrame {
     /// It stands still in its parent, or in the world: x, y, z, and the quaternion i, j, k, w.
@@ -115,7 +115,7 @@ pub enum ModelFrame {
 }
 
 /// A body: convex pieces, which are the hulls of some of its vertices.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelBody {
     /// Its name.
     pub name: String,
@@ -125,25 +125,35 @@ pub struct ModelBody {
     pub of_robot: bool,
     /// All that is within this distance of its pieces belongs to it, metres.
     pub radius: f64,
-    /// Whether its inside belongs to it too, not only its pieces: then nothing may be inside of it.
-    pub solid: bool,
     /// The vertices in its frame, metres.
     pub vertices: Vec<[f64; 3]>,
     /// The vertices of each piece: triangles in space, edges in the plane.
     pub pieces: Vec<Vec<u32>>,
+    /// What its pieces are, one part after the other: together they have all pieces.
+    pub parts: Vec<ModelPart>,
+}
+
+/// So many pieces of a body, one after the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ModelPart {
+    /// They are closed, and what they enclose belongs to the body too: nothing may be inside. Triangles face outward.
+    Solid(usize),
+    /// Only they belong to the body.
+    Surface(usize),
 }
 
 impl ModelBody {
-    /// The surface of a mesh.
+    /// A mesh, with its solids.
     pub(crate) fn mesh(name: &str, frame: usize, mesh: &TriMesh) -> Self {
         Self {
             name: name.to_owned(),
             frame,
             of_robot: false,
             radius: 0.0,
-            solid: false,
             vertices: mesh.vertices().iter().map(|p| [p.x, p.y, p.z]).collect(),
             pieces: mesh.triangles().iter().map(|t| t.to_vec()).collect(),
+            parts: parts(mesh),
         }
     }
 
@@ -160,13 +170,15 @@ impl ModelBody {
             vertices.extend(ring.iter().map(|p| [p.x, p.y, 0.0]));
             pieces.extend((0..n).map(|i| vec![index(first + i), index(first + (i + 1) % n)]));
         }
-        Self { name: name.to_owned(), frame, of_robot: false, radius: 0.0, solid, vertices, pieces }
+        let parts = vec![ModelPart::Surface(pieces.len())];
+        Self { name: name.to_owned(), frame, of_robot: false, radius: 0.0, vertices, pieces, parts }
+            .solid(solid)
     }
 
     /// A disc about the origin, in the plane z = 0.
     pub(crate) fn disc(name: &str, frame: usize, radius: f64) -> Self {
-        let (vertices, pieces) = (vec![[0.0; 3]], vec![vec![0]]);
-        Self { name: name.to_owned(), frame, of_robot: false, radius, solid: false, vertices, pieces }
+        let (vertices, pieces, parts) = (vec![[0.0; 3]], vec![vec![0]], vec![ModelPart::Surface(1)]);
+        Self { name: name.to_owned(), frame, of_robot: false, radius, vertices, pieces, parts }
     }
 
     pub(crate) fn robot(mut self) -> Self {
@@ -174,8 +186,11 @@ impl ModelBody {
         self
     }
 
+    /// All of it is solid, if `solid`.
     pub(crate) fn solid(mut self, solid: bool) -> Self {
-        self.solid = solid;
+        if solid {
+            self.parts = vec![ModelPart::Solid(self.pieces.len())];
+        }
         self
     }
 
@@ -194,13 +209,27 @@ impl ModelBody {
     }
 }
 
+/// What the triangles of a mesh are.
+fn parts(mesh: &TriMesh) -> Vec<ModelPart> {
+    let (mut parts, mut done) = (Vec::new(), 0);
+    for solid in mesh.solids() {
+        let [start, end] = [solid.start, solid.end].map(|i| i as usize);
+        parts.extend((start > done).then_some(ModelPart::Surface(start - done)));
+        parts.push(ModelPart::Solid(end - start));
+        done = end;
+    }
+    let left = mesh.triangles().len() - done;
+    parts.extend((left > 0).then_some(ModelPart::Surface(left)));
+    parts
+}
+
 /// An index of a vertex. Readers refuse more vertices than it can count.
 fn index(i: usize) -> u32 {
     u32::try_from(i).unwrap_or(u32::MAX)
 }
 
 /// A body of the robot and the bodies that it must not touch, all of which stand still in the world, or only one.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelPair {
     /// The body of the robot.
     pub body: usize,
