@@ -11,8 +11,6 @@ use std::path::Path;
 
 /// The path of a problem is also damaged, and judged again, with this probability.
 const DAMAGED: f64 = 0.15;
-/// A problem is solved again on another number of threads with this probability.
-const AGAIN: f64 = 0.05;
 
 /// Which problems are wanted.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -180,9 +178,8 @@ impl Problem {
         (0..1000).for_each(|_| {
             rest.bits();
         });
-        if rest.chance(AGAIN) {
-            self.plan_again(&scene, &request, &report, &mut trial);
-        }
+        let threads = if request.threads == 1 { rest.count(2, 4) } else { 1 };
+        self.plan_again(&scene, &request, threads, &report, &mut trial);
         trial.out_of_time = report.stages.iter().any(|stage| stage.ended_by == Some(StoppedBy::Time));
         trial.outcome = Outcome::Unsolved;
         if let Some(rows) = &report.path {
@@ -209,9 +206,15 @@ impl Problem {
         trial.refusal = Some(error.report());
     }
 
-    /// The same request on another number of threads must give the same report.
-    fn plan_again(&self, scene: &Scene, request: &Request, first: &Report, trial: &mut Trial) {
-        let threads = if request.threads == 1 { 3 } else { 1 };
+    /// The same request on another number of `threads` must give the same report.
+    fn plan_again(
+        &self,
+        scene: &Scene,
+        request: &Request,
+        threads: usize,
+        first: &Report,
+        trial: &mut Trial,
+    ) {
         let again = scene.plan(&request.clone().threads(threads));
         // Where the clock has ended one of them, as it does on a busy machine, they need not be the same.
         let by_clock = |report: &Report| {
@@ -276,7 +279,7 @@ impl Problem {
         let case = &self.world.case;
         let verified = |rows: &[Vec<f64>]| {
             let text = PathRows { rows: rows.to_vec(), ..path.clone() }.to_text();
-            let read = PathRows::parse("the path", text.as_bytes(), PathFileKind::Text, path.format);
+            let read = scene.parse_path("the path", text.as_bytes(), PathFileKind::Text);
             read.and_then(|read| scene.check(&read))
         };
         match verified(rows) {

@@ -273,7 +273,7 @@ where
 
     fn independent(&self, map: &Roadmap<C::State, L::Edge>) -> u64 {
         match self.weights {
-            // An attempt adds at most one node.
+            // An attempt adds at most one node. What is prefetched in vain where others add nodes is dropped.
             None => self.until.saturating_sub(map.len()) as u64,
             Some(_) => 0,
         }

@@ -173,7 +173,12 @@ where
     /// Lets the threads prefetch the next attempts, where there are threads and no attempt is prefetched already.
     fn prefetch(&mut self, seed: u64) {
         let Some(work) = &mut self.prefetcher.work else { return };
-        let most = self.generator.independent(&self.map).min(self.prefetcher.most);
+        let independent = self.generator.independent(&self.map);
+        if independent == 0 {
+            // Others than attempts add nodes too: trees from the ends, and queries.
+            self.prefetcher.ready.clear();
+        }
+        let most = independent.min(self.prefetcher.most);
         if !self.prefetcher.ready.is_empty() || most < 2 {
             return;
         }

@@ -69,7 +69,8 @@ pub trait NodeGenerator<C: Space, L: LocalPlanner<C::State>> {
     }
 
     /// How many of the next attempts neither depend on what the others add to the roadmap nor change the generator, so that clones
-    /// of it may make them beforehand and at the same time.
+    /// of it may make them beforehand and at the same time. It is asked again before each of them is used: those that were made for an
+    /// attempt that is not independent any more, as other nodes were added meanwhile, are dropped.
     fn independent(&self, _map: &Roadmap<C::State, L::Edge>) -> u64 {
         0
     }
