@@ -7,7 +7,6 @@ import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _mp
@@ -57,7 +56,7 @@ class Roadmap:
         Error
             When an end is not free.
         """
-        ends = [np.asarray(q, dtype=np.float64).tolist() for q in (start, goal)]
+        ends = [self._scene._row(q) for q in (start, goal)]
         parts, raised = self._native.query(ends[0], ends[1], cancel)
         report = Report._of(*parts, scene=self._scene)
         if raised is None:

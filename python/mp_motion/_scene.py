@@ -11,6 +11,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import tomli_w
+from numpy.lib import recfunctions
 from numpy.typing import ArrayLike, NDArray
 
 from . import _mp, _view
@@ -308,7 +309,7 @@ class Scene:
             robot["base"] = pose_numbers(base)
         document = {
             "robot": robot,
-            "motion": {"start": np.asarray(start, dtype=np.float64)} | _ends(goal, goals, plain),
+            "motion": {"start": _ordered(start)} | _ends(goal, goals, plain),
             "obstacle": [body_members(body, files) for body in obstacles],
         }
         return cls.from_dict(document, files=files, name=name)
@@ -384,7 +385,7 @@ class Scene:
         document = {
             "world": world,
             "robot": members,
-            "motion": {"start": np.asarray(start, dtype=np.float64)} | _ends(goal, goals, plain),
+            "motion": {"start": _ordered(start)} | _ends(goal, goals, plain),
             "obstacle": [planar_members(shape) for shape in obstacles],
         }
         return cls.from_dict(document, files=files, name=name)
@@ -427,8 +428,8 @@ class Scene:
             goals = [goal]
         elif goals is None or goal is not None:
             raise Error("there must be either `goal` or `goals`", remedy="give one of them")
-        ends = [_row(given) for given in goals]
-        return cls._from(_mp.Scene.own(native(robot), _row(start), ends), robot)
+        ends = [_ordered(given).tolist() for given in goals]
+        return cls._from(_mp.Scene.own(native(robot), _ordered(start).tolist(), ends), robot)
 
     def with_ends(self, start: ArrayLike | None = None, goal: ArrayLike | None = None) -> Scene:
         """Return the same scene with another start, or with other goals.
@@ -447,9 +448,14 @@ class Scene:
         >>> bool((back.start == scene.goals[0]).all())
         True
         """
-        starts = self.start if start is None else np.asarray(start, dtype=np.float64).ravel()
-        goals = self.goals if goal is None else np.atleast_2d(np.asarray(goal, dtype=np.float64))
-        return self._from(self._native.with_ends(starts.tolist(), goals.tolist()), self._robot)
+        starts = self.start.tolist() if start is None else self._row(start)
+        if goal is None:
+            goals = self.goals
+        elif isinstance(goal, Mapping) or np.ndim(goal) < 2:
+            goals = np.array([self._row(goal)])
+        else:
+            goals = self._path(goal)
+        return self._from(self._native.with_ends(starts, goals.tolist()), self._robot)
 
     # --- what it is ------------------------------------------------------------------------------------------------
 
@@ -525,7 +531,7 @@ class Scene:
 
     def poses(self, configuration: ArrayLike) -> Array:
         """Return the poses of the bodies of the robot at a configuration, shape (bodies, 4, 4)."""
-        return self._native.poses(_row(configuration))
+        return self._native.poses(self._row(configuration))
 
     def __repr__(self) -> str:
         return f"<Scene {self.name}: {self.space}>"
@@ -786,7 +792,7 @@ class Scene:
         ----------
         configuration : array_like, shape (columns,)
         """
-        return explanation(self._native.explain(_row(configuration)))
+        return explanation(self._native.explain(self._row(configuration)))
 
     def is_free(self, configuration: ArrayLike) -> bool:
         """Return whether a configuration is in bounds and free of contact."""
@@ -822,10 +828,21 @@ class Scene:
             if path.path is None:
                 raise Error(f"there is no path: {path}", remedy="plan with a larger budget, or another seed")
             path = path.path
-        rows = np.ascontiguousarray(path, dtype=np.float64)
+        if isinstance(path, list | tuple) and any(_table(row)[0] is not None for row in path):
+            path = [self._row(row) for row in path]
+        names, table = _table(path)
+        rows = np.ascontiguousarray(table, dtype=np.float64)
         if rows.ndim != 2:
             raise Error(f"an array of shape {rows.shape} is no path", remedy="give one configuration in each row")
-        return rows
+        return rows if names is None else self._native.named_rows(names, rows)
+
+    def _row(self, configuration: ArrayLike | Mapping[str, float]) -> list[float]:
+        names, numbers = _table(configuration)
+        a: Array = np.asarray(numbers, dtype=np.float64)
+        if a.ndim != 1:
+            raise Error(f"an array of shape {a.shape} is no configuration", remedy="give one number for each column")
+        row: list[float] = (a if names is None else self._native.named_rows(names, a[None, :])[0]).tolist()
+        return row
 
     # --- looking at it ---------------------------------------------------------------------------------------------
 
@@ -909,12 +926,30 @@ def _restored(
     return Scene._from(native if ends is None else native.with_ends(*ends))
 
 
-def _row(configuration: ArrayLike) -> list[float]:
-    a: Array = np.asarray(configuration, dtype=np.float64)
-    if a.ndim != 1:
-        raise Error(f"an array of shape {a.shape} is no configuration", remedy="give one number for each column")
-    row: list[float] = a.tolist()
-    return row
+def _table(given: Any) -> tuple[list[str] | None, Any]:
+    """Return the names of the columns of a table, or of the numbers of a row, if it has names; and its numbers.
+
+    Tables are those of pandas, polars and pyarrow, and structured arrays of numpy; rows are those of pandas, and mappings.
+    """
+    if isinstance(given, Mapping):
+        return [str(name) for name in given], list(given.values())
+    fields = getattr(getattr(given, "dtype", None), "names", None)
+    if fields is not None:
+        return list(fields), recfunctions.structured_to_unstructured(given)
+    # The columns of a table of pyarrow have no names themselves; the index of a list is a method.
+    for attribute in ("column_names", "columns", "index"):
+        names = getattr(given, attribute, None)
+        if names is not None and not callable(names):
+            return [str(name) for name in names], given
+    return None, given
+
+
+def _ordered(configuration: ArrayLike) -> Array:
+    """Return numbers that have no names: a scene that is being made cannot match them yet."""
+    names, numbers = _table(configuration)
+    if names is not None and names != [str(i) for i in range(len(names))]:
+        raise Error(f"the numbers are named: {', '.join(names)}", remedy="give them without names, in the order of the robot")
+    return np.asarray(numbers, dtype=np.float64)
 
 
 def _ends(

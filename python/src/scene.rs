@@ -408,9 +408,19 @@ impl Scene {
 
     /// Reads a path from a file.
     fn read_path<'py>(&self, py: Python<'py>, file: PathBuf) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let format = self.scene.path_format();
-        let path = py.detach(|| mp_plan::PathRows::read(&file, format)).to_python()?;
+        let path = py.detach(|| self.scene.read_path(&file)).to_python()?;
         array(py, &path.rows, self.scene.columns().len())
+    }
+
+    /// The rows of a table with named columns as rows of numbers of the robot.
+    fn named_rows<'py>(
+        &self,
+        py: Python<'py>,
+        names: Vec<String>,
+        table: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rows = self.scene.named_rows("the table", &names, &rows(&table)).to_python()?;
+        array(py, &rows, self.scene.columns().len())
     }
 }
 

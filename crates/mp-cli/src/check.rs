@@ -4,7 +4,7 @@ use crate::cli::Check;
 use crate::input::{path, refuse_two_standard_inputs, scene};
 use crate::interrupt;
 use crate::output::{Claims, print, print_json, write};
-use mp_plan::{Error, Interrupt, Scene, brief};
+use mp_plan::{Error, Interrupt, Scene, brief, plain};
 use std::path::Path;
 
 /// Verifies a path, or explains a configuration. True when the path or configuration is free.
@@ -56,7 +56,7 @@ fn explain(scene: &Scene, numbers: &str, as_json: bool) -> Result<bool, Error> {
         print(&format!("  clearance  {} m", brief(explanation.clearance)))?;
     }
     if let Some(free) = &explanation.nearest_free {
-        let numbers: Vec<_> = free.iter().map(|v| brief(*v)).collect();
+        let numbers: Vec<_> = free.iter().map(|v| plain(*v)).collect();
         print(&format!("  the nearest free configuration found is {}", numbers.join(" ")))?;
     }
     Ok(explanation.free)

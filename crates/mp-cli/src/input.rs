@@ -61,7 +61,7 @@ fn read(given: &Path, interrupt: &Interrupt) -> Result<Scene, Error> {
 /// The path that an argument names; `-` is standard input, in any format.
 pub(crate) fn path(scene: &Scene, given: &Path) -> Result<PathRows, Error> {
     if !is_standard(given) {
-        return PathRows::read(given, scene.path_format());
+        return scene.read_path(given);
     }
     let text = standard_input()?;
     let kind = match text.trim_start() {
@@ -69,7 +69,7 @@ pub(crate) fn path(scene: &Scene, given: &Path) -> Result<PathRows, Error> {
         t if t.lines().any(|line| line.contains(',')) => PathFileKind::Csv,
         _ => PathFileKind::Text,
     };
-    PathRows::parse("standard input", text.as_bytes(), kind, scene.path_format())
+    scene.parse_path("standard input", text.as_bytes(), kind)
 }
 
 /// The path that an argument names, and the verdict about it. If anything is wrong, this is said to the person watching.

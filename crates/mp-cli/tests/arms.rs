@@ -56,6 +56,40 @@ fn an_arm_is_planned_checked_drawn_and_described() {
     assert_eq!((&info.json()["kind"], &info.json()["numbers"]), (&"path".into(), &2.into()));
 }
 
+/// Joints are sorted by name in messages of ROS: the elbow comes before the shoulder.
+#[test]
+fn columns_are_read_by_name() {
+    let dir = dir();
+    assert_eq!(mp(&dir, &["plan", "two.toml", "--out", "p.csv"]).code, 0);
+    let rows: Vec<Vec<f64>> = dir
+        .read("p.csv")
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let sorted = |header: &str, scale: f64| {
+        let lines = rows.iter().map(|row| format!("{},{}\n", row[1] * scale, row[0] * scale));
+        header.to_owned() + "\n" + &lines.collect::<String>()
+    };
+    let degrees = 180.0 / std::f64::consts::PI;
+    for (text, code) in [
+        (sorted("elbow,shoulder", 1.0), 0),
+        (sorted("elbow [deg],shoulder_deg", degrees), 0),
+        (sorted("shoulder,elbow", 1.0), 1),
+        (sorted("elbow [rad],shoulder [deg]", 1.0), 1),
+        (sorted("elbow,wrist", 1.0), 2),
+        (sorted("elbow,elbow", 1.0), 2),
+        (sorted("elbow [mm],shoulder", 1.0), 2),
+    ] {
+        dir.write("q.csv", &text);
+        let check = mp(&dir, &["check", "two.toml", "q.csv"]);
+        assert_eq!(check.code, code, "{text}: {check:?}");
+        if code == 2 {
+            assert!(check.stderr.contains("q.csv:1:"), "{check:?}");
+        }
+    }
+}
+
 #[test]
 fn a_path_that_hits_is_told_where() {
     let dir = dir();

@@ -7,11 +7,11 @@
 
 use crate::collada::Scene;
 use crate::mesh::Axes;
+use crate::{Column, csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
 use crate::{
     Environment, Error, ErrorKind, GridMap, JointPath, OffDocument, OmplProblem, PathFile, PlanarFile,
     RobotFile, RosMap, SceneDocument,
 };
-use crate::{csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
 use mp_geom::TriMesh;
 use std::fmt::Debug;
 
@@ -81,7 +81,7 @@ pub fn gempa_path(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn json_path(bytes: &[u8]) -> Result<(), Error> {
-    round_trips(bytes, |b| PathFile::parse_json("f.json", b), PathFile::to_json)
+    round_trips(bytes, |b| PathFile::parse_json("f.json", b, &[]), PathFile::to_json)
 }
 
 /// STL, text and binary.
@@ -141,7 +141,7 @@ pub fn joint_path(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn json_joint_path(bytes: &[u8]) -> Result<(), Error> {
-    round_trips(bytes, |b| JointPath::parse_json("f.json", b), JointPath::to_json)
+    round_trips(bytes, |b| JointPath::parse_json("f.json", b, &[]), JointPath::to_json)
 }
 
 /// Paths as comma-separated values.
@@ -149,7 +149,21 @@ pub fn json_joint_path(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn csv_path(bytes: &[u8]) -> Result<(), Error> {
-    round_trips(bytes, |b| parse_csv("f.csv", b), |rows| csv_text(&[], rows))
+    let [x, turn] = [Column::new("x", "m"), Column::new("turn", "rad")];
+    for columns in [&[x, turn][..], &Column::of_pose(), &[]] {
+        let read = parse_csv("f.csv", bytes, columns);
+        if let Ok((named, rows)) = &read {
+            let names: Vec<_> = named.iter().map(ToString::to_string).collect();
+            let again = parse_csv("f.csv", csv_text(&names, rows).as_bytes(), columns);
+            // Without names, rows of any length are taken: a line of names says how long they are.
+            let fits = named.is_empty() || rows[0].len() == named.len();
+            assert!(!fits || again.is_ok_and(|again| again == (named.clone(), rows.clone())), "{names:?}");
+        }
+        if columns.is_empty() {
+            read?;
+        }
+    }
+    Ok(())
 }
 
 /// Worlds in the plane.

@@ -3,6 +3,31 @@
 use crate::error::{Error, ErrorKind};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// The names of the columns, if the file has any: texts, or objects with a name and a unit.
+#[derive(Deserialize)]
+struct HasNames {
+    #[serde(alias = "names", alias = "joint_names")]
+    columns: Option<Vec<Value>>,
+}
+
+/// The names of the columns of a path, with units if the file says them.
+pub(crate) fn names(file: &str, text: &str) -> Result<Option<Vec<String>>, Error> {
+    let what = "\"columns\": [\"NAME [UNIT]\", …]";
+    // What is no JSON at all is said of the whole file, by what reads the path.
+    if serde_json::from_str::<HasNames>(text).is_err_and(|e| !e.is_data()) {
+        return Ok(None);
+    }
+    let read: HasNames = parse(file, text, what, "the format is described in docs/formats/path.md")?;
+    let name = |value: Value| match (value.get("name"), value.get("unit"), value.as_str()) {
+        (Some(Value::String(name)), Some(Value::String(unit)), _) => format!("{name} [{unit}]"),
+        (Some(Value::String(name)), _, _) => name.clone(),
+        (_, _, Some(name)) => name.to_owned(),
+        _ => value.to_string(),
+    };
+    Ok(read.columns.map(|columns| columns.into_iter().map(name).collect()))
+}
 
 /// The part of a result that is read: its path. All other members are skipped.
 #[derive(Deserialize)]

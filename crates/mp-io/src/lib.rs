@@ -14,6 +14,7 @@
 //! angles radians. The formats are documented in `docs/formats/`.
 
 mod collada;
+mod columns;
 mod csv;
 mod document;
 mod drive;
@@ -39,6 +40,7 @@ mod toml_problem;
 mod xml;
 
 pub use collada::parse_collada;
+pub use columns::{Column, matched};
 pub use csv::{csv_text, parse_csv};
 pub use document::{DocumentBody, DocumentShape, SceneDocument};
 pub use drive::{Drive, Driven};

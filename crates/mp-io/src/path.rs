@@ -1,9 +1,10 @@
 //! Paths as text and JSON: poses of a rigid body as in GEMPA configuration files, and joint values of an arm.
 
+use crate::columns::{Column, matched};
 use crate::error::{Error, ErrorKind};
 use crate::files::{decode, read_text};
 use crate::gempa::environment::six;
-use crate::json::{parse_rows, rows_text};
+use crate::json::{names, parse_rows, rows_text};
 use crate::number::Row;
 use crate::text::{Text, Token, clipped};
 use mp_geom::{pose_from_six, six_from_pose};
@@ -39,7 +40,7 @@ impl PathFile {
     /// # Errors
     /// [`Error`] when it cannot be read or holds no path.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
-        read(path.as_ref(), Self::parse, Self::parse_json)
+        read(path.as_ref(), Self::parse, |file, bytes| Self::parse_json(file, bytes, &Column::of_pose()))
     }
 
     /// Reads `bytes`, the content of a GEMPA configuration file that errors call `file`.
@@ -67,14 +68,23 @@ impl PathFile {
     }
 
     /// Reads `bytes`, the content of a JSON file that errors call `file`: an object with a member `path`, a
-    /// list of six-tuples; its other members are skipped.
+    /// list of six-tuples. Where it has a member `columns` too, these are matched by name to the `columns` given, which are those of
+    /// a pose if there are none. Its other members are skipped.
     ///
     /// # Errors
-    /// [`Error`] when it is not JSON or has no path, with the line and column.
-    pub fn parse_json(file: &str, bytes: &[u8]) -> Result<Self, Error> {
-        let text = decode(file, bytes)?;
-        let configurations = parse_rows(file, text, "{\"path\": [[x, y, z, α, β, γ], …]}")?;
-        Ok(Self { configurations })
+    /// [`Error`] when it is not JSON or has no path, with the line and column, or its columns are others.
+    pub fn parse_json(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Self, Error> {
+        let (text, what) = (decode(file, bytes)?, "{\"path\": [[x, y, z, α, β, γ], …]}");
+        let Some(names) = names(file, text)? else {
+            return Ok(Self { configurations: parse_rows(file, text, what)? });
+        };
+        let pose = Column::of_pose();
+        let columns = if columns.is_empty() { &pose } else { columns };
+        let rows = matched(file, &names, &parse_rows::<Vec<f64>>(file, text, what)?, columns)?;
+        let six = |row: &Vec<f64>| <[f64; 6]>::try_from(row.as_slice()).ok();
+        let configurations = rows.iter().map(six).collect::<Option<_>>();
+        let error = || Error::new(ErrorKind::Content, file, "the path has no six columns").expected(what);
+        Ok(Self { configurations: configurations.ok_or_else(error)? })
     }
 
     /// The text of a GEMPA configuration file. Numbers have the fewest digits that read back to the same
@@ -108,12 +118,12 @@ pub struct JointPath {
 }
 
 impl JointPath {
-    /// Reads the file `path`: text, or a `.json` file with a member `path`, a list of lists.
+    /// Reads the file `path`: text, or a `.json` file as [`parse_json`](Self::parse_json) does.
     ///
     /// # Errors
     /// [`Error`] when it cannot be read or holds no path.
-    pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
-        read(path.as_ref(), Self::parse, Self::parse_json)
+    pub fn read(path: impl AsRef<Path>, columns: &[Column]) -> Result<Self, Error> {
+        read(path.as_ref(), Self::parse, |file, bytes| Self::parse_json(file, bytes, columns))
     }
 
     /// Reads `bytes`, the content of a text that errors call `file`: the numbers of configurations and of joints
@@ -149,14 +159,20 @@ impl JointPath {
     }
 
     /// Reads `bytes`, the content of a JSON file that errors call `file`: an object with a member `path`, a list
-    /// of lists of one length; its other members are skipped.
+    /// of lists of one length. Where it has a member `columns` too, these are matched by name to the `columns` given, unless there are
+    /// none. Its other members are skipped.
     ///
     /// # Errors
-    /// [`Error`] with the line and column.
-    pub fn parse_json(file: &str, bytes: &[u8]) -> Result<Self, Error> {
+    /// [`Error`] with the line and column, or when its columns are others.
+    pub fn parse_json(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
         let what = "{\"path\": [[q1, q2, …], …]}";
-        let configurations: Vec<Vec<f64>> = parse_rows(file, text, what)?;
+        let mut configurations: Vec<Vec<f64>> = parse_rows(file, text, what)?;
+        if let Some(names) = names(file, text)?
+            && !columns.is_empty()
+        {
+            configurations = matched(file, &names, &configurations, columns)?;
+        }
         let joints = configurations.first().map_or(0, Vec::len);
         match configurations.iter().position(|row| row.len() != joints || row.is_empty()) {
             None => Ok(Self { configurations }),
@@ -192,11 +208,12 @@ impl JointPath {
     }
 }
 
-/// Makes a path of the bytes of a file, given the name that errors call it.
-type Parse<P> = fn(&str, &[u8]) -> Result<P, Error>;
-
-/// Reads the file `path`, as JSON when its name ends in `.json`.
-fn read<P>(path: &Path, parse_text: Parse<P>, parse_json: Parse<P>) -> Result<P, Error> {
+/// Reads the file `path`, as JSON when its name ends in `.json`. Both make a path of bytes, given the name that errors call them.
+fn read<P>(
+    path: &Path,
+    parse_text: impl Fn(&str, &[u8]) -> Result<P, Error>,
+    parse_json: impl Fn(&str, &[u8]) -> Result<P, Error>,
+) -> Result<P, Error> {
     let (file, bytes) = read_text(path)?;
     if is_json(path) { parse_json(&file, &bytes) } else { parse_text(&file, &bytes) }
 }
@@ -275,8 +292,50 @@ mod tests {
             path.to_json(),
             "{\"path\":[\n[0.1,2.0,-0.0,1e-9,0.25,3.0],\n[1.0,1.0,1.0,1.0,1.0,1.0]\n]}\n"
         );
-        let e = PathFile::parse_json("r.json", b"{\"solved\": true,\n \"path\": [[1,2,3]]}").unwrap_err();
+        let e =
+            PathFile::parse_json("r.json", b"{\"solved\": true,\n \"path\": [[1,2,3]]}", &[]).unwrap_err();
         assert_eq!(e.line(), Some(2), "{e}");
+    }
+
+    #[test]
+    fn columns_of_json_are_matched_by_name() {
+        let columns = [("lift", "m"), ("elbow", "rad")].map(|(name, unit)| Column::new(name, unit));
+        let read = |text: &str| JointPath::parse_json("p.json", text.as_bytes(), &columns);
+        for names in [
+            r#""columns": ["elbow", "lift"]"#,
+            r#""columns": ["elbow [rad]", "lift [m]"]"#,
+            r#""names": ["elbow", {"name": "lift"}]"#,
+            r#""joint_names": [{"name": "elbow", "unit": "rad"}, {"name": "lift", "unit": "m"}]"#,
+        ] {
+            for text in [
+                format!("{{{names}, \"path\": [[1, 2], [3, 4]]}}"),
+                format!("{{\"path\": [[1, 2], [3, 4]], {names}}}"),
+            ] {
+                assert_eq!(read(&text).unwrap().configurations, [[2.0, 1.0], [4.0, 3.0]], "{text}");
+            }
+        }
+        let degrees = r#"{"columns": ["lift [mm]", "elbow [deg]"], "path": [[250, 180]]}"#;
+        assert_eq!(read(degrees).unwrap().configurations, [[0.25, std::f64::consts::PI]]);
+        for columns in [
+            r#"["lift"]"#,
+            r#"["lift", "wrist"]"#,
+            r#"["lift", "lift"]"#,
+            r#"["lift", "elbow [m]"]"#,
+            "7",
+            "[]",
+        ] {
+            let text = format!("{{\"columns\": {columns}, \"path\": [[1, 2]]}}");
+            assert!(read(&text).is_err(), "{text}");
+        }
+        // Numbers name nothing.
+        assert_eq!(read(r#"{"columns": [0, 1], "path": [[1, 2]]}"#).unwrap().configurations, [[1.0, 2.0]]);
+        let pose =
+            r#"{"columns": ["yaw", "pitch", "roll [deg]", "z", "y", "x"], "path": [[1, 2, 180, 4, 5, 6]]}"#;
+        let read = PathFile::parse_json("p.json", pose.as_bytes(), &[]).unwrap();
+        assert_eq!(read.configurations, [[6.0, 5.0, 4.0, 1.0, 2.0, std::f64::consts::PI]]);
+        assert!(
+            PathFile::parse_json("p.json", br#"{"columns": ["x", "y"], "path": [[1, 2]]}"#, &[]).is_err()
+        );
     }
 
     #[test]
@@ -285,7 +344,7 @@ mod tests {
         let path = JointPath { configurations: vec![vec![0.1, -0.0, 1e-9], vec![1.0, 2.0, 3.0]] };
         for name in ["p.txt", "p.json"] {
             path.write(dir.path().join(name)).unwrap();
-            assert_eq!(JointPath::read(dir.path().join(name)).unwrap(), path);
+            assert_eq!(JointPath::read(dir.path().join(name), &[]).unwrap(), path);
         }
         for (text, line, words) in [
             ("", None, "empty"),
@@ -302,7 +361,7 @@ mod tests {
             assert!(error.to_string().contains(words), "{error}");
         }
         for text in ["{}", "[]", "{\"path\": []}", "{\"path\": [[]]}", "{\"path\": [[1], [1, 2]]}"] {
-            assert!(JointPath::parse_json("p.json", text.as_bytes()).is_err(), "{text}");
+            assert!(JointPath::parse_json("p.json", text.as_bytes(), &[]).is_err(), "{text}");
         }
     }
 }

@@ -124,12 +124,24 @@ impl<'a> Token<'a> {
         })
     }
 
-    /// The parts between commas, without blanks around them.
+    /// The parts between commas, without blanks and quotes around them. Commas between quotes are part of a cell.
     pub(crate) fn cells(self) -> impl Iterator<Item = Token<'a>> + Clone {
-        self.text.split(',').map(move |cell| {
+        let mut quoted = false;
+        let ends = move |c| {
+            quoted ^= c == '"';
+            c == ',' && !quoted
+        };
+        self.text.split(ends).map(move |cell| {
             Token { text: cell, at: self.at + (cell.as_ptr() as usize - self.text.as_ptr() as usize) }
                 .trimmed()
+                .unquoted()
         })
+    }
+
+    /// Without the quotes around it, if there are both.
+    fn unquoted(self) -> Token<'a> {
+        let inner = self.text.strip_prefix('"').and_then(|text| text.strip_suffix('"'));
+        inner.map_or(self, |text| Token { text, at: self.at + 1 })
     }
 
     /// Without blanks around it.

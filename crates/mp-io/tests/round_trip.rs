@@ -110,7 +110,7 @@ proptest! {
     fn paths(configurations in vec(six(), 1..20)) {
         let path = PathFile { configurations };
         prop_assert_eq!(&PathFile::parse("t.txt", path.to_text().as_bytes()).unwrap(), &path);
-        prop_assert_eq!(&PathFile::parse_json("t.json", path.to_json().as_bytes()).unwrap(), &path);
+        prop_assert_eq!(&PathFile::parse_json("t.json", path.to_json().as_bytes(), &[]).unwrap(), &path);
     }
 
     #[test]

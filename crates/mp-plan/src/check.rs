@@ -3,7 +3,7 @@
 use crate::counted::Counted;
 use crate::explain::list;
 use crate::goals::next_to;
-use crate::numbers::brief;
+use crate::numbers::{brief, plain};
 use crate::path::states;
 use crate::{Error, PathRows, RobotKind};
 use mp_cspace::erased::AnyCheck;
@@ -151,7 +151,7 @@ pub(crate) fn fault_text<K: RobotKind>(kind: &K, path: &Path<K::State>, fault: P
         return format!("the robot cannot move from configuration {} to {}", edge + 1, edge + 2);
     }
     let state = kind.space().interpolate(from, to, check.failed_at().unwrap_or(0.0));
-    let at: Vec<_> = kind.row(&state).into_iter().map(brief).collect();
+    let at: Vec<_> = kind.row(&state).into_iter().map(plain).collect();
     let touching = kind.touching(&state);
     let what = match (check, touching.is_empty()) {
         _ if kind.sampled().is_some() => "collides".to_owned(),

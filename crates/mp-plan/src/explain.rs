@@ -1,6 +1,6 @@
 //! What is wrong with a configuration, or with the ends of a scene.
 
-use crate::numbers::brief;
+use crate::numbers::told_apart;
 use crate::{End, Error, RobotKind, Touch};
 use mp_cspace::{Clearance, Space, Validity};
 use serde::{Deserialize, Serialize};
@@ -55,7 +55,10 @@ fn fault<K: RobotKind>(kind: &K, q: &K::State) -> Option<String> {
     }
     let touching = kind.touching(q);
     Some(match touching.is_empty() {
-        true => format!("{} m from contact: at least {} m is needed", brief(clearance), brief(tolerance)),
+        true => {
+            let [clearance, tolerance] = told_apart(clearance, tolerance);
+            format!("{clearance} m from contact: at least {tolerance} m is needed")
+        }
         false if touching.iter().any(|touch| touch.part.is_some()) => {
             format!("in collision: {}", list(&touching))
         }

@@ -7,8 +7,7 @@
 use crate::info::SceneInfo;
 use crate::list::{Next, ResultsReader, merged};
 use crate::{
-    Error, ItemResult, Length, MotionValidator, PathFileKind, PathRows, ProblemList, RelaxField, Report,
-    Request, Scene,
+    Error, ItemResult, Length, MotionValidator, PathFileKind, ProblemList, RelaxField, Report, Request, Scene,
 };
 use mp_cspace::Se2State;
 use mp_io::InMemory;
@@ -152,10 +151,10 @@ pub fn report(bytes: &[u8]) -> Result<(), Error> {
 /// When the bytes are refused.
 pub fn checked_path(bytes: &[u8]) -> Result<(), Error> {
     let scene = small_scene();
-    let path = PathRows::parse("f.csv", bytes, PathFileKind::Csv, scene.path_format())?;
+    let path = scene.parse_path("f.csv", bytes, PathFileKind::Csv)?;
     let verdict = scene.check(&path)?;
     // What is free as it was read is free as it is written.
-    let again = PathRows::parse("f.csv", path.to_csv().as_bytes(), PathFileKind::Csv, scene.path_format())?;
+    let again = scene.parse_path("f.csv", path.to_csv().as_bytes(), PathFileKind::Csv)?;
     assert_eq!(scene.check(&again)?, verdict);
     Ok(())
 }

@@ -118,9 +118,9 @@ pub(crate) fn rows(goals: &[Vec<GoalPart>]) -> Option<Vec<Vec<f64>>> {
 /// A goal as people write it: `x 1.5 to 1.7, y 2, yaw free`.
 pub(crate) fn written<K: RobotKind>(kind: &K, goal: &[GoalPart]) -> String {
     let part = |(column, part): (crate::Column, &GoalPart)| match part {
-        GoalPart::Exactly(v) => format!("{} {}", column.name, crate::brief(*v)),
+        GoalPart::Exactly(v) => format!("{} {}", column.name, crate::plain(*v)),
         GoalPart::Between([low, high]) => {
-            format!("{} {} to {}", column.name, crate::brief(*low), crate::brief(*high))
+            format!("{} {} to {}", column.name, crate::plain(*low), crate::plain(*high))
         }
         GoalPart::Free => format!("{} free", column.name),
     };

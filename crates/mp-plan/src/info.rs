@@ -37,7 +37,7 @@ impl Info {
         Ok(match content(file)? {
             FileContent::Mesh => Self::Mesh(MeshInfo::read(file)?),
             FileContent::Scene => Self::Scene(SceneInfo::of(&Scene::load(file)?)),
-            FileContent::Path(format) => Self::Path(PathInfo::of(file, &PathRows::read(file, format)?)),
+            FileContent::Path(format) => Self::Path(PathInfo::of(file, &PathRows::read(file, format, &[])?)),
         })
     }
 }
@@ -70,7 +70,7 @@ fn content(file: &Path) -> Result<FileContent, Error> {
         }
         "csv" => return Ok(FileContent::Path(PathFormat::Joints)),
         "json" => {
-            let poses = PathRows::read(file, PathFormat::Poses).is_ok();
+            let poses = PathRows::read(file, PathFormat::Poses, &[]).is_ok();
             return Ok(FileContent::Path(if poses { PathFormat::Poses } else { PathFormat::Joints }));
         }
         "off" | "stl" | "obj" | "dae" => return Ok(FileContent::Mesh),

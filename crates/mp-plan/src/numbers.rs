@@ -1,6 +1,6 @@
 //! Numbers as text for people, and a hash of numbers.
 
-/// A number with about four digits.
+/// A number with about four digits: for lengths and the like, not for configurations, which people paste back ([`plain`]).
 #[must_use]
 pub fn brief(v: f64) -> String {
     let magnitude = v.abs();
@@ -13,6 +13,12 @@ pub fn brief(v: f64) -> String {
     };
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".into() } else { text.into() }
+}
+
+/// Two numbers that are compared: brief, unless they would look the same.
+pub(crate) fn told_apart(a: f64, b: f64) -> [String; 2] {
+    let short = [a, b].map(brief);
+    if short[0] != short[1] || a == b { short } else { [a, b].map(|v| v.to_string()) }
 }
 
 /// `1 triangle`, `2 triangles`.
@@ -40,8 +46,18 @@ pub(crate) fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
     hash.digest()
 }
 
-/// A number as in scene files: at most nine decimals, no trailing zeros, no negative zero.
+/// A number as in scene files, which can be pasted back: at most nine decimals, no trailing zeros, no negative zero. From 10⁶ on it reads
+/// back to the same bits.
 #[must_use]
 pub fn plain(v: f64) -> String {
-    ((v * 1e9).round() / 1e9 + 0.0).to_string()
+    match v.abs() {
+        size if size >= 1e16 => format!("{v:e}"),
+        size if size >= 1e6 => v.to_string(),
+        _ => ((v * 1e9).round() / 1e9 + 0.0).to_string(),
+    }
+}
+
+/// Numbers that can be pasted back, separated by blanks.
+pub(crate) fn plain_row(row: &[f64]) -> String {
+    row.iter().map(|v| plain(*v)).collect::<Vec<_>>().join(" ")
 }

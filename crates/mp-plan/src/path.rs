@@ -12,7 +12,7 @@ pub struct PathRows {
     /// The format in which it is written as text.
     #[serde(skip)]
     pub format: PathFormat,
-    /// The meaning of each number; empty if the path was read from a file that does not say.
+    /// The meaning of each number; empty if nothing says it. Then the numbers are in the order of the robot's columns.
     pub columns: Vec<Column>,
     /// The configurations.
     pub rows: Vec<Vec<f64>>,
@@ -72,9 +72,8 @@ impl PathRows {
     /// The path as comma-separated values.
     #[must_use]
     pub fn to_csv(&self) -> String {
-        let name =
-            |column: &Column| format!("{} [{}]", column.name.replace([',', '"', '\n'], "_"), column.unit);
-        mp_io::csv_text(&self.columns.iter().map(name).collect::<Vec<_>>(), &self.rows)
+        let names: Vec<_> = self.columns.iter().map(ToString::to_string).collect();
+        mp_io::csv_text(&names, &self.rows)
     }
 
     /// The content of a file of this kind with the path.
@@ -87,30 +86,43 @@ impl PathRows {
         }
     }
 
-    /// Reads a path from a file: `.json`, `.csv`, anything else as text in the format `format`.
+    /// Reads a path from a file: `.json`, `.csv`, anything else as text in the format `format`. If the file names its columns, these
+    /// are matched to `columns`, those of the robot ([`Scene::columns`](crate::Scene::columns)), and brought to their order and units;
+    /// without any, the path is as in the file.
     ///
     /// # Errors
-    /// When the file cannot be read, or does not hold a path: with file, line and column.
-    pub fn read(file: impl AsRef<Path>, format: PathFormat) -> Result<Self, Error> {
+    /// When the file cannot be read, or does not hold a path of such a robot: with file, line and column.
+    pub fn read(file: impl AsRef<Path>, format: PathFormat, columns: &[Column]) -> Result<Self, Error> {
         let (name, bytes) = mp_io::read_text(file.as_ref())?;
         let kind = PathFileKind::of(file.as_ref()).unwrap_or(PathFileKind::Text);
-        Self::parse(&name, &bytes, kind, format)
+        Self::parse(&name, &bytes, kind, format, columns)
     }
 
-    /// Reads a path from the content of a file. Errors call the file `name`.
+    /// As [`read`](Self::read), from the content of a file. Errors call the file `name`.
     ///
     /// # Errors
     /// When the content is not a path: with line and column.
-    pub fn parse(name: &str, bytes: &[u8], kind: PathFileKind, format: PathFormat) -> Result<Self, Error> {
+    pub fn parse(
+        name: &str,
+        bytes: &[u8],
+        kind: PathFileKind,
+        format: PathFormat,
+        columns: &[Column],
+    ) -> Result<Self, Error> {
         let sixes = |path: PathFile| path.configurations.iter().map(|six| six.to_vec()).collect();
         let rows = match (kind, format) {
-            (PathFileKind::Csv, _) => mp_io::parse_csv(name, bytes)?,
+            (PathFileKind::Csv, _) => {
+                let (columns, rows) = mp_io::parse_csv(name, bytes, columns)?;
+                return Ok(Self { format, columns, rows });
+            }
             (PathFileKind::Text, PathFormat::Poses) => sixes(PathFile::parse(name, bytes)?),
-            (PathFileKind::Json, PathFormat::Poses) => sixes(PathFile::parse_json(name, bytes)?),
+            (PathFileKind::Json, PathFormat::Poses) => sixes(PathFile::parse_json(name, bytes, columns)?),
             (PathFileKind::Text, PathFormat::Joints) => JointPath::parse(name, bytes)?.configurations,
-            (PathFileKind::Json, PathFormat::Joints) => JointPath::parse_json(name, bytes)?.configurations,
+            (PathFileKind::Json, PathFormat::Joints) => {
+                JointPath::parse_json(name, bytes, columns)?.configurations
+            }
         };
-        Ok(Self { format, columns: Vec::new(), rows })
+        Ok(Self { format, columns: columns.to_vec(), rows })
     }
 
     /// The path written as text and read again: its numbers may differ in the last digits.
@@ -118,8 +130,8 @@ impl PathRows {
     /// # Errors
     /// When the text is no path: a number is not finite, or a row has not as many numbers as its format.
     pub fn read_back(&self) -> Result<Self, Error> {
-        let read = Self::parse("the path", self.to_text().as_bytes(), PathFileKind::Text, self.format)?;
-        Ok(Self { columns: self.columns.clone(), ..read })
+        let text = self.to_text();
+        Self::parse("the path", text.as_bytes(), PathFileKind::Text, self.format, &self.columns)
     }
 
     /// The path as six-tuples, if its format is [`PathFormat::Poses`].
@@ -136,7 +148,15 @@ impl PathRows {
 
 /// The states of the rows of a path from a file.
 pub(crate) fn states<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Vec<K::State>, Error> {
-    let columns = kind.columns().len();
+    let columns = kind.columns();
+    if !path.columns.is_empty() && path.columns != columns {
+        let listed =
+            |columns: &[Column]| columns.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+        let (name, own, others) = (kind.name(), listed(&columns), listed(&path.columns));
+        return Err(Error::new(format!("the columns of the path are {others}; those of {name} are {own}"))
+            .help("give `Scene::columns` to what reads the path: it matches them by name"));
+    }
+    let columns = columns.len();
     match path.rows.iter().find(|row| row.len() != columns) {
         None if path.rows.is_empty() => Err(Error::new("the path has no configurations")),
         None => Ok(path.rows.iter().map(|row| kind.state(row)).collect()),
@@ -160,7 +180,7 @@ pub(crate) fn state<K: RobotKind>(kind: &K, row: &[f64]) -> Result<K::State, Err
     if row.len() == columns.len() && row.iter().all(|v| v.is_finite()) {
         return Ok(kind.state(row));
     }
-    let names: Vec<_> = columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect();
+    let names: Vec<_> = columns.iter().map(ToString::to_string).collect();
     Err(Error::new(format!(
         "a configuration of {} has {} finite numbers",
         RobotKind::name(kind),

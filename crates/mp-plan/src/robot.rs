@@ -27,28 +27,13 @@ use mp_cspace::{
     obstacles::{ClearanceGradient, ObstacleHints},
 };
 use mp_geom::{Aabb, TriMesh};
+pub use mp_io::Column;
 use mp_io::PlacedBody;
 use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
-
-/// The meaning of one number of a configuration.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Column {
-    /// Its name: `x`, `yaw`, or that of a joint.
-    pub name: String,
-    /// `m` or `rad`.
-    pub unit: String,
-}
-
-impl Column {
-    /// A column with this name and unit.
-    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self { name: name.into(), unit: unit.into() }
-    }
-}
 
 /// The text form of the paths of a robot: docs/formats/path.md describes both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -6,8 +6,8 @@ use crate::run::{AnyPrepared, FoundRun};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
-    Body, Certificate, Column, Control, Error, Explanation, Finished, Length, PathFormat, PathRows,
-    PreparedRun, RelaxField, Report, Request, RobotKind, Sweep, Track, Verdict,
+    Body, Certificate, Column, Control, Error, Explanation, Finished, Length, PathFileKind, PathFormat,
+    PathRows, PreparedRun, RelaxField, Report, Request, RobotKind, Sweep, Track, Verdict,
 };
 use mp_cspace::registry::PlannerInfo;
 use mp_cspace::{Interrupt, Interrupted};
@@ -195,6 +195,36 @@ impl Scene {
     #[must_use]
     pub fn columns(&self) -> Vec<Column> {
         self.robot.columns()
+    }
+
+    /// Reads a path of the robot from a file, as [`PathRows::read`] does.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or does not hold a path of the robot: with file, line and column.
+    pub fn read_path(&self, file: impl AsRef<Path>) -> Result<PathRows, Error> {
+        PathRows::read(file, self.path_format(), &self.columns())
+    }
+
+    /// As [`read_path`](Self::read_path), from the content of a file that errors call `name`.
+    ///
+    /// # Errors
+    /// When the content is not a path of the robot: with line and column.
+    pub fn parse_path(&self, name: &str, bytes: &[u8], kind: PathFileKind) -> Result<PathRows, Error> {
+        PathRows::parse(name, bytes, kind, self.path_format(), &self.columns())
+    }
+
+    /// The rows of a table whose columns have these `names`, as rows of numbers of the robot: columns are matched by name, and their units,
+    /// as in `elbow [deg]`, converted. Errors call the table `what`.
+    ///
+    /// # Errors
+    /// When a name is unknown, missing or there twice, or a unit does not fit.
+    pub fn named_rows(
+        &self,
+        what: &str,
+        names: &[String],
+        rows: &[Vec<f64>],
+    ) -> Result<Vec<Vec<f64>>, Error> {
+        Ok(mp_io::matched(what, names, rows, &self.columns())?)
     }
 
     /// The least and the largest value of each number of a configuration; `None` for an angle without limits.

@@ -3,7 +3,10 @@
 use mp_geom::TriMesh;
 use mp_geom::primitives::cuboid;
 use mp_plan::info::{Info, MeshInfo, Surface};
-use mp_plan::{Length, MetricName, MotionValidator, RelaxField, Request, Track, brief, plain, write_file};
+use mp_plan::{
+    Length, MetricName, MotionValidator, PathFileKind, PathRows, RelaxField, Request, Scene, Track, brief,
+    plain, write_file,
+};
 use nalgebra::{Isometry3, Point3};
 
 #[test]
@@ -18,7 +21,19 @@ fn numbers_are_brief() {
     ] {
         assert_eq!(brief(v), text);
     }
-    assert_eq!(plain(-1e-12), "0");
+    // What is pasted back is the same place.
+    for (v, text) in [
+        (-1e-12, "0"),
+        (0.1 + 0.2, "0.3"),
+        (4_500_012.345, "4500012.345"),
+        (-500_002.640_999_97, "-500002.64099997"),
+        (4_500_012.329_598_493, "4500012.329598493"),
+        (123_456_789.123_456_79, "123456789.12345679"),
+        (1e300, "1e300"),
+        (-1e16, "-1e16"),
+    ] {
+        assert_eq!(plain(v), text);
+    }
 }
 
 #[test]
@@ -83,6 +98,52 @@ fn txt_files_are_told_apart_by_how_they_begin() {
         assert!(e.contains(said), "{text:?}: {e}");
     }
     assert!(Info::read(dir.path()).is_err());
+}
+
+/// Kinds of robots: their paths are read by the names of columns.
+#[test]
+fn columns_are_matched_by_name_for_every_kind_of_robot() {
+    for name in ["arm", "flyer", "easy", "planar-bugtrap", "parking", "crossing", "accelerations", "docks"] {
+        let scene = Scene::find(name).unwrap();
+        let columns = scene.columns();
+        let rows = vec![scene.start(), scene.goals().remove(0)];
+        let path = PathRows { format: scene.path_format(), columns: columns.clone(), rows };
+        let verdict = scene.check(&path).unwrap();
+        let read = |text: &str| scene.parse_path("p.csv", text.as_bytes(), PathFileKind::Csv);
+        assert_eq!(read(&path.to_csv()).unwrap(), path, "{name}");
+        // As a data frame writes it: sorted, with an index, and angles in degrees.
+        let mut sorted: Vec<usize> = (0..columns.len()).collect();
+        sorted.sort_by_key(|i| std::cmp::Reverse(&columns[*i].name));
+        let unit = |i: &usize| columns[*i].unit.replace("rad", "deg");
+        let header: String = sorted.iter().map(|i| format!(",{} ({})", columns[*i].name, unit(i))).collect();
+        let row = |(k, row): (usize, &Vec<f64>)| {
+            let value =
+                |i: &usize| if columns[*i].unit.contains("rad") { row[*i].to_degrees() } else { row[*i] };
+            sorted.iter().fold(format!("\n{k}"), |text, i| text + &format!(",{}", value(i)))
+        };
+        let rows: String = path.rows.iter().enumerate().map(row).collect();
+        let again = read(&(header.clone() + &rows)).unwrap();
+        let differences =
+            again.rows.iter().flatten().zip(path.rows.iter().flatten()).map(|(a, b)| (a - b).abs());
+        assert!(differences.fold(0.0, f64::max) < 1e-12, "{name}: {again:?}");
+        assert_eq!(scene.check(&again).unwrap().free, verdict.free, "{name}");
+        let first = &columns[0].name;
+        for header in [
+            header.replace(&format!("{first} "), "stray "),
+            header.replace(&format!(",{first} ("), &format!(",{} (", columns[1].name)),
+            header.replace(&format!("{first} ({})", unit(&0)), &format!("{first} (kg)")),
+        ] {
+            let error = read(&(header + &rows)).unwrap_err().report();
+            assert!(error.contains("p.csv:1:") && error.contains("mp info"), "{name}: {error}");
+        }
+        // Rows in another order than the robot's are not checked as if they were in its order.
+        let mut turned = path.clone();
+        turned.columns.reverse();
+        assert!(scene.check(&turned).is_err(), "{name}");
+        let names: Vec<_> = turned.columns.iter().map(ToString::to_string).collect();
+        let rows: Vec<Vec<f64>> = path.rows.iter().map(|row| row.iter().rev().copied().collect()).collect();
+        assert_eq!(scene.named_rows("the table", &names, &rows).unwrap(), path.rows, "{name}");
+    }
 }
 
 #[test]

@@ -36,9 +36,15 @@ pub fn verify(text: &str) -> Result<Proved, String> {
 /// # Errors
 /// Where they differ, in a sentence.
 pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
-    let rows = file::read(text)?.path;
+    let file::Certificate { path: rows, columns, .. } = file::read(text)?;
+    let mut names = Vec::new();
     let given: Vec<Vec<f64>> = match serde_json::from_str::<serde_json::Value>(path) {
         Ok(serde_json::Value::Object(mut file)) => {
+            if let Some(serde_json::Value::Array(columns)) = file.get("columns") {
+                let name =
+                    |value: &serde_json::Value| value.as_str().or(value["name"].as_str()).map(str::to_owned);
+                names = columns.iter().map(|value| name(value).unwrap_or_default()).collect();
+            }
             let path = file.remove("path").ok_or("the file of the path has no member `path`")?;
             serde_json::from_value(path).map_err(|e| format!("the path cannot be read: {e}"))?
         }
@@ -47,8 +53,14 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
                 let words = line.split([' ', '\t', ',']).filter(|word| !word.is_empty());
                 words.map(|word| word.parse().ok()).collect()
             };
-            let mut lines: Vec<Vec<f64>> =
-                path.lines().filter_map(numbers).filter(|row| !row.is_empty()).collect();
+            let mut lines = Vec::new();
+            for line in path.lines().filter(|line| !line.trim().is_empty()) {
+                match numbers(line) {
+                    Some(row) => lines.push(row),
+                    None if lines.is_empty() && names.is_empty() => names = cells(line),
+                    None => return Err(format!("the path has a line that is no row of numbers: {line}")),
+                }
+            }
             // The first line counts, unless it names the columns.
             if !path.contains(',')
                 && lines.first().is_some_and(|counts| counts[0] == (lines.len() - 1) as f64)
@@ -58,6 +70,16 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
             lines
         }
     };
+    // What a file calls its columns decides what its numbers mean.
+    let same = |(name, column): (&String, &String)| {
+        let own = column.rsplit_once(" [").map_or(&**column, |(own, _)| own);
+        [column, own].map(|name| name.replace(char::is_control, "_")).contains(name)
+    };
+    let as_named = names.len() == columns.len() && names.iter().zip(&columns).all(same);
+    if !(names.is_empty() || as_named) {
+        let [given, own] = [names, columns].map(|names| names.join(", "));
+        return Err(format!("the columns of the path are {given}, those of the certificate {own}"));
+    }
     if given.len() != rows.len() {
         return Err(format!("the path has {} configurations, the certificate {}", given.len(), rows.len()));
     }
@@ -65,6 +87,20 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
         Some(i) => Err(format!("configuration {} of the path is another one in the certificate", i + 1)),
         None => Ok(()),
     }
+}
+
+/// The names in a line of comma-separated values, without quotes around them.
+fn cells(line: &str) -> Vec<String> {
+    let mut quoted = false;
+    let cells = line.split(|c| {
+        quoted ^= c == '"';
+        c == ',' && !quoted
+    });
+    let cells = cells.map(|cell| {
+        let cell = cell.trim();
+        cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).unwrap_or(cell).replace("\"\"", "\"")
+    });
+    cells.collect()
 }
 
 /// Whether bodies of a certificate are the meshes of files: pairs of the name of a body and the content of a file (OFF, OBJ, STL, GEMPA

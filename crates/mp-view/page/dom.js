@@ -86,6 +86,9 @@ export function brief(x) {
   return size >= 1e-4 && size < 1e6 ? String(Number(x.toPrecision(4))) : x.toExponential(2);
 }
 
+/** A coordinate, with enough digits to be pasted back. @param {number} x @returns {string} */
+export const coordinate = (x) => (Number.isFinite(x) ? String(Number(x.toPrecision(12))) : brief(x));
+
 /** Asks in a dialog; Escape means no. @param {string} question @param {string} yes @param {string} no @returns {Promise<boolean>} */
 export function ask(question, yes, no) {
   return new Promise((resolve) => {

@@ -1,6 +1,6 @@
 // The panel for start and goals: a slider and a number for each column, and what the planner says about the configuration.
 
-import { brief, button, el, labelled, section, select } from "mp/dom.js";
+import { brief, button, coordinate, el, labelled, section, select } from "mp/dom.js";
 
 /** @import { End, Verdict } from "mp/ends.js" */
 /** @import { Workbench } from "mp/workbench.js" */
@@ -94,7 +94,7 @@ export class EndsPanel {
     this.fields.forEach(({ slider, number, degrees }, k) => {
       if (row[k] === undefined) return;
       slider.valueAsNumber = row[k];
-      if (document.activeElement !== number || number.valueAsNumber !== row[k]) number.value = String(Number(row[k].toPrecision(9)));
+      if (document.activeElement !== number || number.valueAsNumber !== row[k]) number.value = coordinate(row[k]);
       if (degrees) degrees.textContent = `${((row[k] * 360) / FULL_TURN).toFixed(1)}°`;
     });
   }

@@ -1,6 +1,6 @@
 // The panel that builds: figures and meshes to add, the numbers of what is selected, and the room.
 
-import { button, checkbox, el, labelled, section, select } from "mp/dom.js";
+import { button, checkbox, coordinate, el, labelled, section, select } from "mp/dom.js";
 import * as doc from "mp/document.js";
 import { HANDLE_MODES } from "mp/editor.js";
 import { niceStep, tidy } from "mp/gizmo.js";
@@ -148,7 +148,7 @@ export class Inspector {
     for (const input of this.body.querySelectorAll("input")) {
       const value = values.get(input.title);
       if (value === undefined) continue;
-      input.value = String(Number(value.toPrecision(6)));
+      input.value = coordinate(value);
       const output = input.parentElement?.querySelector("output");
       if (output) output.textContent = degrees(value);
     }

@@ -1,6 +1,6 @@
 // The panel at the side: what the scene is, how it is drawn, its bodies, its paths, the report, and what was picked.
 
-import { brief, button, byId, checkbox, el, factList, labelled, section, select, slider } from "mp/dom.js";
+import { brief, button, byId, checkbox, coordinate, el, factList, labelled, section, select, slider } from "mp/dom.js";
 import { emptyScene } from "mp/scene.js";
 
 /** @import { ViewName } from "mp/camera.js" */
@@ -180,7 +180,7 @@ export class Panels {
     ];
     scene.columns.forEach((column, i) => {
       const limit = scene.limits[i];
-      facts.push([column.name, `${limit ? `${brief(limit[0])} to ${brief(limit[1])}` : "free"} ${column.unit}`]);
+      facts.push([column.name, `${limit ? `${coordinate(limit[0])} to ${coordinate(limit[1])}` : "free"} ${column.unit}`]);
     });
     return facts;
   }
@@ -190,7 +190,7 @@ export class Panels {
     const path = scene.paths[s.path];
     if (!path?.count || !this.configuration.open) return;
     const i = Math.round(s.time) * scene.columns.length;
-    const facts = scene.columns.flatMap((c, k) => [el("dt", {}, c.name), el("dd", {}, `${brief(path.rows[i + k])} ${c.unit}`)]);
+    const facts = scene.columns.flatMap((c, k) => [el("dt", {}, c.name), el("dd", {}, `${coordinate(path.rows[i + k])} ${c.unit}`)]);
     this.row.replaceChildren(...facts);
   }
   /** @param {Picked | null} picked @param {() => void} close */

@@ -1,6 +1,6 @@
 // What is under a pixel: a body, a configuration of the path, or a node of a tree or of the roadmap.
 
-import { brief } from "mp/dom.js";
+import { brief, coordinate } from "mp/dom.js";
 import { add, dot, place, pointAt, scale, sub, unplace, unrotate } from "mp/math.js";
 
 /** @import { Camera, Ray } from "mp/camera.js" */
@@ -154,7 +154,7 @@ export class Picker {
   /** The numbers of a configuration. @param {number} p @param {number} i @returns {[string, string][]} */
   rowFacts(p, i) {
     const { columns, paths } = this.scene;
-    return columns.map((c, k) => [c.name, `${brief(paths[p].rows[i * columns.length + k])} ${c.unit}`]);
+    return columns.map((c, k) => [c.name, `${coordinate(paths[p].rows[i * columns.length + k])} ${c.unit}`]);
   }
   /** @param {number} i @returns {Omit<Picked, "point">} */
   describeMilestone(i) {

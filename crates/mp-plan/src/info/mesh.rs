@@ -1,7 +1,7 @@
 //! What is in a mesh file.
 
 use crate::inputs::Recording;
-use crate::{Error, brief, count};
+use crate::{Error, brief, count, plain};
 use mp_geom::TriMesh;
 use serde::Serialize;
 use std::collections::HashMap;
@@ -186,7 +186,7 @@ impl fmt::Display for MeshInfo {
         let s = &self.surface;
         let yes = |b: bool| if b { "yes" } else { "no" };
         let size: Vec<String> = (0..3).map(|k| brief(s.max[k] - s.min[k])).collect();
-        let corner = |c: [f64; 3]| format!("({})", c.map(brief).join(", "));
+        let corner = |c: [f64; 3]| format!("({})", c.map(plain).join(", "));
         writeln!(f, "{}: a mesh", self.file)?;
         writeln!(
             f,

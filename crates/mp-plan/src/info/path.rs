@@ -1,5 +1,6 @@
 //! What is in a path file.
 
+use crate::numbers::plain_row;
 use crate::{PathFormat, PathRows, brief, count};
 use mp_geom::pose_from_six;
 use nalgebra::Isometry3;
@@ -72,7 +73,7 @@ impl PathInfo {
 
 impl fmt::Display for PathInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let row = |v: &[f64]| v.iter().map(|v| brief(*v)).collect::<Vec<_>>().join(" ");
+        let row = plain_row;
         writeln!(f, "{}: a path", self.file)?;
         let each = count(self.numbers, "number");
         writeln!(f, "  {} of {each}", count(self.configurations, "configuration"))?;

@@ -1,7 +1,8 @@
 //! What is in a scene.
 
 use super::Surface;
-use crate::{BodyShape, Scene, brief, count};
+use crate::numbers::plain_row;
+use crate::{BodyShape, Scene, brief, count, plain};
 use mp_geom::six_from_pose;
 use serde::Serialize;
 use std::fmt;
@@ -124,13 +125,13 @@ const LISTED: usize = 40;
 
 impl fmt::Display for SceneInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let row = |v: &[f64]| v.iter().map(|v| brief(*v)).collect::<Vec<_>>().join(" ");
+        let row = plain_row;
         let name = self.file.as_ref().unwrap_or(&self.name);
         writeln!(f, "{name}: a scene in {}", self.space)?;
         for c in &self.columns {
             match c.limits {
                 Some([low, high]) => {
-                    writeln!(f, "    {} from {} to {} {}", c.name, brief(low), brief(high), c.unit)?;
+                    writeln!(f, "    {} from {} to {} {}", c.name, plain(low), plain(high), c.unit)?;
                 }
                 None => writeln!(f, "    {} turns without end", c.name)?,
             }

@@ -6,6 +6,7 @@ use super::{
     hints_and_gradient, no_metric,
 };
 use crate::goals::{GoalPart, examples, rows};
+use crate::numbers::plain_row;
 use crate::{Error, MetricName, brief};
 use mp_cspace::{
     Clearance, Euclidean, Factored, FloatingJoints, Halton, Interrupt, Interrupted, JointRange, Joints,
@@ -586,7 +587,7 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
             if let Some([low, high]) = limits
                 && !(low..=high).contains(&x)
             {
-                let limits = format!("{} may be from {} to {}", column.name, brief(low), brief(high));
+                let limits = format!("{} may be from {low} to {high}", column.name);
                 return format!("out of the limits: {x}, but {limits}");
             }
         }
@@ -637,7 +638,7 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
         let links = crate::count(self.arm.model().links.len(), "link");
         let base = match self.arm.kinematics().floats() {
             true => "floats: its pose is part of a configuration".to_owned(),
-            false => six_from_pose(&self.arm.model().base).map(brief).join(" "),
+            false => plain_row(&six_from_pose(&self.arm.model().base)),
         };
         let pairs = crate::count(self.arm.checked_pairs().len(), "pair");
         let mut details = vec![

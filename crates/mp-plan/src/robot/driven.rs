@@ -349,12 +349,10 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
             false if !system.allows(&b.input) => {
                 format!("the input of configuration {} is beyond its limits", i + 2)
             }
-            false => format!(
-                "the input of configuration {} is held for {} s, not for up to {} s",
-                i + 2,
-                crate::brief(b.duration),
-                crate::brief(system.duration)
-            ),
+            false => {
+                let [held, most] = crate::numbers::told_apart(b.duration, system.duration);
+                format!("the input of configuration {} is held for {held} s, not for up to {most} s", i + 2)
+            }
         })
     }
 

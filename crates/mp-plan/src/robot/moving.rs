@@ -7,7 +7,8 @@ use super::{
     no_metric,
 };
 use crate::goals::{GoalPart, examples};
-use crate::{Error, MetricName};
+use crate::numbers::told_apart;
+use crate::{Error, MetricName, brief, plain};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
     AsVectors, Clearance, Demand, Embed, Interrupt, Interrupted, MotionCheck, MotionValidity, Space,
@@ -306,8 +307,7 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         details.retain(|(name, _)| name != "goal is");
         let names: Vec<&str> = self.obstacles.iter().map(|body| body.name.as_str()).collect();
         details.push(("moving".to_owned(), names.join(", ")));
-        details
-            .push(("speed".to_owned(), format!("at most {} per second", crate::brief(self.space.0.speed()))));
+        details.push(("speed".to_owned(), format!("at most {} per second", brief(self.space.0.speed()))));
         let goals = self.goal_parts.iter().map(|goal| crate::goals::written(self, goal));
         details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
         details
@@ -331,16 +331,23 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         let space = &self.space.0;
         let i = moments.windows(2).position(|pair| !space.can_move(&pair[0], &pair[1]))?;
         let [(a, begin), (b, end)] = [&moments[i], &moments[i + 1]];
-        let (way, brief) = (self.still.space().distance(a, b), crate::brief);
+        let way = self.still.space().distance(a, b);
         Some(match end > begin {
-            true => format!(
-                "configuration {} is {} from the one before, too far for {} s at {} per second",
-                i + 2,
-                brief(way),
-                brief(end - begin),
-                brief(space.speed())
-            ),
-            false => format!("configuration {} is at {} s, not after the one before", i + 2, brief(*end)),
+            true => {
+                let [needed, speed] = told_apart(way / (end - begin), space.speed());
+                let (way, time) = (brief(way), brief(end - begin));
+                format!(
+                    "configuration {} is {way} from the one before, too far for {time} s: {needed} per second, not {speed}",
+                    i + 2
+                )
+            }
+            false => {
+                let [begin, end] = [begin, end].map(|time| plain(*time));
+                format!(
+                    "configuration {} is at {end} s, not after the one before, which is at {begin} s",
+                    i + 2
+                )
+            }
         })
     }
     fn mismatch(&self, q: &DVector<f64>, wanted: &DVector<f64>) -> Mismatch {

@@ -427,10 +427,7 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let column = |(name, unit)| Column::new(name, unit);
-        [("x", "m"), ("y", "m"), ("z", "m"), ("alpha", "rad"), ("beta", "rad"), ("gamma", "rad")]
-            .map(column)
-            .to_vec()
+        Column::of_pose()
     }
     fn limits(&self) -> Vec<Option<[f64; 2]>> {
         let b = self.problem.position_bounds();

@@ -51,6 +51,29 @@ fn every_shipped_scene_has_a_certificate_that_another_program_replays() {
     }
 }
 
+/// The same numbers under other names are another path.
+#[test]
+fn the_columns_of_a_path_are_those_of_its_certificate() {
+    let (path, text) = certified("arm");
+    let csv = path.to_csv();
+    let (header, rows) = csv.split_once('\n').unwrap();
+    let turned = header.split(',').rev().collect::<Vec<_>>().join(",");
+    let bare = header.replace(" [rad]", "");
+    for (header, same) in [
+        (header, true),
+        (&bare, true),
+        (&turned, false),
+        ("a,b,c,d,e,f", false),
+        (&header.replace("rad", "deg"), false),
+    ] {
+        assert_eq!(is_of_path(&text, &format!("{header}\n{rows}")).is_ok(), same, "{header}");
+        let names: Vec<&str> = header.split(',').collect();
+        let json = json!({ "columns": names, "path": path.rows }).to_string();
+        assert_eq!(is_of_path(&text, &json).is_ok(), same, "{header}");
+    }
+    assert!(is_of_path(&text, &format!("{csv}\nthe end\n")).is_err());
+}
+
 /// One of each kind of robot and of motion.
 const KINDS: [&str; 11] = [
     "accelerations",

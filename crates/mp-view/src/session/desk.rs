@@ -254,7 +254,7 @@ impl Desk {
             files = Named::of(request)?;
             let name = files.only("path")?;
             let kind = PathFileKind::of(Path::new(name)).unwrap_or(PathFileKind::Text);
-            (name, PathRows::parse(name, files.content(name), kind, scene.path_format())?)
+            (name, scene.parse_path(name, files.content(name), kind)?)
         };
         let verdict = scene.check(&rows)?;
         let track = PathTrack::of(name, verdict.free, Some(verdict.path_length), scene.track(&rows)?);
