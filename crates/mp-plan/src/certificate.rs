@@ -123,7 +123,7 @@ pub(crate) fn certificate<K: RobotKind>(
 
 /// Name and unit of each number of a row.
 fn columns<K: RobotKind>(kind: &K) -> Vec<String> {
-    kind.columns().iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect()
+    kind.columns().iter().map(ToString::to_string).collect()
 }
 
 /// The model must place the bodies of the robot where the robot has them.

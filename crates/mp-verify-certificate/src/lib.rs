@@ -37,13 +37,13 @@ pub fn verify(text: &str) -> Result<Proved, String> {
 /// Where they differ, in a sentence.
 pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
     let file::Certificate { path: rows, columns, .. } = file::read(text)?;
-    let mut names = Vec::new();
+    let mut header = String::new();
     let given: Vec<Vec<f64>> = match serde_json::from_str::<serde_json::Value>(path) {
         Ok(serde_json::Value::Object(mut file)) => {
-            if let Some(serde_json::Value::Array(columns)) = file.get("columns") {
-                let name =
-                    |value: &serde_json::Value| value.as_str().or(value["name"].as_str()).map(str::to_owned);
-                names = columns.iter().map(|value| name(value).unwrap_or_default()).collect();
+            for column in file.get("columns").and_then(|columns| columns.as_array()).into_iter().flatten() {
+                let text = |key| column[key].as_str().unwrap_or_default();
+                header +=
+                    &format!("{}{}[{}],", column.as_str().unwrap_or_default(), text("name"), text("unit"));
             }
             let path = file.remove("path").ok_or("the file of the path has no member `path`")?;
             serde_json::from_value(path).map_err(|e| format!("the path cannot be read: {e}"))?
@@ -53,14 +53,10 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
                 let words = line.split([' ', '\t', ',']).filter(|word| !word.is_empty());
                 words.map(|word| word.parse().ok()).collect()
             };
-            let mut lines = Vec::new();
-            for line in path.lines().filter(|line| !line.trim().is_empty()) {
-                match numbers(line) {
-                    Some(row) => lines.push(row),
-                    None if lines.is_empty() && names.is_empty() => names = cells(line),
-                    None => return Err(format!("the path has a line that is no row of numbers: {line}")),
-                }
-            }
+            let mut lines: Vec<Vec<f64>> =
+                path.lines().filter_map(numbers).filter(|row| !row.is_empty()).collect();
+            let first = path.trim_start().lines().next().filter(|line| numbers(line).is_none());
+            header.extend(first.map(|line| format!("{line},")));
             // The first line counts, unless it names the columns.
             if !path.contains(',')
                 && lines.first().is_some_and(|counts| counts[0] == (lines.len() - 1) as f64)
@@ -71,15 +67,13 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
         }
     };
     // What a file calls its columns decides what its numbers mean.
-    let same = |(name, column): (&String, &String)| {
-        let own = column.rsplit_once(" [").map_or(&**column, |(own, _)| own);
-        [column, own].map(|name| name.replace(char::is_control, "_")).contains(name)
-    };
-    let as_named = names.len() == columns.len() && names.iter().zip(&columns).all(same);
-    if !(names.is_empty() || as_named) {
-        let [given, own] = [names, columns].map(|names| names.join(", "));
-        return Err(format!("the columns of the path are {given}, those of the certificate {own}"));
-    }
+    let plain = |name: &str| name.replace(['"', ' '], "").replace("[]", "");
+    let own = columns.iter().map(|name| plain(name) + ",");
+    let bare = columns.iter().map(|name| plain(name.rsplit_once(" [").map_or(name, |(name, _)| name)) + ",");
+    let known = [String::new(), own.collect(), bare.collect()].contains(&plain(&header));
+    known
+        .then_some(())
+        .ok_or(format!("the columns of the path are not those of the certificate: {header}"))?;
     if given.len() != rows.len() {
         return Err(format!("the path has {} configurations, the certificate {}", given.len(), rows.len()));
     }
@@ -87,20 +81,6 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
         Some(i) => Err(format!("configuration {} of the path is another one in the certificate", i + 1)),
         None => Ok(()),
     }
-}
-
-/// The names in a line of comma-separated values, without quotes around them.
-fn cells(line: &str) -> Vec<String> {
-    let mut quoted = false;
-    let cells = line.split(|c| {
-        quoted ^= c == '"';
-        c == ',' && !quoted
-    });
-    let cells = cells.map(|cell| {
-        let cell = cell.trim();
-        cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).unwrap_or(cell).replace("\"\"", "\"")
-    });
-    cells.collect()
 }
 
 /// Whether bodies of a certificate are the meshes of files: pairs of the name of a body and the content of a file (OFF, OBJ, STL, GEMPA
