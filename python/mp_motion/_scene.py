@@ -329,6 +329,7 @@ class Scene:
         scale: float | None = None,
         origin: ArrayLike | None = None,
         threshold: float | None = None,
+        unknown: str | None = None,
         name: str = "scene",
     ) -> Scene:
         """Make a scene of a robot in the plane, among areas or on a map.
@@ -358,6 +359,9 @@ class Scene:
             The lower left corner of the image, metres.
         threshold : float, optional
             What is darker, 0 being black and 1 white, is obstacle.
+        unknown : str, optional
+            ``"free"`` if the robot may reach over the edges of the image; they are walls otherwise, unless `walls` says where
+            those are.
         name : str
             What reports call the scene.
 
@@ -370,7 +374,7 @@ class Scene:
         True
         """
         files: dict[str, bytes] = {}
-        world = {"walls": walls, "bounds": bounds, "scale": scale, "origin": origin, "threshold": threshold}
+        world = {"walls": walls, "bounds": bounds, "scale": scale, "origin": origin, "threshold": threshold, "unknown": unknown}
         world = {key: np.asarray(value).tolist() for key, value in world.items() if value is not None}
         if image is not None:
             files["image.pgm"] = _pgm(np.asarray(image))

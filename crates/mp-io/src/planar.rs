@@ -83,7 +83,7 @@ pub struct PlanarFile {
     pub bounds: Option<[[f64; 2]; 2]>,
     /// An image whose dark pixels are obstacles.
     pub map: Option<PlanarMap>,
-    /// Whether the unknown pixels of a ROS map are free.
+    /// Whether the unknown pixels of a ROS map are free, and what is outside of it or of an image.
     pub unknown_is_free: bool,
     /// The polygons.
     pub obstacles: Vec<PlanarObstacle>,

@@ -95,7 +95,7 @@ fn map(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     mp_io::GridMap::parse(&image.display().to_string(), &files.read(&image, mp_io::MAX_MESH_BYTES)?)?;
     let mut problem = PlanarProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?;
     let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
-    let world = mp_geom::planar::PlanarWorld::new_until(polygons, None, &files.interrupt())
+    let world = mp_geom::planar::PlanarWorld::new_until(polygons, problem.walls, &files.interrupt())
         .map_err(|e| Error::new(e.to_string()))?;
     let grid = Grid::new(&world, problem.bounds);
     let widest = grid.clearances.iter().copied().fold(0.0, f64::max);
@@ -147,13 +147,8 @@ impl Grid {
         let counts = size.map(|side| ((side / spacing) as usize).max(1));
         // In the middle of its cell, so that no point is on the border of the map.
         let mut grid = Self { low, spacing, counts, clearances: Vec::new() };
-        grid.clearances = (0..counts[0] * counts[1])
-            .map(|i| {
-                let clearance = world.signed_distance(&grid.point(i).into());
-                // Without obstacles there is still the border of the map.
-                clearance.min(0.5 * size[0].min(size[1]))
-            })
-            .collect();
+        grid.clearances =
+            (0..counts[0] * counts[1]).map(|i| world.signed_distance(&grid.point(i).into())).collect();
         grid
     }
 

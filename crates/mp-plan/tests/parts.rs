@@ -36,6 +36,41 @@ fn numbers_are_brief() {
     }
 }
 
+/// A wall with a gap at the edge of the map: only who leaves the map passes.
+#[test]
+fn robots_do_not_leave_maps() {
+    let mut image = vec![255_u8; 40 * 40];
+    image[19 * 40..19 * 40 + 39].fill(0);
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    std::fs::write(file("map.pgm"), [b"P5 40 40 255\n".as_slice(), &image].concat()).unwrap();
+    let bar = "polygon = [[-0.5, -0.02], [0.01, -0.02], [0.01, 0.02], [-0.5, 0.02]]";
+    let square = "polygon = [[-0.03, -0.03], [0.03, -0.03], [0.03, 0.03], [-0.03, 0.03]]";
+    for (robot, turned, yaw, name) in [
+        (bar, ", 0", 0.0, "the edge of the map"),
+        (bar, ", 0", 0.1, "the outside of the map"),
+        (square, ", 0", -0.1, "the outside of the map"),
+        ("disc = 0.03", "", 0.0, "the edge of the map"),
+    ] {
+        let yaml = format!("image: map.pgm\nresolution: 0.05\norigin: [0, 0, {yaw}]\n");
+        std::fs::write(file("map.yaml"), yaml).unwrap();
+        for (unknown, passes) in [("obstacle", false), ("free", true)] {
+            let motion = format!("start = [1, 0.5{turned}]\ngoal = [1, 1.6{turned}]");
+            let world = format!("map = \"map.yaml\"\nunknown = \"{unknown}\"");
+            let text = format!("[world]\n{world}\n[robot]\n{robot}\n[motion]\n{motion}\n");
+            std::fs::write(file("gap.toml"), text).unwrap();
+            let scene = Scene::load(file("gap.toml")).unwrap();
+            let report = scene.plan(&Request::new("rrt-connect").iterations(20_000)).unwrap();
+            assert_eq!(report.path.is_some(), passes, "{robot}, {yaw}, {unknown}");
+            // Half of it is outside.
+            let edge = [1.0, yaw + 0.001, 0.0];
+            let found = scene.explain(&edge[..if turned.is_empty() { 2 } else { 3 }]).unwrap();
+            let names: Vec<String> = found.touching.into_iter().map(|touch| touch.other).collect();
+            assert!(passes || names.iter().any(|other| other == name), "{names:?}");
+        }
+    }
+}
+
 #[test]
 fn the_folder_of_a_file_is_made() {
     let dir = tempfile::tempdir().unwrap();

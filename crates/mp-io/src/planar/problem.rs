@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::files::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES, stem};
 use crate::problem::MAX_COORDINATE;
 use mp_geom::planar::{Polygon, PolygonError};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2};
 use std::path::Path;
 
 /// A world in the plane, all files read.
@@ -15,8 +15,11 @@ pub struct PlanarProblem {
     pub name: String,
     /// The content of the file.
     pub file: PlanarFile,
-    /// The obstacles: those of the file, then that of the image or map.
+    /// The obstacles: those of the file, then that of the image or map, then what is around a map that is turned.
     pub obstacles: Vec<PlanarObstacle>,
+    /// Lower and upper corner of walls around everything: those of the file, and the edges of the image or map where nothing is known
+    /// outside of it.
+    pub walls: Option<[[f64; 2]; 2]>,
     /// Lower and upper corner of the region of the robot's origin: as the file says, else within the walls,
     /// else on the image.
     pub bounds: [[f64; 2]; 2],
@@ -60,9 +63,9 @@ impl PlanarProblem {
         let file = PlanarFile::parse(&path.display().to_string(), &files.read(path, MAX_TEXT_BYTES)?)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut obstacles = file.obstacles.clone();
-        let mut extent = None;
+        let (mut walls, mut extent) = (file.walls, None);
         if let Some(map) = &file.map {
-            let (polygon, corners) =
+            let (polygon, frame) =
                 read_map(files, map, file.unknown_is_free, folder).map_err(|e| match e {
                     Fault::File(e) => {
                         let message = format!("this file is not usable: {e}");
@@ -72,10 +75,29 @@ impl PlanarProblem {
                         file.fault(PlanarPart::Map, &message, "coordinates are metres: check the scale")
                     }
                 })?;
-            extent = Some(corners);
             obstacles.extend(polygon.map(|polygon| PlanarObstacle { name: "the map".into(), polygon }));
+            let [low, high] = frame.bounds();
+            extent = Some([low.into(), high.into()]);
+            // The walls around a picture may be elsewhere than its edges. A map is all that is known.
+            let is_all = matches!(map, PlanarMap::Ros(_)) || walls.is_none();
+            if is_all && !file.unknown_is_free {
+                let [l, h] = walls.map_or([low, high], |walls| walls.map(Point2::from));
+                let [l, h] = [l.sup(&low), h.inf(&high)];
+                if l.x >= h.x || l.y >= h.y {
+                    return Err(file.fault(
+                        PlanarPart::World,
+                        "the walls and the map have nothing in common",
+                        "both are in metres, in the same frame: the map has its own `origin` and `resolution`",
+                    ));
+                }
+                walls = Some([l.into(), h.into()]);
+                let around = beside_turned(&frame);
+                obstacles.extend(
+                    around.map(|polygon| PlanarObstacle { name: "the outside of the map".into(), polygon }),
+                );
+            }
         }
-        let Some(bounds) = file.bounds.or(file.walls).or(extent) else {
+        let Some(bounds) = file.bounds.or(walls).or(extent) else {
             let message = "the world has no bounds";
             return Err(file.fault(
                 PlanarPart::World,
@@ -83,7 +105,7 @@ impl PlanarProblem {
                 "say `walls = [[x, y], [x, y]]`, or `bounds`",
             ));
         };
-        Ok(Self { name: stem(path), file, obstacles, bounds })
+        Ok(Self { name: stem(path), file, obstacles, walls, bounds })
     }
 }
 
@@ -99,13 +121,23 @@ impl From<Error> for Fault {
     }
 }
 
-/// The polygon of a map, and the box around it.
+/// What is between a rectangle that is turned and the box around it; `None` if it is not turned.
+fn beside_turned(frame: &Polygon) -> Option<Polygon> {
+    let corner = |[a, b]: [Point2<f64>; 2]| {
+        let side = |c: &Point2<f64>| (b - a).perp(&(c - a));
+        let corner = [Point2::new(a.x, b.y), Point2::new(b.x, a.y)].into_iter().find(|c| side(c) < 0.0);
+        corner.map(|corner| vec![a, corner, b])
+    };
+    Polygon::new(frame.edges().filter_map(corner).collect()).ok()
+}
+
+/// The polygon of a map, and its edges.
 fn read_map(
     files: &dyn Files,
     map: &PlanarMap,
     unknown_is_free: bool,
     folder: &Path,
-) -> Result<(Option<Polygon>, [[f64; 2]; 2]), Fault> {
+) -> Result<(Option<Polygon>, Polygon), Fault> {
     let grid =
         |place: &Path| GridMap::parse(&place.display().to_string(), &files.read(place, MAX_MESH_BYTES)?);
     let (grid, scale, origin, polygon) = match map {
@@ -127,10 +159,9 @@ fn read_map(
     let [width, height] = grid.size.map(|n| n as f64 * scale);
     let frame = Polygon::rectangle([0.0, 0.0], [width, height]);
     let [x, y, yaw] = origin;
-    let [low, high] = frame
-        .map_err(|e| Fault::Size(e.to_string()))?
-        .transformed(&Isometry2::new([x, y].into(), yaw))
-        .bounds();
+    let frame =
+        frame.map_err(|e| Fault::Size(e.to_string()))?.transformed(&Isometry2::new([x, y].into(), yaw));
+    let [low, high] = frame.bounds();
     if low.coords.amax().max(high.coords.amax()) > MAX_COORDINATE {
         return Err(Fault::Size(format!("the map reaches beyond {MAX_COORDINATE:e} m")));
     }
@@ -138,5 +169,5 @@ fn read_map(
         PolygonError::Interrupted => Fault::File(Error::interrupted(folder.display())),
         e => Fault::Size(e.to_string()),
     });
-    Ok((polygon?, [low.into(), high.into()]))
+    Ok((polygon?, frame))
 }

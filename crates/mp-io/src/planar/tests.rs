@@ -61,6 +61,51 @@ fn worlds_of_pixels() {
     }
 }
 
+/// Whether `p` is in an obstacle or outside of the walls.
+fn is_taken(problem: &PlanarProblem, p: Point2<f64>) -> bool {
+    let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
+    mp_geom::planar::PlanarWorld::new(polygons, problem.walls).unwrap().contains(&p)
+}
+
+#[test]
+fn nothing_is_free_outside_of_a_map() {
+    use nalgebra::{Isometry2, Vector2};
+    let image = "image = \"map.pgm\"\nscale = 0.5\norigin = [-1, 2]";
+    let wide = "walls = [[-9, -9], [9, 9]]";
+    for (world, yaw, is_known) in [
+        ("map = \"map.yaml\"".to_owned(), 0.0, true),
+        ("map = \"map.yaml\"\nunknown = \"obstacle\"".to_owned(), 0.4, true),
+        (format!("map = \"map.yaml\"\n{wide}"), -2.0, true),
+        ("map = \"map.yaml\"\nbounds = [[-9, -9], [9, 9]]".to_owned(), std::f64::consts::FRAC_PI_2, true),
+        ("map = \"map.yaml\"\nbounds = [[-9, -9], [9, 9]]".to_owned(), 3.0 * std::f64::consts::PI, true),
+        ("map = \"map.yaml\"\nunknown = \"free\"".to_owned(), 0.4, false),
+        (format!("map = \"map.yaml\"\n{wide}\nunknown = \"free\""), 0.0, false),
+        (image.to_owned(), 0.0, true),
+        (format!("{image}\nunknown = \"free\""), 0.0, false),
+        (format!("{image}\n{wide}"), 0.0, false),
+    ] {
+        let (dir, path) = folder("");
+        let yaml = std::fs::read_to_string(dir.path().join("map.yaml")).unwrap();
+        // All pixels are free.
+        std::fs::write(dir.path().join("map.pgm"), b"P5 3 2 255\n\xff\xff\xff\xff\xff\xff").unwrap();
+        std::fs::write(dir.path().join("map.yaml"), yaml.replace("2.0, 0.0]", &format!("2.0, {yaw}]")))
+            .unwrap();
+        let robot = "[robot]\ndisc = 0.07\n[motion]\nstart = [0, 0]\ngoal = [0, 0]\n";
+        std::fs::write(&path, format!("[world]\n{world}\n{robot}")).unwrap();
+        let problem = PlanarProblem::load(&path).unwrap();
+        let place = Isometry2::new(Vector2::new(-1.0, 2.0), yaw);
+        for (i, j) in (-4..20).flat_map(|i| (-4..20).map(move |j| (i, j))) {
+            // In the frame of the map, which is 1.5 m by 1 m.
+            let p = Point2::new(0.13 * f64::from(i) + 0.01, 0.13 * f64::from(j) + 0.01);
+            let outside = p.x < 0.0 || p.y < 0.0 || p.x > 1.5 || p.y > 1.0;
+            assert_eq!(is_taken(&problem, place * p), outside && is_known, "{world}, {yaw}: {p}");
+        }
+    }
+    let (_dir, path) = folder(&GOOD.replace("walls = ", "map = \"map.yaml\"\nwalls = "));
+    // The walls and the map have 0.5 m by 1 m in common.
+    assert_eq!(PlanarProblem::load(&path).unwrap().walls, Some([[0.0, 2.0], [0.5, 3.0]]));
+}
+
 #[test]
 fn faults_have_their_place() {
     let image = GOOD.replace("walls = [[0, 0], [4, 3]]", "image = \"map.pgm\"\nscale = 0.5");
@@ -89,6 +134,13 @@ fn faults_have_their_place() {
         (&image, "scale = 0.5", "scale = 9e8", 2, "beyond"),
         (&image, "map.pgm", "nap.pgm", 2, "no such file"),
         (&image, "map.pgm", "map.yaml", 2, "neither a PNG nor a PGM image"),
+        (
+            GOOD,
+            "walls = [[0, 0], [4, 3]]",
+            "map = \"map.yaml\"\nwalls = [[1, 0], [4, 3]]",
+            1,
+            "nothing in common",
+        ),
         (GOOD, "walls = ", "unknown = \"no\"\nwalls = ", 2, "neither"),
     ] {
         assert!(good.contains(from), "{from}");

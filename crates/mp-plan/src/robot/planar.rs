@@ -274,7 +274,7 @@ impl<B: PlanarBody> PlanarScene<B> {
     /// As [`new`](Self::new), and when it was told to end.
     pub fn new_until(problem: PlanarProblem, interrupt: &Interrupt) -> Result<Self, Error> {
         let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
-        let world = PlanarWorld::new_until(polygons, problem.file.walls, interrupt)
+        let world = PlanarWorld::new_until(polygons, problem.walls, interrupt)
             .map_err(|e| Error::new(e.to_string()))?;
         let robot = B::among(Arc::new(world), &problem.file.robot)?;
         let space = B::space(problem.bounds)?;
@@ -437,7 +437,8 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         let mut note = |obstacle: Option<usize>| {
             let other = match obstacle {
                 Some(i) => self.problem.obstacles.get(i).map_or("?", |o| o.name.as_str()),
-                None => "the walls",
+                None if self.problem.walls == self.problem.file.walls => "the walls",
+                None => "the edge of the map",
             };
             if !touches.iter().any(|touch| touch.other == other) {
                 touches.push(Touch { part: None, other: other.to_owned(), with_itself: false, depth: None });
