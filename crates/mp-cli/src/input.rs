@@ -1,13 +1,9 @@
 //! Scenes and paths from files and from standard input.
 
 use crate::output::note;
+pub(crate) use mp_plan::is_standard;
 use mp_plan::{Error, Interrupt, PathFileKind, PathRows, Scene, StopReason, Verdict};
 use std::path::Path;
-
-/// Whether a name stands for standard input or output.
-pub(crate) fn is_standard(path: &Path) -> bool {
-    path.as_os_str() == "-"
-}
 
 /// The whole standard input, which must be text of at most 64 MiB.
 pub(crate) fn standard_input() -> Result<String, Error> {

@@ -20,6 +20,42 @@ fn a_scene_comes_in_and_a_path_goes_out() {
     assert!(taken.code == 2 && taken.stderr.contains("standard output has other content"), "{taken:?}");
 }
 
+/// The names that Unix has for standard output are standard output.
+#[cfg(unix)]
+#[test]
+fn devices_that_are_standard_output() {
+    let dir = Dir::new();
+    let dash = mp(&dir, &["plan", "window.env", "--out", "-"]);
+    for name in ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"] {
+        let run = mp(&dir, &["plan", "window.env", "--out", name]);
+        assert!(run.code == 0 && run.stdout == dash.stdout, "{name}: {run:?}");
+    }
+    let error = mp(&dir, &["plan", "window.env", "--out", "/dev/null"]);
+    assert!(error.code == 2 && error.stderr.contains("a device or a pipe"), "{error:?}");
+}
+
+/// Where there is no memory for a picture, that is said, and the path is there.
+#[cfg(target_os = "linux")]
+#[test]
+fn pictures_without_memory_are_an_error() {
+    let dir = Dir::new();
+    let limited = |kilobytes: usize, size: &str| {
+        let line = format!(
+            "ulimit -v {kilobytes}; exec \"$0\" plan window.env --out p.txt --picture p.png --picture-size {size}"
+        );
+        let run = std::process::Command::new("sh")
+            .args(["-c", &line, env!("CARGO_BIN_EXE_mp")])
+            .current_dir(dir.path())
+            .output();
+        let run = run.unwrap();
+        (run.status.code(), String::from_utf8(run.stderr).unwrap())
+    };
+    let (code, text) = limited(1_000_000, "4000x4000");
+    assert!(code == Some(2) && text.contains("no memory for 4000 × 4000 pixels"), "{code:?} {text}");
+    assert!(dir.path().join("p.txt").is_file());
+    assert_eq!(limited(1_000_000, "400x400").0, Some(0));
+}
+
 #[test]
 fn paths_are_written_and_read_by_their_ending() {
     let dir = Dir::new();

@@ -132,7 +132,7 @@ pub use list::{
 };
 pub use many::plan_many;
 pub use numbers::{brief, count, plain, positive_number};
-pub use output::{Claims, make_folder, write_file};
+pub use output::{Claims, is_standard, make_folder, write_file};
 pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]

@@ -23,7 +23,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 }
 
 /// The files of a command: inputs, and outputs that must be none of them, and no other output. Files are compared, not
-/// names. The name `-` stands for standard input and output, which are no files.
+/// names. [Standard input and output](is_standard) are no files.
 #[derive(Debug, Default)]
 pub struct Claims(HashMap<FileId, Claim>);
 
@@ -77,6 +77,9 @@ impl Claims {
     }
 }
 
-fn is_standard(path: &Path) -> bool {
-    path.as_os_str() == "-"
+/// Whether a name stands for standard input or output: `-`, and what Unix calls them.
+#[must_use]
+pub fn is_standard(path: &Path) -> bool {
+    let unix = ["/dev/stdin", "/dev/stdout", "/dev/fd/0", "/dev/fd/1", "/proc/self/fd/0", "/proc/self/fd/1"];
+    path.as_os_str() == "-" || unix.iter().any(|name| path == Path::new(name))
 }

@@ -319,7 +319,11 @@ pub(crate) fn placed_bodies(bodies: &[mp_render::Body], poses: &[Isometry3<f64>]
 
 /// An error of drawing.
 pub(crate) fn failed(error: mp_render::RenderError) -> Error {
-    Error::new(error.to_string())
+    match error {
+        mp_render::RenderError::Memory { .. } => Error::new(error.to_string())
+            .help("draw fewer pixels, or give the process more memory (`ulimit -v`)"),
+        error => Error::new(error.to_string()),
+    }
 }
 
 /// Rings or lines of the plane at a pose.

@@ -21,6 +21,16 @@ pub enum RenderError {
         /// Its height, pixels.
         height: usize,
     },
+    /// There is no memory for the picture.
+    #[error("there is no memory for {width} × {height} pixels: expected {} MB, as for a limit of this process", .bytes >> 20)]
+    Memory {
+        /// Its width, pixels.
+        width: usize,
+        /// Its height, pixels.
+        height: usize,
+        /// What drawing takes, bytes.
+        bytes: usize,
+    },
     /// A coordinate is NaN, infinite, or beyond 10⁶⁰ m.
     #[error("cannot draw {what}: expected finite coordinates, none beyond {MAX_COORDINATE:e} m")]
     OutOfRange {
@@ -68,10 +78,19 @@ pub enum RenderError {
     },
 }
 
-/// Refuses pictures without pixels, and with too many.
+/// What a picture takes while it is drawn: bytes for each pixel, and for threads and their stacks. Measured, and a third more.
+const BYTES: [usize; 2] = [256, 64 << 20];
+
+/// Refuses pictures without pixels, with too many, and with more than there is memory for.
 pub(crate) fn check_size((width, height): (usize, usize)) -> Result<(), RenderError> {
     let fits = |side: usize| (1..=MAX_SIDE).contains(&side);
-    if fits(width) && fits(height) { Ok(()) } else { Err(RenderError::Size { width, height }) }
+    if !(fits(width) && fits(height)) {
+        return Err(RenderError::Size { width, height });
+    }
+    let bytes = width * height * BYTES[0] + BYTES[1];
+    // In WebAssembly, memory that was asked for once stays taken.
+    let has_room = cfg!(target_family = "wasm") || Vec::<u8>::new().try_reserve_exact(bytes).is_ok();
+    if has_room { Ok(()) } else { Err(RenderError::Memory { width, height, bytes }) }
 }
 
 /// Refuses coordinates out of range; `what` names the thing that has them.

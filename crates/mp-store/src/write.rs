@@ -124,10 +124,14 @@ pub fn writable(path: &Path) -> Result<(), Error> {
 /// The regular file that writing to `path` replaces, and what is known about it if it exists.
 pub(crate) fn target(path: &Path) -> Result<(PathBuf, Option<Metadata>), Error> {
     let failed = |e: io::Error| write_failed(path, folder_of(path), &e);
-    let target = followed(path).map_err(failed)?;
     let refused = |what: &str, remedy: &str| {
         Err(Error::new(ErrorKind::Io, path, format!("cannot write the file: {what}"), remedy))
     };
+    // Where a link leads to a pipe that has no name, nothing is found at the end.
+    if std::fs::metadata(path).is_ok_and(|old| !old.is_file() && !old.is_dir()) {
+        return refused("this is a device or a pipe", "name a regular file");
+    }
+    let target = followed(path).map_err(failed)?;
     match std::fs::metadata(&target) {
         Ok(old) if old.is_dir() => refused("this is a folder", "name a file inside it"),
         // Renaming would replace the device or pipe itself.
@@ -283,6 +287,12 @@ mod tests {
             symlink("/dev/null", at("null")).unwrap();
             assert!(write(&at("null"), b"x").unwrap_err().message().contains("device"));
             assert!(writable(&at("null")).unwrap_err().message().contains("device"));
+            // A pipe is reached by a link that has no target of that name.
+            let (_reader, writer) = std::io::pipe().unwrap();
+            let pipe = PathBuf::from(format!("/dev/fd/{}", std::os::fd::AsRawFd::as_raw_fd(&writer)));
+            for refused in [write(&pipe, b"x"), writable(&pipe)] {
+                assert!(refused.unwrap_err().message().contains("pipe"));
+            }
             // A link to a file that is yet to be written.
             symlink("later.txt", at("early")).unwrap();
             write(&at("early"), b"x").unwrap();
