@@ -45,14 +45,14 @@ fn pictures_without_memory_are_an_error() {
         );
         let run = std::process::Command::new("sh")
             .args(["-c", &line, env!("CARGO_BIN_EXE_mp")])
-            .current_dir(dir.path())
+            .current_dir(dir.path(""))
             .output();
         let run = run.unwrap();
         (run.status.code(), String::from_utf8(run.stderr).unwrap())
     };
     let (code, text) = limited(1_000_000, "4000x4000");
     assert!(code == Some(2) && text.contains("no memory for 4000 × 4000 pixels"), "{code:?} {text}");
-    assert!(dir.path().join("p.txt").is_file());
+    assert!(dir.path("p.txt").is_file());
     assert_eq!(limited(1_000_000, "400x400").0, Some(0));
 }
 

@@ -37,7 +37,7 @@ pub use pose::{
     rotation_from_matrix, short_six_from_pose, six_from_pose,
 };
 pub use primitives::PrimitiveError;
-pub use six_tuples::{displacement_bound, six_tuples};
+pub use six_tuples::{continued_six, displacement_bound, six_tuples};
 pub use solid::SolidError;
 pub use sphere::{Sphere, minimal_sphere};
 pub use spread::evenly;

@@ -24,7 +24,7 @@ pub fn six_tuples(segments: usize, radius: f64, at: impl Fn(usize, f64) -> Isome
         while let Some((from, to, depth)) = todo.pop() {
             let last = out[out.len() - 1];
             let (a, b) = (at(i, from), at(i, to));
-            let next = continued(&last, &six(&b));
+            let next = continued_six(&last, &six(&b));
             let middle = 0.5 * (from + to);
             let played = pose_from_six(std::array::from_fn(|k| 0.5 * (last[k] + next[k])));
             let fine = displacement_bound(&a, &b, radius) <= SPACING * radius
@@ -46,8 +46,9 @@ pub fn displacement_bound(a: &Isometry3<f64>, b: &Isometry3<f64>, radius: f64) -
     (a.translation.vector - b.translation.vector).norm() + radius * a.rotation.angle_to(&b.rotation)
 }
 
-/// `six` with its angles written so that they differ least from those of `last`.
-fn continued(last: &[f64; 6], six: &[f64; 6]) -> [f64; 6] {
+/// The six-tuple of the same pose as `six` whose angles differ least from those of `last`: they may leave (-π, π].
+#[must_use]
+pub fn continued_six(last: &[f64; 6], six: &[f64; 6]) -> [f64; 6] {
     let [x, y, z, a, b, g] = *six;
     // The same rotation has two triples of angles, each up to whole turns.
     let near = |angle: f64, k: usize| angle + TAU * ((last[k] - angle) / TAU).round() + 0.0;

@@ -37,6 +37,11 @@ pub trait Files: Debug + Send + Sync {
         self.read(path, MAX_MESH_BYTES).is_ok()
     }
 
+    /// The names of what is in `folder`, in alphabetical order, as far as that is known: to say what lies beside a file.
+    fn names_in(&self, _folder: &Path) -> Vec<String> {
+        Vec::new()
+    }
+
     /// A folder by its absolute name, as far as that is known: meshes of packages are sought in all folders above it.
     ///
     /// # Errors
@@ -57,10 +62,24 @@ impl Files for Disk {
     fn holds(&self, path: &Path) -> bool {
         path.is_file()
     }
-    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
-        // A bare file name has the empty folder, which is the current one.
-        std::fs::canonicalize(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
+    fn names_in(&self, folder: &Path) -> Vec<String> {
+        let entries = std::fs::read_dir(current_if_empty(folder)).into_iter().flatten().flatten();
+        let names = entries.take(MAX_NAMES).filter_map(|entry| entry.file_name().into_string().ok());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        names
     }
+    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
+        std::fs::canonicalize(current_if_empty(folder))
+    }
+}
+
+/// No more names of a folder are looked at.
+const MAX_NAMES: usize = 100_000;
+
+/// A bare file name has the empty folder, which is the current one.
+fn current_if_empty(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 
 /// Other files, whose readers end when an [`Interrupt`] says so, with an error of kind [`ErrorKind::Interrupted`].
@@ -90,6 +109,9 @@ impl Files for Until<'_> {
     }
     fn holds(&self, path: &Path) -> bool {
         self.files.holds(path)
+    }
+    fn names_in(&self, folder: &Path) -> Vec<String> {
+        self.files.names_in(folder)
     }
     fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
         self.files.absolute(folder)

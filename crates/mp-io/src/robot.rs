@@ -59,8 +59,10 @@ pub struct RobotFile {
     pub base: [f64; 6],
     /// The lower and the upper corner (m) of the box in which the origin of the root link moves, if the base floats.
     pub floating: Option<[[f64; 3]; 2]>,
-    /// Limits that replace those of the URDF, by joint.
+    /// Limits that replace those of the URDF, by joint. Equal ones hold the joint.
     pub limits: Vec<(String, [f64; 2])>,
+    /// How far (rad or m) the start may be beyond a limit; 0 when it is not given.
+    pub limit_tolerance: f64,
     /// How the robot moves, if it moves by inputs.
     pub driven: Option<Driven>,
     /// The joint values at the start; first the six numbers of the pose of the base, if it floats. For a robot with accelerations, its velocities may follow.
@@ -125,6 +127,7 @@ struct RobotTable {
     bounds: Option<Spanned<Corners>>,
     #[serde(default)]
     limits: BTreeMap<String, Spanned<[f64; 2]>>,
+    limit_tolerance: Option<Spanned<f64>>,
     kind: Option<Spanned<String>>,
     duration: Option<Spanned<f64>>,
     speeds: Option<Spanned<Vec<f64>>>,
@@ -180,12 +183,22 @@ impl RobotFile {
             let (what, span) = (format!("the limits of {}", crate::text::clipped(&joint)), range.span());
             let [low, high] = *range.get_ref();
             source.check(&what, &[low, high], &span)?;
-            if low >= high {
+            if low > high {
                 let message = format!("{what} are {low} to {high}");
-                return Err(source.error(&span, message).expected("the lower one first, below the upper"));
+                let expected = "the lower one first, below the upper, or equal ones, which hold the joint";
+                return Err(source.error(&span, message).expected(expected));
             }
             places_of_limits.push(span);
             limits.push((joint, [low, high]));
+        }
+        let limit_tolerance = robot.limit_tolerance.as_ref().map_or(0.0, |spanned| *spanned.get_ref());
+        if let Some(spanned) = &robot.limit_tolerance {
+            source.check("the tolerance of limits", &[limit_tolerance], &spanned.span())?;
+            if limit_tolerance < 0.0 {
+                let message = format!("the tolerance of limits is {limit_tolerance}");
+                let expected = "a number of at least zero: radians, or metres for joints that slide";
+                return Err(source.error(&spanned.span(), message).expected(expected));
+            }
         }
         let state = |what: &str, q: &Spanned<Vec<f64>>| source.check(what, q.get_ref(), &q.span());
         let motion = motion.read(&source, false, state)?;
@@ -215,6 +228,7 @@ impl RobotFile {
             base,
             floating,
             limits,
+            limit_tolerance,
             driven,
             start: motion.start,
             goals: motion.goals,

@@ -150,7 +150,7 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         RobotKind::moving_obstacles(self)
     }
     fn start(&self) -> Vec<f64> {
-        self.row(RobotKind::start(self))
+        self.given_start()
     }
     fn goals(&self) -> Vec<Vec<f64>> {
         RobotKind::goals(self).iter().map(|goal| self.row(goal)).collect()
@@ -160,7 +160,7 @@ impl<K: RobotKind + 'static> AnyRobot for K {
             return Err(Error::new("there is no goal").help("give at least one configuration as a goal"));
         }
         let goals = goals.iter().map(|goal| state(self, goal)).collect::<Result<_, _>>()?;
-        Ok(Arc::new(RobotKind::with_ends(self, state(self, start)?, goals)?))
+        Ok(Arc::new(RobotKind::with_ends(self, state(self, start)?, goals)?.starting_as(start)))
     }
     fn traced(&self, row: &[f64]) -> Result<Point3<f64>, Error> {
         Ok(RobotKind::traced(self, &state(self, row)?))

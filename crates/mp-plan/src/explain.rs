@@ -57,7 +57,8 @@ fn fault<K: RobotKind>(kind: &K, q: &K::State) -> Option<String> {
     Some(match touching.is_empty() {
         true => {
             let [clearance, tolerance] = told_apart(clearance, tolerance);
-            format!("{clearance} m from contact: at least {tolerance} m is needed")
+            let between = kind.closest(q).map_or_else(String::new, |names| format!(" between {names}"));
+            format!("{clearance} m from contact{between}: at least {tolerance} m is needed")
         }
         false if touching.iter().any(|touch| touch.part.is_some()) => {
             format!("in collision: {}", list(&touching))
@@ -79,12 +80,17 @@ fn ends<K: RobotKind>(kind: &K) -> impl Iterator<Item = (End, String, &K::State)
 /// An error message and a remedy for the configuration that messages call `name`; `None` when it is free.
 pub(crate) fn refused<K: RobotKind>(kind: &K, name: &str, q: &K::State) -> Option<(String, String)> {
     let fault = fault(kind, q)?;
-    let help = match kind.nearest_free(q) {
-        _ if !kind.space().contains(q) => "move it, or widen the bounds".to_owned(),
+    let mut help = match kind.nearest_free(q) {
+        _ if !kind.space().contains(q) => kind.bounds_remedy(q),
         Some(free) => format!("the nearest free configuration found is {}", kind.written(&free)),
         None => "no free configuration was found nearby: is the scene in metres, the robot in its frame?"
             .to_owned(),
     };
+    if kind.space().contains(q)
+        && let Some(remedy) = kind.remedy(&kind.touching(q))
+    {
+        help += &format!("; {remedy}");
+    }
     Some((format!("{name} is {fault}"), help))
 }
 

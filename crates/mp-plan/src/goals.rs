@@ -12,7 +12,7 @@ const TRIES: usize = 1000;
 const ROUNDING: f64 = 1e-9;
 
 /// Which numbers of a configuration are angles without limits, that is, the same after a full turn.
-fn turning<K: RobotKind>(kind: &K) -> Vec<bool> {
+pub(crate) fn turning<K: RobotKind + ?Sized>(kind: &K) -> Vec<bool> {
     let limits = kind.limits();
     let turns = |(i, column): (usize, crate::Column)| {
         column.unit == "rad" && limits.get(i).is_some_and(Option::is_none)

@@ -67,6 +67,9 @@ impl Files for Recording<'_> {
     fn holds(&self, path: &Path) -> bool {
         self.files.holds(path)
     }
+    fn names_in(&self, folder: &Path) -> Vec<String> {
+        self.files.names_in(folder)
+    }
     fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
         let absolute = self.files.absolute(folder)?;
         if let Ok(mut folders) = self.folders.lock()

@@ -117,13 +117,16 @@ fn arm(files: &dyn Files, file: &Path, before: Option<&Scene>) -> Result<Scene, 
     if problem.file.floating.is_some() {
         let before = before.and_then(Scene::robot);
         let scene = crate::FloatingScene::from_problem_after(files, problem, before)?;
-        return Ok(of_kind!("floating", scene));
+        let notes = scene.said().to_vec();
+        return Ok(of_kind!("floating", scene).with_notes(notes));
     }
     let scene = crate::ArmScene::from_problem_after(files, problem, before.and_then(Scene::robot))?;
-    Ok(match scene.driven()? {
+    let notes = scene.said().to_vec();
+    let scene = match scene.driven()? {
         Some(driven) => of_kind!("driven", driven),
         None => of_kind!("arms", scene),
-    })
+    };
+    Ok(scene.with_notes(notes))
 }
 
 #[cfg(not(feature = "planar"))]
@@ -159,6 +162,9 @@ impl Files for OneText<'_> {
     }
     fn holds(&self, path: &Path) -> bool {
         path == self.file || self.files.holds(path)
+    }
+    fn names_in(&self, folder: &Path) -> Vec<String> {
+        self.files.names_in(folder)
     }
     fn absolute(&self, folder: &Path) -> std::io::Result<std::path::PathBuf> {
         self.files.absolute(folder)

@@ -16,7 +16,9 @@ pub use moving::{MovingScene, WithMoving};
 pub use planar::{PlanarBody, PlanarScene};
 pub use rigid::{RigidScene, RigidSpace};
 
+use crate::goals::turning;
 use crate::numbers::plain;
+use crate::path::continued;
 use crate::roadmaps::RoadmapState;
 use crate::{Error, Length, MetricName};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
@@ -283,6 +285,14 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
 
     /// What touches what at a configuration.
     fn touching(&self, q: &Self::State) -> Vec<Touch>;
+    /// What is nearest to contact at a configuration, as messages name it: `tool and table`. By default it is not known.
+    fn closest(&self, _q: &Self::State) -> Option<String> {
+        None
+    }
+    /// What to do about contacts at the start or a goal, besides moving it. By default there is nothing else.
+    fn remedy(&self, _touching: &[Touch]) -> Option<String> {
+        None
+    }
     /// A free configuration near one that is not.
     fn nearest_free(&self, q: &Self::State) -> Option<Self::State>;
     /// What is odd about the scene apart from its ends, such as obstacles that overlap.
@@ -292,6 +302,10 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     /// What is odd about start and goal together without being an error, such as being inside of different solids.
     fn odd_ends(&self) -> Option<String> {
         None
+    }
+    /// What to do about a configuration that is out of bounds.
+    fn bounds_remedy(&self, _q: &Self::State) -> String {
+        "move it, or widen the bounds".to_owned()
     }
     /// Why a configuration is out of bounds, to follow the words "the start is". By default it lists all of its numbers.
     fn out_of_bounds(&self, q: &Self::State) -> String {
@@ -318,9 +332,24 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     fn row(&self, q: &Self::State) -> Vec<f64>;
     /// The configuration of a row that has as many numbers as there are columns.
     fn state(&self, row: &[f64]) -> Self::State;
-    /// The rows of a path: by default one for each state. Rows may be added for readers that interpolate the numbers.
+    /// The rows of a path: by default one for each state, in which angles without limits go on from row to row by the shorter way,
+    /// beginning at the [given start](Self::given_start). Rows may be added for readers that interpolate the numbers.
     fn rows(&self, path: &mp_cspace::Path<Self::State>) -> Vec<Vec<f64>> {
-        path.states.iter().map(|q| self.row(q)).collect()
+        let rows = path.states.iter().map(|q| self.row(q)).collect();
+        continued(&turning(self), &self.given_start(), rows)
+    }
+    /// The row of the start with its angles as they were given: they may be whole turns away from those of [`row`](Self::row), which
+    /// it is by default.
+    fn given_start(&self) -> Vec<f64> {
+        self.row(self.start())
+    }
+    /// The same scene, whose start was given by this row. By default that makes no difference.
+    #[must_use]
+    fn starting_as(self, _row: &[f64]) -> Self
+    where
+        Self: Sized,
+    {
+        self
     }
     /// Writes the problem to `folder` for other planners, as docs/formats/export.md describes. Returns the main file.
     ///

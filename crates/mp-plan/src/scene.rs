@@ -160,7 +160,8 @@ impl Scene {
         Self { notes: notes.into(), ..self }
     }
 
-    /// What was chosen for a scene whose file is a robot or a map alone, in sentences. Empty for other scenes.
+    /// What was chosen for a scene whose file is a robot or a map alone, and what decides which links of an arm may touch without
+    /// being asked for, in sentences.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes

@@ -57,8 +57,8 @@ mod solid_obstacle;
 mod verify;
 
 pub use arm::{
-    Arm, ArmContact, ArmError, ArmModel, ArmVerifier, AttachedLink, Coordinate, Joint, JointFrame, JointKind,
-    Kinematics, Link, Mimic, UrdfError,
+    Arm, ArmContact, ArmError, ArmGap, ArmModel, ArmVerifier, AttachedLink, Coordinate, Joint, JointFrame,
+    JointKind, Kinematics, Link, Mimic, UrdfError,
 };
 pub use counters::CheckCounters;
 pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};

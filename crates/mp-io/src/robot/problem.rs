@@ -27,6 +27,8 @@ pub struct RobotProblem {
     pub urdf: String,
     /// The content of the SRDF.
     pub srdf: Option<String>,
+    /// The name of an SRDF beside the URDF, if the problem names none.
+    pub srdf_beside: Option<String>,
     /// The folder that `package://` means.
     pub packages: Option<PathBuf>,
     /// The obstacles. Spheres and cylinders are meshes that contain them.
@@ -40,13 +42,15 @@ impl RobotProblem {
         pose_from_six(self.file.base)
     }
 
-    /// Whether both problems have the same robot: of the same files with the same descriptions, at the same place, with the same limits.
+    /// Whether both problems have the same robot: of the same files with the same descriptions, at the same place, with the same limits,
+    /// none of which are for a start.
     #[must_use]
     pub fn same_robot(&self, other: &Self) -> bool {
         let (a, b) = (&self.file, &other.file);
         (&self.urdf_file, &self.urdf, &self.srdf) == (&other.urdf_file, &other.urdf, &other.srdf)
             && (&self.packages, a.base, a.floating) == (&other.packages, b.base, b.floating)
-            && a.limits == b.limits
+            && (&a.limits, &self.srdf_beside) == (&b.limits, &other.srdf_beside)
+            && (a.limit_tolerance, b.limit_tolerance) == (0.0, 0.0)
     }
 
     /// Whether the name of a file is that of a robot problem: it ends in `.toml`.
@@ -85,6 +89,7 @@ impl RobotProblem {
             Some(name) => Some(text(RobotPart::Srdf, name)?.1),
             None => None,
         };
+        let srdf_beside = if srdf.is_none() { srdf_beside(files, &urdf_file) } else { None };
         let (mut obstacles, mut figures) = (Vec::new(), Figures::new(files, path));
         for entry in &file.obstacles {
             let (from, mesh) = figures.mesh(&file.source(), entry)?;
@@ -92,8 +97,19 @@ impl RobotProblem {
             obstacles.push(PlacedBody { name, file: from, mesh, pose });
         }
         let packages = file.packages.as_ref().map(|name| folder.join(name));
-        Ok(Self { name: stem(path), file, urdf_file, urdf, srdf, packages, obstacles })
+        Ok(Self { name: stem(path), file, urdf_file, urdf, srdf, srdf_beside, packages, obstacles })
     }
+}
+
+/// The name of an SRDF in the folder of a URDF: the one of the same name, or else the first.
+fn srdf_beside(files: &dyn Files, urdf: &Path) -> Option<String> {
+    let own = urdf.with_extension("srdf");
+    if files.holds(&own) {
+        return own.file_name().map(|name| name.to_string_lossy().into_owned());
+    }
+    let names = files.names_in(urdf.parent().unwrap_or(Path::new("")));
+    let is_one = |name: &String| Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("srdf"));
+    names.into_iter().find(is_one)
 }
 
 /// Makes the meshes of obstacles.

@@ -1,22 +1,26 @@
 //! Arms, and other trees of links, among meshes; their base stands still or floats.
 
+mod alone;
+mod read;
+
 use super::model::{ModelBody, ModelFrame, ModelPair, MotionModel, Step, seven};
 use super::{
     Body, BodyShape, Column, Counted, DrivenScene, End, Measured, Queries, RobotKind, SpeedBound, Touch,
     hints_and_gradient, no_metric,
 };
-use crate::goals::{GoalPart, examples, rows};
+use crate::goals::{GoalPart, examples, rows, turning};
 use crate::numbers::plain_row;
-use crate::{Error, MetricName, brief};
+use crate::path::continued;
+use crate::{Error, MetricName, brief, plain};
 use mp_cspace::{
-    Clearance, Euclidean, Factored, FloatingJoints, Halton, Interrupt, Interrupted, JointRange, Joints,
-    Manhattan, MotionClearance, ObstacleKnowledge, Rng, Sampler, ScaledEuclidean, Space, TrueMetric,
-    WithMetric,
+    Euclidean, Factored, FloatingJoints, Interrupt, Interrupted, JointRange, Joints, Manhattan,
+    MotionClearance, ObstacleKnowledge, Path, ScaledEuclidean, Space, TrueMetric, WithMetric,
 };
-use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
-use mp_io::{Disk, Files, GoalEntry, PlacedBody, RobotPart, RobotProblem};
+use mp_geom::{Aabb, TriMesh, continued_six, pose_from_six, six_from_pose};
+use mp_io::{Disk, Files, PlacedBody, RobotPart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, JointKind};
 use nalgebra::{DVector, Isometry3};
+use read::{srdf_help, what};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 
@@ -59,7 +63,7 @@ impl LinkedSpace for Joints<Configuration> {
         Measured::compiled(self)
     }
     fn state(&self, row: &[f64]) -> Configuration {
-        self.wrapped(&DVector::from_column_slice(row))
+        self.wrapped(&DVector::from_vec(within(self.ranges(), row)))
     }
     fn row(q: &Configuration) -> Vec<f64> {
         q.as_slice().to_vec()
@@ -83,7 +87,7 @@ impl LinkedSpace for FloatingJoints {
     fn state(&self, row: &[f64]) -> Configuration {
         let (pose, joints) = row.split_at(Self::BASE.len().min(row.len()));
         let six = std::array::from_fn(|i| pose.get(i).copied().unwrap_or(0.0));
-        FloatingJoints::state(self, &pose_from_six(six), joints)
+        FloatingJoints::state(self, &pose_from_six(six), &within(self.joints().ranges(), joints))
     }
     fn row(q: &Configuration) -> Vec<f64> {
         let Some((base, joints)) = Self::split(q.as_slice()) else { return Vec::new() };
@@ -93,6 +97,23 @@ impl LinkedSpace for FloatingJoints {
     fn base(q: &Configuration) -> Option<Isometry3<f64>> {
         Self::split(q.as_slice()).map(|(base, _)| base)
     }
+}
+
+/// A joint that is beyond a limit by no more than this (rad or m) is taken to be at the limit: encoders, and numbers of single
+/// precision, are as far off.
+const HAIR: f64 = 1e-6;
+
+/// The values of joints, at the limit where they are a [`HAIR`] beyond it.
+fn within(ranges: &[JointRange], joints: &[f64]) -> Vec<f64> {
+    let ranges = ranges.iter().map(Some).chain(std::iter::repeat(None));
+    let value = |(x, range): (&f64, Option<&JointRange>)| match range {
+        Some(JointRange::Interval { low, high }) => {
+            let near = x.clamp(*low, *high);
+            if (x - near).abs() <= HAIR { near } else { *x }
+        }
+        _ => *x,
+    };
+    joints.iter().zip(ranges).map(value).collect()
 }
 
 /// An arm among meshes, with a start and goals.
@@ -109,9 +130,13 @@ pub struct LinkedScene<C> {
     obstacles: Vec<PlacedBody>,
     space: C,
     start: Configuration,
+    /// The row of the start as it was given.
+    given_start: Vec<f64>,
     goals: Vec<Configuration>,
     /// What the goals ask of each number, if they are not configurations.
     goal_parts: Option<Vec<Vec<GoalPart>>>,
+    /// What decides which links may touch without being asked for, in sentences.
+    said: Vec<String>,
     /// The problem that it was made from, to locate errors in its file.
     source: Option<Box<RobotProblem>>,
 }
@@ -165,8 +190,20 @@ impl<C: LinkedSpace> LinkedScene<C> {
         if goals.is_empty() {
             return Err(Error::new("there is no goal"));
         }
+        let given_start = start.to_vec();
         let (start, goals) = (state(start), goals.iter().map(|goal| state(goal)).collect());
-        Ok(Self { name, arm, obstacles, space, start, goals, goal_parts: None, source: None })
+        Ok(Self {
+            name,
+            arm,
+            obstacles,
+            space,
+            start,
+            given_start,
+            goals,
+            goal_parts: None,
+            said: Vec::new(),
+            source: None,
+        })
     }
 
     /// The scene of the problem of a file.
@@ -195,10 +232,10 @@ impl<C: LinkedSpace> LinkedScene<C> {
         let of = &|e: Error| e.context(what(&problem));
         let known =
             before.filter(|before| before.source.as_ref().is_some_and(|known| known.same_robot(&problem)));
-        let arm = match known {
+        let (arm, said) = match known {
             Some(before) => {
                 let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
-                before.arm.among_until(bodies, &files.interrupt())?
+                (before.arm.among_until(bodies, &files.interrupt())?, before.said.clone())
             }
             None => Self::arm_of(files, &problem)?,
         };
@@ -254,7 +291,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
         let given = goals.as_ref().unwrap_or(&first);
         let scene = Self::assembled(problem.name.clone(), arm, problem.obstacles.clone(), &start, given);
         let scene = scene.map_err(of)?;
-        let mut scene = Self { source: Some(Box::new(problem)), ..scene };
+        let mut scene = Self { source: Some(Box::new(problem)), said, ..scene };
         if goals.is_none() {
             scene.goals = examples(&scene, &parts);
             scene.goal_parts = Some(parts);
@@ -262,30 +299,10 @@ impl<C: LinkedSpace> LinkedScene<C> {
         Ok(scene)
     }
 
-    /// The arm of a problem among its obstacles.
-    fn arm_of(files: &dyn Files, problem: &RobotProblem) -> Result<Arm, Error> {
-        let mut mesh = |name: &str| problem.mesh_from(files, name);
-        let mut model = from_urdf(problem, &mut mesh, &files.interrupt())?;
-        for note in &model.notes {
-            tracing::info!("{}: {note}", problem.urdf_file.display());
-        }
-        model.base = problem.base();
-        model.floating = problem.file.floating.map(|[low, high]| Aabb::new(low.into(), high.into()));
-        if let Some(srdf) = &problem.srdf {
-            model = model.with_srdf(srdf).map_err(|e| {
-                problem.file.fault(RobotPart::Srdf, &e.to_string(), "name an SRDF of this robot, or none")
-            })?;
-        }
-        for (i, (joint, [low, high])) in problem.file.limits.iter().enumerate() {
-            model = model.with_limits(joint, *low, *high).map_err(|e| {
-                problem.file.fault(RobotPart::Limits(i), &e.to_string(), "name joints as the URDF does")
-            })?;
-        }
-        let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
-        Arm::new_until(&model, bodies, &files.interrupt()).map_err(|e| {
-            let line = e.element().and_then(|(element, name)| line_of(&problem.urdf, element, name));
-            in_urdf(problem, line, e.to_string(), "correct the links and joints of the URDF")
-        })
+    /// What decides which links may touch without being asked for, in sentences: what of an SRDF was not taken, and pairs that are
+    /// left out for being close in every configuration.
+    pub(crate) fn said(&self) -> &[String] {
+        &self.said
     }
 
     /// The arm among its obstacles.
@@ -308,11 +325,20 @@ impl<C: LinkedSpace> LinkedScene<C> {
 
     /// How far (m) a unit of each factor of the space moves a point of the robot at most.
     fn weights(&self) -> Vec<f64> {
-        let reach = if self.arm.reach() > 0.0 { self.arm.reach() } else { 1.0 };
-        let base = if self.arm.kinematics().floats() { vec![1.0, 1.0, 1.0, reach] } else { Vec::new() };
+        let length = if self.arm.length() > 0.0 { self.arm.length() } else { 1.0 };
+        let base = if self.arm.kinematics().floats() { vec![1.0, 1.0, 1.0, length] } else { Vec::new() };
         // A joint that moves nothing solid still has a weight.
-        let joints = self.arm.coordinate_reaches().into_iter().map(|r| r.max(1e-3 * reach));
+        let joints = self.arm.coordinate_reaches().into_iter().map(|r| r.max(1e-3 * length));
         base.into_iter().chain(joints).collect()
+    }
+
+    /// The first number of a configuration that is beyond its limits: its name, the limits, and the number.
+    fn beyond(&self, q: &Configuration) -> Option<(String, [f64; 2], f64)> {
+        let mut numbers = self.columns().into_iter().zip(self.limits()).zip(self.row(q));
+        numbers.find_map(|((column, limits), x)| {
+            let [low, high] = limits.filter(|[low, high]| !(low..=high).contains(&&x))?;
+            Some((column.name, [low, high], x))
+        })
     }
 
     /// The links that have a shape: index in the model, and mesh.
@@ -339,129 +365,12 @@ impl ArmScene {
         let velocity = file.start[names.len()..].to_vec();
         DrivenScene::new(self.clone(), driven, &velocity, parts).map(Some)
     }
-
-    /// The scene of a problem without start and goal, and what was chosen, in sentences.
-    ///
-    /// The start is the free configuration nearest to zero within the limits; the goal has each joint half way from there to
-    /// its farther limit, or is the free configuration nearest to that.
-    ///
-    /// # Errors
-    /// As [`from_problem`](Self::from_problem), and when no free configuration is found.
-    #[cfg_attr(not(feature = "urdf"), expect(dead_code, reason = "there are no robots to read"))]
-    pub(crate) fn from_robot_alone(
-        files: &dyn Files,
-        mut problem: RobotProblem,
-    ) -> Result<(Self, Vec<String>), Error> {
-        let arm = Self::arm_of(files, &problem)?;
-        let space = arm.space()?;
-        let none = || {
-            Error::new("the links of this robot touch each other in every configuration that was tried")
-                .help("say in an SRDF which links may touch, and name it in a robot problem: docs/formats/robot-problem.md")
-                .context(what(&problem))
-        };
-        let interrupt = files.interrupt();
-        let search = arm.clone().with_interrupt(interrupt.clone());
-        let wanted = DVector::from(arm.kinematics().neutral());
-        let start = free_near(&search, &space, &wanted).ok_or_else(none)?;
-        let half_way = |(joint, at): (&Coordinate, &f64)| match joint.range {
-            JointRange::Interval { low, high } if high - at >= at - low => 0.5 * (at + high),
-            JointRange::Interval { low, .. } => 0.5 * (at + low),
-            JointRange::Circle => at + FRAC_PI_2,
-        };
-        let far: Vec<f64> = arm.coordinates().iter().zip(start.iter()).map(half_way).collect();
-        let far = space.wrapped(&DVector::from(far));
-        let goal = free_near(&search, &space, &far).ok_or_else(none)?;
-        if interrupt.raised().is_some() {
-            return Err(Error::new("the search for free configurations was ended").context(what(&problem)));
-        }
-        let nearest = |chosen: &Configuration, wanted: &Configuration| match chosen == wanted {
-            true => "",
-            false => ", or rather the nearest configuration found at which no links touch",
-        };
-        let file = problem.urdf_file.file_name().map(|name| name.to_string_lossy().into_owned());
-        let notes = vec![
-            format!(
-                "{} is a robot alone. Every joint starts at zero, or at the limit nearest to zero{}",
-                file.unwrap_or_default(),
-                nearest(&start, &wanted)
-            ),
-            format!(
-                "the goal is half way from there to the farther limit of each joint{}. A robot problem sets these, and \
-                 obstacles: docs/formats/robot-problem.md",
-                nearest(&goal, &far)
-            ),
-        ];
-        problem.file.start = start.as_slice().to_vec();
-        let goals = [goal.as_slice().to_vec()];
-        problem.file.goals = vec![GoalEntry::All(goals[0].clone())];
-        let (name, obstacles) = (problem.name.clone(), problem.obstacles.clone());
-        let scene = Self::assembled(name, arm, obstacles, &problem.file.start, &goals)?;
-        Ok((Self { source: Some(Box::new(problem)), ..scene }, notes))
-    }
 }
 
-/// What fails when the robot of a problem cannot be made.
-fn what(problem: &RobotProblem) -> String {
-    format!("cannot make a robot of {}", problem.urdf_file.display())
-}
-
-/// How many samples are tried where no free configuration is found near the one that is wanted.
-const TRIED: usize = 2_000;
-
-/// The free configuration nearest to `q` that is found: `q` itself, else one of those around it, else the nearest of some
-/// thousand samples. The same every time.
-fn free_near(arm: &Arm, space: &Joints<Configuration>, q: &Configuration) -> Option<Configuration> {
-    let (mut arm, margin) = (arm.clone(), 2.0 * arm.tolerance());
-    let near = arm.nearest_free(q, space, margin);
-    near.or_else(|| {
-        let (mut halton, mut rng) = (Halton::new(space), Rng::seed(0));
-        let samples = (0..TRIED).map(|_| halton.sample(&mut rng));
-        let free = samples.filter(|p| arm.clearance(p, margin) >= margin);
-        free.min_by(|a, b| space.distance(q, a).total_cmp(&space.distance(q, b)))
-    })
-}
-
-/// The model of a URDF. `mesh` finds its meshes.
-#[cfg(feature = "urdf")]
-fn from_urdf(
-    problem: &RobotProblem,
-    mesh: impl FnMut(&str) -> Result<TriMesh, String>,
-    interrupt: &mp_cspace::Interrupt,
-) -> Result<ArmModel, Error> {
-    ArmModel::from_urdf_until(&problem.urdf, mesh, interrupt)
-        .map_err(|e| in_urdf(problem, e.line().map(|line| line as usize), e.message(), e.remedy()))
-}
-
-/// An error in the URDF of a problem, in a line if that is known.
-fn in_urdf(problem: &RobotProblem, line: Option<usize>, message: String, remedy: &str) -> Error {
-    let (kind, file) = (mp_io::ErrorKind::Content, problem.urdf_file.display());
-    let error = match line {
-        Some(line) => mp_io::Error::in_line(kind, file, &problem.urdf, line, message),
-        None => mp_io::Error::new(kind, file, message),
-    };
-    error.help(remedy).into()
-}
-
-/// The line, counted from 1, in which the URDF begins the last element of this kind and name: the later one of two that have
-/// the same name.
-fn line_of(urdf: &str, element: &str, name: &str) -> Option<usize> {
-    let (start, names) = (format!("<{element}"), [format!("name=\"{name}\""), format!("name='{name}'")]);
-    let is_it = |at: &usize| {
-        let tag = urdf[*at..].split('>').next().unwrap_or_default();
-        names.iter().any(|name| tag.contains(name.as_str()))
-    };
-    let at = urdf.match_indices(&start).map(|(at, _)| at).filter(is_it).last()?;
-    Some(urdf[..at].matches('\n').count() + 1)
-}
-
-#[cfg(not(feature = "urdf"))]
-fn from_urdf(
-    _: &RobotProblem,
-    _: impl FnMut(&str) -> Result<TriMesh, String>,
-    _: &mp_cspace::Interrupt,
-) -> Result<ArmModel, Error> {
-    Err(Error::new("this program was built without the feature `urdf`, which reads arms")
-        .help("build it with the feature, which is on by default"))
+/// Whether the joint of that name slides.
+fn slides(arm: &Arm, name: &str) -> bool {
+    let joint = arm.model().joints.iter().find(|joint| joint.name == name);
+    joint.is_some_and(|joint| matches!(joint.kind, JointKind::Prismatic { .. }))
 }
 
 /// An error message and a remedy if a configuration has the wrong length.
@@ -524,7 +433,8 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     }
     fn with_ends(&self, start: Configuration, goals: Vec<Configuration>) -> Result<Self, Error> {
         // The lines of the file say nothing about these ends.
-        Ok(Self { start, goals, goal_parts: None, source: None, ..self.clone() })
+        let given_start = C::row(&start);
+        Ok(Self { start, given_start, goals, goal_parts: None, source: None, ..self.clone() })
     }
 
     fn checker(&self) -> &Arm {
@@ -578,20 +488,38 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
         };
         contacts.into_iter().map(touch).collect()
     }
+    fn closest(&self, q: &Configuration) -> Option<String> {
+        let gap = self.arm.clone().closest(q.as_slice())?;
+        Some(format!("{} and {}", gap.link, gap.other))
+    }
+    fn remedy(&self, touching: &[Touch]) -> Option<String> {
+        let own = touching.iter().any(|touch| touch.with_itself);
+        self.source.as_deref().filter(|_| own).map(srdf_help)
+    }
     fn nearest_free(&self, q: &Configuration) -> Option<Configuration> {
         self.arm.clone().nearest_free(q, &self.space, 2.0 * self.tolerance())
     }
     fn out_of_bounds(&self, q: &Configuration) -> String {
-        let numbers = self.columns().into_iter().zip(self.limits()).zip(self.row(q));
-        for ((column, limits), x) in numbers {
-            if let Some([low, high]) = limits
-                && !(low..=high).contains(&x)
-            {
-                let limits = format!("{} may be from {low} to {high}", column.name);
-                return format!("out of the limits: {x}, but {limits}");
+        match self.beyond(q) {
+            Some((name, [low, high], x)) => {
+                let limits = format!("{name} may be from {} to {}", plain(low), plain(high));
+                format!("out of the limits: {}, but {limits}", plain(x))
             }
+            None => format!("out of the limits: {}", self.written(q)),
         }
-        format!("out of the limits: {}", self.written(q))
+    }
+    fn bounds_remedy(&self, q: &Configuration) -> String {
+        let joint = |name: &String| self.arm.coordinates().iter().any(|c| c.name == *name);
+        match self.beyond(q).filter(|(name, ..)| joint(name)) {
+            Some((name, [low, high], x)) => {
+                let [low, high, off] = [low.min(x), high.max(x), (x - x.clamp(low, high)).abs()].map(plain);
+                format!(
+                    "move it, or widen the limits in [robot]: `limits = {{ {name} = [{low}, {high}] }}`, or for a start that \
+                     is only a little beyond `limit_tolerance = {off}`"
+                )
+            }
+            None => "move it, or widen the bounds".to_owned(),
+        }
     }
     fn fault(&self, end: End, message: String, help: String) -> Error {
         let error = match &self.source {
@@ -615,10 +543,7 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let slides = |name: &str| {
-            let joint = self.arm.model().joints.iter().find(|joint| joint.name == name);
-            joint.is_some_and(|joint| matches!(joint.kind, JointKind::Prismatic { .. }))
-        };
+        let slides = |name: &str| slides(&self.arm, name);
         let names = self.arm.coordinates().iter().map(|c| c.name.as_str());
         let base = C::BASE.iter().map(|(name, unit)| Column::new(*name, *unit));
         base.chain(names.map(|name| Column::new(name, if slides(name) { "m" } else { "rad" }))).collect()
@@ -642,7 +567,7 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
         };
         let pairs = crate::count(self.arm.checked_pairs().len(), "pair");
         let mut details = vec![
-            ("arm".to_owned(), format!("{links}, at most {} m long", brief(self.arm.reach()))),
+            ("arm".to_owned(), format!("{links}, at most {} m long", brief(self.arm.length()))),
             ("base".to_owned(), base),
             ("pairs".to_owned(), format!("{pairs} of links must not touch")),
         ];
@@ -651,7 +576,9 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
         }
         let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
         details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
-        details.extend(self.arm.model().notes.iter().map(|note| ("note".to_owned(), note.clone())));
+        // Those that are said are among the notes of the scene.
+        let notes = self.arm.model().notes.iter().filter(|note| !self.said.contains(note));
+        details.extend(notes.map(|note| ("note".to_owned(), note.clone())));
         details
     }
     fn row(&self, q: &Configuration) -> Vec<f64> {
@@ -659,6 +586,25 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     }
     fn state(&self, row: &[f64]) -> Configuration {
         self.space.state(row)
+    }
+    fn given_start(&self) -> Vec<f64> {
+        self.given_start.clone()
+    }
+    fn starting_as(self, row: &[f64]) -> Self {
+        Self { given_start: row.to_vec(), ..self }
+    }
+    fn rows(&self, path: &Path<Configuration>) -> Vec<Vec<f64>> {
+        let rows: Vec<_> = path.states.iter().map(|q| self.row(q)).collect();
+        let mut rows = continued(&turning(self), &self.given_start, rows);
+        // The angles of a pose depend on each other.
+        let mut last = self.given_start.first_chunk::<6>().copied().filter(|_| !C::BASE.is_empty());
+        for row in &mut rows {
+            if let (Some(before), Some(six)) = (&last, row.first_chunk_mut::<6>()) {
+                *six = continued_six(before, six);
+                last = Some(*six);
+            }
+        }
+        rows
     }
 
     fn motion_model(&self) -> Result<MotionModel, Error> {
@@ -730,7 +676,7 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
         all.last().map_or(nalgebra::Point3::origin(), |pose| pose.translation.vector.into())
     }
     fn picture_spacing(&self) -> f64 {
-        C::PICTURE_SPACING * self.arm.reach()
+        C::PICTURE_SPACING * self.arm.length()
     }
     fn picture_bounds(&self) -> Option<Aabb> {
         self.arm.model().floating

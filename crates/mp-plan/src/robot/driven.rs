@@ -261,6 +261,12 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     fn touching(&self, q: &DVector<f64>) -> Vec<Touch> {
         self.robot.touching(&self.parts(q).q)
     }
+    fn closest(&self, q: &DVector<f64>) -> Option<String> {
+        self.robot.closest(&self.parts(q).q)
+    }
+    fn remedy(&self, touching: &[Touch]) -> Option<String> {
+        self.robot.remedy(touching)
+    }
     fn nearest_free(&self, q: &DVector<f64>) -> Option<DVector<f64>> {
         let mut parts = self.parts(q);
         parts.q = self.robot.nearest_free(&parts.q)?;
@@ -333,6 +339,16 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
         let [velocity, input] = [velocity, input].map(<[f64]>::to_vec);
         let duration = duration.first().copied().unwrap_or(0.0);
         system.vector(&Parts { q: self.robot.state(q), velocity, input, duration })
+    }
+    fn given_start(&self) -> Vec<f64> {
+        let mut row = self.row(self.start());
+        row.iter_mut().zip(self.robot.given_start()).for_each(|(x, given)| *x = given);
+        row
+    }
+    fn starting_as(mut self, row: &[f64]) -> Self {
+        let own = self.robot.given_start().len().min(row.len());
+        self.robot = Arc::new(K::clone(&self.robot).starting_as(&row[..own]));
+        self
     }
     fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
         let system = &self.space.system;

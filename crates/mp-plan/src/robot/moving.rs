@@ -322,6 +322,16 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         let (time, position) = row.split_last().unwrap_or((&0.0, &[]));
         vector::<K>((self.still.state(position), *time))
     }
+    fn given_start(&self) -> Vec<f64> {
+        let mut row = self.row(self.start());
+        row.iter_mut().zip(self.still.given_start()).for_each(|(x, given)| *x = given);
+        row
+    }
+    fn starting_as(mut self, row: &[f64]) -> Self {
+        let own = self.still.given_start().len().min(row.len());
+        self.still = self.still.starting_as(&row[..own]);
+        self
+    }
     fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
         let positions: Vec<_> = rows.iter().map(|row| row[..row.len().saturating_sub(1)].to_vec()).collect();
         if let Some(odd) = self.still.odd_rows(&positions) {

@@ -527,6 +527,13 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
     fn state(&self, row: &[f64]) -> B::State {
         B::state(row)
     }
+    fn given_start(&self) -> Vec<f64> {
+        self.problem.file.start[..B::COLUMNS.len()].to_vec()
+    }
+    fn starting_as(mut self, row: &[f64]) -> Self {
+        self.problem.file.start = row.to_vec();
+        self
+    }
 
     fn bodies(&self) -> Vec<Body> {
         let robot = Body { name: "robot".to_owned(), shape: BodyShape::Area(self.robot.rings()), pose: None };

@@ -18,8 +18,21 @@ pub struct ArmContact {
     pub depth: f64,
 }
 
+/// What is nearest to each other at a configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmGap {
+    /// The link.
+    pub link: String,
+    /// What it is near: an obstacle or another link.
+    pub other: String,
+    /// How far apart they are (m).
+    pub distance: f64,
+}
+
 /// The radius of the first shell of a search, as a part of the extent of the space.
 const FIRST_SHELL: f64 = 1e-4;
+/// Beyond this (rad or m) the extent of the space has no part in it: joints may slide without end.
+const FAR: f64 = 100.0;
 /// How many times as large each shell is as the last.
 const GROWTH: f64 = 1.3;
 const MAX_SHELLS: usize = 60;
@@ -60,6 +73,36 @@ impl Arm {
         contacts
     }
 
+    /// The link and the obstacle, or the two links, that are nearest to each other at `q`: of those that must not touch. `None`
+    /// when there are none, or `q` is not a configuration.
+    pub fn closest(&mut self, q: &[f64]) -> Option<ArmGap> {
+        let Self { robot, obstacles, query, scratch, .. } = self;
+        if !robot.kinematics.is_configuration(q) {
+            return None;
+        }
+        robot.kinematics.frames_into(q, &mut scratch.frames);
+        let frames = &scratch.frames;
+        let (mut closest, mut least) = (None, f64::INFINITY);
+        for body in robot.moving() {
+            let found = obstacles.scene.clearance(query, &body.tree, &frames[body.frame], least);
+            if let (distance, Some(other)) = found
+                && distance < least
+            {
+                (closest, least) = (Some((body.link, Err(other))), distance);
+            }
+        }
+        for pair in &robot.pairs {
+            let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
+            let distance = query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], least);
+            if distance < least {
+                (closest, least) = (Some((a.link, Ok(b.link))), distance);
+            }
+        }
+        let link = |link: usize| robot.kinematics.attached[link].name.clone();
+        let obstacle = |id| obstacles.scene.body(id).map_or_else(String::new, |body| body.name().to_owned());
+        closest.map(|(a, b)| ArmGap { link: link(a), other: b.map_or_else(obstacle, link), distance: least })
+    }
+
     /// A configuration of `space` near `q` with a clearance of at least `margin` (m; the
     /// [tolerance](Arm::tolerance) is a good value): `q` itself if it has that clearance, else the nearest found, or `None`.
     ///
@@ -78,7 +121,8 @@ impl Arm {
             return None;
         }
         let margin = margin.max(f64::MIN_POSITIVE);
-        let shells = Shells { first: FIRST_SHELL * space.extent(), growth: GROWTH, most: MAX_SHELLS };
+        let shells =
+            Shells { first: FIRST_SHELL * space.extent().min(FAR), growth: GROWTH, most: MAX_SHELLS };
         let mut rng = Rng::seed(0);
         let candidates = |_, radius: f64| {
             let along = (0..2 * dim).map(|k| {

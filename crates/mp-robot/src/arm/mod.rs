@@ -16,7 +16,7 @@ mod verify;
 mod xml;
 
 pub use error::{ArmError, UrdfError};
-pub use explain::ArmContact;
+pub use explain::{ArmContact, ArmGap};
 pub use kinematics::{AttachedLink, Coordinate, JointFrame, Kinematics};
 pub use model::{ArmModel, Joint, JointKind, Link, Mimic};
 pub use robot::Arm;

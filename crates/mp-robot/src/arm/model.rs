@@ -175,9 +175,11 @@ pub struct ArmModel {
     /// The box (m) in which the origin of the root moves, if the root floats: it moves and turns freely, and its pose is part
     /// of a configuration. With `None` the root stands still.
     pub floating: Option<Aabb>,
-    /// Pairs of links that may touch and overlap, besides those joined by a joint. With `None`, the pairs that always
-    /// touch are found by sampling.
+    /// Pairs of links that may touch and overlap, besides those of rigid bodies that a joint connects. With `None`, the pairs
+    /// that always touch are found by sampling.
     pub may_touch: Option<Vec<(String, String)>>,
+    /// Pairs of links that must not touch, whatever else is said of them, unless they never move relative to each other.
+    pub kept_apart: Vec<(String, String)>,
     /// What was ignored when the model was read from a file, in sentences for people. Empty for models made in code.
     pub notes: Vec<String>,
 }
@@ -190,6 +192,7 @@ impl Default for ArmModel {
             base: Isometry3::identity(),
             floating: None,
             may_touch: None,
+            kept_apart: Vec::new(),
             notes: Vec::new(),
         }
     }

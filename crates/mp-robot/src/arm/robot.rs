@@ -66,6 +66,8 @@ pub(super) struct SharedArm {
     pub(super) pairs: Vec<LinkPair>,
     /// An upper bound (m) on the distance of any of its points from the base in any configuration.
     pub(super) reach: f64,
+    /// As [`reach`](Self::reach), but without what joints slide.
+    pub(super) length: f64,
     pub(super) model: ArmModel,
     /// The arm as verifiers see it, made for the first one.
     pub(super) reference: OnceLock<Arc<ReferenceArm>>,
@@ -75,7 +77,7 @@ impl SharedArm {
     fn new(model: &ArmModel, interrupt: &Interrupt) -> Result<Self, ArmError> {
         let kinematics = Kinematics::new(model)?;
         let mut bodies = Vec::new();
-        let (mut first, mut count, mut reach) = (0, 0_usize, 0.0_f64);
+        let (mut first, mut count, mut reach, mut length) = (0, 0_usize, 0.0_f64, 0.0_f64);
         for (i, (link, place)) in model.links.iter().zip(&kinematics.attached).enumerate() {
             if link.shapes.is_empty() {
                 continue;
@@ -89,13 +91,13 @@ impl SharedArm {
             }
             let mesh = merged.transformed(&place.pose);
             let chain = Chain::new(&kinematics, &mesh, place.frame);
-            let radius = reach_of(&kinematics, &mesh, place.frame);
+            let Extent { reach: radius, length: long } = extent_of(&kinematics, &mesh, place.frame);
             // Written so that NaN is refused.
             let small = radius <= MAX_RADIUS;
             if !small {
                 return Err(too_large(radius));
             }
-            reach = reach.max(radius);
+            (reach, length) = (reach.max(radius), length.max(long));
             let entries = chain.steps.len() + 1;
             let tree = CollisionMesh::new_until(&mesh, interrupt).ok_or(Interrupted)?;
             let ball = mesh.bounding_sphere();
@@ -103,8 +105,23 @@ impl SharedArm {
             bodies.push(LinkBody { link: i, frame: place.frame, mesh, tree, ball, chain, first });
             first += entries;
         }
-        let pairs = pairs(&kinematics, &bodies, model, interrupt)?;
-        Ok(Self { kinematics, bodies, pairs, reach, model: model.clone(), reference: OnceLock::new() })
+        let (model, reference) = (model.clone(), OnceLock::new());
+        let mut robot = Self { kinematics, bodies, pairs: Vec::new(), reach, length, model, reference };
+        // Closer than this no motion can be certified.
+        let close = 2.0 * robot.tolerance(0.0);
+        let (pairs, notes) = pairs(&robot.kinematics, &robot.bodies, &robot.model, close, interrupt)?;
+        robot.pairs = pairs;
+        robot.model.notes.extend(notes);
+        Ok(robot)
+    }
+
+    /// The default tolerance (m) among obstacles whose coordinates are at most `farthest`.
+    fn tolerance(&self, farthest: f64) -> f64 {
+        let base = match &self.model.floating {
+            Some(bounds) => bounds.min.coords.amax().max(bounds.max.coords.amax()),
+            None => self.kinematics.base.translation.vector.amax(),
+        };
+        resolved_tolerance(1e-4 * self.length, base + farthest + self.reach)
     }
 
     /// The obstacles around this arm.
@@ -148,19 +165,33 @@ impl SharedArm {
     }
 }
 
-/// An upper bound on the distance of a point of `mesh`, given in the frame `frame`, from the base in any configuration.
-fn reach_of(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> f64 {
-    let mut reach = mesh.vertices().iter().map(|p| p.coords.norm()).fold(0.0, |a: f64, b| {
-        // `max` would drop NaN.
-        if b > a || b.is_nan() { b } else { a }
-    });
+/// How far (m) the points of a link are from the base.
+struct Extent {
+    /// An upper bound in any configuration.
+    reach: f64,
+    /// The same from the lengths of links alone. What carries the link without ever turning it counts no more than the rest: it
+    /// places the link, like the pose of the base.
+    length: f64,
+}
+
+/// The extent of `mesh`, given in the frame `frame`.
+fn extent_of(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> Extent {
+    // `max` would drop NaN.
+    let largest = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
+    let own = mesh.vertices().iter().map(|p| p.coords.norm()).fold(0.0, largest);
+    let (mut reach, mut turned, mut placed) = (own, None, own);
     let mut at = frame;
     while at > 0 {
         let joint = &kinematics.frames[at - 1];
-        reach += joint.slide + joint.origin.translation.vector.norm();
-        at = joint.parent;
+        if !joint.slides {
+            turned = Some(placed);
+        }
+        let origin = joint.origin.translation.vector.norm();
+        (reach, placed, at) = (reach + joint.slide + origin, placed + origin, joint.parent);
     }
-    reach
+    // What nothing turns is as long as it is itself.
+    let turned = turned.unwrap_or_else(|| own.min(2.0 * mesh.bounding_sphere().radius));
+    Extent { reach, length: placed.min(2.0 * turned) }
 }
 
 /// Scratch memory of one clone.
@@ -190,10 +221,11 @@ impl Scratch {
 ///
 /// - no link that can move has a point in common with an obstacle. Links that stand still are not tested against
 ///   obstacles, which stand still too: a table may touch the base that it carries;
-/// - no two links have a point in common, except pairs that never move relative to each other, pairs joined by a
-///   joint (links touch at a joint), and pairs that may touch: those of
-///   [`ArmModel::may_touch`] if given, else those that touch at each of 100 configurations, the neutral one and
-///   99 of the Halton sequence.
+/// - no two links have a point in common, except pairs that never move relative to each other, pairs of rigid bodies that a
+///   joint connects (links touch at a joint; links joined by fixed joints are one body, but of a body that stands still only
+///   the link of the joint counts), and pairs that may touch: those of [`ArmModel::may_touch`] if given, else those that touch
+///   at each of 100 configurations, the neutral one and 99 of the Halton sequence. Pairs within twice the tolerance of each
+///   other at each of these are left out too, and [`ArmModel::notes`] of [`Arm::model`] says so.
 ///
 /// Only surfaces count, as for [`RigidBody`](crate::RigidBody): touching is collision, and a link wholly inside a
 /// closed obstacle is free. The space checks the limits.
@@ -362,7 +394,7 @@ impl Arm {
     }
 
     /// An upper bound (m) on the distance of any of its points from the base in any configuration, from the lengths of
-    /// its links.
+    /// its links and how far joints slide.
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.robot.reach
@@ -398,15 +430,18 @@ impl Arm {
         self.obstacles.bounds
     }
 
-    /// The default tolerance (m) of certified motion checks: 1e-4 of its [reach](Self::reach), and at least what
+    /// How long (m) the robot is: as [`reach`](Self::reach) from the lengths of its links, but without how far joints slide. A
+    /// robot on long rails is no longer than one on the floor.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.robot.length
+    }
+
+    /// The default tolerance (m) of certified motion checks: 1e-4 of its [length](Self::length), and at least what
     /// coordinates can resolve. An [`ArmVerifier`](crate::ArmVerifier) uses a tenth of it.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
-        let base = match &self.model().floating {
-            Some(bounds) => bounds.min.coords.amax().max(bounds.max.coords.amax()),
-            None => self.kinematics().base.translation.vector.amax(),
-        };
-        resolved_tolerance(1e-4 * self.reach(), base + self.obstacles.farthest() + self.reach())
+        self.robot.tolerance(self.obstacles.farthest())
     }
 
     /// The checks made by this clone so far.

@@ -1,30 +1,86 @@
 //! Pairs of links that may touch, from SRDF text.
 
-use super::xml::Text;
+use super::xml::{Text, some};
 use super::{ArmModel, UrdfError};
+use roxmltree::Node;
+use std::collections::BTreeSet;
+
+/// Elements that change nothing here: they name parts of the robot, or say how to plan for them.
+const SKIPPED: [&str; 6] =
+    ["group", "group_state", "end_effector", "virtual_joint", "joint_property", "link_sphere_approximation"];
 
 impl ArmModel {
-    /// Takes the pairs of links that may touch from the `disable_collisions` of an SRDF. The rest of the SRDF is ignored; that
-    /// the base moves by a virtual joint is said in a note, unless it [floats](Self::floating).
+    /// Takes the pairs of links that may touch from an SRDF: those of `disable_collisions`, and all pairs of the links of
+    /// `disable_default_collisions` but those of `enable_collisions`. The latter must not touch even if a joint connects them,
+    /// unless `disable_collisions` names them too.
+    ///
+    /// Notes say which links are not of this robot, whose entries are skipped, and which other elements are not read although
+    /// they have a meaning: that the base moves by a virtual joint, unless it [floats](Self::floating), that joints are passive,
+    /// and elements that are unknown.
     ///
     /// # Errors
-    /// [`UrdfError::Syntax`] when the text is not an SRDF. Missing links are reported by [`Arm::new`](crate::Arm::new).
+    /// [`UrdfError::Syntax`] when the text is not an SRDF.
     pub fn with_srdf(mut self, text: &str) -> Result<Self, UrdfError> {
         let text = Text::new("an SRDF", text)?;
         let document = text.parse()?;
-        let mut pairs = Vec::new();
-        for node in document.root_element().children().filter(|n| n.has_tag_name("disable_collisions")) {
-            let link = |name: &str| {
-                node.attribute(name)
-                    .map(str::to_owned)
-                    .ok_or_else(|| text.error(&node, format!("<disable_collisions> has no attribute {name}")))
-            };
-            pairs.push((link("link1")?, link("link2")?));
+        let elements = |name: &'static str| {
+            document.root_element().children().filter(move |node| node.has_tag_name(name))
+        };
+        let named = |node: &Node<'_, '_>, name: &str| match node.attribute(name) {
+            Some(value) => Ok(value.to_owned()),
+            None => Err(text.error(node, format!("<{}> has no attribute {name}", node.tag_name().name()))),
+        };
+        let mut absent = BTreeSet::new();
+        let mut known = |model: &Self, name: &String| {
+            model.links.iter().any(|link| link.name == *name) || {
+                absent.insert(name.clone());
+                false
+            }
+        };
+        let mut pairs = |model: &Self, name: &'static str| {
+            let mut pairs = Vec::new();
+            for node in elements(name) {
+                let pair = (named(&node, "link1")?, named(&node, "link2")?);
+                // Both are looked for, so that both are named if they are absent.
+                if known(model, &pair.0) & known(model, &pair.1) {
+                    pairs.push(pair);
+                }
+            }
+            Ok::<_, UrdfError>(pairs)
+        };
+        let mut may_touch = pairs(&self, "disable_collisions")?;
+        let mut kept_apart = pairs(&self, "enable_collisions")?;
+        let same =
+            |(a, b): &(String, String), (c, d): &(String, String)| (a, b) == (c, d) || (a, b) == (d, c);
+        kept_apart.retain(|pair| !may_touch.iter().any(|other| same(pair, other)));
+        for node in elements("disable_default_collisions") {
+            let link = named(&node, "link")?;
+            if known(&self, &link) {
+                let others = self.links.iter().filter(|other| other.name != link);
+                may_touch.extend(others.map(|other| (link.clone(), other.name.clone())));
+            }
         }
-        self.may_touch = Some(pairs);
-        let free = |n: &roxmltree::Node<'_, '_>| matches!(n.attribute("type"), Some("floating" | "planar"));
-        let mut virtuals = document.root_element().children().filter(|n| n.has_tag_name("virtual_joint"));
-        if self.floating.is_none() && virtuals.any(|n| free(&n)) {
+        (self.may_touch, self.kept_apart) = (Some(may_touch), kept_apart);
+
+        if !absent.is_empty() {
+            let absent: Vec<_> = absent.into_iter().collect();
+            self.notes.push(format!("the SRDF names links that this robot does not have: {}", some(&absent)));
+        }
+        let passive =
+            elements("passive_joint").map(|node| named(&node, "name")).collect::<Result<Vec<_>, _>>()?;
+        if !passive.is_empty() {
+            let note = "joints that are passive by the SRDF move like all others";
+            self.notes.push(format!("{note}: {}", some(&passive)));
+        }
+        let read = ["disable_collisions", "enable_collisions", "disable_default_collisions", "passive_joint"];
+        let names = document.root_element().children().filter(Node::is_element).map(|n| n.tag_name().name());
+        let unknown: BTreeSet<_> = names.filter(|n| !SKIPPED.contains(n) && !read.contains(n)).collect();
+        if !unknown.is_empty() {
+            let unknown: Vec<_> = unknown.into_iter().map(str::to_owned).collect();
+            self.notes.push(format!("elements of the SRDF that are not read: {}", some(&unknown)));
+        }
+        let free = |n: &Node<'_, '_>| matches!(n.attribute("type"), Some("floating" | "planar"));
+        if self.floating.is_none() && elements("virtual_joint").any(|n| free(&n)) {
             self.notes.push(
                 "the SRDF has a virtual joint by which the base moves, but the base stands still: write `base = \"floating\"` \
                  and `bounds` in the robot problem if it shall move freely"

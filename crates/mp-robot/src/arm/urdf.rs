@@ -3,8 +3,9 @@
 mod extract;
 
 use super::compile::MAX_LENGTH;
+use super::xml::some;
 use super::{ArmModel, Joint, JointKind, Link, UrdfError};
-use extract::{Extract, extract, some};
+use extract::{Extract, extract};
 use mp_cspace::Interrupt;
 use mp_geom::{TriMesh, primitives};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};

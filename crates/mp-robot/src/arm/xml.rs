@@ -92,6 +92,16 @@ pub(super) fn line(node: &Node<'_, '_>) -> u32 {
     node.document().text_pos_at(node.range().start).row
 }
 
+/// The first names of a list, and how many more there are.
+pub(super) fn some(names: &[String]) -> String {
+    const SHOWN: usize = 4;
+    let shown: Vec<_> = names.iter().take(SHOWN).map(|name| format!("\"{name}\"")).collect();
+    match names.len().saturating_sub(SHOWN) {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
+    }
+}
+
 /// Where the name of the first element ends.
 fn end_of_root_name(text: &str) -> Option<usize> {
     let mut at = 0;

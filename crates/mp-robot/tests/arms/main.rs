@@ -5,6 +5,7 @@ mod common;
 mod floating;
 mod kinematics;
 mod motions;
+mod pairs;
 #[cfg(feature = "urdf")]
 mod urdf;
 mod verifier;

@@ -199,9 +199,21 @@ impl Made {
 
     /// Finds out which links are compared, and writes down those that may touch.
     fn pair_links(&mut self, draw: &mut Draw, of_link: &[usize]) {
+        // A joint connects the links that move with its child to those that move with its parent; of the root that stands still, to
+        // its parent alone.
         let joined = |a: usize, b: usize| {
-            let child_of =
-                |child: usize, parent: usize| child > 0 && self.tree.joints[child - 1].above == parent;
+            let child_of = |child: usize, parent: usize| {
+                let moved = self.moving_frame(child);
+                moved > 0 && {
+                    let above = self.tree.joints[moved - 1].above;
+                    let body = self.moving_frame(above);
+                    if body > 0 || self.tree.floats {
+                        body == self.moving_frame(parent)
+                    } else {
+                        above == parent
+                    }
+                }
+            };
             child_of(a, b) || child_of(b, a)
         };
         let mut all = Vec::new();

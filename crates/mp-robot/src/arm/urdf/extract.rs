@@ -2,7 +2,7 @@
 //! document is parsed, so that errors in it do not matter.
 
 use super::super::UrdfError;
-use super::super::xml::Text;
+use super::super::xml::{Text, some};
 use mp_cspace::Interrupt;
 use roxmltree::{Attribute, Node};
 use std::collections::{BTreeMap, BTreeSet};
@@ -333,15 +333,5 @@ impl LeftOut {
         }
         notes.extend(self.links.into_iter().map(|(what, links)| format!("{what}, in {}", some(&links))));
         notes
-    }
-}
-
-/// The first names of a list, and how many more there are.
-pub(super) fn some(names: &[String]) -> String {
-    const SHOWN: usize = 4;
-    let shown: Vec<_> = names.iter().take(SHOWN).map(|name| format!("\"{name}\"")).collect();
-    match names.len().saturating_sub(SHOWN) {
-        0 => shown.join(", "),
-        more => format!("{} and {more} more", shown.join(", ")),
     }
 }

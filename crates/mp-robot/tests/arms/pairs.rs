@@ -1,0 +1,211 @@
+//! Which links are compared, and how near they may come.
+
+use mp_cspace::Clearance;
+use mp_geom::primitives::cuboid;
+use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};
+use nalgebra::{DVector, Isometry3, Vector3};
+
+const TURN: JointKind = JointKind::Revolute { low: -2.0, high: 2.0 };
+
+fn block(name: &str, size: f64, height: f64) -> Link {
+    Link::new(name).with(&cuboid(size, size, size).unwrap(), &Isometry3::translation(0.0, 0.0, height))
+}
+
+fn joint(name: &str, parent: &str, child: &str, kind: JointKind) -> Joint {
+    Joint::new(name, parent, child, kind).axis(Vector3::z())
+}
+
+fn model(links: Vec<Link>, joints: Vec<Joint>) -> ArmModel {
+    ArmModel { links, joints, ..ArmModel::default() }
+}
+
+fn compared(model: &ArmModel) -> Vec<String> {
+    let arm = Arm::new(model, []).unwrap();
+    arm.checked_pairs().into_iter().map(|[a, b]| format!("{a} {b}")).collect()
+}
+
+/// A link on a foot: `base`, then `carrier` by a joint that slides, with `shell` welded to it.
+fn lift() -> ArmModel {
+    let slide = JointKind::Prismatic { low: 0.0, high: 0.6 };
+    let links = vec![block("base", 0.4, 0.0), Link::new("carrier"), block("shell", 0.3, 0.3)];
+    model(
+        links,
+        vec![joint("up", "base", "carrier", slide), joint("weld", "carrier", "shell", JointKind::Fixed)],
+    )
+}
+
+#[test]
+fn welded_links_are_one_body_with_the_link_of_a_joint() {
+    // Welded to the child, once, twice, and by a joint that is held.
+    assert_eq!(compared(&lift()), [""; 0]);
+    let mut twice = lift();
+    twice.links.push(block("cap", 0.35, 0.2));
+    twice.joints.push(joint("weld 2", "shell", "cap", JointKind::Fixed));
+    assert_eq!(compared(&twice), [""; 0]);
+    let mut held = lift();
+    held.joints[1].kind = JointKind::Revolute { low: 0.5, high: 0.5 };
+    assert_eq!(compared(&held), [""; 0]);
+    // Welded to a parent that moves itself: the same, but the base is another body.
+    let links = ["base", "lower", "fin", "upper"].map(|name| block(name, 0.1, 1.0)).to_vec();
+    let mut arm = model(
+        links,
+        vec![
+            joint("a", "base", "lower", TURN).at(Isometry3::translation(1.0, 0.0, 0.0)),
+            joint("weld", "lower", "fin", JointKind::Fixed).at(Isometry3::translation(0.0, 1.0, 0.0)),
+            joint("b", "lower", "upper", TURN).at(Isometry3::translation(1.0, 0.0, 0.0)),
+        ],
+    );
+    assert_eq!(compared(&arm), ["base upper"]);
+    // A pair that is taken back.
+    arm.kept_apart = vec![("upper".into(), "fin".into()), ("lower".into(), "fin".into())];
+    assert_eq!(compared(&arm), ["base upper", "fin upper"]);
+}
+
+/// What stands still may be the room: walls welded to the root are compared with what a joint of the root moves, also where they
+/// are welded to the link of the joint. What touches it at zero belongs to the joint.
+#[test]
+fn walls_welded_to_the_root_are_compared() {
+    let slide = JointKind::Prismatic { low: 0.0, high: 3.0 };
+    let make = |wall: f64| {
+        let links = vec![block("base", 0.1, 1.0), block("wall", 0.4, 0.0), block("cart", 0.4, 0.0)];
+        let place = Isometry3::translation(wall, 0.0, 0.0);
+        let joints = vec![
+            joint("weld", "base", "wall", JointKind::Fixed).at(place),
+            joint("drive", "base", "cart", slide).axis(Vector3::x()),
+        ];
+        model(links, joints)
+    };
+    assert_eq!(compared(&make(2.0)), ["wall cart"]);
+    let mut arm = Arm::new(&make(2.0), []).unwrap();
+    let at = |arm: &mut Arm, x: f64| arm.clearance(&DVector::from_vec(vec![x]), 10.0);
+    assert_eq!(at(&mut arm, 1.9), 0.0);
+    assert!((at(&mut arm, 1.0) - 0.6).abs() < 1e-9);
+    let touching = Arm::new(&make(0.3), []).unwrap();
+    assert!(touching.checked_pairs().is_empty());
+    assert!(touching.model().notes[0].contains("\"wall\" and \"cart\""), "{:?}", touching.model().notes);
+    // An SRDF says which links may touch: nothing else is guessed.
+    let given = make(0.3).with_srdf("<robot/>").unwrap();
+    assert_eq!(compared(&given), ["wall cart"]);
+    // A base that floats is no room.
+    let bounds = mp_geom::Aabb::new([-1.0; 3].into(), [1.0; 3].into());
+    assert_eq!(compared(&ArmModel { floating: Some(bounds), ..make(2.0) }), [""; 0]);
+}
+
+#[test]
+fn an_srdf_switches_links_off_and_takes_pairs_back() {
+    let links = ["base", "a", "b", "c", "d"].map(|name| block(name, 0.1, 0.0)).to_vec();
+    let at = Isometry3::translation(0.5, 0.0, 0.0);
+    let names = ["base", "a", "b", "c", "d"];
+    let joints =
+        names.windows(2).map(|w| joint(&format!("{}{}", w[0], w[1]), w[0], w[1], TURN).at(at)).collect();
+    let model = model(links, joints);
+    let with =
+        |elements: &str| model.clone().with_srdf(&format!("<robot name=\"r\">{elements}</robot>")).unwrap();
+    assert_eq!(compared(&with("")), ["base b", "base c", "a c", "base d", "a d", "b d"]);
+    let off = r#"<disable_default_collisions link="d"/>"#;
+    assert_eq!(compared(&with(off)), ["base b", "base c", "a c"]);
+    let back = format!(
+        "{off}<enable_collisions link1=\"a\" link2=\"d\"/><enable_collisions link1=\"b\" link2=\"a\"/>"
+    );
+    assert_eq!(compared(&with(&back)), ["base b", "a b", "base c", "a c", "a d"]);
+    // A pair that is switched off by itself stays so.
+    let both = format!("{back}<disable_collisions link1=\"d\" link2=\"a\" reason=\"User\"/>");
+    assert_eq!(compared(&with(&both)), ["base b", "a b", "base c", "a c"]);
+    // What is skipped is said: links of another robot, and elements that have a meaning.
+    let absent = with(
+        "<disable_collisions link1=\"foot\" link2=\"base\"/><enable_collisions link1=\"a\" link2=\"hand\"/>\
+         <disable_default_collisions link=\"head\"/><passive_joint name=\"ab\"/><sensor name=\"s\"/>\
+         <group name=\"g\"/><group_state name=\"home\" group=\"g\"/>",
+    );
+    assert_eq!(compared(&absent).len(), 6);
+    let notes = absent.notes.join("\n");
+    for what in ["\"foot\", \"hand\", \"head\"", "passive", "\"ab\"", "\"sensor\""] {
+        assert!(notes.contains(what), "{what}: {notes}");
+    }
+    assert_eq!(absent.notes.len(), 3);
+    assert!(model.clone().with_srdf("<robot><disable_default_collisions name=\"d\"/></robot>").is_err());
+}
+
+/// Links a hair apart in every configuration: nothing could be certified about them.
+#[test]
+fn links_that_stay_close_without_touching_are_left_out_and_said() {
+    let make = |gap: f64| {
+        let links = vec![
+            block("base", 0.2, 0.0),
+            Link::new("axle"),
+            block("cover", 0.18, 0.19 + gap),
+            block("tip", 0.1, 0.9),
+        ];
+        model(
+            links,
+            vec![
+                joint("a", "base", "axle", TURN),
+                joint("b", "axle", "cover", TURN),
+                joint("c", "axle", "tip", TURN),
+            ],
+        )
+    };
+    for gap in [1e-5, 5e-5, 1.5e-4] {
+        let arm = Arm::new(&make(gap), []).unwrap();
+        assert!(2.0 * arm.tolerance() > gap);
+        assert_eq!(arm.checked_pairs(), [["base", "tip"], ["cover", "tip"]], "{gap}");
+        let note = &arm.model().notes[0];
+        assert!(note.contains("\"base\" and \"cover\"") && note.contains("apart than"), "{note}");
+        let srdf = make(gap).with_srdf("<robot/>").unwrap();
+        assert_eq!(compared(&srdf).len(), 2);
+        // A pair that must not touch is compared, and named as the closest.
+        let mut kept =
+            Arm::new(&ArmModel { kept_apart: vec![("base".into(), "cover".into())], ..make(gap) }, [])
+                .unwrap();
+        let closest = kept.closest(&[0.0, 0.5, 0.0]).unwrap();
+        assert_eq!((closest.link.as_str(), closest.other.as_str()), ("base", "cover"));
+        assert!((closest.distance - gap).abs() < 1e-9);
+    }
+    // Farther apart, it is compared; what is in contact everywhere is left out, unless an SRDF says which pairs may touch.
+    assert_eq!(compared(&make(1e-3)), ["base cover", "base tip", "cover tip"]);
+    assert_eq!(compared(&make(-1e-3)).len(), 2);
+    assert_eq!(compared(&make(-1e-3).with_srdf("<robot/>").unwrap()).len(), 3);
+}
+
+/// The tolerance is that of the links, however far they slide or stand from the root.
+#[test]
+fn the_tolerance_does_not_grow_with_what_only_places_the_links() {
+    let make = |travel: f64, held: Option<f64>, place: f64| {
+        let slide = JointKind::Prismatic { low: -travel, high: travel };
+        let links = vec![
+            Link::new("world"),
+            block("base", 0.4, 0.0),
+            block("arm", 0.2, 0.3),
+            block("hand", 0.1, 0.3),
+        ];
+        let mut made = model(
+            links,
+            vec![
+                joint("x", "world", "base", slide)
+                    .axis(Vector3::x())
+                    .at(Isometry3::translation(place, 0.0, 0.0)),
+                joint("turn", "base", "arm", TURN).at(Isometry3::translation(0.0, 0.0, 0.3)),
+                joint("reach", "arm", "hand", JointKind::Prismatic { low: 0.0, high: travel })
+                    .at(Isometry3::translation(0.0, 0.0, 0.4)),
+            ],
+        );
+        if let Some(held) = held {
+            made.joints[0].kind = JointKind::Prismatic { low: held, high: held };
+        }
+        Arm::new(&made, []).unwrap()
+    };
+    let usual = make(1.0, None, 0.0);
+    assert!((1e-5..2e-4).contains(&usual.tolerance()), "{}", usual.tolerance());
+    assert_eq!(usual.tolerance(), make(1000.0, None, 0.0).tolerance());
+    assert!(make(1000.0, None, 0.0).reach() > 2000.0);
+    for far in [make(1.0, Some(500.0), 0.0), make(1.0, None, 500.0)] {
+        assert!(far.tolerance() <= 2.0 * usual.tolerance(), "{}", far.tolerance());
+    }
+    // What floating point resolves there.
+    assert!((make(1e6, None, 0.0).tolerance() / 2e-3 - 1.0).abs() < 0.01);
+    // A free configuration near one that is not is found though joints slide far.
+    let mut folded = make(1e5, None, 0.0);
+    let space = folded.space().unwrap();
+    let free = folded.nearest_free(&DVector::from_vec(vec![0.0, 0.0, 0.0]), &space, 1e-3);
+    assert!(free.is_some());
+}
