@@ -162,6 +162,8 @@ class Mesh:
         Metres.
     triangles : array_like of int, shape (m, 3)
         Indices of vertices.
+    solid : bool
+        Whether it has an inside, as boxes, spheres and cylinders have. It must be closed then.
 
     Examples
     --------
@@ -171,8 +173,9 @@ class Mesh:
 
     vertices: Array
     triangles: NDArray[np.uint32]
+    solid: bool
 
-    def __init__(self, vertices: ArrayLike, triangles: ArrayLike) -> None:
+    def __init__(self, vertices: ArrayLike, triangles: ArrayLike, *, solid: bool = False) -> None:
         v = np.array(vertices, dtype=np.float64, order="C")
         t = np.asarray(triangles)
         if v.ndim != 2 or v.shape[1] != 3:
@@ -186,15 +189,18 @@ class Mesh:
             )
         object.__setattr__(self, "vertices", v)
         object.__setattr__(self, "triangles", np.array(t, dtype=np.uint32, order="C"))
+        object.__setattr__(self, "solid", solid)
 
     @classmethod
-    def load(cls, file: str | os.PathLike[str]) -> Mesh:
+    def load(cls, file: str | os.PathLike[str], *, solid: bool = False) -> Mesh:
         """Read a mesh: OFF, OBJ, STL, COLLADA or GEMPA text, by the ending of the file.
 
         Parameters
         ----------
         file : path
             The file.
+        solid : bool
+            Whether it has an inside.
 
         Raises
         ------
@@ -202,7 +208,7 @@ class Mesh:
             When it cannot be read or is not valid, with file and line.
         """
         vertices, triangles = _mp.read_mesh(file)
-        return cls(vertices, triangles)
+        return cls(vertices, triangles, solid=solid)
 
     def __repr__(self) -> str:
         return f"Mesh({len(self.vertices)} vertices, {len(self.triangles)} triangles)"
@@ -345,7 +351,7 @@ def shape_members(shape: Shape, files: dict[str, bytes]) -> dict[str, Any]:
         case Mesh():
             name = f"mesh-{len(files) + 1}.off"
             files[name] = _mp.mesh_off(shape.vertices, shape.triangles)
-            return {"mesh": name}
+            return {"mesh": name} | ({"solid": True} if shape.solid else {})
     raise Error(f"{shape!r} is no shape", remedy="give a Mesh, a Box, a Sphere or a Cylinder")
 
 

@@ -3,7 +3,7 @@
 use crate::cli::Check;
 use crate::input::{path, refuse_two_standard_inputs, scene};
 use crate::interrupt;
-use crate::output::{Claims, print, print_json, write};
+use crate::output::{Claims, note, print, print_json, write};
 use mp_plan::{Error, Interrupt, Scene, brief, plain};
 use std::path::Path;
 
@@ -30,7 +30,10 @@ pub(crate) fn run(args: &Check) -> Result<bool, Error> {
     (verdict.scene, verdict.path) = (shown(&scene, &args.scene), file.display().to_string());
     match args.json {
         true => print_json(&verdict)?,
-        false => print(&verdict.summary())?,
+        false => {
+            verdict.warnings.iter().for_each(|odd| note(&format!("warning: {odd}")));
+            print(&verdict.summary())?;
+        }
     }
     Ok(verdict.free)
 }
@@ -50,6 +53,7 @@ fn explain(scene: &Scene, numbers: &str, as_json: bool) -> Result<bool, Error> {
         print_json(&explanation)?;
         return Ok(explanation.free);
     }
+    explanation.warnings.iter().for_each(|odd| note(&format!("warning: {odd}")));
     let what = explanation.fault.clone().unwrap_or_else(|| "free".to_owned());
     print(&format!("the configuration is {what}"))?;
     if explanation.in_bounds {

@@ -44,7 +44,7 @@ impl Query {
         pose_wb: &Isometry3<f64>,
     ) -> Option<Vector3<f64>> {
         let relative = Relative::of((a, pose_wa), (b, pose_wb))?;
-        if !self.meets((a, pose_wa), (b, pose_wb)) {
+        if !self.meets(a, pose_wa, b, pose_wb) {
             return Some(Vector3::zeros());
         }
         let moved = |way: Vector3<f64>| {
@@ -63,7 +63,7 @@ impl Query {
                 if step >= limit {
                     break None;
                 }
-                if !self.meets((a, &moved(direction * step)), (b, pose_wb)) {
+                if !self.meets(a, &moved(direction * step), b, pose_wb) {
                     break Some(step);
                 }
                 blocked = step;
@@ -72,14 +72,12 @@ impl Query {
             // No step below the limit is free: the direction is no better than the best, or it is the first to succeed.
             let mut free = match free {
                 Some(free) => free,
-                None if shortest.is_none() && !self.meets((a, &moved(direction * sure)), (b, pose_wb)) => {
-                    sure
-                }
+                None if shortest.is_none() && !self.meets(a, &moved(direction * sure), b, pose_wb) => sure,
                 None => continue,
             };
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (blocked + free);
-                if self.meets((a, &moved(direction * middle)), (b, pose_wb)) {
+                if self.meets(a, &moved(direction * middle), b, pose_wb) {
                     blocked = middle;
                 } else {
                     free = middle;

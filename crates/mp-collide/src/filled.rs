@@ -1,13 +1,15 @@
 //! Filled meshes: closed surfaces together with their inside.
 
-use nalgebra::Point3;
+use nalgebra::{Isometry3, Point3};
 use thiserror::Error;
 
-use mp_geom::{NO_COMPONENT, TriMesh};
+use mp_geom::{Aabb, TriMesh};
 
+use crate::broad::BroadPhase;
 use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::Relative;
 use crate::query::Query;
+use crate::scene::bounds;
 
 /// Why a mesh has no inside.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -48,14 +50,16 @@ pub enum FillError {
 
 impl CollisionMesh {
     /// The same mesh as a solid: the surface and all points around which it winds outward. In a
-    /// [`Scene`](crate::Scene), and for [`Query::depth`] and [`Query::escape`], it then also collides with what is
-    /// wholly inside of it; all other queries compare surfaces. O(n log n) for n triangles.
+    /// [`Scene`](crate::Scene), and for [`Query::meets`], [`Query::depth`] and [`Query::escape`], it then also collides with what is
+    /// wholly inside of it; all other queries compare surfaces. O(n log n) for n triangles. A mesh made of
+    /// [solids](TriMesh::solids) is filled already.
     ///
     /// ```
     /// use mp_collide::{CollisionMesh, Query, Scene};
     /// use nalgebra::Isometry3;
     ///
-    /// let crate_ = CollisionMesh::new(&mp_geom::primitives::cuboid(2.0, 2.0, 2.0)?).filled()?;
+    /// let shell = mp_geom::primitives::cuboid(2.0, 2.0, 2.0)?.into_surface();
+    /// let crate_ = CollisionMesh::new(&shell).filled()?;
     /// let ball = CollisionMesh::new(&mp_geom::primitives::sphere(0.5, 1)?);
     /// let (mut scene, here) = (Scene::new(), Isometry3::identity());
     /// scene.insert("crate", crate_, here)?;
@@ -79,54 +83,114 @@ impl CollisionMesh {
         if !found.is_solid() {
             return Err(FillError::NotOriented { edges: found.misoriented_edges.len() });
         }
-        let outward = mesh.signed_volume() > 0.0;
-        if outward { Ok(Self { filled: true, ..self }) } else { Err(FillError::InsideOut) }
+        match mesh.signed_volume() > 0.0 {
+            true => Ok(Self { solids: [0..self.triangle_count() as u32].into(), ..self }),
+            false => Err(FillError::InsideOut),
+        }
     }
 
-    /// Whether the mesh counts as a solid: see [`CollisionMesh::filled`].
+    /// Whether the mesh, or a part of it, counts as a solid: see [`CollisionMesh::filled`] and [`TriMesh::solids`].
     #[must_use]
     pub fn is_filled(&self) -> bool {
-        self.filled
+        !self.solids.is_empty()
     }
 
-    /// A corner of each component connected by edges; computed on first use.
-    fn parts(&self) -> &[Point3<f64>] {
+    /// The connected components; computed on first use.
+    fn parts(&self) -> &Parts {
         self.parts.get_or_init(|| {
-            let triangles = self.triangles();
-            let Ok(mesh) = TriMesh::from_soup(&triangles) else { return Vec::new() };
-            let found = mesh.topology();
-            let mut known = vec![false; found.components];
-            let first = triangles.iter().zip(&found.component).filter(|(_, part)| {
-                // A triangle with two corners in one place is connected to nothing.
-                **part == NO_COMPONENT || !std::mem::replace(&mut known[**part as usize], true)
-            });
-            first.map(|(triangle, _)| triangle[0]).collect()
+            let corners = self.triangles().concat();
+            let triangles = (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+            let mesh = TriMesh::new(corners, triangles);
+            Parts::new(mesh.map_or_else(|_| Vec::new(), |mesh| mesh.component_vertices()))
         })
     }
 }
 
-impl Query {
-    /// Whether two meshes have a point in common, filled ones with their inside.
-    pub(crate) fn meets(&mut self, a: PosedMesh<'_>, b: PosedMesh<'_>) -> bool {
-        self.intersects(a.0, a.1, b.0, b.1) || self.nested(a, b)
+/// A corner of each connected component of a mesh. Where surfaces are apart, a component is inside if its corner is.
+#[derive(Clone, Debug)]
+pub(crate) struct Parts {
+    corners: Vec<Point3<f64>>,
+    /// Finds the corners in a box, if there are many.
+    near: BroadPhase,
+}
+
+/// More corners than this are looked for by their place.
+const FEW: usize = 8;
+
+impl Parts {
+    fn new(corners: Vec<Point3<f64>>) -> Self {
+        let mut near = BroadPhase::default();
+        if corners.len() > FEW {
+            for (i, p) in corners.iter().enumerate() {
+                near.insert(i as u32, Aabb::new(*p, *p));
+            }
+        }
+        Self { corners, near }
     }
 
-    /// Whether one of two meshes is filled and has a part of the other inside; the surfaces must be apart.
-    pub(crate) fn nested(&mut self, a: PosedMesh<'_>, b: PosedMesh<'_>) -> bool {
-        self.holds(a, b) || self.holds(b, a)
+    /// Whether `test` holds for a corner in the box that `around` gives; without a box, for any corner.
+    fn any(&self, around: impl FnOnce() -> Option<Aabb>, mut test: impl FnMut(&Point3<f64>) -> bool) -> bool {
+        if self.near.is_empty() {
+            return self.corners.iter().any(test);
+        }
+        let around = around();
+        let inside = |bounds: &Aabb| around.is_none_or(|around| around.intersects(bounds));
+        self.near.find(inside, |i| test(&self.corners[i as usize]).then_some(())).is_some()
+    }
+}
+
+impl Query {
+    /// Whether two meshes have a point in common, [filled](CollisionMesh::filled) ones with their inside. Touching counts.
+    pub fn meets(
+        &mut self,
+        a: &CollisionMesh,
+        pose_wa: &Isometry3<f64>,
+        b: &CollisionMesh,
+        pose_wb: &Isometry3<f64>,
+    ) -> bool {
+        self.intersects(a, pose_wa, b, pose_wb) || self.nested(a, pose_wa, b, pose_wb)
+    }
+
+    /// Whether one of two meshes is [filled](CollisionMesh::filled) and has a part of the other inside; the surfaces must be apart.
+    pub fn nested(
+        &mut self,
+        a: &CollisionMesh,
+        pose_wa: &Isometry3<f64>,
+        b: &CollisionMesh,
+        pose_wb: &Isometry3<f64>,
+    ) -> bool {
+        self.holds((a, pose_wa), (b, pose_wb)) || self.holds((b, pose_wb), (a, pose_wa))
+    }
+
+    /// How often the surface of a mesh winds around a point of its frame, outward less inward; `None` when the point is on it. Exact.
+    /// It says what is inside where the mesh is closed.
+    pub fn winding(&mut self, mesh: &CollisionMesh, p: &Point3<f64>) -> Option<i32> {
+        mesh.tree().winding(p, &[0..u32::MAX], &mut self.stack, &mut self.counters)
     }
 
     /// Whether `a` is filled and has a component of `b` inside. As the surfaces are apart, one corner decides for each
     /// component.
     fn holds(&mut self, a: PosedMesh<'_>, b: PosedMesh<'_>) -> bool {
-        if !a.0.filled {
+        if !a.0.is_filled() {
             return false;
         }
-        let Some(relative) = Relative::of(a, b) else { return true };
-        let (stack, counters) = (&mut self.stack, &mut self.counters);
-        // On the surface counts as inside: touching is collision.
-        b.0.parts().iter().any(|p| {
-            let winding = a.0.tree().winding(&relative.point(p), stack, counters);
+        let tree = a.0.tree();
+        let (center, stack, counters) = (a.1 * tree.center, &mut self.stack, &mut self.counters);
+        // More than any rounding.
+        let pad = 1e-9 * (a.0.radius() + b.0.radius() + center.coords.norm());
+        let reach = tree.radius_center + pad;
+        let around = || bounds(a.0, &b.1.inv_mul(a.1));
+        b.0.parts().any(around, |p| {
+            // Most corners are beyond the ball or the box around everything.
+            let from_center = b.1 * p - center;
+            if from_center.norm_squared() > reach * reach
+                || tree.bounding.is_beyond(&a.1.inverse_transform_vector(&from_center), pad)
+            {
+                return false;
+            }
+            let Some(relative) = Relative::of(a, b) else { return true };
+            let winding = tree.winding(&relative.point(p), &a.0.solids, stack, counters);
+            // On the surface counts as inside: touching is collision.
             winding.is_none_or(|turns| turns > 0)
         })
     }

@@ -4,8 +4,8 @@
 //! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses,
 //!   intervals of motions.
 //! * [`Solid`]: balls, capsules, boxes, cylinders, cones and half-spaces, to compare with meshes.
-//! * [`Scene`]: many named bodies with a broad phase and allowed pairs; [filled](CollisionMesh::filled) bodies
-//!   collide with what is inside of them.
+//! * [`Scene`]: many named bodies with a broad phase and allowed pairs; [filled](CollisionMesh::filled) bodies, as those of
+//!   [primitives](mp_geom::primitives), collide with what is inside of them.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
 //! * [`mod@reference`]: a second, plain implementation sharing no code with the first, to check it.
 //! * `parry`, with the feature of that name, which is off by default: conversions from and to shapes of parry3d (used
@@ -28,7 +28,8 @@
 //!
 //! # Contract
 //! A mesh is the union of its triangles as closed sets: a surface, not a solid (a body wholly inside a
-//! closed shell collides with it only in a [`Scene`], and when the shell is [filled](CollisionMesh::filled)).
+//! closed shell collides with it only in a [`Scene`] and for [`Query::meets`], and when the shell is
+//! [filled](CollisionMesh::filled)).
 //! **Touching counts as collision.** Meshes are soups: cracks,
 //! holes, coplanar, overlapping and degenerate triangles (segments and points) are all welcome.
 //!

@@ -2,12 +2,14 @@
 
 use mp_stop::Interrupt;
 use std::convert::Infallible;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 
 use crate::bvh::{Tree, build::SMALL};
+use crate::filled::Parts;
 use crate::triangle::Triangle;
 
 /// A mesh and its pose in the world.
@@ -17,14 +19,14 @@ pub(crate) type PosedMesh<'m> = (&'m CollisionMesh, &'m Isometry3<f64>);
 #[derive(Clone, Debug)]
 pub struct CollisionMesh {
     pub(crate) tree: Arc<Tree>,
-    /// Whether the mesh counts as a solid.
-    pub(crate) filled: bool,
-    /// A corner of each connected component.
-    pub(crate) parts: Arc<OnceLock<Vec<Point3<f64>>>>,
+    /// The triangles that bound solids: see [`TriMesh::solids`].
+    pub(crate) solids: Arc<[Range<u32>]>,
+    /// The connected components, made at the first use.
+    pub(crate) parts: Arc<OnceLock<Parts>>,
 }
 
 impl CollisionMesh {
-    /// Builds the tree of `mesh`: O(n log² n) for n triangles.
+    /// Builds the tree of `mesh`: O(n log² n) for n triangles. Its [solids](TriMesh::solids) are [filled](Self::is_filled).
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
         let Ok(made) = Self::of(mesh, || Ok::<(), Infallible>(()));
@@ -46,12 +48,14 @@ impl CollisionMesh {
 
     fn of<E>(mesh: &TriMesh, go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
         let count = mesh.triangles().len();
-        // A copy in one piece is a little faster.
-        if count > SMALL {
-            return Self::built(count, |i| mesh.triangle(i), go_on);
-        }
-        let copied: Vec<Triangle> = (0..count).map(|i| mesh.triangle(i)).collect();
-        Self::built(count, |i| copied[i], go_on)
+        let made = if count > SMALL {
+            Self::built(count, |i| mesh.triangle(i), go_on)?
+        } else {
+            // A copy in one piece is a little faster.
+            let copied: Vec<Triangle> = (0..count).map(|i| mesh.triangle(i)).collect();
+            Self::built(count, |i| copied[i], go_on)?
+        };
+        Ok(Self { solids: mesh.solids().into(), ..made })
     }
 
     /// Of so many triangles, at least one and at most `u32::MAX`.
@@ -65,13 +69,13 @@ impl CollisionMesh {
     ) -> Result<Self, E> {
         let _span = tracing::debug_span!("build", triangles = count).entered();
         let tree = Arc::new(Tree::build(count, triangle, go_on)?);
-        Ok(Self { tree, filled: false, parts: Arc::default() })
+        Ok(Self { tree, solids: Arc::default(), parts: Arc::default() })
     }
 
     /// Whether both share one tree, and either both are solids or none: not whether they are equal.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.tree, &other.tree) && self.filled == other.filled
+        Arc::ptr_eq(&self.tree, &other.tree) && self.solids == other.solids
     }
 
     /// How many triangles there are.

@@ -59,8 +59,7 @@ impl TriMesh {
         }
         let volume = self.signed_volume();
         let mesh = if volume < 0.0 { self.reversed() } else { self };
-        // Written so that NaN is refused.
-        if !(volume.abs() > 0.0) {
+        if volume.is_nan() || volume == 0.0 {
             return Err(SolidError::Flat);
         }
         let parts: Vec<_> = mesh.parts().into_iter().map(|part| (part.aabb(), part)).collect();

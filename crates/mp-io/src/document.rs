@@ -3,7 +3,7 @@
 use crate::error::{Error, ErrorKind};
 use crate::files::{Files, MAX_TEXT_BYTES, decode};
 use crate::gempa::{Environment, Obstacle, gempa_mesh_text};
-use crate::mesh::{mesh_error, read_mesh_of};
+use crate::mesh::{mesh_error, read_mesh_of, solid_mesh};
 use crate::off::{OffDocument, off_text};
 use crate::problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind, vertex_beyond};
 use mp_geom::{Aabb, TriMesh, pose_from_six, primitives, short_six_from_pose};
@@ -110,6 +110,9 @@ pub enum DocumentShape {
         /// Its triangles as text of an OFF file; without, they are in the file, beside the document.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         off: Option<String>,
+        /// Whether it has an inside, as figures have; it must be closed then.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        solid: bool,
     },
 }
 
@@ -149,12 +152,13 @@ impl SceneDocument {
     /// The document of a problem. Its meshes are named, not written into it.
     #[must_use]
     pub fn of_problem(problem: &RigidProblem) -> Self {
-        let body = |name: &str, file: &Path, pose: Option<&Isometry3<f64>>| DocumentBody {
+        let body = |name: &str, file: &Path, mesh: &TriMesh, pose: Option<&Isometry3<f64>>| DocumentBody {
             name: name.to_owned(),
             color: None,
             shape: DocumentShape::Mesh {
                 file: file.file_name().map_or_else(|| name.to_owned(), |f| f.to_string_lossy().into_owned()),
                 off: None,
+                solid: !mesh.solids().is_empty(),
             },
             scale: None,
             pose: pose.map(short_six_from_pose),
@@ -164,10 +168,14 @@ impl SceneDocument {
             name: problem.name.clone(),
             space: problem.space,
             bounds: problem.bounds.map(|b| [b.min.coords.into(), b.max.coords.into()]),
-            robot: body(&problem.robot.name, &problem.robot.file, None),
+            robot: body(&problem.robot.name, &problem.robot.file, &problem.robot.mesh, None),
             start: short_six_from_pose(&problem.start),
             goal: short_six_from_pose(&problem.goal),
-            obstacles: problem.obstacles.iter().map(|o| body(&o.name, &o.file, Some(&o.pose))).collect(),
+            obstacles: problem
+                .obstacles
+                .iter()
+                .map(|o| body(&o.name, &o.file, &o.mesh, Some(&o.pose)))
+                .collect(),
         }
     }
 
@@ -189,19 +197,21 @@ impl SceneDocument {
     /// are not written into the document.
     ///
     /// # Errors
-    /// [`Error`] when a mesh is missing or not valid.
+    /// [`Error`] when a mesh is missing or not valid, or is to be a solid and is not closed.
     pub fn meshes(
         &self,
         mesh: &dyn Fn(&str) -> Result<TriMesh, Error>,
     ) -> Result<Vec<Option<TriMesh>>, Error> {
         let of = |body: &DocumentBody| {
-            Ok(match &body.shape {
-                DocumentShape::Mesh { file, off: Some(off) } => {
-                    Some(OffDocument::parse(file, off.as_bytes())?.to_mesh(file)?)
-                }
-                DocumentShape::Mesh { file, off: None } => Some(mesh(file)?),
-                _ => None,
-            })
+            let DocumentShape::Mesh { file, off, solid } = &body.shape else { return Ok(None) };
+            let own = match off {
+                Some(off) => OffDocument::parse(file, off.as_bytes())?.to_mesh(file)?,
+                None => mesh(file)?,
+            };
+            match solid {
+                true => solid_mesh(file, own).map(Some),
+                false => Ok(Some(own.into_surface())),
+            }
         };
         self.bodies().map(of).collect()
     }
@@ -253,7 +263,7 @@ impl SceneDocument {
     /// As [`problem`](Self::problem).
     pub fn with_meshes(mut self, mesh: &dyn Fn(&str) -> Result<TriMesh, Error>) -> Result<Self, Error> {
         for body in self.bodies_mut() {
-            if let DocumentShape::Mesh { file, off: off @ None } = &mut body.shape {
+            if let DocumentShape::Mesh { file, off: off @ None, .. } = &mut body.shape {
                 *off = Some(off_text(&mesh(file)?));
             }
         }
@@ -261,7 +271,7 @@ impl SceneDocument {
     }
 
     /// The same scene as a GEMPA environment: the name and content of each file, the environment first. Figures become
-    /// meshes, scales are applied to them, names and colours are lost.
+    /// meshes, scales are applied to them, names and colours are lost, and that figures have an inside.
     ///
     /// # Errors
     /// As [`problem`](Self::problem).
@@ -482,7 +492,7 @@ mod tests {
                 obstacle("four", DocumentShape::Tetrahedron { edge: 0.5 }, [0.0, 0.0, -2.0, 0.0, 0.0, 0.0]),
                 obstacle(
                     "bench",
-                    DocumentShape::Mesh { file: "bench.off".into(), off: None },
+                    DocumentShape::Mesh { file: "bench.off".into(), off: None, solid: false },
                     [0.0, 4.0, 0.0, 0.0, 0.0, 0.0],
                 ),
             ],

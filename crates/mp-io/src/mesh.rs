@@ -171,6 +171,18 @@ pub(crate) fn mesh_error(file: &str, e: &MeshError) -> Error {
     }
 }
 
+/// The mesh of `file` as a solid; one that is a solid already is not looked at again.
+pub(crate) fn solid_mesh(file: &str, mesh: TriMesh) -> Result<TriMesh, Error> {
+    if !mesh.solids().is_empty() {
+        return Ok(mesh);
+    }
+    mesh.into_solid().map_err(|e| {
+        let message = format!("the mesh cannot be a solid: {e}");
+        Error::new(ErrorKind::Content, file, message)
+            .help("close it in a mesh editor, all triangles facing outward, or leave out `solid`: then it is a surface")
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

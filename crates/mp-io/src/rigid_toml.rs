@@ -66,6 +66,7 @@ struct File {
 #[serde(deny_unknown_fields)]
 struct RobotTable {
     mesh: Option<Spanned<String>>,
+    solid: Option<Spanned<bool>>,
     #[serde(rename = "box")]
     cuboid: Option<Spanned<[f64; 3]>>,
     sphere: Option<Spanned<f64>>,
@@ -83,6 +84,7 @@ struct RobotTable {
 struct MovingTable {
     name: Option<String>,
     mesh: Option<Spanned<String>>,
+    solid: Option<Spanned<bool>>,
     #[serde(rename = "box")]
     cuboid: Option<Spanned<[f64; 3]>>,
     sphere: Option<Spanned<f64>>,
@@ -124,6 +126,7 @@ impl RigidTask {
         let table = ObstacleTable {
             name: Some("robot".to_owned()),
             mesh: robot.mesh,
+            solid: robot.solid,
             cuboid: robot.cuboid,
             sphere: robot.sphere,
             cylinder: robot.cylinder,
@@ -143,10 +146,10 @@ impl RigidTask {
         let mut movers = Vec::new();
         for (i, table) in moving.into_iter().enumerate() {
             let (span, table) = (table.span(), table.into_inner());
-            let MovingTable { name, mesh, cuboid, sphere, cylinder, path } = table;
+            let MovingTable { name, mesh, solid, cuboid, sphere, cylinder, path } = table;
             let name = name.unwrap_or_else(|| format!("moving obstacle {}", i + 1));
             let shown = crate::text::clipped(&name).to_string();
-            let table = ObstacleTable { name: Some(name), mesh, cuboid, sphere, cylinder, pose: None };
+            let table = ObstacleTable { name: Some(name), mesh, solid, cuboid, sphere, cylinder, pose: None };
             let entry = entry(&source, i, span, table)?;
             let (_, mesh) = figures.mesh(&source, &entry)?;
             let expected = "rows [TIME, x, y, z] or [TIME, x, y, z, α, β, γ], times increasing";

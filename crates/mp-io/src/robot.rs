@@ -40,6 +40,8 @@ pub struct ObstacleEntry {
     pub name: String,
     /// Its shape.
     pub shape: ObstacleShape,
+    /// Whether a mesh is a solid; other shapes always are.
+    pub solid: bool,
     /// x, y, z, α, β, γ.
     pub pose: [f64; 6],
     /// Where the shape is in the text.
@@ -59,6 +61,8 @@ pub struct RobotFile {
     pub base: [f64; 6],
     /// The lower and the upper corner (m) of the box in which the origin of the root link moves, if the base floats.
     pub floating: Option<[[f64; 3]; 2]>,
+    /// Whether the meshes of the robot are solids; other shapes always are.
+    pub solid: bool,
     /// Limits that replace those of the URDF, by joint. Equal ones hold the joint.
     pub limits: Vec<(String, [f64; 2])>,
     /// How far (rad or m) the start may be beyond a limit; 0 when it is not given.
@@ -123,6 +127,8 @@ struct RobotTable {
     urdf: Spanned<String>,
     srdf: Option<Spanned<String>>,
     packages: Option<String>,
+    #[serde(default)]
+    solid: bool,
     base: Option<Spanned<BaseEntry>>,
     bounds: Option<Spanned<Corners>>,
     #[serde(default)]
@@ -150,6 +156,7 @@ enum BaseEntry {
 pub(crate) struct ObstacleTable {
     pub(crate) name: Option<String>,
     pub(crate) mesh: Option<Spanned<String>>,
+    pub(crate) solid: Option<Spanned<bool>>,
     #[serde(rename = "box")]
     pub(crate) cuboid: Option<Spanned<[f64; 3]>>,
     pub(crate) sphere: Option<Spanned<f64>>,
@@ -225,6 +232,7 @@ impl RobotFile {
             urdf: robot.urdf.into_inner(),
             srdf: robot.srdf.map(Spanned::into_inner),
             packages: robot.packages,
+            solid: robot.solid,
             base,
             floating,
             limits,
@@ -327,6 +335,13 @@ pub(crate) fn entry(
 ) -> Result<ObstacleEntry, Error> {
     let name = table.name.unwrap_or_else(|| format!("obstacle {}", index + 1));
     let mut shapes = Vec::new();
+    if let (Some(solid), None) = (&table.solid, &table.mesh) {
+        let message = format!("{} has `solid`, and no mesh", crate::text::clipped(&name));
+        return Err(source
+            .error(&solid.span(), message)
+            .expected("`solid` beside `mesh`: a box, a sphere or a cylinder is a solid"));
+    }
+    let solid = table.solid.is_some_and(Spanned::into_inner);
     if let Some(mesh) = table.mesh {
         shapes.push((mesh.span(), ObstacleShape::Mesh(mesh.into_inner())));
     }
@@ -345,7 +360,7 @@ pub(crate) fn entry(
     let pose = source.six("the pose", table.pose)?;
     let count = shapes.len();
     match shapes.pop() {
-        Some((span, shape)) if count == 1 => Ok(ObstacleEntry { name, shape, pose, span }),
+        Some((span, shape)) if count == 1 => Ok(ObstacleEntry { name, shape, solid, pose, span }),
         _ => {
             let message = format!("{} has {count} shapes", crate::text::clipped(&name));
             Err(source.error(&span, message).expected("one of `mesh`, `box`, `sphere`, `cylinder`"))

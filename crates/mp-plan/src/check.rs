@@ -1,7 +1,7 @@
 //! Verifies a path, with code that shares nothing with the planner's checks.
 
 use crate::counted::Counted;
-use crate::explain::list;
+use crate::explain::{enclosures, list};
 use crate::goals::next_to;
 use crate::numbers::{brief, plain};
 use crate::path::states;
@@ -32,6 +32,9 @@ pub struct Verdict {
     pub clearance: f64,
     /// What is wrong. Empty when the path is free.
     pub faults: Vec<String>,
+    /// What is inside of closed surfaces, which have no inside unless they are made solid.
+    #[serde(default)]
+    pub warnings: Vec<String>,
 }
 
 impl Verdict {
@@ -126,7 +129,14 @@ pub(crate) fn check<K: RobotKind>(
         }
         false => 0.0,
     };
+    // What is inside at one end of a free path is so all along.
+    let warnings = if faults.is_empty() {
+        enclosures(kind, &states.states[0]).into_iter().collect()
+    } else {
+        Vec::new()
+    };
     Ok(Verdict {
+        warnings,
         scene: kind.name().to_owned(),
         path: String::new(),
         free: faults.is_empty(),

@@ -16,6 +16,8 @@ pub struct Explanation {
     pub clearance: f64,
     /// What touches what.
     pub touching: Vec<Touch>,
+    /// What is inside of closed surfaces, which have no inside unless they are made solid.
+    pub warnings: Vec<String>,
     /// What is wrong, to follow the words "the configuration is"; none when it is free.
     pub fault: Option<String>,
     /// A free configuration nearby, for one that is not free.
@@ -35,6 +37,7 @@ pub(crate) fn explain<K: RobotKind>(kind: &K, q: &K::State) -> Explanation {
         in_bounds,
         clearance,
         touching: if in_bounds { kind.touching(q) } else { Vec::new() },
+        warnings: if in_bounds { enclosures(kind, q).into_iter().collect() } else { Vec::new() },
         fault,
         nearest_free: nearest.map(|q| kind.row(&q)),
     }
@@ -94,6 +97,23 @@ pub(crate) fn refused<K: RobotKind>(kind: &K, name: &str, q: &K::State) -> Optio
     Some((format!("{name} is {fault}"), help))
 }
 
+/// At most so many are listed.
+const LISTED: usize = 3;
+
+/// A warning of what is inside of closed surfaces, if anything is.
+pub(crate) fn enclosures<K: RobotKind>(kind: &K, q: &K::State) -> Option<String> {
+    let found = kind.enclosures(q);
+    let named = found.iter().take(LISTED).map(|[inner, outer]| format!("{inner} is inside of {outer}"));
+    let named = named.collect::<Vec<_>>().join(", ");
+    let more = match found.len() {
+        0 => return None,
+        n if n > LISTED => format!(" and {} more", n - LISTED),
+        _ => String::new(),
+    };
+    let what = "a closed mesh, but a surface, so that this counts as free: `solid = true` beside a mesh gives it an inside";
+    Some(format!("{named}{more}: {what}"))
+}
+
 /// An error if the start or a goal is not free: it says what touches, how deep, and the nearest free configuration.
 /// Otherwise returns what is odd about them.
 pub(crate) fn check_ends<K: RobotKind>(kind: &K) -> Result<Vec<String>, Error> {
@@ -102,13 +122,15 @@ pub(crate) fn check_ends<K: RobotKind>(kind: &K) -> Result<Vec<String>, Error> {
             return Err(kind.fault(end, message, help));
         }
     }
-    Ok(kind.odd_ends().into_iter().collect())
+    let inside = ends(kind).filter_map(|(_, name, q)| Some(format!("at {name} {}", enclosures(kind, q)?)));
+    Ok(inside.chain(kind.odd_ends()).collect())
 }
 
 /// What is wrong or odd about a scene.
 pub(crate) fn lint<K: RobotKind>(kind: &K) -> Vec<String> {
     let mut found: Vec<String> =
         ends(kind).filter_map(|(_, name, q)| Some(format!("{name} is {}", fault(kind, q)?))).collect();
+    found.extend(ends(kind).filter_map(|(_, name, q)| Some(format!("at {name} {}", enclosures(kind, q)?))));
     found.extend(kind.lint());
     let bodies = kind.bodies();
     if !bodies.is_empty() && bodies.iter().all(|body| body.pose.is_none()) {

@@ -293,6 +293,11 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     fn remedy(&self, _touching: &[Touch]) -> Option<String> {
         None
     }
+    /// What is wholly inside of a closed surface at a configuration that is free: pairs of names, the inner one first. By default
+    /// nothing.
+    fn enclosures(&self, _q: &Self::State) -> Vec<[String; 2]> {
+        Vec::new()
+    }
     /// A free configuration near one that is not.
     fn nearest_free(&self, q: &Self::State) -> Option<Self::State>;
     /// What is odd about the scene apart from its ends, such as obstacles that overlap.

@@ -1,9 +1,12 @@
 //! Answers for people: what a rigid body touches, and where it would be free.
 
 use crate::shells::{Shells, search_shells};
+use crate::solid_obstacle::is_solid;
 use crate::{Placement, RigidBody};
 use mp_collide::Contact;
 use mp_cspace::{Clearance, Space};
+#[cfg(doc)]
+use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 
@@ -21,20 +24,17 @@ impl<P: Placement> RigidBody<P> {
         let shared = &*self.shared;
         let mut contacts = shared.obstacles.scene.contacts(&mut self.query, &shared.robot, &pose);
         if shared.radii.radius == 0.0 {
-            // A point inside a solid touches no triangle. Its depth is its distance from the surface.
+            // The depth of a point inside a solid is its distance from the surface, which it does not touch.
             let p = Point3::from(pose.translation.vector);
             for (body, solid) in shared.solids() {
-                if let Some(obstacle) = shared.obstacles.scene.body(*body)
-                    && contacts.iter().all(|c| c.body != *body)
-                    && solid.contains(&p)
-                {
-                    let to_surface =
-                        self.query.distance(&shared.robot, &pose, obstacle.mesh(), obstacle.pose());
-                    contacts.push(Contact {
-                        body: *body,
-                        name: obstacle.name().to_owned(),
-                        depth: to_surface.distance,
-                    });
+                let Some(obstacle) = shared.obstacles.scene.body(*body).filter(|_| solid.contains(&p)) else {
+                    continue;
+                };
+                let to_surface = self.query.distance(&shared.robot, &pose, obstacle.mesh(), obstacle.pose());
+                if to_surface.distance > 0.0 {
+                    let (name, depth) = (obstacle.name().to_owned(), to_surface.distance);
+                    contacts.retain(|c| c.body != *body);
+                    contacts.push(Contact { body: *body, name, depth });
                 }
             }
             contacts.sort_by_key(|c| c.body);
@@ -49,6 +49,26 @@ impl<P: Placement> RigidBody<P> {
         let vertex = P::pose(q) * self.shared.robot_mesh.vertices()[0];
         let around = self.shared.solids().iter().filter(|(_, solid)| solid.contains(&vertex));
         around.map(|(_, solid)| solid.name.as_str()).collect()
+    }
+
+    /// What is inside of what, where nothing touches at `q`: obstacles around the robot, and obstacles in it, each with whether it is
+    /// around. All are closed surfaces that face outward and are no [solids](TriMesh::solids); what is inside counts as free, but can
+    /// never leave: worth a warning.
+    pub fn enclosures(&mut self, q: &P::State) -> Vec<(String, bool)> {
+        if self.in_contact(q) {
+            return Vec::new();
+        }
+        let (pose, shared) = (P::pose(q), &*self.shared);
+        let (query, obstacles, mesh) = (&mut self.query, &shared.obstacles, &shared.robot_mesh);
+        let mut found: Vec<_> =
+            obstacles.around(query, pose * mesh.vertices()[0]).map(|name| (name.to_owned(), true)).collect();
+        if mesh.solids().is_empty() {
+            let inside: Vec<_> = obstacles.inside(query, &shared.robot, &pose).map(str::to_owned).collect();
+            if !inside.is_empty() && is_solid(mesh) {
+                found.extend(inside.into_iter().map(|name| (name, false)));
+            }
+        }
+        found
     }
 
     /// A configuration of `space` near `q` with a clearance of at least `margin` (m; the

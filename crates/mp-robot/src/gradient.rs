@@ -8,8 +8,9 @@ use nalgebra::{Isometry3, Point3, Vector3};
 ///
 /// Where the robot is free: the exact distance (m) and its derivative. In collision the value is rough, because meshes
 /// have no depth. It comes from the first pair of triangles found to intersect: how far the robot's triangle reaches
-/// through the plane of the obstacle's triangle, and the direction along the normal of that plane, to the side on which
-/// the robot's middle is. For a point inside a solid, depth and direction to the surface are exact.
+/// through the plane of the obstacle's triangle, and the direction along the normal of that plane, outward if it bounds a
+/// solid, else to the side on which the robot's middle is. Where one is inside of the other, which is solid, they are those of the nearest points of the surfaces: for a
+/// point, exact.
 ///
 /// Costs one distance query if something is within `reach`, else one bound; in collision one more intersection query.
 impl<P: Placement> ClearanceGradient<P::State> for RigidBody<P> {
@@ -24,15 +25,18 @@ impl<P: Placement> ClearanceGradient<P::State> for RigidBody<P> {
         let (clearance, nearest) =
             shared.obstacles.scene.clearance(&mut self.query, &shared.robot, &pose, enough);
         let Some(body) = nearest.and_then(|id| shared.obstacles.scene.body(id)) else { return clearance };
-        let (value, at, direction) = if clearance > 0.0 {
-            let apart = self.query.distance(&shared.robot, &pose, body.mesh(), body.pose());
-            let sign = if inside { -1.0 } else { 1.0 };
-            (sign * clearance, apart.point_a, (apart.point_a - apart.point_b) * sign)
-        } else {
-            match self.first_contact(&pose) {
+        let (robot, other) = (&shared.robot, (body.mesh(), body.pose()));
+        let nested = clearance <= 0.0 && self.query.nested(robot, &pose, other.0, other.1);
+        let apart = (clearance > 0.0 || nested).then(|| self.query.distance(robot, &pose, other.0, other.1));
+        let (value, at, direction) = match apart.filter(|apart| apart.distance > 0.0) {
+            Some(apart) => {
+                let sign = if inside || nested { -1.0 } else { 1.0 };
+                (sign * apart.distance, apart.point_a, (apart.point_a - apart.point_b) * sign)
+            }
+            None => match self.first_contact(&pose) {
                 Some(found) => found,
                 None => return 0.0,
-            }
+            },
         };
         if let Some(direction) = direction.try_normalize(0.0) {
             write_gradient::<P>(&pose, &at, &direction, gradient);
@@ -45,11 +49,12 @@ impl<P: Placement> RigidBody<P> {
     /// The first contact found: minus its depth (m), the deepest point, and the unit direction out of the obstacle.
     fn first_contact(&mut self, pose: &Isometry3<f64>) -> Option<(f64, Point3<f64>, Vector3<f64>)> {
         let shared = &*self.shared;
-        let ([a, b, c], touching) = shared.obstacles.placed.iter().find_map(|(id, mesh)| {
+        let ([a, b, c], touching, solid) = shared.obstacles.placed.iter().find_map(|(id, mesh)| {
             let body = shared.obstacles.scene.body(*id)?;
             let (own, other) =
                 self.query.intersecting_triangles(&shared.robot, pose, body.mesh(), body.pose())?;
-            Some((mesh.triangle(other), shared.robot_mesh.triangle(own).map(|p| pose * p)))
+            let solid = mesh.solids().iter().any(|solid| solid.contains(&(other as u32)));
+            Some((mesh.triangle(other), shared.robot_mesh.triangle(own).map(|p| pose * p), solid))
         })?;
         let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
         let normal = match P::MOVES.contains(&2) {
@@ -58,7 +63,7 @@ impl<P: Placement> RigidBody<P> {
         };
         let corners = &shared.radii.corners;
         let middle = pose * Point3::from(corners.iter().map(|p| p.coords).sum::<Vector3<f64>>() / 8.0);
-        let normal = if (middle - a).dot(&normal) < 0.0 { -normal } else { normal };
+        let normal = if !solid && (middle - a).dot(&normal) < 0.0 { -normal } else { normal };
         let height = |p: &Point3<f64>| (p - a).dot(&normal);
         let deepest = touching.into_iter().min_by(|p, q| height(p).total_cmp(&height(q)))?;
         Some((height(&deepest).min(0.0), deepest, normal))

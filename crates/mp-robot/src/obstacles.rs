@@ -2,10 +2,10 @@
 
 use crate::solid_obstacle::{SolidObstacle, is_solid};
 use mp_collide::reference::RefMesh;
-use mp_collide::{Body, BodyId, CollisionMesh, Scene, SceneError};
+use mp_collide::{Body, BodyId, CollisionMesh, Query, Scene, SceneError};
 use mp_cspace::{Interrupt, Interrupted};
 use mp_geom::{Aabb, TriMesh};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Point3};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::{Arc, OnceLock};
@@ -112,6 +112,37 @@ impl Obstacles {
         let j = std::iter::once(i).chain(0..self.own.len()).find(same)?;
         let (id, in_world) = &self.placed[j];
         Some((self.scene.body(*id)?, in_world, &self.own[j].1))
+    }
+
+    /// The obstacles whose meshes are closed surfaces without an inside, and have the point `p` of the world inside.
+    pub(crate) fn around<'a>(
+        &'a self,
+        query: &'a mut Query,
+        p: Point3<f64>,
+    ) -> impl Iterator<Item = &'a str> {
+        self.placed.iter().zip(&self.own).filter_map(move |((id, mesh), (own, closed))| {
+            let body = self.scene.body(*id)?;
+            let inside = own.solids().is_empty()
+                && query
+                    .winding(body.mesh(), &body.pose().inverse_transform_point(&p))
+                    .is_some_and(|n| n > 0)
+                && *closed.get_or_init(|| is_solid(mesh));
+            inside.then(|| body.name())
+        })
+    }
+
+    /// The obstacles that have their first vertex inside of `surface` at `pose`.
+    pub(crate) fn inside<'a>(
+        &'a self,
+        query: &'a mut Query,
+        surface: &'a CollisionMesh,
+        pose: &'a Isometry3<f64>,
+    ) -> impl Iterator<Item = &'a str> {
+        self.placed.iter().filter_map(move |(id, mesh)| {
+            let p = pose.inverse_transform_point(mesh.vertices().first()?);
+            let inside = query.winding(surface, &p).is_some_and(|n| n > 0);
+            inside.then(|| self.scene.body(*id).map_or("", |body| body.name()))
+        })
     }
 
     /// The obstacles that are solids.

@@ -79,9 +79,9 @@ impl Shared {
 
 /// A rigid body among named obstacles that stand still.
 ///
-/// A configuration is free when the surfaces of robot and obstacles have no point in common. Touching is
-/// collision. A robot wholly inside a closed obstacle is free, as in a room, though it can never leave.
-/// Only a [`PointRobot`] is in collision inside a solid.
+/// A configuration is free when robot and obstacles have no point in common. Touching is collision. Meshes are surfaces: a
+/// robot wholly inside a closed mesh is free, as in a room, though it can never leave. [Solids](TriMesh::solids), as primitives are,
+/// have an inside: what is wholly in one, robot or obstacle, collides. For a [`PointRobot`] closed meshes are solids too.
 ///
 /// Clones share meshes and trees. Each clone has its own counters and scratch memory, so clone it for each thread.
 #[derive(Clone, Debug)]
@@ -90,6 +90,9 @@ pub struct RigidBody<P: Placement> {
     pub(crate) query: Query,
     counters: CheckCounters,
     poses: Vec<Isometry3<f64>>,
+    /// The ends of the last motion that has a state where nothing is inside of anything: where it touches nothing, that holds for
+    /// all of it.
+    apart: Option<[Isometry3<f64>; 2]>,
     placement: PhantomData<P>,
 }
 
@@ -206,6 +209,7 @@ impl<P: Placement> RigidBody<P> {
             query: Query::default(),
             counters: CheckCounters::default(),
             poses: Vec::new(),
+            apart: None,
             placement: PhantomData,
         })
     }
@@ -293,6 +297,26 @@ impl<P: Placement> RigidBody<P> {
         self.counters.clearance_checks += 1;
     }
 
+    /// Whether, at the middle of an interval of the motion between `ends` where surfaces are apart, something is inside of something.
+    /// Asked once for a motion.
+    pub(crate) fn is_nested_on(&mut self, ends: [Isometry3<f64>; 2], middle: &Isometry3<f64>) -> bool {
+        if self.apart.is_some_and(|apart| apart == ends) {
+            return false;
+        }
+        let shared = &*self.shared;
+        let nested = shared.obstacles.scene.nested(&mut self.query, &shared.robot, middle).is_some()
+            || self.point_inside(middle);
+        self.apart = (!nested).then_some(ends);
+        nested
+    }
+
+    /// The clearance of surfaces.
+    pub(crate) fn surface_clearance(&mut self, pose: &Isometry3<f64>, enough: f64) -> f64 {
+        self.counters.clearance_checks += 1;
+        let shared = &*self.shared;
+        shared.obstacles.scene.surface_clearance(&mut self.query, &shared.robot, pose, enough).0
+    }
+
     fn collides(&mut self, pose: &Isometry3<f64>) -> bool {
         self.counters.collision_checks += 1;
         let shared = &*self.shared;
@@ -348,14 +372,14 @@ impl<P: Placement> MotionClearance<P::State> for RigidBody<P> {
         if let Some(motion) = RigidMotion::of_motion(&from, &to, half, travel) {
             self.counters.clearance_checks += 1;
             let shared = &*self.shared;
-            match shared.obstacles.scene.check_interval(
+            match shared.obstacles.scene.check_surfaces(
                 &mut self.query,
                 &shared.robot,
                 &middle,
                 &motion,
                 margin,
             ) {
-                IntervalCheck::Free if self.point_inside(&middle) => {
+                IntervalCheck::Free if self.is_nested_on([from, to], &middle) => {
                     return IntervalClearance::Collision { at: 0.0 };
                 }
                 IntervalCheck::Free => return IntervalClearance::Free { clearance: travel + margin },
@@ -365,8 +389,9 @@ impl<P: Placement> MotionClearance<P::State> for RigidBody<P> {
                 IntervalCheck::Unproven => {}
             }
         }
-        let clearance = self.clearance(interval.middle, travel.max(margin) + margin);
-        IntervalClearance::of(clearance, margin)
+        let clearance = self.surface_clearance(&middle, travel.max(margin) + margin);
+        let nested = clearance > 0.0 && self.is_nested_on([from, to], &middle);
+        IntervalClearance::of(if nested { 0.0 } else { clearance }, margin)
     }
     fn contact_first(&self) -> bool {
         true

@@ -4,6 +4,8 @@ use crate::solid_obstacle::SolidObstacle;
 use crate::{Placement, RigidBody};
 use mp_collide::reference::{RefMesh, Sweep, SweepCheck};
 use mp_cspace::{Interrupt, MotionCheck, MotionValidity, ParameterError, Space};
+#[cfg(doc)]
+use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -20,8 +22,9 @@ use std::sync::Arc;
 ///   than 10⁹ tolerances and motions for which the sweep takes too long.
 ///
 /// Interpolation in the space must move the origin on a straight line and turn by at most half a turn about
-/// a fixed axis, both at constant speed, as `Se3`, `Se2` and `Rn` do. Obstacles are surfaces. A point can touch a surface
-/// only by chance; for a point, motions that begin inside a solid collide too.
+/// a fixed axis, both at constant speed, as `Se3`, `Se2` and `Rn` do. Motions that begin inside of a
+/// [solid](TriMesh::solids) collide, and those of a robot with an obstacle inside, for surfaces that do not meet keep inside what is
+/// inside. A point can touch a surface only by chance; for a point, closed obstacles that face outward are solids too.
 #[derive(Clone, Debug)]
 pub struct Verifier<'c, C, P> {
     space: &'c C,
@@ -33,6 +36,8 @@ pub struct Verifier<'c, C, P> {
     tolerance: f64,
     sweep: Sweep,
     interrupt: Interrupt,
+    /// The end of the last motion that was found free, where nothing is inside of anything.
+    apart: Option<Isometry3<f64>>,
     placement: PhantomData<P>,
 }
 
@@ -73,6 +78,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
             tolerance,
             sweep: Sweep::default(),
             interrupt: Interrupt::never(),
+            apart: None,
             placement: PhantomData,
         })
     }
@@ -94,7 +100,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
     #[must_use]
     pub fn check_state(&self, q: &P::State, enough: f64) -> MotionCheck {
         let pose = P::pose(q);
-        if self.solids.iter().any(|solid| solid.contains(&pose.translation.vector.into())) {
+        if self.is_nested(&pose) {
             return MotionCheck::Collision { at: 0.0 };
         }
         let clearance = self.world.as_ref().map_or(f64::INFINITY, |world| {
@@ -110,6 +116,13 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
             c if c >= self.tolerance => MotionCheck::Free { clearance: c },
             _ => MotionCheck::Unproven { at: 0.0 },
         }
+    }
+
+    /// Whether the robot is inside of a solid at a pose, or an obstacle inside of the robot, where their surfaces are apart.
+    fn is_nested(&self, pose: &Isometry3<f64>) -> bool {
+        let world = self.world.as_ref();
+        world.is_some_and(|world| self.robot.is_nested(pose, world, &Isometry3::identity()))
+            || self.solids.iter().any(|solid| solid.contains(&pose.translation.vector.into()))
     }
 
     /// Whether the robot surely touches an obstacle at a pose.
@@ -135,7 +148,7 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<P::State> for Veri
         if !provable {
             return MotionCheck::Unproven { at: 0.0 };
         }
-        if self.solids.iter().any(|solid| solid.contains(&ends[0].translation.vector.into())) {
+        if self.apart != Some(ends[0]) && self.is_nested(&ends[0]) {
             return MotionCheck::Collision { at: 0.0 };
         }
         let Some(world) = &self.world else { return MotionCheck::Free { clearance: f64::INFINITY } };
@@ -145,6 +158,7 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<P::State> for Veri
         }
         match self.sweep.sweep(&self.robot, pose_at, world, self.tolerance) {
             SweepCheck::Free { clearance } if self.interrupt.raised().is_none() => {
+                self.apart = Some(ends[1]);
                 MotionCheck::Free { clearance }
             }
             _ if self.interrupt.raised().is_some() => MotionCheck::Unproven { at: 0.0 },

@@ -66,6 +66,31 @@ fn trajectories_pass_their_poses_and_bound_their_speed() {
     assert_eq!(stuck, Err(TrajectoryError::NotAfter { index: 1, time: 1.0 }));
 }
 
+/// Inside of a solid that moves along with the robot, or around one: in collision all along. Inside of a surface: free.
+#[test]
+fn what_moves_may_be_solid() {
+    let positions = Se3::new([-2.0; 3], [2.0; 3]).unwrap();
+    let space = SpaceTime::new(positions, 5.0, 4.0).unwrap();
+    let at = |x: f64| pose_from_six([x, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let (cube, ball) = (primitives::cuboid(1.5, 1.5, 1.5).unwrap(), primitives::sphere(0.2, 2).unwrap());
+    let (from, to) = ((at(-1.0), 1.0), (at(1.0), 3.0));
+    for (around, free) in [(cube.clone(), false), (cube.into_surface(), true)] {
+        for (robot, mover) in [(&ball, &around), (&around, &ball)] {
+            let path = Trajectory::new([(1.0, at(-1.1)), (3.0, at(0.9))]).unwrap();
+            let body = FreeFlyer::new(robot, []).unwrap();
+            let mut among = AmongMoving::new(body, [("it".to_owned(), mover.clone(), path)]).unwrap();
+            assert_eq!((among.is_valid(&from), among.clearance(&to, 1.0) > 0.0), (free, free));
+            assert_eq!(among.touching(&from).len(), usize::from(!free));
+            let mut verifier = MovingVerifier::new(&space, &among).unwrap();
+            assert_eq!(verifier.check_state(&from, 1.0).is_free(), free);
+            assert_eq!(verifier.check_motion(&from, &to).is_free(), free);
+            let certified = Certified::new(&space, among, 1e-3).unwrap();
+            let mut check = ForwardInTime { space: &space, check: certified };
+            assert_eq!(check.check_motion(&from, &to).is_free(), free);
+        }
+    }
+}
+
 #[test]
 fn checks_and_verifier_agree_with_dense_sampling() {
     let positions = Se3::new([-2.0; 3], [2.0; 3]).unwrap();

@@ -60,6 +60,11 @@ impl RootBox {
         h.x * h.y + h.y * h.z + h.z * h.x
     }
 
+    /// Whether a point, given from the middle, is outside by more than `pad`.
+    pub(crate) fn is_beyond(&self, from_center: &Vector3<f64>, pad: f64) -> bool {
+        (0..3).any(|k| self.axes[k].dot(from_center).abs() > self.half[k] + pad)
+    }
+
     /// Half extents of the axis-aligned box around this one.
     pub(crate) fn aligned_half(&self) -> Vector3<f64> {
         self.axes[0].abs() * self.half.x + self.axes[1].abs() * self.half.y + self.axes[2].abs() * self.half.z

@@ -159,7 +159,7 @@ impl<'a> PartPoints<'a> {
             let p = Point3::from(Vector3::from_fn(|k, _| if up(k) { high[k] } else { low[k] }));
             let inside = if self.solid {
                 let (stack, counters) = (&mut self.query.stack, &mut self.query.counters);
-                self.tree.tree().winding(&p, stack, counters).is_none_or(|turns| turns > 0)
+                self.tree.tree().winding(&p, &[0..u32::MAX], stack, counters).is_none_or(|turns| turns > 0)
             } else {
                 occupied.contains(&[0, 1, 2].map(|k| if up(k) { last[k] } else { first[k] }))
             };

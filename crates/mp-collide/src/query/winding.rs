@@ -1,6 +1,7 @@
 //! The winding number of a mesh around a point.
 
 use nalgebra::Point3;
+use std::ops::Range;
 
 use crate::bvh::frames::fits;
 use crate::bvh::{LEAF, Tree};
@@ -8,11 +9,12 @@ use crate::counters::Counters;
 use crate::triangle::passes;
 
 impl Tree {
-    /// The winding number of the surface around `p`: how many triangles a ray from `p` along x passes outward, less how
-    /// many it passes inward. `None` when `p` is on a triangle. Exact.
+    /// The winding number around `p` of the triangles whose numbers are in `solids`, which ascend: how many of them a ray from `p`
+    /// along x passes outward, less how many it passes inward. `None` when `p` is on one of them. Exact.
     pub(crate) fn winding(
         &self,
         p: &Point3<f64>,
+        solids: &[Range<u32>],
         stack: &mut Vec<(u32, u32)>,
         counters: &mut Counters,
     ) -> Option<i32> {
@@ -22,6 +24,11 @@ impl Tree {
             return Some(0);
         }
         let filter = fits(self.radius_center);
+        let all = matches!(solids, [solid] if solid.start == 0 && solid.end as usize >= self.ids.len());
+        let counts = |id: u32| {
+            let solid = solids.get(solids.partition_point(|solid| solid.end <= id));
+            solid.is_some_and(|solid| solid.start <= id)
+        };
         let mut turns = 0;
         stack.clear();
         stack.push((self.root, 0));
@@ -29,10 +36,12 @@ impl Tree {
             counters.box_tests += 1;
             if x & LEAF != 0 {
                 let leaf = &self.leaves[(x & !LEAF) as usize];
-                let first = leaf.first as usize;
+                let own = leaf.first as usize..(leaf.first + leaf.count) as usize;
                 counters.triangle_tests += u64::from(leaf.count);
-                for triangle in &self.triangles[first..first + leaf.count as usize] {
-                    turns += i32::from(passes(p, triangle)?);
+                for (triangle, id) in self.triangles[own.clone()].iter().zip(&self.ids[own]) {
+                    if all || counts(*id) {
+                        turns += i32::from(passes(p, triangle)?);
+                    }
                 }
                 continue;
             }
@@ -91,7 +100,8 @@ mod tests {
                         continue;
                     }
                     let expected = naive_winding(mesh, &p);
-                    let found = tree.tree().winding(&p, &mut stack, &mut counters);
+                    let all = 0..mesh.triangles().len() as u32;
+                    let found = tree.tree().winding(&p, &[all], &mut stack, &mut counters);
                     assert_eq!(found, Some(expected.round() as i32), "{p}");
                     seen[expected.round() as usize] += 1;
                 }

@@ -6,17 +6,20 @@
 
 mod axis;
 pub mod exact;
+mod nested;
 mod pairs;
 mod sweep;
 mod swept_triangle;
 mod triangle;
 
-use mp_geom::TriMesh;
+use mp_geom::{Aabb, TriMesh};
 use mp_stop::Interrupt;
 use nalgebra::{Isometry3, IsometryMatrix3, Point3, Vector3};
 use std::cmp::Ordering;
 use std::collections::HashSet;
 use std::convert::Infallible;
+use std::ops::Range;
+use std::sync::OnceLock;
 
 pub use sweep::{Sweep, SweepCheck};
 pub use triangle::triangle_distance;
@@ -75,6 +78,10 @@ pub struct RefMesh {
     size: f64,
     /// Its corners, each once; none when there are too many to look for an axis.
     corners: Vec<Point3<f64>>,
+    /// The triangles of each solid, and the box around them.
+    solids: Vec<(Range<u32>, Aabb)>,
+    /// A vertex of each connected component, found at the first use.
+    components: OnceLock<Vec<Point3<f64>>>,
 }
 
 impl RefMesh {
@@ -108,6 +115,8 @@ impl RefMesh {
             root: Node::Stored(0),
             size: triangles().flatten().map(|p| p.coords.amax()).fold(0.0, f64::max),
             corners: distinct(triangles().flatten()),
+            solids: nested::solids(mesh),
+            components: OnceLock::new(),
         };
         let mut order = std::mem::take(&mut tree.order);
         tree.sort(&mut order, go_on)?;

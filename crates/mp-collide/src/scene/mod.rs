@@ -292,7 +292,7 @@ impl Scene {
 
 /// The box in the world of a mesh at a pose, a little enlarged so that rounding never cuts anything off;
 /// `None` when mesh or pose are beyond the limits.
-fn bounds(mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Option<Aabb> {
+pub(crate) fn bounds(mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Option<Aabb> {
     let relative = Relative::between(&Isometry3::identity(), 0.0, pose, mesh.radius())?;
     let obb = relative.obb(&mesh.tree().bounding);
     let half = obb.aligned_half().add_scalar(relative.slack);

@@ -57,6 +57,23 @@ impl Scene {
         motion: &RigidMotion,
         margin: f64,
     ) -> IntervalCheck {
+        let surfaces = self.check_surfaces(query, mesh, middle_wm, motion, margin);
+        // Nothing gets inside or outside without meeting a surface, so the middle decides for the interval.
+        match surfaces.is_free() && self.nested(query, mesh, middle_wm).is_some() {
+            true => IntervalCheck::Collision { at: 0.0 },
+            false => surfaces,
+        }
+    }
+
+    /// [`check_interval`](Self::check_interval) of surfaces: filled meshes count as surfaces too.
+    pub fn check_surfaces(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        middle_wm: &Isometry3<f64>,
+        motion: &RigidMotion,
+        margin: f64,
+    ) -> IntervalCheck {
         if let Some(merged) = &self.merged {
             let found =
                 query.check_interval(mesh, middle_wm, motion, &merged.mesh, &Isometry3::identity(), margin);
@@ -78,8 +95,6 @@ impl Scene {
                 },
             )
         });
-        // Nothing gets inside or outside without meeting a surface, so the middle decides for the interval.
-        let nested = || self.nested(query, mesh, middle_wm).map(|_| IntervalCheck::Collision { at: 0.0 });
-        blocked.or_else(nested).unwrap_or(IntervalCheck::Free)
+        blocked.unwrap_or(IntervalCheck::Free)
     }
 }

@@ -11,7 +11,7 @@ impl Scene {
         let body = self.body(id)?;
         self.near(&body.mesh, &body.pose, true, |other_id, other| {
             let compared = other_id != id && !self.is_allowed(id, other_id);
-            (compared && query.meets(body.posed(), other.posed())).then_some(other_id)
+            (compared && query.meets(&body.mesh, &body.pose, &other.mesh, &other.pose)).then_some(other_id)
         })
     }
 
@@ -27,7 +27,7 @@ impl Scene {
             for (other_id, other) in reach {
                 if body.bounds.intersects(&other.bounds)
                     && !self.is_allowed(*id, *other_id)
-                    && query.meets(body.posed(), other.posed())
+                    && query.meets(&body.mesh, &body.pose, &other.mesh, &other.pose)
                 {
                     pairs.push((*id.min(other_id), *id.max(other_id)));
                 }

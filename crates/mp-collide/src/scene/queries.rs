@@ -8,6 +8,9 @@ use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::Relative;
 use crate::query::Query;
 
+/// Up to so many bodies are looked at one by one for what is inside of what.
+const FEW: usize = 16;
+
 /// Queries of a mesh, which need not be a body of the scene, against all bodies.
 impl Scene {
     /// A body that `mesh` at `pose_wm` collides with: the first one found, always the same. Touching counts.
@@ -29,9 +32,10 @@ impl Scene {
         .or_else(|| self.nested(query, mesh, pose_wm))
     }
 
-    /// A body with a part inside of `mesh`, or that has a part of `mesh` inside, the outer one being filled;
-    /// surfaces are assumed not to meet.
-    pub(super) fn nested(
+    /// A body with a part inside of `mesh`, or that has a part of `mesh` inside, the outer one being
+    /// [filled](CollisionMesh::is_filled); surfaces are assumed not to meet. All other queries of a scene ask this too, but
+    /// [`surface_clearance`](Self::surface_clearance) and [`check_surfaces`](Self::check_surfaces).
+    pub fn nested(
         &self,
         query: &mut Query,
         mesh: &CollisionMesh,
@@ -40,7 +44,20 @@ impl Scene {
         if self.filled == 0 && !mesh.is_filled() {
             return None;
         }
-        self.near(mesh, pose_wm, true, |id, body| query.nested((mesh, pose_wm), body.posed()).then_some(id))
+        let tree = mesh.tree();
+        let center = pose_wm * tree.center;
+        let radius = tree.radius_center + 1e-9 * (tree.radius_center + center.coords.amax());
+        let mut nested = |id, body: &Body| {
+            let gap =
+                |k: usize| (body.bounds.min[k] - center[k]).max(center[k] - body.bounds.max[k]).max(0.0);
+            let far = gap(0) * gap(0) + gap(1) * gap(1) + gap(2) * gap(2) > radius * radius;
+            (!far && query.nested(mesh, pose_wm, &body.mesh, &body.pose)).then_some(id)
+        };
+        // Of few bodies each takes less time than the box of the mesh.
+        if self.bodies.len() <= FEW {
+            return self.bodies().find_map(|(id, body)| nested(id, body));
+        }
+        self.near(mesh, pose_wm, true, nested)
     }
 
     /// Whether `mesh` at `pose_wm` collides with any body.
@@ -60,6 +77,19 @@ impl Scene {
     /// (metres), and the nearest body in that case; otherwise some value of at least `enough` and no body.
     /// 0 exactly when it collides. Infinity when there are no bodies.
     pub fn clearance(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+        enough: f64,
+    ) -> (f64, Option<BodyId>) {
+        let found = self.surface_clearance(query, mesh, pose_wm, enough);
+        let nested = if found.0 > 0.0 { self.nested(query, mesh, pose_wm) } else { None };
+        nested.map_or(found, |id| (0.0, Some(id)))
+    }
+
+    /// [`clearance`](Self::clearance) of surfaces: filled meshes count as surfaces too.
+    pub fn surface_clearance(
         &self,
         query: &mut Query,
         mesh: &CollisionMesh,
@@ -91,12 +121,10 @@ impl Scene {
             });
             nearest.beyond = nearest.beyond.min(passed_over);
         }
-        let found = match nearest.body {
+        match nearest.body {
             Some(body) => (nearest.limit, Some(body)),
             None => (nearest.beyond, None),
-        };
-        let nested = if found.0 > 0.0 { self.nested(query, mesh, pose_wm) } else { None };
-        nested.map_or(found, |id| (0.0, Some(id)))
+        }
     }
 
     /// All bodies that `mesh` at `pose_wm` collides with, in the order of insertion, with an estimate of
@@ -109,7 +137,7 @@ impl Scene {
     ) -> Vec<Contact> {
         let mut contacts = Vec::new();
         let _: Option<()> = self.near(mesh, pose_wm, true, |id, body| {
-            if query.meets((mesh, pose_wm), body.posed()) {
+            if query.meets(mesh, pose_wm, &body.mesh, &body.pose) {
                 let depth = query.depth(mesh, pose_wm, &body.mesh, &body.pose);
                 contacts.push(Contact { body: id, name: body.name.clone(), depth });
             }

@@ -12,13 +12,13 @@ fn at(x: f64) -> Isometry3<f64> {
 }
 
 fn cube(size: f64) -> TriMesh {
-    cuboid(size, size, size).unwrap()
+    cuboid(size, size, size).unwrap().into_surface()
 }
 
 #[test]
 fn every_query_of_a_scene_knows_the_inside() {
     let (solid, shell) = (CollisionMesh::new(&cube(2.0)).filled().unwrap(), CollisionMesh::new(&cube(2.0)));
-    let ball = sphere(0.3, 1).unwrap();
+    let ball = sphere(0.3, 1).unwrap().into_surface();
     let full = CollisionMesh::new(&ball).filled().unwrap();
     let ball = CollisionMesh::new(&ball);
     let mut query = Query::default();

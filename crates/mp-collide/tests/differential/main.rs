@@ -7,6 +7,7 @@ mod hulls;
 mod lanes;
 mod meshes;
 mod motions;
+mod nested;
 mod parry;
 mod properties;
 mod referee;

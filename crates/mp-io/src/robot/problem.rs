@@ -3,7 +3,7 @@
 use super::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart};
 use crate::error::Error;
 use crate::files::{Disk, Files, MAX_TEXT_BYTES, stem};
-use crate::mesh::{Axes, read_mesh_with, stand_in};
+use crate::mesh::{Axes, read_mesh_with, solid_mesh, stand_in};
 use crate::problem::{MAX_COORDINATE, PlacedBody, vertex_beyond};
 use crate::toml_problem::TomlText;
 use mp_geom::{TriMesh, pose_from_six, primitives};
@@ -50,7 +50,7 @@ impl RobotProblem {
         (&self.urdf_file, &self.urdf, &self.srdf) == (&other.urdf_file, &other.urdf, &other.srdf)
             && (&self.packages, a.base, a.floating) == (&other.packages, b.base, b.floating)
             && (&a.limits, &self.srdf_beside) == (&b.limits, &other.srdf_beside)
-            && (a.limit_tolerance, b.limit_tolerance) == (0.0, 0.0)
+            && (a.limit_tolerance, b.limit_tolerance, a.solid) == (0.0, 0.0, b.solid)
     }
 
     /// Whether the name of a file is that of a robot problem: it ends in `.toml`.
@@ -119,6 +119,8 @@ pub(crate) struct Figures<'a> {
     path: &'a Path,
     /// The meshes read so far, with their files.
     read: Vec<(PathBuf, TriMesh)>,
+    /// Those of them that are solids.
+    solids: Vec<(PathBuf, TriMesh)>,
     /// The primitives made so far, by the bits of their sizes: equal ones share a mesh.
     made: HashMap<(&'static str, [u64; 3]), TriMesh>,
     /// A unit sphere, and the radius of the ball inside, once there is a sphere.
@@ -128,7 +130,7 @@ pub(crate) struct Figures<'a> {
 impl<'a> Figures<'a> {
     /// For the problem in the file `path`, to which names are relative.
     pub(crate) fn new(files: &'a dyn Files, path: &'a Path) -> Self {
-        Self { files, path, read: Vec::new(), made: HashMap::new(), ball: None }
+        Self { files, path, read: Vec::new(), solids: Vec::new(), made: HashMap::new(), ball: None }
     }
 
     /// The file and the mesh of an obstacle. Spheres and cylinders become meshes that contain them.
@@ -148,16 +150,30 @@ impl<'a> Figures<'a> {
             }
             ObstacleShape::Mesh(name) => {
                 let place = self.path.parent().unwrap_or(Path::new("")).join(name);
+                let seen =
+                    |read: &[(PathBuf, TriMesh)]| read.iter().find(|(file, _)| *file == place).cloned();
+                let unusable = |e: Error| {
+                    let message = format!("the mesh of {} is not usable: {e}", entry.name);
+                    fault(&message, e.remedy_of_named_file()).with_kind(e.kind())
+                };
                 // Many obstacles often share a mesh: read it once.
-                match self.read.iter().find(|(file, _)| *file == place) {
-                    Some(seen) => seen.clone(),
+                let known = match seen(&self.read) {
+                    Some(known) => known,
                     None => {
-                        let mesh = read_mesh_with(self.files, &place, Axes::OfFile).map_err(|e| {
-                            let message = format!("the mesh of {} is not usable: {e}", entry.name);
-                            fault(&message, e.remedy_of_named_file()).with_kind(e.kind())
-                        })?;
-                        self.read.push((place.clone(), mesh.clone()));
-                        (place, mesh)
+                        let mesh = read_mesh_with(self.files, &place, Axes::OfFile).map_err(unusable)?;
+                        let known = (place.clone(), mesh);
+                        self.read.push(known.clone());
+                        known
+                    }
+                };
+                match (entry.solid && !self.files.only_reads(), seen(&self.solids)) {
+                    (false, _) => known,
+                    (true, Some(solid)) => solid,
+                    (true, None) => {
+                        let file = place.display().to_string();
+                        let solid = (place.clone(), solid_mesh(&file, known.1).map_err(unusable)?);
+                        self.solids.push(solid.clone());
+                        solid
                     }
                 }
             }

@@ -2,7 +2,7 @@
 
 use super::RobotProblem;
 use crate::files::{Disk, Files};
-use crate::mesh::{Axes, read_mesh_with};
+use crate::mesh::{Axes, read_mesh_with, solid_mesh};
 use crate::problem::{MAX_COORDINATE, vertex_beyond};
 use mp_geom::TriMesh;
 use std::path::{Path, PathBuf};
@@ -13,8 +13,10 @@ impl RobotProblem {
     /// folders above the URDF, as `PACKAGE/NAME` and `share/PACKAGE/NAME`, and as `NAME` where the folder is called
     /// PACKAGE. `package:///NAME` names no package: `NAME` is searched in the same folders.
     ///
+    /// It is a solid if the problem says so.
+    ///
     /// # Errors
-    /// A message that says which file was searched, and where.
+    /// A message that says which file was searched, and where, or why it is not usable.
     pub fn mesh(&self, name: &str) -> Result<TriMesh, String> {
         self.mesh_from(&Disk, name)
     }
@@ -25,7 +27,12 @@ impl RobotProblem {
     /// As [`mesh`](Self::mesh).
     pub fn mesh_from(&self, files: &dyn Files, name: &str) -> Result<TriMesh, String> {
         let place = self.place_of(files, name)?;
-        let mesh = read_mesh_with(files, &place, Axes::OfFile).map_err(|e| match e.remedy() {
+        let read = read_mesh_with(files, &place, Axes::OfFile);
+        let read = read.and_then(|mesh| match self.file.solid && !files.only_reads() {
+            true => solid_mesh(&place.display().to_string(), mesh),
+            false => Ok(mesh),
+        });
+        let mesh = read.map_err(|e| match e.remedy() {
             Some(remedy) => format!("{e} ({remedy})"),
             None => e.to_string(),
         })?;

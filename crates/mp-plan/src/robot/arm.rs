@@ -496,6 +496,9 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
         let own = touching.iter().any(|touch| touch.with_itself);
         self.source.as_deref().filter(|_| own).map(srdf_help)
     }
+    fn enclosures(&self, q: &Configuration) -> Vec<[String; 2]> {
+        self.arm.clone().enclosures(q.as_slice())
+    }
     fn nearest_free(&self, q: &Configuration) -> Option<Configuration> {
         self.arm.clone().nearest_free(q, &self.space, 2.0 * self.tolerance())
     }

@@ -267,6 +267,9 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     fn remedy(&self, touching: &[Touch]) -> Option<String> {
         self.robot.remedy(touching)
     }
+    fn enclosures(&self, q: &DVector<f64>) -> Vec<[String; 2]> {
+        self.robot.enclosures(&self.parts(q).q)
+    }
     fn nearest_free(&self, q: &DVector<f64>) -> Option<DVector<f64>> {
         let mut parts = self.parts(q);
         parts.q = self.robot.nearest_free(&parts.q)?;

@@ -263,6 +263,9 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         }));
         touches
     }
+    fn enclosures(&self, q: &DVector<f64>) -> Vec<[String; 2]> {
+        self.still.enclosures(&self.moment(q).0)
+    }
     fn nearest_free(&self, q: &DVector<f64>) -> Option<DVector<f64>> {
         let (position, time) = self.moment(q);
         let free = vector::<K>((self.still.nearest_free(&position)?, time));

@@ -386,17 +386,18 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
         };
         contacts.into_iter().map(touch).collect()
     }
+    fn enclosures(&self, q: &M::State) -> Vec<[String; 2]> {
+        let robot = &self.problem.robot.name;
+        let found = self.robot.clone().enclosures(q).into_iter();
+        found
+            .map(|(other, around)| if around { [robot.clone(), other] } else { [other, robot.clone()] })
+            .collect()
+    }
     fn nearest_free(&self, q: &M::State) -> Option<M::State> {
         self.robot.clone().nearest_free(q, &self.space, 2.0 * self.tolerance())
     }
     fn lint(&self) -> Vec<String> {
         let mut found = Vec::new();
-        for (end, q) in [("start", &self.start), ("goal", &self.goals[0])] {
-            let around = self.robot.enclosing(q);
-            if !around.is_empty() && self.touching(q).is_empty() {
-                found.push(format!("the {end} is inside of {}", around.join(", ")));
-            }
-        }
         let scene = self.robot.scene();
         let name = |id| scene.body(id).map_or("?", |body| body.name());
         let pairs = scene.colliding_pairs(&mut Query::default());
@@ -528,6 +529,7 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
             numbers.push(mesh.vertices().len() as f64);
             numbers.extend(mesh.vertices().iter().flat_map(|p| [p.x, p.y, p.z]));
             numbers.extend(mesh.triangles().iter().flatten().map(|&i| f64::from(i)));
+            numbers.extend(mesh.solids().iter().flat_map(|solid| [solid.start, solid.end]).map(f64::from));
             numbers.extend(pose.to_homogeneous().iter());
         };
         mesh(&problem.robot.mesh, &Isometry3::identity());

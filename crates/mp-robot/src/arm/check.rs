@@ -1,7 +1,7 @@
 //! The checks of an arm that planners use: validity, clearance and motions.
 
 use super::Arm;
-use super::robot::LinkBody;
+use super::robot::{LinkBody, are_nested};
 use mp_cspace::{
     Clearance, ClearanceSearch, Coordinates, IntervalClearance, LeastClearance, MotionClearance,
     MotionInterval, Rng, Validity, obstacles::ObstacleHints,
@@ -9,8 +9,8 @@ use mp_cspace::{
 use std::collections::VecDeque;
 
 impl Arm {
-    /// Whether `q`, a configuration, is in collision.
-    fn collides(&mut self, q: &[f64]) -> bool {
+    /// Whether `q` is in collision, or no configuration. Leaves the frames at `q` in the scratch memory.
+    pub(super) fn collides(&mut self, q: &[f64]) -> bool {
         self.counters.collision_checks += 1;
         let Self { robot, obstacles, query, scratch, .. } = self;
         if !robot.kinematics.is_configuration(q) {
@@ -31,7 +31,7 @@ impl Arm {
                 ([i, j].map(|k| &robot.bodies[k]), [i, j].map(|k| &scratch.balls[k]));
             let reach = ball_a.radius + ball_b.radius;
             (ball_a.center - ball_b.center).norm_squared() <= reach * reach
-                && query.intersects(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame])
+                && query.meets(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame])
         })
     }
 }
@@ -66,7 +66,7 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
             let limit = enough.min(least);
             let distance = query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], limit);
             least = least.min(distance);
-            if least <= 0.0 {
+            if least <= 0.0 || are_nested(query, [a, b], frames) {
                 return 0.0;
             }
         }
@@ -170,7 +170,7 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
             let near = body.near(&base, interval.half, scratch);
             let far = scratch.far[body.last()] + base.far(body.chain.from_base);
             let clearance =
-                |limit| obstacles.scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
+                |limit| obstacles.scene.surface_clearance(query, &body.tree, &frames[body.frame], limit).0;
             if let Some(answer) = proven.add(near, far, f64::NEG_INFINITY, clearance) {
                 return answer;
             }
@@ -184,6 +184,18 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
             if let Some(answer) = proven.add(sum(&scratch.near), sum(&scratch.far), apart, clearance) {
                 return answer;
             }
+        }
+        // Nothing gets inside without meeting a surface: one state of a motion decides for all of it.
+        let ends = || from.iter().chain(to).copied();
+        if !scratch.apart.iter().copied().eq(ends()) {
+            let inside = |body: &LinkBody| {
+                obstacles.scene.nested(query, &body.tree, &scratch.frames[body.frame]).is_some()
+            };
+            if robot.moving().any(inside) || robot.has_nested_links(query, scratch) {
+                return IntervalClearance::Collision { at: 0.0 };
+            }
+            scratch.apart.clear();
+            scratch.apart.extend(ends());
         }
         IntervalClearance::FreeOver { part: proven.part }
     }
@@ -232,6 +244,7 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
                         let (pose_a, pose_b) = (&frames[a.frame], &frames[b.frame]);
                         let clearance = match apart >= enough {
                             true => apart,
+                            false if apart <= 0.0 && are_nested(query, [a, b], frames) => 0.0,
                             // Links that keep the least clearance all along, like one that turns beside another, have
                             // many triangles at that distance: exact only if it is less.
                             false => query.clearance(&a.tree, pose_a, &b.tree, pose_b, least.found * LESS),

@@ -2,7 +2,10 @@
 
 use super::Arm;
 use crate::shells::{Shells, search_shells};
+use crate::solid_obstacle::is_solid;
 use mp_cspace::{Clearance, Coordinates, Rng, Space};
+#[cfg(doc)]
+use mp_geom::TriMesh;
 use rand::RngExt;
 
 /// A link in contact.
@@ -64,7 +67,7 @@ impl Arm {
         for pair in &robot.pairs {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
             let poses = [a, b].map(|body| &frames[body.frame]);
-            if query.intersects(&a.tree, poses[0], &b.tree, poses[1]) {
+            if query.meets(&a.tree, poses[0], &b.tree, poses[1]) {
                 let [link, other] = pair.bodies.map(|i| robot.name(i).to_owned());
                 let depth = query.depth(&a.tree, poses[0], &b.tree, poses[1]);
                 contacts.push(ArmContact { link, other, with_itself: true, depth });
@@ -101,6 +104,42 @@ impl Arm {
         let link = |link: usize| robot.kinematics.attached[link].name.clone();
         let obstacle = |id| obstacles.scene.body(id).map_or_else(String::new, |body| body.name().to_owned());
         closest.map(|(a, b)| ArmGap { link: link(a), other: b.map_or_else(obstacle, link), distance: least })
+    }
+    /// What is inside of what, where nothing touches at `q`: pairs of names, the inner one first, of links and obstacles, or links and
+    /// links that must not touch. The outer ones are closed surfaces that face outward and are no [solids](TriMesh::solids); what is
+    /// inside counts as free, but can never leave: worth a warning.
+    pub fn enclosures(&mut self, q: &[f64]) -> Vec<[String; 2]> {
+        if !self.kinematics().is_configuration(q) || self.collides(q) {
+            return Vec::new();
+        }
+        let Self { robot, obstacles, query, scratch, .. } = self;
+        let frames = &scratch.frames;
+        let mut found = Vec::new();
+        let floats = robot.kinematics.floats();
+        for (i, body) in robot.bodies.iter().enumerate().filter(|(_, body)| floats || body.frame > 0) {
+            let (pose, link) = (&frames[body.frame], || robot.name(i).to_owned());
+            let around = obstacles.around(query, pose * body.mesh.vertices()[0]);
+            found.extend(around.map(|name| [link(), name.to_owned()]));
+            if body.mesh.solids().is_empty() {
+                let inside: Vec<_> = obstacles.inside(query, &body.tree, pose).map(str::to_owned).collect();
+                if !inside.is_empty() && is_solid(&body.mesh) {
+                    found.extend(inside.into_iter().map(|name| [name, link()]));
+                }
+            }
+        }
+        for pair in &robot.pairs {
+            for [i, j] in [pair.bodies, [pair.bodies[1], pair.bodies[0]]] {
+                let [inner, outer] = [i, j].map(|k| &robot.bodies[k]);
+                let p = frames[outer.frame].inv_mul(&frames[inner.frame]) * inner.mesh.vertices()[0];
+                if outer.mesh.solids().is_empty()
+                    && query.winding(&outer.tree, &p).is_some_and(|n| n > 0)
+                    && is_solid(&outer.mesh)
+                {
+                    found.push([i, j].map(|k| robot.name(k).to_owned()));
+                }
+            }
+        }
+        found
     }
 
     /// A configuration of `space` near `q` with a clearance of at least `margin` (m; the

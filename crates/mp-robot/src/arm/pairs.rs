@@ -1,7 +1,7 @@
 //! The pairs of links that are tested against each other.
 
 use super::kinematics::Kinematics;
-use super::robot::LinkBody;
+use super::robot::{LinkBody, are_nested};
 use super::{ArmError, ArmModel};
 use mp_collide::Query;
 use mp_cspace::{Halton, Interrupt, Joints, Rng, Sampler};
@@ -155,7 +155,8 @@ fn look_at(
             interrupt.go_on()?;
             let [a, b] = pair.bodies.map(|i| &bodies[i]);
             let distance = query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], close);
-            *fate = match distance {
+            let is_inside = distance > 0.0 && are_nested(&mut query, [a, b], &frames);
+            *fate = match if is_inside { 0.0 } else { distance } {
                 0.0 if *beside && i == 0 => Fate::TouchAtNeutral,
                 d if d < close => Fate::Close { least: least.min(d), most: most.max(d) },
                 _ => Fate::Kept,

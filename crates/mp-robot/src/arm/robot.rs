@@ -160,6 +160,15 @@ impl SharedArm {
         self.pairs.iter().map(|pair| pair.bodies.map(|body| self.name(body)))
     }
 
+    /// Whether of two links that must not touch one is solid and the other inside of it. Links are [placed](Self::place_over), their
+    /// surfaces apart.
+    pub(super) fn has_nested_links(&self, query: &mut Query, scratch: &Scratch) -> bool {
+        self.pairs.iter().any(|pair| {
+            let bodies = pair.bodies.map(|i| &self.bodies[i]);
+            scratch.apart(pair) <= 0.0 && are_nested(query, bodies, &scratch.frames)
+        })
+    }
+
     pub(super) fn name(&self, body: usize) -> &str {
         &self.kinematics.attached[self.bodies[body].link].name
     }
@@ -194,6 +203,12 @@ fn extent_of(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> Extent {
     Extent { reach, length: placed.min(2.0 * turned) }
 }
 
+/// Whether of two links one is solid and the other inside of it, where their surfaces are apart.
+pub(super) fn are_nested(query: &mut Query, [a, b]: [&LinkBody; 2], frames: &[Isometry3<f64>]) -> bool {
+    (a.tree.is_filled() || b.tree.is_filled())
+        && query.nested(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame])
+}
+
 /// Scratch memory of one clone.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
@@ -202,6 +217,9 @@ pub(super) struct Scratch {
     pub(super) balls: Vec<Sphere>,
     pub(super) far: Vec<f64>,
     pub(super) near: Vec<f64>,
+    /// The ends of the last motion that has a state where no link is inside of anything: where it touches nothing, that holds for all
+    /// of it.
+    pub(super) apart: Vec<f64>,
 }
 
 impl Scratch {
@@ -227,8 +245,8 @@ impl Scratch {
 ///   at each of 100 configurations, the neutral one and 99 of the Halton sequence. Pairs within twice the tolerance of each
 ///   other at each of these are left out too, and [`ArmModel::notes`] of [`Arm::model`] says so.
 ///
-/// Only surfaces count, as for [`RigidBody`](crate::RigidBody): touching is collision, and a link wholly inside a
-/// closed obstacle is free. The space checks the limits.
+/// Meshes are surfaces and primitives solids, as for [`RigidBody`](crate::RigidBody): touching is collision, a link wholly inside
+/// a closed mesh is free, one inside a solid is not. The space checks the limits.
 ///
 /// Distances between links count as clearance, like those to obstacles.
 ///
@@ -305,7 +323,7 @@ impl Arm {
         interrupt: &Interrupt,
     ) -> Result<Self, ArmError> {
         let obstacles = self.robot.obstacles(obstacles, interrupt)?;
-        let mut other = Self { obstacles, ..self.clone() };
+        let mut other = Self { obstacles, scratch: Scratch::default(), ..self.clone() };
         other.take_counters();
         Ok(other)
     }

@@ -280,7 +280,8 @@ struct CheckedPair {
 /// whose interpolation defines what a motion is, and the list of [pairs of links](Arm::checked_pairs) that must not
 /// touch.
 ///
-/// - free means that links keep at least the tolerance from obstacles and from each other all along;
+/// - free means that links keep at least the tolerance from obstacles and from each other all along, and none is inside of a
+///   [solid](TriMesh::solids);
 /// - a motion with a tested state of less than twice the tolerance is [`Unproven`](MotionCheck::Unproven), as
 ///   are motions that take more than a million parts, and motions of a million radians or metres.
 ///
@@ -295,6 +296,8 @@ pub struct ArmVerifier<'c, C> {
     tolerance: f64,
     parts: u64,
     interrupt: Interrupt,
+    /// The end of the last motion that was found free, where nothing is inside of anything.
+    apart: Option<Vec<f64>>,
 }
 
 /// Motions of a coordinate longer than this (rad or m) are refused.
@@ -335,7 +338,16 @@ where
             }
         }
         pairs.extend_from_slice(&tree.pairs);
-        Ok(Self { space, tree, world, pairs, tolerance, parts: 0, interrupt: Interrupt::never() })
+        Ok(Self {
+            space,
+            tree,
+            world,
+            pairs,
+            tolerance,
+            parts: 0,
+            interrupt: Interrupt::never(),
+            apart: None,
+        })
     }
 
     /// The clearance (m) that motions found free keep between links and everything else.
@@ -367,17 +379,26 @@ where
     /// A lower bound on the distance of a pair that is at least `enough`; else, as an error, the distance of two of their
     /// triangles that is less.
     fn distance(&self, pair: &CheckedPair, poses: &[Matrix4<f64>], enough: f64) -> Result<f64, f64> {
-        let part = &self.tree.links[pair.link];
-        let Some(mesh) = &part.mesh else { return Ok(f64::INFINITY) };
-        let pose = isometry(&poses[pair.link]);
-        match pair.other {
-            None => self.world.as_ref().map_or(Ok(f64::INFINITY), |world| {
-                mesh.at_least(&pose, world, &Isometry3::identity(), enough)
-            }),
-            Some(other) => self.tree.links[other].mesh.as_ref().map_or(Ok(f64::INFINITY), |mesh_b| {
-                mesh.at_least(&pose, mesh_b, &isometry(&poses[other]), enough)
-            }),
-        }
+        self.meshes(pair, poses)
+            .map_or(Ok(f64::INFINITY), |[(a, pose_a), (b, pose_b)]| a.at_least(&pose_a, b, &pose_b, enough))
+    }
+
+    /// The meshes of a pair, where they are; `None` when one of them has none.
+    fn meshes(&self, pair: &CheckedPair, poses: &[Matrix4<f64>]) -> Option<[(&RefMesh, Isometry3<f64>); 2]> {
+        let link = |i: usize| Some((self.tree.links[i].mesh.as_ref()?, isometry(&poses[i])));
+        let other = match pair.other {
+            None => (&**self.world.as_ref()?, Isometry3::identity()),
+            Some(other) => link(other)?,
+        };
+        Some([link(pair.link)?, other])
+    }
+
+    /// Whether of any pair one is inside of the other, which is solid, where their surfaces are apart.
+    fn is_nested(&self, q: &C::State) -> bool {
+        let mut poses = Vec::new();
+        self.tree.poses_into(q.as_slice(), &mut poses);
+        let meshes = self.pairs.iter().filter_map(|pair| self.meshes(pair, &poses));
+        meshes.into_iter().any(|[(a, pose_a), (b, pose_b)]| a.is_nested(&pose_a, b, &pose_b))
     }
 
     /// How much nearer to each other the two of a pair can come.
@@ -464,8 +485,14 @@ where
         if !provable {
             return MotionCheck::Unproven { at: 0.0 };
         }
+        if self.apart.as_deref() != Some(from.as_slice()) && self.is_nested(from) {
+            return MotionCheck::Collision { at: 0.0 };
+        }
         match self.prove(from, to) {
-            MotionCheck::Free { clearance } => MotionCheck::Free { clearance },
+            MotionCheck::Free { clearance } => {
+                self.apart = Some(to.as_slice().to_vec());
+                MotionCheck::Free { clearance }
+            }
             other if self.interrupt.raised().is_some() => other,
             _ if self.touches(from) => MotionCheck::Collision { at: 0.0 },
             _ if self.touches(to) => MotionCheck::Collision { at: 1.0 },

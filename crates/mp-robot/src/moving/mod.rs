@@ -9,7 +9,9 @@ pub use verify::MovingVerifier;
 use crate::{CheckCounters, Placement, RigidBody, RobotError};
 use mp_collide::reference::RefMesh;
 use mp_collide::{CollisionMesh, Query, Scene};
-use mp_cspace::{Clearance, Interrupt, Interrupted, MotionClearance, Validity};
+use mp_cspace::{
+    Clearance, Interrupt, Interrupted, IntervalClearance, MotionClearance, MotionInterval, Validity,
+};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 use std::sync::Arc;
@@ -28,8 +30,9 @@ pub(crate) struct MovingObstacle {
 /// A [`RigidBody`] and the bodies that move around it, each on its [`Trajectory`] whatever the robot does.
 ///
 /// A state is a pair of a configuration and a time (s), as in [`SpaceTime`](mp_cspace::space_time::SpaceTime). It is free
-/// if the robot touches neither the obstacles that stand still nor the surface of a moving one. A robot that is inside a
-/// moving body from the beginning, even a point, is not in contact with it. Motion bounds are for the robot and the
+/// if the robot touches neither the obstacles that stand still nor a moving one, with its inside if it is a
+/// [solid](TriMesh::solids). A robot that is inside a closed moving surface from the beginning, even a point, is not in contact with
+/// it. Motion bounds are for the robot and the
 /// fastest obstacle together, so [`Certified`](mp_cspace::Certified) misses no obstacle, however thin.
 /// [`ForwardInTime`](mp_cspace::space_time::ForwardInTime) around it keeps time running forward.
 #[derive(Clone, Debug)]
@@ -38,6 +41,8 @@ pub struct AmongMoving<P: Placement> {
     moving: Arc<[MovingObstacle]>,
     query: Query,
     counters: CheckCounters,
+    /// The ends of the last motion that has a state where nothing is inside of anything that moves.
+    apart: Option<[(Isometry3<f64>, f64); 2]>,
 }
 
 /// Bounds are enlarged by this factor against rounding.
@@ -74,7 +79,13 @@ impl<P: Placement> AmongMoving<P> {
             Ok(MovingObstacle { scene: Arc::new(scene), trajectory, radius, reference })
         };
         let moving: Vec<MovingObstacle> = moving.into_iter().map(make).collect::<Result<_, RobotError>>()?;
-        Ok(Self { body, moving: moving.into(), query: Query::default(), counters: CheckCounters::default() })
+        Ok(Self {
+            body,
+            moving: moving.into(),
+            query: Query::default(),
+            counters: CheckCounters::default(),
+            apart: None,
+        })
     }
 
     /// The robot among the obstacles that stand still.
@@ -167,5 +178,32 @@ impl<P: Placement> MotionClearance<(P::State, f64)> for AmongMoving<P> {
         let speed = |obstacle: &MovingObstacle| obstacle.trajectory.speed(obstacle.radius, from.1, to.1);
         let fastest = self.moving.iter().map(speed).fold(0.0, f64::max);
         (self.body.motion_bound(&from.0, &to.0) + fastest * (to.1 - from.1).abs()) * ROUND_UP
+    }
+
+    /// By the clearance of surfaces in the middle. What is inside of what is asked once for a motion: nothing gets inside without
+    /// meeting a surface.
+    fn interval_clearance(&mut self, interval: &MotionInterval<'_, (P::State, f64)>) -> IntervalClearance {
+        let ends = [interval.from, interval.to].map(|(q, time)| (P::pose(q), *time));
+        let (pose, time) = (P::pose(&interval.middle.0), interval.middle.1);
+        let enough = interval.travel.max(interval.margin) + interval.margin;
+        let mut least = self.body.surface_clearance(&pose, enough);
+        for obstacle in self.moving.iter() {
+            self.counters.clearance_checks += 1;
+            let seen = obstacle.trajectory.pose(time).inv_mul(&pose);
+            let (robot, enough) = (&self.body.shared.robot, enough.min(least));
+            let found = obstacle.scene.surface_clearance(&mut self.query, robot, &seen, enough);
+            least = least.min(found.0);
+        }
+        if least > 0.0 && self.apart.is_none_or(|apart| apart != ends) {
+            let inside = |obstacle: &MovingObstacle| {
+                let seen = obstacle.trajectory.pose(time).inv_mul(&pose);
+                obstacle.scene.nested(&mut self.query, &self.body.shared.robot, &seen).is_some()
+            };
+            let nested =
+                self.moving.iter().any(inside) || self.body.is_nested_on([ends[0].0, ends[1].0], &pose);
+            self.apart = (!nested).then_some(ends);
+            least = if nested { 0.0 } else { least };
+        }
+        IntervalClearance::of(least, interval.margin)
     }
 }

@@ -10,7 +10,8 @@ use std::sync::Arc;
 /// Proves motions in space and time free of collision, with other code than planners use.
 ///
 /// A [`Verifier`] checks against the obstacles that stand still. For each moving obstacle, distances from sphere trees are
-/// compared with how much nearer robot and obstacle can come, and the motion is halved until all of it is shown free.
+/// compared with how much nearer robot and obstacle can come, and the motion is halved until all of it is shown free. Motions that
+/// begin with one inside of the other, the outer being a [solid](mp_geom::TriMesh::solids), collide.
 /// Only the space and the trajectories are shared with the checker: they define what the motions are.
 ///
 /// The answer is [`Unproven`](MotionCheck::Unproven) for motions back in time or beyond the speed limit, and for
@@ -65,10 +66,18 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
         let standing = self.standing.check_state(&q.0, enough);
         let MotionCheck::Free { clearance } = standing else { return standing };
         let pose: Isometry3<f64> = P::pose(&q.0);
+        if self.moving.iter().any(|obstacle| self.is_nested(obstacle, q)) {
+            return MotionCheck::Collision { at: 0.0 };
+        }
         let from = |obstacle: &MovingObstacle| {
             self.robot.clearance(&pose, &obstacle.reference, &obstacle.trajectory.pose(q.1), enough)
         };
         self.standing.judged(self.moving.iter().map(from).fold(clearance, f64::min))
+    }
+
+    /// Whether the robot is inside of an obstacle or the other way round, where their surfaces are apart.
+    fn is_nested(&self, obstacle: &MovingObstacle, (q, time): &(P::State, f64)) -> bool {
+        self.robot.is_nested(&P::pose(q), &obstacle.reference, &obstacle.trajectory.pose(*time))
     }
 
     /// The clearance kept from one moving obstacle over the motion, or the check that failed. `rate` is how far a point of
@@ -119,6 +128,9 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<(P::State, f64)> f
         let shift = (b.translation.vector - a.translation.vector).norm();
         let rate = shift + self.radius * a.rotation.angle_to(&b.rotation);
         for obstacle in self.moving.iter() {
+            if self.is_nested(obstacle, from) {
+                return MotionCheck::Collision { at: 0.0 };
+            }
             match self.against(obstacle, from, to, rate) {
                 Ok(clearance) => least = least.min(clearance),
                 Err(check) => return check,

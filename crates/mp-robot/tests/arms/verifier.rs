@@ -4,9 +4,10 @@ use crate::common::{Six, across, clutter, obstacle, random_tree, six};
 use mp_cspace::{
     Certified, Clearance, Joints, MotionCheck, MotionValidity, Rng, Space, TrueMetric, Validity,
 };
-use mp_geom::primitives::cuboid;
-use mp_robot::{Arm, ArmVerifier};
-use nalgebra::DVector;
+use mp_geom::TriMesh;
+use mp_geom::primitives::{cuboid, cylinder, sphere};
+use mp_robot::{Arm, ArmModel, ArmVerifier, Joint, JointKind, Link};
+use nalgebra::{DVector, Isometry3, Vector3};
 
 /// The verifier proves what is certified, finds what sampling finds, and claims no more clearance than there is.
 pub(crate) fn agree<C: Space<State = DVector<f64>> + TrueMetric>(
@@ -117,8 +118,8 @@ fn contacts_are_named() {
     let q = Six::from([0.0, std::f64::consts::FRAC_PI_2, 0.0, 0.0, 0.0, 0.0]);
     let contacts = arm.explain(q.as_slice());
     let names: Vec<_> = contacts.iter().map(|c| (c.link.as_str(), c.other.as_str())).collect();
-    // The link between is inside the wall, but touches its surface nowhere.
-    assert_eq!(names, [("roll", "wall"), ("tool", "wall")]);
+    // The link between is inside the wall, and touches its surface nowhere.
+    assert_eq!(names, [("roll", "wall"), ("pitch", "wall"), ("tool", "wall")]);
     assert!(contacts.iter().all(|c| !c.with_itself && c.depth > 0.01 && c.depth < 0.3), "{contacts:?}");
     // Alone it hits itself only, wherever it is not free.
     let mut alone = arm.among([]).unwrap();
@@ -174,4 +175,95 @@ fn held_joints_are_where_they_are_for_both() {
     let arm = Arm::new(&model, clutter()).unwrap();
     let counts = agree(&arm, &arm.space().unwrap(), 150);
     assert!(counts.into_iter().all(|n| n > 15), "{counts:?}");
+}
+
+/// A base of the shape `first`, a stalk that turns, and a hand of the shape `last` that slides out of the base.
+fn slider(first: &TriMesh, last: &TriMesh) -> ArmModel {
+    let here = Isometry3::identity();
+    let stalk = cuboid(0.02, 0.02, 0.02).unwrap();
+    let joint = |name: &str, [parent, child]: [&str; 2], kind| {
+        Joint::new(name, parent, child, kind).axis(Vector3::x())
+    };
+    ArmModel {
+        links: vec![
+            Link::new("base").with(first, &here),
+            Link::new("stalk").with(&stalk, &Isometry3::translation(0.0, 0.0, 3.0)),
+            Link::new("hand").with(last, &here),
+        ],
+        joints: vec![
+            joint("turn", ["base", "stalk"], JointKind::Revolute { low: -0.1, high: 0.1 }),
+            joint("slide", ["stalk", "hand"], JointKind::Prismatic { low: -3.0, high: 3.0 }),
+        ],
+        ..ArmModel::default()
+    }
+}
+
+/// What checker and verifier say of the motion from `q` to `to`.
+fn judged(arm: &Arm, q: [f64; 2], to: [f64; 2]) -> bool {
+    let space: Joints<DVector<f64>> = arm.space().unwrap();
+    let mut arm = arm.clone();
+    let [q, to] = [q, to].map(|q| DVector::from_column_slice(&q));
+    let free = arm.is_valid(&q);
+    assert_eq!((arm.clearance(&q, 1.0) > 0.0, arm.clearance(&q, 0.0) > 0.0), (free, free));
+    let contacts = arm.explain(q.as_slice());
+    assert!(contacts.is_empty() == free && contacts.iter().all(|c| c.depth > 0.0), "{contacts:?}");
+    let mut certified = Certified::new(&space, arm.clone(), arm.tolerance()).unwrap();
+    let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
+    for (from, to) in [(&q, &to), (&to, &q), (&q, &to)] {
+        assert_eq!(certified.check_motion(from, to).is_free(), free);
+        assert_eq!(verifier.check_motion(from, to).is_free(), free);
+    }
+    free
+}
+
+/// Links in links, links in obstacles and obstacles in links.
+#[test]
+fn solids_have_an_inside_and_surfaces_have_none() {
+    let pebble = sphere(0.1, 2).unwrap();
+    let (inside, near) = ([0.01, 0.2], [-0.02, 0.25]);
+    for solid in [cuboid(1.0, 1.2, 1.4).unwrap(), sphere(0.7, 2).unwrap(), cylinder(0.7, 1.0, 16).unwrap()] {
+        for (around, free) in [(solid.clone(), false), (solid.into_surface(), true)] {
+            for inner in [pebble.clone(), pebble.clone().into_surface()] {
+                for (first, last) in [(&around, &inner), (&inner, &around)] {
+                    // Both links collide where one is in the other, but not elsewhere, so that the pair is compared.
+                    let arm = Arm::new(&slider(first, last), []).unwrap();
+                    assert_eq!(arm.checked_pairs(), [["base", "hand"]]);
+                    assert_eq!(judged(&arm, inside, near), free);
+                    assert!(judged(&arm, [0.0, 2.0], [0.1, 2.9]));
+                    let named = arm.clone().enclosures(&inside);
+                    assert_eq!(named.len(), usize::from(free), "{named:?}");
+                }
+                let it = |mesh: &TriMesh| [obstacle("it", mesh.clone(), [2.0, 0.0, 0.0, 0.0, 0.0, 0.0])];
+                for (hand, other) in [(&inner, &around), (&around, &inner)] {
+                    let arm = Arm::new(&slider(&cuboid(0.1, 0.1, 0.1).unwrap(), hand), it(other)).unwrap();
+                    assert_eq!(judged(&arm, [0.01, 1.95], [0.02, 2.05]), free);
+                    let named = arm.clone().enclosures(&[0.01, 1.95]);
+                    assert_eq!(named.len(), usize::from(free), "{named:?}");
+                    let mut floating = slider(&cuboid(0.1, 0.1, 0.1).unwrap(), hand);
+                    let corner = nalgebra::Point3::new(4.0, 4.0, 4.0);
+                    floating.floating = Some(mp_geom::Aabb::new(-corner, corner));
+                    let mut arm = Arm::new(&floating, it(other)).unwrap();
+                    let space = arm.floating_space().unwrap();
+                    let q = space.state(&Isometry3::translation(0.0, 0.05, 0.0), &[0.01, 1.95]);
+                    let to = space.state(&Isometry3::translation(0.02, 0.0, 0.0), &[0.01, 1.95]);
+                    assert_eq!(arm.is_valid(&q), free);
+                    let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
+                    assert_eq!(verifier.check_motion(&q, &to).is_free(), free);
+                }
+            }
+        }
+    }
+}
+
+/// A hand that is inside of the base by design is not compared with it: as if they touched.
+#[test]
+fn links_that_are_always_nested_may_be() {
+    let (block, pebble) = (cuboid(9.0, 9.0, 9.0).unwrap(), sphere(0.1, 1).unwrap());
+    let mut model = slider(&block, &pebble);
+    model.links[1].shapes.clear();
+    let arm = Arm::new(&model, []).unwrap();
+    assert!(arm.checked_pairs().is_empty() && judged(&arm, [0.0, 0.3], [0.1, 2.0]));
+    // Inside of a surface they are apart, and compared.
+    let arm = Arm::new(&slider(&block.into_surface(), &pebble), []).unwrap();
+    assert_eq!(arm.checked_pairs(), [["base", "hand"]]);
 }

@@ -17,7 +17,7 @@ pub fn scene_of_mesh(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     let robot = DocumentBody {
         name: name.clone(),
         color: None,
-        shape: DocumentShape::Mesh { file, off: None },
+        shape: DocumentShape::Mesh { file, off: None, solid: false },
         scale: None,
         pose: None,
     };
