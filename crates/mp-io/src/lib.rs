@@ -58,6 +58,6 @@ pub use planar::{
 };
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
 pub use rigid_toml::{RigidMoving, RigidTask};
-pub use robot::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
+pub use robot::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem, read_robot_text};
 pub use stl::{parse_stl, stl_text, write_stl};
 pub use toml_problem::{GoalEntry, GoalPart, Timing};

@@ -6,7 +6,7 @@ mod tests;
 mod urdf_mesh;
 
 pub(crate) use problem::Figures;
-pub use problem::RobotProblem;
+pub use problem::{RobotProblem, read_robot_text};
 
 use crate::drive::{DriveTable, Driven};
 use crate::error::Error;

@@ -67,7 +67,7 @@ fn robot(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     let place = around(file);
     let text = format!("[robot]\nurdf = {}\n[motion]\nstart = []\ngoal = []\n", quoted(file)?);
     // Read first, so that an error about it names the file itself.
-    files.read(file, mp_io::MAX_TEXT_BYTES)?;
+    mp_io::read_robot_text(files, file)?;
     let problem = mp_io::RobotProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?;
     let (scene, notes) = crate::ArmScene::from_robot_alone(files, problem)?;
     Ok(of_kind!("arms", scene).with_notes(notes))

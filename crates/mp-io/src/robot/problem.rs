@@ -79,10 +79,10 @@ impl RobotProblem {
         let folder = path.parent().unwrap_or(Path::new(""));
         let text = |part: RobotPart, name: &str| {
             let place = folder.join(name);
-            let read = files.read(&place, MAX_TEXT_BYTES);
-            read.and_then(|bytes| Ok(crate::xml::text(&place.display().to_string(), &bytes)?.into_owned()))
-                .map(|text| (place.clone(), text))
-                .map_err(|e| unusable(&file, part, &e))
+            match read_robot_text(files, &place) {
+                Ok(text) => Ok((place, text)),
+                Err(e) => Err(unusable(&file, part, &e)),
+            }
         };
         let (urdf_file, urdf) = text(RobotPart::Urdf, &file.urdf)?;
         let srdf = match &file.srdf {
@@ -99,6 +99,15 @@ impl RobotProblem {
         let packages = file.packages.as_ref().map(|name| folder.join(name));
         Ok(Self { name: stem(path), file, urdf_file, urdf, srdf, srdf_beside, packages, obstacles })
     }
+}
+
+/// The text of a URDF or SRDF, in the encoding that it declares.
+///
+/// # Errors
+/// [`Error`] when it cannot be read, is no text, or has elements that would take hours to read.
+pub fn read_robot_text(files: &dyn Files, path: &Path) -> Result<String, Error> {
+    let bytes = files.read(path, MAX_TEXT_BYTES)?;
+    Ok(crate::xml::text(&path.display().to_string(), &bytes)?.into_owned())
 }
 
 /// The name of an SRDF in the folder of a URDF: the one of the same name, or else the first.
