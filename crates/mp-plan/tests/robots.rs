@@ -270,7 +270,7 @@ fn links_that_touch_everywhere_are_named() {
         (vec![("p.toml", problem.as_str()), ("r.urdf", moving.as_str())], "there is none beside"),
         (
             vec![("p.toml", problem.as_str()), ("r.urdf", moving.as_str()), ("r.srdf", kept)],
-            "r.srdf is beside",
+            "`srdf = \"r.srdf\"` in a robot problem",
         ),
         (vec![("p.toml", named.as_str()), ("r.urdf", alone.as_str()), ("s.srdf", kept)], "in s.srdf"),
     ] {

@@ -76,17 +76,17 @@ pub(super) fn what(problem: &RobotProblem) -> String {
 
 /// What to do about links that touch though they may.
 pub(super) fn srdf_help(problem: &RobotProblem) -> String {
-    let help = "if these links may touch, say so in an SRDF";
+    let in_srdf = "if these links may touch, say so by <disable_collisions> in";
     match (&problem.file.srdf, &problem.srdf_beside) {
-        (Some(srdf), _) => format!("if these links may touch, say so by <disable_collisions> in {srdf}"),
-        (None, Some(beside)) => format!(
-            "{help}: {beside} is beside the URDF, and `srdf = \"{beside}\"` in the [robot] of a robot problem names it \
-             (docs/formats/robot-problem.md)"
-        ),
-        (None, None) => format!(
-            "{help} (<disable_collisions link1=\"…\" link2=\"…\"/>), and name it by `srdf` in the [robot] of a robot \
-             problem (docs/formats/robot-problem.md); there is none beside the URDF"
-        ),
+        (Some(srdf), _) => format!("{in_srdf} {srdf}"),
+        (None, Some(beside)) => {
+            format!(
+                "{in_srdf} an SRDF: `srdf = \"{beside}\"` in a robot problem takes the one beside the URDF"
+            )
+        }
+        (None, None) => {
+            format!("{in_srdf} an SRDF, named by `srdf` in a robot problem: there is none beside the URDF")
+        }
     }
 }
 
