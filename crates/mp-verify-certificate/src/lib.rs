@@ -42,8 +42,7 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
         Ok(serde_json::Value::Object(mut file)) => {
             for column in file.get("columns").and_then(|columns| columns.as_array()).into_iter().flatten() {
                 let text = |key| column[key].as_str().unwrap_or_default();
-                header +=
-                    &format!("{}{}[{}],", column.as_str().unwrap_or_default(), text("name"), text("unit"));
+                header += &format!("{}[{}],", column.as_str().unwrap_or(text("name")), text("unit"));
             }
             let path = file.remove("path").ok_or("the file of the path has no member `path`")?;
             serde_json::from_value(path).map_err(|e| format!("the path cannot be read: {e}"))?
@@ -70,10 +69,9 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
     let plain = |name: &str| name.replace(['"', ' '], "").replace("[]", "");
     let own = columns.iter().map(|name| plain(name) + ",");
     let bare = columns.iter().map(|name| plain(name.rsplit_once(" [").map_or(name, |(name, _)| name)) + ",");
-    let known = [String::new(), own.collect(), bare.collect()].contains(&plain(&header));
-    known
-        .then_some(())
-        .ok_or(format!("the columns of the path are not those of the certificate: {header}"))?;
+    if ![String::new(), own.collect(), bare.collect()].contains(&plain(&header)) {
+        return Err(format!("the columns of the path are not those of the certificate: {header}"));
+    }
     if given.len() != rows.len() {
         return Err(format!("the path has {} configurations, the certificate {}", given.len(), rows.len()));
     }

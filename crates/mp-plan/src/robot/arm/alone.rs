@@ -38,19 +38,16 @@ impl ArmScene {
         let search = arm.clone().with_interrupt(interrupt.clone());
         let start = free_near(&search, &space, &wanted).ok_or_else(none)?;
         // No farther than half a turn, or the length of the robot: joints may slide or turn without end.
-        let half_way = |(joint, at): (&Coordinate, &f64)| {
-            let most = if slides(&arm, &joint.name) { arm.length() } else { PI };
-            match joint.range {
-                JointRange::Interval { low, high } if high - at >= at - low => {
-                    at + most.min(0.5 * (high - at))
-                }
-                JointRange::Interval { low, .. } => at - most.min(0.5 * (at - low)),
-                JointRange::Circle => at + FRAC_PI_2,
-            }
+        let most = |joint: &Coordinate| if slides(&arm, &joint.name) { arm.length() } else { PI };
+        let most: Vec<f64> = arm.coordinates().iter().map(most).collect();
+        let half_way = |((joint, at), &most): ((&Coordinate, &f64), &f64)| match joint.range {
+            JointRange::Interval { low, high } if high - at >= at - low => at + most.min(0.5 * (high - at)),
+            JointRange::Interval { low, .. } => at - most.min(0.5 * (at - low)),
+            JointRange::Circle => at + FRAC_PI_2,
         };
-        let far: Vec<f64> = arm.coordinates().iter().zip(start.iter()).map(half_way).collect();
+        let far: Vec<f64> = arm.coordinates().iter().zip(start.iter()).zip(&most).map(half_way).collect();
         let far = space.wrapped(&DVector::from(far));
-        let goal = seen_near(&search, &space, &start, &far).ok_or_else(none)?;
+        let goal = seen_near(&search, &space, [&start, &far], &most).ok_or_else(none)?;
         if interrupt.raised().is_some() {
             return Err(Error::new("the search for free configurations was ended").context(what(&problem)));
         }
@@ -118,12 +115,12 @@ const TRIED: usize = 2_000;
 const QUERIES: u64 = 20_000;
 
 /// A configuration near `far` to which the straight motion from `start` is free: the free one nearest to `far`, else the nearest of
-/// some samples, else one on the way to `far`. The same every time.
+/// some samples, of which no joint is farther than `most` (rad or m), else one on the way to `far`. The same every time.
 fn seen_near(
     arm: &Arm,
     space: &Joints<Configuration>,
-    start: &Configuration,
-    far: &Configuration,
+    [start, far]: [&Configuration; 2],
+    most: &[f64],
 ) -> Option<Configuration> {
     let queries = AtomicU64::new(0);
     let mut checker = Counted::new(arm.clone(), &queries).exactly();
@@ -138,10 +135,16 @@ fn seen_near(
         return Some(nearest);
     }
     let (mut halton, mut rng) = (Halton::new(space), Rng::seed(0));
+    let mut sample = || {
+        let mut q = halton.sample(&mut rng);
+        for ((x, from), most) in q.iter_mut().zip(start.iter()).zip(most) {
+            *x = x.clamp(from - most, from + most);
+        }
+        q
+    };
     // Half way from there at random, too: what is nearer is seen more often.
-    let mut samples: Vec<_> = (0..TRIED)
-        .map(|i| space.interpolate(start, &halton.sample(&mut rng), if i % 2 == 0 { 1.0 } else { 0.5 }))
-        .collect();
+    let mut samples: Vec<_> =
+        (0..TRIED).map(|i| space.interpolate(start, &sample(), if i % 2 == 0 { 1.0 } else { 0.5 })).collect();
     samples.sort_by(|a, b| space.distance(far, a).total_cmp(&space.distance(far, b)));
     let tried = samples.into_iter().take_while(|_| queries.load(Ordering::Relaxed) < QUERIES);
     let on_the_way = (1..=20).map(|k| space.interpolate(start, far, mp_math::powi(0.5, k)));
