@@ -7,7 +7,7 @@ import json
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, cast
 
 import numpy as np
 import tomli_w
@@ -832,8 +832,10 @@ class Scene:
             if path.path is None:
                 raise Error(f"there is no path: {path}", remedy="plan with a larger budget, or another seed")
             path = path.path
-        if isinstance(path, list | tuple) and any(_table(row)[0] is not None for row in path):
-            path = [self._row(row) for row in path]
+        if isinstance(path, list | tuple):
+            given = cast("Sequence[Any]", path)
+            if any(_table(row)[0] is not None for row in given):
+                path = [self._row(row) for row in given]
         names, table = _table(path)
         rows = np.ascontiguousarray(table, dtype=np.float64)
         if rows.ndim != 2:
@@ -936,7 +938,8 @@ def _table(given: Any) -> tuple[list[str] | None, Any]:
     Tables are those of pandas, polars and pyarrow, and structured arrays of numpy; rows are those of pandas, and mappings.
     """
     if isinstance(given, Mapping):
-        return [str(name) for name in given], list(given.values())
+        numbers = cast("Mapping[str, Any]", given)
+        return [str(name) for name in numbers], list(numbers.values())
     fields = getattr(getattr(given, "dtype", None), "names", None)
     if fields is not None:
         return list(fields), recfunctions.structured_to_unstructured(given)
