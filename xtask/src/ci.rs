@@ -14,15 +14,14 @@ pub(crate) fn run(tests: bool) -> ExitCode {
     if !has_mpi() {
         note("       without mp-mpi: there is no MPI here (mpi/README.md)");
     }
-    // The program as tests do not have it.
-    let parquet = ["--all-targets", "--features", "mp-motion-cli/parquet", "--", "-D", "warnings"];
+    let lints = ["--all-targets", "--", "-D", "warnings"];
     // With the features that lints have, which have checked all that this needs.
     let documented =
-        ["--no-deps", "--features", "mp-motion-cli/parquet,mp-cspace/testkit,mp-cspace/serde,mp-tree/serde"];
+        ["--no-deps", "--features", "mp-cspace/testkit,mp-cspace/serde,mp-tree/serde"];
     let on_all = |command: &[&'static str], options: &[&'static str]| [command, all, options].concat();
     let mut steps: Vec<(&str, Vec<&str>)> = vec![
         ("formatting", vec!["fmt", "--all", "--check"]),
-        ("lints", on_all(&["clippy", "--quiet"], &parquet)),
+        ("lints", on_all(&["clippy", "--quiet"], &lints)),
         ("documentation", on_all(&["doc", "--quiet"], &documented)),
     ];
     if tests {

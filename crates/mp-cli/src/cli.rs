@@ -29,8 +29,6 @@ pub(crate) enum Command {
     Many(Many),
     /// Merge the results of all shards of a list.
     Merge(Merge),
-    /// Write results of `many` as Parquet, for data frames and databases.
-    Export(Export),
     /// Verify a path with the independent checker: exit 0 only if it is certified free. Or explain one configuration.
     Check(Check),
     /// Describe a mesh, scene or path file.
@@ -203,14 +201,6 @@ pub(crate) struct Merge {
     /// The results of all shards, in any order.
     #[arg(required = true)]
     pub(crate) shards: Vec<PathBuf>,
-}
-
-#[derive(Clone, Debug, Args)]
-pub(crate) struct Export {
-    /// Results of `mp many` or `mp merge`.
-    pub(crate) results: PathBuf,
-    /// The file: a row for each item, with the path as a list. Its name ends in `.parquet`.
-    pub(crate) out: PathBuf,
 }
 
 #[derive(Clone, Debug, Args)]

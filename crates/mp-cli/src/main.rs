@@ -36,7 +36,6 @@ fn main() -> ExitCode {
         Command::Plan(args) => plan::run(args),
         Command::Many(args) => many::run(args),
         Command::Merge(args) => many::merge(args),
-        Command::Export(args) => many::export(args),
         Command::Check(args) => check::run(args),
         Command::Info(args) => info::run(args),
         Command::Render(args) => render::run(args),

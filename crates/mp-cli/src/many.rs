@@ -1,6 +1,6 @@
 //! `many`, `merge` and `export`: lists of problems, and their results.
 
-use crate::cli::{Export, Many, Merge};
+use crate::cli::{Many, Merge};
 use crate::input::is_standard;
 use crate::interrupt;
 use crate::output::{Claims, note, print};
@@ -65,39 +65,6 @@ pub(crate) fn merge(args: &Merge) -> Result<bool, Error> {
     print(&tally.to_string())?;
     note(&format!("wrote {}", args.out.display()));
     Ok(true)
-}
-
-/// Writes results as Parquet. False when they are not complete.
-pub(crate) fn export(args: &Export) -> Result<bool, Error> {
-    not_standard("the results", &args.results)?;
-    not_standard("the output", &args.out)?;
-    if args.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("parquet")) {
-        let message = format!("cannot write results as {}", args.out.display());
-        return Err(Error::new(message).help("end its name in .parquet"));
-    }
-    let mut claims = Claims::default();
-    claims.input(&args.results);
-    claims.output("the output", &args.out)?;
-    exported(args)
-}
-
-#[cfg(feature = "parquet")]
-fn exported(args: &Export) -> Result<bool, Error> {
-    let exported = mp_parquet::export(&args.results, &args.out)?;
-    if !exported.is_complete() {
-        let (rows, items) = (exported.rows, exported.items);
-        note(&format!("the results are not complete: there are {rows} of {items} items"));
-    }
-    print(&mp_plan::count(usize::try_from(exported.rows).unwrap_or(usize::MAX), "row"))?;
-    note(&format!("wrote {}", args.out.display()));
-    Ok(exported.is_complete())
-}
-
-/// Compiling it takes longer than most of the rest.
-#[cfg(not(feature = "parquet"))]
-fn exported(_: &Export) -> Result<bool, Error> {
-    Err(Error::new("this program was compiled without Parquet")
-        .help("install it with: cargo install --path crates/mp-cli --features parquet"))
 }
 
 /// Refuses standard input and output, with which nobody can go on.

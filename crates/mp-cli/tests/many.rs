@@ -189,21 +189,3 @@ fn ctrl_c_keeps_what_was_done() {
     assert!(run.code == 0 && run.stderr.contains("going on after"), "{run:?}");
     assert!(dir.bytes("r.jsonl") == all);
 }
-
-#[test]
-fn results_are_exported_or_it_is_said_how() {
-    let dir = dir();
-    assert_eq!(mp(&dir, &many("r.jsonl", &[])).code, 0);
-    let run = mp(&dir, &["export", "r.jsonl", "r.csv"]);
-    assert!(run.code == 2 && run.stderr.contains("end its name in .parquet"), "{run:?}");
-    let run = mp(&dir, &["export", "r.jsonl", "r.parquet"]);
-    if cfg!(feature = "parquet") {
-        assert!(run.code == 0 && run.stdout.trim() == "8 rows", "{run:?}");
-        assert!(dir.bytes("r.parquet").starts_with(b"PAR1") && dir.bytes("r.parquet").ends_with(b"PAR1"));
-    } else {
-        assert!(
-            run.code == 2 && run.stderr.contains("--features parquet") && !dir.exists("r.parquet"),
-            "{run:?}"
-        );
-    }
-}
