@@ -7,7 +7,9 @@ use crate::callback::{Callback, Failure};
 use check::{Check, Functions};
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::{JointRange, Joints, Linear, Metric, Rng, ScaledEuclidean, Space, Validity, WithMetric};
-use mp_plan::{Body, Column, Error, Length, Measured, MetricName, Mismatch, RobotKind, Touch};
+use mp_plan::{
+    Body, Column, Configured, Error, Length, Measured, MetricName, Mismatch, RobotKind, Touch, TypedMotion,
+};
 use nalgebra::{DVector, Isometry3};
 use pyo3::prelude::*;
 use std::f64::consts::PI;
@@ -162,26 +164,16 @@ impl Metric<Joints<State>> for Distance {
 /// So many configurations are tried to find a free one.
 const TRIES: u32 = 200;
 
-impl RobotKind for Own {
+impl Configured for Own {
     type State = State;
+}
+
+impl TypedMotion for Own {
     type Space = OwnSpace;
     type Checker = Check;
     type Verifier<'c> = Verifier<'c>;
-
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn space_name(&self) -> String {
-        format!("{} numbers", self.columns.len())
-    }
     fn space(&self) -> &OwnSpace {
         &self.space
-    }
-    fn start(&self) -> &State {
-        &self.start
-    }
-    fn goals(&self) -> &[State] {
-        &self.goals
     }
     fn with_ends(&self, start: State, goals: Vec<State>) -> Result<Self, Error> {
         let wrapped = |q: &State| self.space.space().wrapped(q);
@@ -192,6 +184,21 @@ impl RobotKind for Own {
     }
     fn verifier(&self) -> Result<Verifier<'_>, Error> {
         Ok(Verifier::new(self))
+    }
+}
+
+impl RobotKind for Own {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn space_name(&self) -> String {
+        format!("{} numbers", self.columns.len())
+    }
+    fn start(&self) -> &State {
+        &self.start
+    }
+    fn goals(&self) -> &[State] {
+        &self.goals
     }
     fn tolerance(&self) -> f64 {
         self.tolerance

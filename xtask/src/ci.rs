@@ -16,8 +16,7 @@ pub(crate) fn run(tests: bool) -> ExitCode {
     }
     let lints = ["--all-targets", "--", "-D", "warnings"];
     // With the features that lints have, which have checked all that this needs.
-    let documented =
-        ["--no-deps", "--features", "mp-cspace/testkit,mp-cspace/serde,mp-tree/serde"];
+    let documented = ["--no-deps", "--features", "mp-cspace/testkit,mp-cspace/serde,mp-tree/serde"];
     let on_all = |command: &[&'static str], options: &[&'static str]| [command, all, options].concat();
     let mut steps: Vec<(&str, Vec<&str>)> = vec![
         ("formatting", vec!["fmt", "--all", "--check"]),

@@ -7,6 +7,7 @@ use crate::scenes::{Rigid, either};
 use mp_cspace::{Rng, Space, Validity};
 use mp_plan::{
     Finish, Interrupt, RegionalWork, Request, RigidScene, RigidSpace, RobotKind, Scene, SceneRoadmap,
+    TypedMotion,
 };
 use mp_ranks::{Policy, simulate};
 use serde::{Deserialize, Serialize};

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::output::note;
 use mp_cspace::{Cancel, Outcome, Space, StopReason};
 use mp_io::{RigidProblem, SpaceKind};
-use mp_plan::{Budget, Control, Finish, Request, RigidScene, RobotKind, Scene, search};
+use mp_plan::{Budget, Control, Finish, Request, RigidScene, RobotKind, Scene, TypedMotion, search};
 use mp_robot::{Planar, Spatial};
 use serde::{Deserialize, Serialize};
 

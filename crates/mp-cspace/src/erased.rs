@@ -4,6 +4,7 @@
 //! | generic | erased |
 //! |---|---|
 //! | a [`Space`](crate::Space) | [`AnySpace`] |
+//! | a [`Factored`](crate::Factored) space, borrowed | [`AnyFactored`] |
 //! | [`NearestNeighbors`](crate::NearestNeighbors) of that space | [`AnyIndex`], which keeps the space it was made for: the search inside is not erased |
 //! | a [`MotionValidity`] | [`AnyCheck`] |
 //! | [`ObstacleGeometry`](crate::obstacles::ObstacleGeometry) | [`AnyGeometry`] |
@@ -12,10 +13,12 @@
 //! Each call of a space or an index goes through one pointer, which costs a few nanoseconds. Constructors of
 //! planners by type stay generic.
 
+mod factored;
 mod geometry;
 mod index;
 mod space;
 
+pub use factored::AnyFactored;
 pub use geometry::AnyGeometry;
 pub use index::{AnyEmbed, AnyIndex, CompiledIndex, CoordinateState};
 pub use space::AnySpace;

@@ -9,7 +9,7 @@ use mp_cspace::{
     Cancel, Certified, DefaultNn, Goals, Iterations, KnownFree, MotionCheck, MotionValidity, Nodes, Outcome,
     Path, Planner, Problem, Rn, Rng, Se3, Stop, Straight, Workers, registry::Settings,
 };
-use mp_plan::{RigidScene, RobotKind};
+use mp_plan::{RigidScene, RobotKind, TypedMotion};
 use mp_robot::Spatial;
 use mp_tree::{AnyPlanner, Rrt, RrtConnect, TreeState, Tuning};
 use nalgebra::{DVector, Isometry3};

@@ -14,8 +14,8 @@ use crate::run::FoundRun;
 use crate::scene_roadmap::AnySceneRoadmap;
 use crate::sweep::{sweep, track};
 use crate::{
-    Body, Column, Control, Error, Explanation, Finished, Length, PathFormat, PathRows, Report, Request,
-    RobotKind, Sweep, Track, Verdict,
+    AnyKind, Body, Column, Configuration, Control, Error, Explanation, Finished, Length, PathFormat,
+    PathRows, Report, Request, Sweep, Track, Verdict,
 };
 use mp_cspace::{Demand, Interrupt, Interrupted, Rng, Space, Validity};
 use mp_geom::Aabb;
@@ -114,59 +114,62 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn as_any(&self) -> &dyn Any;
 }
 
-impl<K: RobotKind + 'static> AnyRobot for K {
+/// A robot of one type of configuration.
+pub(crate) struct OfState<S>(pub(crate) Arc<AnyKind<S>>);
+
+impl<S: Configuration> AnyRobot for OfState<S> {
     fn name(&self) -> &str {
-        RobotKind::name(self)
+        self.0.name()
     }
     fn space_name(&self) -> String {
-        RobotKind::space_name(self)
+        self.0.space_name()
     }
     fn columns(&self) -> Vec<Column> {
-        RobotKind::columns(self)
+        self.0.columns()
     }
     fn limits(&self) -> Vec<Option<[f64; 2]>> {
-        RobotKind::limits(self)
+        self.0.limits()
     }
     fn details(&self) -> Vec<(String, String)> {
-        RobotKind::details(self)
+        self.0.details()
     }
     fn free_share(&self, samples: u32, interrupt: &Interrupt) -> f64 {
-        let (mut rng, mut checker) = (Rng::seed(1), self.checker().clone());
+        let (mut rng, mut checker) = (Rng::seed(1), self.0.any_checker());
         let mut interrupt = interrupt.clone();
         let tried = (0..samples).take_while(|_| !interrupt.ask());
-        let free = tried.filter(|_| checker.is_valid(&self.space().sample_uniform(&mut rng))).count();
+        let free = tried.filter(|_| checker.is_valid(&self.0.any_space().sample_uniform(&mut rng))).count();
         free as f64 / f64::from(samples.max(1))
     }
     fn path_format(&self) -> PathFormat {
-        RobotKind::path_format(self)
+        self.0.path_format()
     }
     fn default_planner(&self) -> &'static str {
-        RobotKind::default_planner(self)
+        self.0.default_planner()
     }
     fn demands(&self) -> &'static [Demand] {
-        RobotKind::demands(self)
+        self.0.demands()
     }
     fn moving_obstacles(&self) -> usize {
-        RobotKind::moving_obstacles(self)
+        self.0.moving_obstacles()
     }
     fn start(&self) -> Vec<f64> {
-        self.given_start()
+        self.0.given_start()
     }
     fn goals(&self) -> Vec<Vec<f64>> {
-        RobotKind::goals(self).iter().map(|goal| self.row(goal)).collect()
+        self.0.goals().iter().map(|goal| self.0.row(goal)).collect()
     }
     fn with_ends(&self, start: &[f64], goals: &[Vec<f64>]) -> Result<Arc<dyn AnyRobot>, Error> {
         if goals.is_empty() {
             return Err(Error::new("there is no goal").help("give at least one configuration as a goal"));
         }
-        let goals = goals.iter().map(|goal| state(self, goal)).collect::<Result<_, _>>()?;
-        Ok(Arc::new(RobotKind::with_ends(self, state(self, start)?, goals)?.starting_as(start)))
+        let goals = goals.iter().map(|goal| state(&*self.0, goal)).collect::<Result<_, _>>()?;
+        Ok(Arc::new(Self(self.0.any_with_ends(state(&*self.0, start)?, goals, start)?)))
     }
     fn traced(&self, row: &[f64]) -> Result<Point3<f64>, Error> {
-        Ok(RobotKind::traced(self, &state(self, row)?))
+        Ok(self.0.traced(&state(&*self.0, row)?))
     }
     fn plan(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
-        plan(self, request, control)
+        plan(&*self.0, request, control)
     }
     fn routes(
         &self,
@@ -175,10 +178,10 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         apart: Length,
         control: &mut Control<'_>,
     ) -> Result<Vec<Report>, Error> {
-        crate::routes::routes(self, request, count, apart, control)
+        crate::routes::routes(&*self.0, request, count, apart, control)
     }
     fn prepare<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error> {
-        crate::run::prepare(self, request)
+        crate::run::prepare(&*self.0, request)
     }
     #[cfg(feature = "ranks")]
     fn found_report(
@@ -188,7 +191,7 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         time: Duration,
         control: &mut Control<'_>,
     ) -> Result<Report, Error> {
-        crate::plan::found_report(self, request, found, time, control)
+        crate::plan::found_report(&*self.0, request, found, time, control)
     }
     #[cfg(feature = "roadmaps")]
     fn roadmap(
@@ -196,11 +199,11 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         request: &Request,
         control: &mut Control<'_>,
     ) -> Result<Box<dyn AnySceneRoadmap>, Error> {
-        crate::scene_roadmap::build(self, request, control)
+        crate::scene_roadmap::build(Arc::clone(&self.0), request, control)
     }
     #[cfg(all(feature = "ranks", feature = "roadmaps"))]
     fn regional<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyRegional + 's>, Error> {
-        crate::regional::regional(self, request)
+        crate::regional::regional(&*self.0, request)
     }
     #[cfg(all(feature = "ranks", feature = "roadmaps"))]
     fn roadmap_of(
@@ -208,7 +211,7 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         request: &Request,
         map: Box<dyn Any + Send>,
     ) -> Result<Box<dyn AnySceneRoadmap>, Error> {
-        crate::scene_roadmap::of_map(self, request, map)
+        crate::scene_roadmap::of_map(Arc::clone(&self.0), request, map)
     }
     fn finish(
         &self,
@@ -216,10 +219,10 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         request: &Request,
         control: &mut Control<'_>,
     ) -> Result<Finished, Error> {
-        crate::finish::finish_given(self, path, request, control)
+        crate::finish::finish_given(&*self.0, path, request, control)
     }
     fn check(&self, path: &PathRows, interrupt: &Interrupt) -> Result<Verdict, Error> {
-        check(self, path, interrupt)
+        check(&*self.0, path, interrupt)
     }
     fn certificate(
         &self,
@@ -227,34 +230,34 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         clearance: f64,
         interrupt: &Interrupt,
     ) -> Result<Certificate, Error> {
-        certificate(self, path, clearance, interrupt)
+        certificate(&*self.0, path, clearance, interrupt)
     }
     fn certificate_differences(&self, text: &str) -> Result<Vec<String>, Error> {
-        crate::certificate::differences(self, text)
+        crate::certificate::differences(&*self.0, text)
     }
     fn explain(&self, row: &[f64]) -> Result<Explanation, Error> {
-        Ok(explain(self, &state(self, row)?))
+        Ok(explain(&*self.0, &state(&*self.0, row)?))
     }
     fn check_ends(&self) -> Result<Vec<String>, Error> {
-        check_ends(self)
+        check_ends(&*self.0)
     }
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
-        RobotKind::make_ready(self, interrupt)
+        self.0.make_ready(interrupt)
     }
     fn lint(&self) -> Vec<String> {
-        lint(self)
+        lint(&*self.0)
     }
     fn bodies(&self) -> Vec<Body> {
-        RobotKind::bodies(self)
+        self.0.bodies()
     }
     fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error> {
-        Ok(RobotKind::poses(self, &state(self, row)?))
+        Ok(self.0.poses(&state(&*self.0, row)?))
     }
     fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error> {
-        sweep(self, path)
+        sweep(&*self.0, path)
     }
     fn track(&self, path: &PathRows) -> Result<Track, Error> {
-        track(self, path)
+        track(&*self.0, path)
     }
     #[cfg(feature = "planar")]
     fn field(
@@ -265,21 +268,21 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         range: Option<&str>,
         cells: usize,
     ) -> Result<crate::FieldImage, Error> {
-        crate::field::field(self, field, row, path, range, cells)
+        crate::field::field(&*self.0, field, row, path, range, cells)
     }
     fn export(&self, folder: &Path) -> Result<PathBuf, Error> {
-        RobotKind::export(self, folder)
+        self.0.export(folder)
     }
     fn rigid_problem(&self) -> Option<&RigidProblem> {
-        RobotKind::rigid_problem(self)
+        self.0.rigid_problem()
     }
     fn is_planar(&self) -> bool {
-        RobotKind::is_planar(self)
+        self.0.is_planar()
     }
     fn picture_bounds(&self) -> Option<Aabb> {
-        RobotKind::picture_bounds(self)
+        self.0.picture_bounds()
     }
     fn as_any(&self) -> &dyn Any {
-        self
+        &*self.0
     }
 }

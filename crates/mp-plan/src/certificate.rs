@@ -79,7 +79,7 @@ impl Certificate {
 /// # Errors
 /// When the path is of another robot, is not free, turns exactly half way round in one edge, or the kind of robot is your own and
 /// has no model; and when `interrupt` says to end.
-pub(crate) fn certificate<K: RobotKind>(
+pub(crate) fn certificate<K: RobotKind + ?Sized>(
     kind: &K,
     path: &PathRows,
     clearance: f64,
@@ -122,7 +122,7 @@ pub(crate) fn certificate<K: RobotKind>(
 }
 
 /// Name and unit of each number of a row.
-fn columns<K: RobotKind>(kind: &K) -> Vec<String> {
+fn columns<K: RobotKind + ?Sized>(kind: &K) -> Vec<String> {
     kind.columns().iter().map(ToString::to_string).collect()
 }
 

@@ -61,19 +61,19 @@ impl Verdict {
 }
 
 /// Verifies a path edge by edge. Where `interrupt` says to end, the path has a fault.
-pub(crate) fn verified<K: RobotKind>(
+pub(crate) fn verified<K: RobotKind + ?Sized>(
     kind: &K,
     path: &Path<K::State>,
     interrupt: &Interrupt,
 ) -> Result<PathReport, Error> {
-    let mut verifier: AnyCheck<'_, K::State> = Box::new(kind.verifier()?);
+    let mut verifier: AnyCheck<'_, K::State> = Box::new(kind.any_verifier()?);
     verifier.interrupt_by(interrupt);
-    Ok(verify_path(kind.space(), path, &mut verifier))
+    Ok(verify_path(&kind.any_space(), path, &mut verifier))
 }
 
 /// A lower bound on the clearance (m) along a free path, to within `accuracy` (m); `None` where none is known, or `interrupt` says
 /// to end.
-pub(crate) fn clearance<K: RobotKind>(
+pub(crate) fn clearance<K: RobotKind + ?Sized>(
     kind: &K,
     path: &Path<K::State>,
     accuracy: f64,
@@ -83,13 +83,13 @@ pub(crate) fn clearance<K: RobotKind>(
         return None;
     }
     let unused = AtomicU64::new(0);
-    let mut checker = Counted::new(kind.checker().clone(), &unused).with_interrupt(interrupt.clone());
-    let tightest = least_clearance(kind.space(), &mut checker, path, accuracy)?;
+    let mut checker = Counted::new(kind.any_checker(), &unused).with_interrupt(interrupt.clone());
+    let tightest = least_clearance(&kind.any_space(), &mut checker, path, accuracy)?;
     interrupt.raised().is_none().then_some(tightest.clearance)
 }
 
 /// Whether a path, which has a state, begins elsewhere than at the start, or ends elsewhere than at a goal.
-pub(crate) fn end_faults<K: RobotKind>(kind: &K, states: &[K::State]) -> Vec<String> {
+pub(crate) fn end_faults<K: RobotKind + ?Sized>(kind: &K, states: &[K::State]) -> Vec<String> {
     let mut faults = Vec::new();
     let (first, last) = (&states[0], &states[states.len() - 1]);
     let start = kind.mismatch(first, kind.start());
@@ -111,7 +111,7 @@ pub(crate) fn end_faults<K: RobotKind>(kind: &K, states: &[K::State]) -> Vec<Str
 }
 
 /// Checks that a path is free and leads from the start to a goal. Where `interrupt` says to end, the path has a fault.
-pub(crate) fn check<K: RobotKind>(
+pub(crate) fn check<K: RobotKind + ?Sized>(
     kind: &K,
     path: &PathRows,
     interrupt: &Interrupt,
@@ -148,7 +148,7 @@ pub(crate) fn check<K: RobotKind>(
 }
 
 /// A fault as text, with the configuration at which it occurs and what touches there.
-pub(crate) fn fault_text<K: RobotKind>(kind: &K, path: &Path<K::State>, fault: PathFault) -> String {
+pub(crate) fn fault_text<K: RobotKind + ?Sized>(kind: &K, path: &Path<K::State>, fault: PathFault) -> String {
     let (edge, check) = match fault {
         PathFault::Motion { edge, check } => (edge, check),
         PathFault::OutOfBounds { state } => {
@@ -160,7 +160,7 @@ pub(crate) fn fault_text<K: RobotKind>(kind: &K, path: &Path<K::State>, fault: P
     if !kind.can_move(from, to) {
         return format!("the robot cannot move from configuration {} to {}", edge + 1, edge + 2);
     }
-    let state = kind.space().interpolate(from, to, check.failed_at().unwrap_or(0.0));
+    let state = kind.any_space().interpolate(from, to, check.failed_at().unwrap_or(0.0));
     let at: Vec<_> = kind.row(&state).into_iter().map(plain).collect();
     let touching = kind.touching(&state);
     let what = match (check, touching.is_empty()) {

@@ -25,10 +25,10 @@ pub struct Explanation {
 }
 
 /// Explains a configuration.
-pub(crate) fn explain<K: RobotKind>(kind: &K, q: &K::State) -> Explanation {
-    let (in_bounds, fault) = (kind.space().contains(q), fault(kind, q));
+pub(crate) fn explain<K: RobotKind + ?Sized>(kind: &K, q: &K::State) -> Explanation {
+    let (in_bounds, fault) = (kind.any_space().contains(q), fault(kind, q));
     let clearance = match in_bounds {
-        true => kind.checker().clone().clearance(q, f64::INFINITY).max(0.0),
+        true => kind.any_checker().clearance(q, f64::INFINITY).max(0.0),
         false => 0.0,
     };
     let nearest = fault.is_some().then(|| kind.nearest_free(q)).flatten();
@@ -44,15 +44,15 @@ pub(crate) fn explain<K: RobotKind>(kind: &K, q: &K::State) -> Explanation {
 }
 
 /// What is wrong with a configuration, to follow the words "the start is".
-fn fault<K: RobotKind>(kind: &K, q: &K::State) -> Option<String> {
-    if !kind.space().contains(q) {
+fn fault<K: RobotKind + ?Sized>(kind: &K, q: &K::State) -> Option<String> {
+    if !kind.any_space().contains(q) {
         return Some(kind.out_of_bounds(q));
     }
     if kind.sampled().is_some() {
-        return (!kind.checker().clone().is_valid(q)).then(|| "in collision".to_owned());
+        return (!kind.any_checker().is_valid(q)).then(|| "in collision".to_owned());
     }
     let tolerance = kind.tolerance();
-    let clearance = kind.checker().clone().clearance(q, tolerance);
+    let clearance = kind.any_checker().clearance(q, tolerance);
     if clearance >= tolerance {
         return None;
     }
@@ -71,7 +71,7 @@ fn fault<K: RobotKind>(kind: &K, q: &K::State) -> Option<String> {
 }
 
 /// Start and goals, with the names that messages give them.
-fn ends<K: RobotKind>(kind: &K) -> impl Iterator<Item = (End, String, &K::State)> {
+fn ends<K: RobotKind + ?Sized>(kind: &K) -> impl Iterator<Item = (End, String, &K::State)> {
     let many = kind.goals().len() > 1;
     let goals = kind.goals().iter().enumerate().map(move |(i, q)| {
         let name = if many { format!("goal {}", i + 1) } else { "the goal".to_owned() };
@@ -81,15 +81,15 @@ fn ends<K: RobotKind>(kind: &K) -> impl Iterator<Item = (End, String, &K::State)
 }
 
 /// An error message and a remedy for the configuration that messages call `name`; `None` when it is free.
-pub(crate) fn refused<K: RobotKind>(kind: &K, name: &str, q: &K::State) -> Option<(String, String)> {
+pub(crate) fn refused<K: RobotKind + ?Sized>(kind: &K, name: &str, q: &K::State) -> Option<(String, String)> {
     let fault = fault(kind, q)?;
     let mut help = match kind.nearest_free(q) {
-        _ if !kind.space().contains(q) => kind.bounds_remedy(q),
+        _ if !kind.any_space().contains(q) => kind.bounds_remedy(q),
         Some(free) => format!("the nearest free configuration found is {}", kind.written(&free)),
         None => "no free configuration was found nearby: is the scene in metres, the robot in its frame?"
             .to_owned(),
     };
-    if kind.space().contains(q)
+    if kind.any_space().contains(q)
         && let Some(remedy) = kind.remedy(&kind.touching(q))
     {
         help += &format!("; {remedy}");
@@ -101,7 +101,7 @@ pub(crate) fn refused<K: RobotKind>(kind: &K, name: &str, q: &K::State) -> Optio
 const LISTED: usize = 3;
 
 /// A warning of what is inside of closed surfaces, if anything is.
-pub(crate) fn enclosures<K: RobotKind>(kind: &K, q: &K::State) -> Option<String> {
+pub(crate) fn enclosures<K: RobotKind + ?Sized>(kind: &K, q: &K::State) -> Option<String> {
     let found = kind.enclosures(q);
     let named = found.iter().take(LISTED).map(|[inner, outer]| format!("{inner} is inside of {outer}"));
     let named = named.collect::<Vec<_>>().join(", ");
@@ -116,7 +116,7 @@ pub(crate) fn enclosures<K: RobotKind>(kind: &K, q: &K::State) -> Option<String>
 
 /// An error if the start or a goal is not free: it says what touches, how deep, and the nearest free configuration.
 /// Otherwise returns what is odd about them.
-pub(crate) fn check_ends<K: RobotKind>(kind: &K) -> Result<Vec<String>, Error> {
+pub(crate) fn check_ends<K: RobotKind + ?Sized>(kind: &K) -> Result<Vec<String>, Error> {
     for (end, name, q) in ends(kind) {
         if let Some((message, help)) = refused(kind, &name, q) {
             return Err(kind.fault(end, message, help));
@@ -127,7 +127,7 @@ pub(crate) fn check_ends<K: RobotKind>(kind: &K) -> Result<Vec<String>, Error> {
 }
 
 /// What is wrong or odd about a scene.
-pub(crate) fn lint<K: RobotKind>(kind: &K) -> Vec<String> {
+pub(crate) fn lint<K: RobotKind + ?Sized>(kind: &K) -> Vec<String> {
     let mut found: Vec<String> =
         ends(kind).filter_map(|(_, name, q)| Some(format!("{name} is {}", fault(kind, q)?))).collect();
     found.extend(ends(kind).filter_map(|(_, name, q)| Some(format!("at {name} {}", enclosures(kind, q)?))));

@@ -1,5 +1,6 @@
 //! The fields that push snakes: made by name, and as an image of a world of the plane.
 
+use crate::motion::Counting;
 use crate::{Error, RelaxField, RobotKind};
 use mp_cspace::erased::AnyGradient;
 use mp_cspace::{Path, StateVector};
@@ -7,8 +8,8 @@ use mp_snake::{Field, Grid, Repulsion, With};
 use nalgebra::Vector2;
 #[cfg(feature = "planar")]
 use {
+    crate::PathRows,
     crate::path::{state, states},
-    crate::{PathRows, counted::Counted},
     mp_cspace::{Space, Validity, registry::Settings},
     mp_io::GridMap,
     mp_snake::risk::{MotionNoise, RangeNoise, RiskMaps},
@@ -64,7 +65,7 @@ impl<S: StateVector> Field<S> for OnPlane {
 }
 
 /// Refuses a field that does not suit the robot, or whose file cannot be read.
-pub(crate) fn check<K: RobotKind>(kind: &K, field: &RelaxField) -> Result<(), Error> {
+pub(crate) fn check<K: RobotKind + ?Sized>(kind: &K, field: &RelaxField) -> Result<(), Error> {
     let names: Vec<_> = kind.columns().into_iter().map(|column| column.name).collect();
     let place = matches!(kind.limits()[..], [Some(_), Some(_), ..]);
     let (suits, whom) = match field {
@@ -84,7 +85,7 @@ pub(crate) fn check<K: RobotKind>(kind: &K, field: &RelaxField) -> Result<(), Er
 }
 
 /// The field `name` with a range (m). That of risk is the landscape of `path`.
-pub(crate) fn make<'k, K: RobotKind>(
+pub(crate) fn make<'k, K: RobotKind + ?Sized>(
     kind: &'k K,
     name: &RelaxField,
     range: f64,
@@ -101,7 +102,7 @@ pub(crate) fn make<'k, K: RobotKind>(
 }
 
 #[cfg(not(feature = "planar"))]
-fn image<K: RobotKind>(
+fn image<K: RobotKind + ?Sized>(
     _: &K,
     name: &RelaxField,
     _: f64,
@@ -127,7 +128,7 @@ const STRIDE: f64 = 5.0 / 3.0;
 
 /// The image of a field that has one.
 #[cfg(feature = "planar")]
-fn image<K: RobotKind>(
+fn image<K: RobotKind + ?Sized>(
     kind: &K,
     name: &RelaxField,
     range: f64,
@@ -141,7 +142,7 @@ fn image<K: RobotKind>(
         let sides = bounds.map(|[low, high]| high - low);
         let cell = (range / CELLS).max(sides[0].max(sides[1]) / MOST_CELLS as f64);
         let [width, height] = sides.map(|side| ((side / cell).ceil() as usize).max(2));
-        let mut checker = kind.checker().clone();
+        let mut checker = kind.any_checker();
         let touches = |p: Vector2<f64>| f64::from(u8::from(!checker.is_valid(&kind.state(p.as_slice()))));
         Grid::from_fn(bounds.map(|[low, _]| low), cell, (width, height), touches)
     };
@@ -154,9 +155,9 @@ fn image<K: RobotKind>(
                 Error::new("the landscape of risk is that of a path, and there is none").help("name a path")
             })?;
             // Steps of one length, however many states the path has.
-            let length = path.length(kind.space());
+            let length = path.length(&kind.any_space());
             let steps = (length / (STRIDE * range)).ceil().clamp(1.0, 1e5);
-            let at = |i: u32| path.at(kind.space(), length * f64::from(i) / steps);
+            let at = |i: u32| path.at(&kind.any_space(), length * f64::from(i) / steps);
             let places =
                 (0..=steps as u32).filter_map(at).map(|q| Vector2::from_row_slice(&kind.row(&q)[..2]));
             let path = Path::straight(places.collect());
@@ -171,7 +172,7 @@ fn image<K: RobotKind>(
 
 /// The bounds of x and y (m).
 #[cfg(feature = "planar")]
-fn bounds<K: RobotKind>(kind: &K) -> Result<[[f64; 2]; 2], Error> {
+fn bounds<K: RobotKind + ?Sized>(kind: &K) -> Result<[[f64; 2]; 2], Error> {
     match kind.limits()[..] {
         [Some(x), Some(y), ..] => Ok([x, y]),
         _ => Err(not_drawn(kind).help("its robot has no bounds of x and y")),
@@ -207,13 +208,13 @@ fn read_image(file: &std::path::Path, bounds: [[f64; 2]; 2]) -> Result<Grid, Err
 }
 
 #[cfg(feature = "planar")]
-fn not_drawn<K: RobotKind>(kind: &K) -> Error {
+fn not_drawn<K: RobotKind + ?Sized>(kind: &K) -> Error {
     Error::new(format!("the field of {} is not drawn", kind.name()))
 }
 
 /// The image of the field `name` with about so many `cells` along the longer side. Coordinates of `row` other than the place stay.
 #[cfg(feature = "planar")]
-pub(crate) fn field<K: RobotKind>(
+pub(crate) fn field<K: RobotKind + ?Sized>(
     kind: &K,
     name: &RelaxField,
     row: &[f64],
@@ -224,20 +225,20 @@ pub(crate) fn field<K: RobotKind>(
     let [x, y] = bounds(kind)?;
     check(kind, name)?;
     let unused = AtomicU64::new(0);
-    let knowledge = kind.obstacles(&|| Counted::new(kind.checker().clone(), &unused));
+    let knowledge = kind.any_obstacles(&Counting::new(&unused, mp_cspace::Interrupt::never()));
     let gradient =
         knowledge.gradient.ok_or_else(|| not_drawn(kind).help("this robot knows no clearance gradient"))?;
     let mut settings = Settings::default();
     if let Some(range) = range {
         settings.set(RANGE.name, range);
     }
-    let range = settings.length_of(&RANGE, kind.space())?;
+    let range = settings.length_of(&RANGE, &kind.any_space())?;
     let path = path.map(|path| Ok::<_, Error>(Path::straight(states(kind, path)?))).transpose()?;
     let mut field = make(kind, name, range, path.as_ref(), gradient)?;
     let sides = [x, y].map(|[low, high]| high - low);
     let cell = sides[0].max(sides[1]) / cells.clamp(2, 4096) as f64;
     let [width, height] = sides.map(|side| (side / cell).round().max(1.0) as usize);
-    let (mut place, mut slope) = (row.to_vec(), vec![0.0; kind.space().dim()]);
+    let (mut place, mut slope) = (row.to_vec(), vec![0.0; kind.any_space().dim()]);
     let mut energy = Vec::with_capacity(width * height);
     for i in 0..width * height {
         // A row that does not fit is refused by `state`.

@@ -1,7 +1,7 @@
 //! Finishing a path: shortens it, writes it as text, and verifies what the text says.
 
 use crate::check::{clearance, fault_text, verified};
-use crate::counted::Counted;
+use crate::motion::{By, Counting};
 use crate::path::states;
 use crate::prepared::{Possible, resolution};
 use crate::relax::relax_if_requested;
@@ -9,7 +9,7 @@ use crate::report::{RunStage, StageTime};
 use crate::{Control, Error, Finish, PathRows, Request, RobotKind, Stage, StoppedBy};
 use mp_cspace::erased::{AnyCheck, AnySpace};
 use mp_cspace::shorten::{Effort, simplify};
-use mp_cspace::{Certified, Discrete, Factored, Interrupt, MotionCheck, MotionValidity, Path, Rng};
+use mp_cspace::{Factored, Interrupt, MotionCheck, MotionValidity, Path, Rng};
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
@@ -35,7 +35,7 @@ pub struct Finished {
 }
 
 /// Finishes a path from elsewhere, between any two configurations.
-pub(crate) fn finish_given<K: RobotKind>(
+pub(crate) fn finish_given<K: RobotKind + ?Sized>(
     kind: &K,
     path: &PathRows,
     request: &Request,
@@ -75,24 +75,24 @@ pub(crate) fn finish_given<K: RobotKind>(
 ///
 /// # Errors
 /// When the tolerance of the robot is not valid.
-pub fn shorten<K: RobotKind>(
+pub fn shorten<K: RobotKind + ?Sized>(
     kind: &K,
     path: &Path<K::State>,
     seed: u64,
     interrupt: &Interrupt,
 ) -> Result<Path<K::State>, Error> {
     let _span = tracing::info_span!("shorten").entered();
-    let (space, unused) = (AnySpace::new(kind.space()), AtomicU64::new(0));
-    let (checker, interrupt) = (kind.checker().clone(), interrupt.clone());
+    let (space, unused) = (AnySpace::new(&kind.any_space()), AtomicU64::new(0));
+    let counting = Counting::new(&unused, interrupt.clone());
+    let interrupt = interrupt.clone();
     let mut check: AnyCheck<'_, K::State> = match kind.sampled() {
         None => {
-            let check = Certified::new(kind.space(), checker, kind.shortcut_clearance())?;
+            let check = kind.motions(By::Certificates(kind.shortcut_clearance()), &counting)?;
             Box::new(Possible { kind, check, interrupt, deadlines: None })
         }
         Some(length) => {
-            let checker = Counted::new(checker, &unused).with_interrupt(interrupt.clone());
-            let check: AnyCheck<'_, K::State> = Box::new(Discrete::new(&space, checker, resolution(length))?);
-            let verifier: AnyCheck<'_, K::State> = Box::new(kind.verifier()?);
+            let check = kind.motions(By::States(&space, resolution(length)), &counting)?;
+            let verifier: AnyCheck<'_, K::State> = Box::new(kind.any_verifier()?);
             let check = Both { check, verifier };
             Box::new(Possible { kind, check, interrupt, deadlines: None })
         }
@@ -100,7 +100,7 @@ pub fn shorten<K: RobotKind>(
     let mut rng = Rng::stream(seed, STREAM);
     Ok(match kind.shortened(path, &mut check, Effort::default(), &mut rng) {
         Some(short) => short,
-        None => shorten_by(kind.space(), check, path, rng),
+        None => shorten_by(&kind.any_space(), check, path, rng),
     })
 }
 
@@ -134,7 +134,7 @@ fn shorten_by<C: Factored>(
 ///
 /// # Errors
 /// Inside: why there is no path. `found`, written and read again, does not pass either, or not in time.
-pub(crate) fn finish<K: RobotKind>(
+pub(crate) fn finish<K: RobotKind + ?Sized>(
     kind: &K,
     found: &Path<K::State>,
     request: &Request,
@@ -245,7 +245,7 @@ struct Written<S> {
 }
 
 impl<S> Written<S> {
-    fn of<K: RobotKind<State = S>>(kind: &K, path: &Path<S>) -> Result<Self, Error> {
+    fn of<K: RobotKind<State = S> + ?Sized>(kind: &K, path: &Path<S>) -> Result<Self, Error> {
         let rows = PathRows { format: kind.path_format(), columns: kind.columns(), rows: kind.rows(path) };
         let rows = rows.read_back()?;
         let read = Path::straight(rows.rows.iter().map(|row| kind.state(row)).collect());
@@ -257,7 +257,7 @@ impl<S> Written<S> {
 ///
 /// # Errors
 /// Inside: whether it does not pass, or was not verified because `interrupt` said to end.
-fn verified_as_written<K: RobotKind>(
+fn verified_as_written<K: RobotKind + ?Sized>(
     kind: &K,
     path: &Path<K::State>,
     written: &Written<K::State>,
@@ -267,8 +267,12 @@ fn verified_as_written<K: RobotKind>(
     let _span = tracing::info_span!("verify").entered();
     let Written { rows, read } = written;
     let report = verified(kind, read, interrupt)?;
-    let finished =
-        |clearance| Finished { path: rows.clone(), length: path.length(kind.space()), clearance, shortened };
+    let finished = |clearance| Finished {
+        path: rows.clone(),
+        length: path.length(&kind.any_space()),
+        clearance,
+        shortened,
+    };
     if let Some(fault) = report.fault {
         // The planner has verified each edge of the path as found. Where writing and reading change nothing, that holds for what is
         // written.
@@ -285,7 +289,7 @@ fn verified_as_written<K: RobotKind>(
 }
 
 /// With a better bound on the clearance, if there is time for one.
-fn measured<K: RobotKind>(
+fn measured<K: RobotKind + ?Sized>(
     kind: &K,
     written: &Written<K::State>,
     finished: Finished,

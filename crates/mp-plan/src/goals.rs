@@ -41,13 +41,13 @@ fn row_at(turning: &[bool], goal: &[GoalPart], mut row: Vec<f64>) -> Vec<f64> {
 }
 
 /// The configuration of a goal that is next to `q`.
-pub(crate) fn next_to<K: RobotKind>(kind: &K, goal: &[GoalPart], q: &K::State) -> K::State {
+pub(crate) fn next_to<K: RobotKind + ?Sized>(kind: &K, goal: &[GoalPart], q: &K::State) -> K::State {
     kind.state(&row_at(&turning(kind), goal, kind.row(q)))
 }
 
 /// A configuration of a goal, drawn at random.
-fn drawn<K: RobotKind>(kind: &K, goal: &[GoalPart], rng: &mut Rng) -> K::State {
-    let mut row = kind.row(&kind.space().sample_uniform(rng));
+fn drawn<K: RobotKind + ?Sized>(kind: &K, goal: &[GoalPart], rng: &mut Rng) -> K::State {
+    let mut row = kind.row(&kind.any_space().sample_uniform(rng));
     for (part, x) in goal.iter().zip(&mut row) {
         match *part {
             GoalPart::Exactly(v) => *x = v,
@@ -59,12 +59,12 @@ fn drawn<K: RobotKind>(kind: &K, goal: &[GoalPart], rng: &mut Rng) -> K::State {
 }
 
 /// Draws from the goals of a robot, each equally likely.
-struct FromGoals<'k, K: RobotKind> {
+struct FromGoals<'k, K: RobotKind + ?Sized> {
     kind: &'k K,
     goals: &'k [Vec<GoalPart>],
 }
 
-impl<K: RobotKind> Sampler<K::State> for FromGoals<'_, K> {
+impl<K: RobotKind + ?Sized> Sampler<K::State> for FromGoals<'_, K> {
     fn sample(&mut self, rng: &mut Rng) -> K::State {
         let which = if self.goals.len() > 1 { rng.random_range(0..self.goals.len()) } else { 0 };
         drawn(self.kind, &self.goals[which], rng)
@@ -72,22 +72,22 @@ impl<K: RobotKind> Sampler<K::State> for FromGoals<'_, K> {
 }
 
 /// The goals of a robot, for planners: the configurations, or what they may be.
-pub(crate) fn of_kind<K: RobotKind>(kind: &K) -> Goals<'_, K::State> {
+pub(crate) fn of_kind<K: RobotKind + ?Sized>(kind: &K) -> Goals<'_, K::State> {
     let Some(goals) = kind.goal_parts() else { return Goals::states(kind.goals().iter().cloned()) };
-    let rounding = ROUNDING * kind.space().extent().max(1.0);
+    let rounding = ROUNDING * kind.any_space().extent().max(1.0);
     let turning = turning(kind);
     let reached = move |q: &K::State| {
         let row = kind.row(q);
         let there = |goal: &Vec<GoalPart>| kind.state(&row_at(&turning, goal, row.clone()));
-        goals.iter().any(|goal| kind.space().distance(q, &there(goal)) <= rounding)
+        goals.iter().any(|goal| kind.any_space().distance(q, &there(goal)) <= rounding)
     };
     Goals::region(reached).with_sampler(FromGoals { kind, goals })
 }
 
 /// One configuration for each goal, free if one is found: with the numbers of the start where the goal leaves them free, or
 /// else drawn at random, always the same.
-pub(crate) fn examples<K: RobotKind>(kind: &K, goals: &[Vec<GoalPart>]) -> Vec<K::State> {
-    let (mut checker, mut rng) = (kind.checker().clone(), Rng::seed(0));
+pub(crate) fn examples<K: RobotKind + ?Sized>(kind: &K, goals: &[Vec<GoalPart>]) -> Vec<K::State> {
+    let (mut checker, mut rng) = (kind.any_checker(), Rng::seed(0));
     let enough = 2.0 * kind.tolerance();
     let example = |goal: &Vec<GoalPart>| {
         let mut row = row_at(&turning(kind), goal, kind.row(kind.start()));
@@ -97,7 +97,7 @@ pub(crate) fn examples<K: RobotKind>(kind: &K, goals: &[Vec<GoalPart>]) -> Vec<K
             }
         }
         let first = kind.state(&row);
-        let mut free = |q: &K::State| kind.space().contains(q) && checker.clearance(q, enough) >= enough;
+        let mut free = |q: &K::State| kind.any_space().contains(q) && checker.clearance(q, enough) >= enough;
         if free(&first) {
             return first;
         }
@@ -116,7 +116,7 @@ pub(crate) fn rows(goals: &[Vec<GoalPart>]) -> Option<Vec<Vec<f64>>> {
 }
 
 /// A goal as people write it: `x 1.5 to 1.7, y 2, yaw free`.
-pub(crate) fn written<K: RobotKind>(kind: &K, goal: &[GoalPart]) -> String {
+pub(crate) fn written<K: RobotKind + ?Sized>(kind: &K, goal: &[GoalPart]) -> String {
     let part = |(column, part): (crate::Column, &GoalPart)| match part {
         GoalPart::Exactly(v) => format!("{} {}", column.name, crate::plain(*v)),
         GoalPart::Between([low, high]) => {

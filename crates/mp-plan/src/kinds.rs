@@ -2,7 +2,7 @@
 //! is much smaller.
 
 use crate::robot::{DrivenScene, PlanarBody, PlanarScene, RigidScene, RigidSpace, greatest_speed};
-use crate::{Error, RobotKind, Scene};
+use crate::{Error, RobotKind, Scene, TypedMotion};
 use mp_cspace::Interrupt;
 use mp_io::{PlanarProblem, PlanarShape, RigidProblem, RigidTask, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
@@ -168,7 +168,7 @@ fn driven_body(mut task: RigidTask, interrupt: &Interrupt) -> Result<Scene, Erro
         let scene = DrivenScene::new(scene, &driven, &task.velocity, task.goals)?;
         return Ok(of_kind!("driven", scene));
     };
-    timing.speed = Some(greatest_speed(RobotKind::space(&scene), &driven));
+    timing.speed = Some(greatest_speed(TypedMotion::space(&scene), &driven));
     let scene = scene.among_moving_until(&task.moving, timing, interrupt)?;
     Ok(of_kind!("driven-moving", scene.driven(&driven, &task.velocity, task.goals)?))
 }

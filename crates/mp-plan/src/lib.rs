@@ -82,6 +82,7 @@ mod kinds;
 mod list;
 mod load;
 mod many;
+mod motion;
 #[cfg(feature = "pictures")]
 mod mp4;
 mod numbers;
@@ -131,6 +132,9 @@ pub use list::{
     RESULTS_VERSION, ResultsHeader, SceneFingerprint, Shard, Tally, merge_results,
 };
 pub use many::plan_many;
+pub use motion::{
+    AnyChecker, AnyKind, AnyVerifier, By, Configuration, Configured, Counting, Motion, TypedMotion,
+};
 pub use numbers::{brief, count, plain, positive_number};
 pub use output::{Claims, is_standard, make_folder, write_file};
 pub use parallel::in_parallel;

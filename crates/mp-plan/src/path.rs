@@ -172,7 +172,7 @@ pub(crate) fn continued(turning: &[bool], given: &[f64], mut rows: Vec<Vec<f64>>
 }
 
 /// The states of the rows of a path from a file.
-pub(crate) fn states<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Vec<K::State>, Error> {
+pub(crate) fn states<K: RobotKind + ?Sized>(kind: &K, path: &PathRows) -> Result<Vec<K::State>, Error> {
     let columns = kind.columns();
     if !path.columns.is_empty() && path.columns != columns {
         let listed =
@@ -200,7 +200,7 @@ pub(crate) fn states<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Vec<K::S
 }
 
 /// The configuration of one row.
-pub(crate) fn state<K: RobotKind>(kind: &K, row: &[f64]) -> Result<K::State, Error> {
+pub(crate) fn state<K: RobotKind + ?Sized>(kind: &K, row: &[f64]) -> Result<K::State, Error> {
     let columns = RobotKind::columns(kind);
     if row.len() == columns.len() && row.iter().all(|v| v.is_finite()) {
         return Ok(kind.state(row));

@@ -17,7 +17,7 @@ use mp_cspace::{Path, StateVector};
 use std::time::Duration;
 
 /// Plans, finishes the path, and makes the report.
-pub(crate) fn plan<K: RobotKind>(
+pub(crate) fn plan<K: RobotKind + ?Sized>(
     kind: &K,
     request: &Request,
     control: &mut Control<'_>,
@@ -124,7 +124,7 @@ pub(crate) fn left<S>(request: &Request, control: &Control<'_>, found: &Search<S
 
 /// Finishes the path of a search, if there is one, and makes the report. `why` is a better reason than the outcome gives
 /// why there is no path. Finishing may take the time `left`.
-pub(crate) fn reported<K: RobotKind>(
+pub(crate) fn reported<K: RobotKind + ?Sized>(
     kind: &K,
     request: &Request,
     found: Search<K::State>,
@@ -168,7 +168,7 @@ pub(crate) fn reported<K: RobotKind>(
         }
         Outcome::Solved(path) => path,
     };
-    report.path_length_found = Some(path.length(kind.space()));
+    report.path_length_found = Some(path.length(&kind.any_space()));
     let began = control.clock.now();
     let finished = finish(kind, &path, request, control, left, found.time, &mut report.stages)?;
     report.finish_s = control.clock.now().saturating_sub(began).as_secs_f64();
@@ -190,7 +190,7 @@ pub(crate) fn reported<K: RobotKind>(
 
 /// Finishes the path of a run that took the time `time`, if there is one, and makes the report.
 #[cfg(feature = "ranks")]
-pub(crate) fn found_report<K: RobotKind>(
+pub(crate) fn found_report<K: RobotKind + ?Sized>(
     kind: &K,
     request: &Request,
     found: FoundRun,

@@ -65,7 +65,7 @@ impl PlannerKind {
     }
 
     /// Refuses a robot that demands what the planner cannot do.
-    pub(crate) fn meets<K: RobotKind>(&self, kind: &K) -> Result<(), Error> {
+    pub(crate) fn meets<K: RobotKind + ?Sized>(&self, kind: &K) -> Result<(), Error> {
         let info = match self {
             Self::Tree(spec) => spec.planner,
             Self::Roadmap(info) => info,

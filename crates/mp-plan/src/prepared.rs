@@ -1,16 +1,16 @@
 //! A request prepared for a robot: the space, an index, a verifier, and the problems, planners and stops made from them.
 
-use crate::counted::{Counted, QueryBudget};
+use crate::counted::QueryBudget;
 use crate::goals;
+use crate::motion::{AnyVerifier, By, Counting};
 use crate::planners::PlannerKind;
 use crate::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
 use crate::watch::{Events, WatchAdapter};
 use crate::{Control, Error, Length, Measured, MotionValidator, Request, RobotKind};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
-    AnyProblem, BuildError, Certified, Discrete, Interrupt, Iterations, KnownFree, MotionCheck,
-    MotionValidity, Nodes, ParameterError, Problem, Resolution, Stop, Straight, Workers,
-    registry::PlannerInfo,
+    AnyProblem, BuildError, Interrupt, Iterations, KnownFree, MotionCheck, MotionValidity, Nodes,
+    ParameterError, Problem, Resolution, Stop, Straight, Workers, registry::PlannerInfo,
 };
 use mp_tree::TreeState;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -18,14 +18,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// What the problems and planners of one request are made from.
-pub(crate) struct Prepared<'k, K: RobotKind> {
+pub(crate) struct Prepared<'k, K: RobotKind + ?Sized> {
     pub(crate) kind: &'k K,
     pub(crate) request: &'k Request,
     /// The space under the metric of the request.
     pub(crate) space: AnySpace<'k, K::State>,
     /// An empty index of it.
     pub(crate) index: AnyIndex<K::State>,
-    verifier: K::Verifier<'k>,
+    verifier: AnyVerifier<'k, K::State>,
     /// The common count of the queries of all checkers.
     pub(crate) queries: AtomicU64,
     /// Planners of roadmaps tell on several threads which queries are not to be counted: see `QueryMeter` of mp-roadmap.
@@ -37,13 +37,13 @@ pub(crate) struct Prepared<'k, K: RobotKind> {
     unverified: AtomicBool,
 }
 
-impl<'k, K: RobotKind> Prepared<'k, K> {
+impl<'k, K: RobotKind + ?Sized> Prepared<'k, K> {
     pub(crate) fn new(kind: &'k K, request: &'k Request) -> Result<Self, Error> {
         let planner = PlannerKind::new(&request.planner)?;
         planner.meets(kind)?;
         crate::relax::check(kind, request)?;
         let Measured { space, index } = kind.measured(request.metric)?;
-        let (verifier, queries) = (kind.verifier()?, AtomicU64::new(0));
+        let (verifier, queries) = (kind.any_verifier()?, AtomicU64::new(0));
         let counts_exactly = matches!(planner, PlannerKind::Roadmap(_));
         let (interrupt, unverified) = (Mutex::default(), AtomicBool::new(false));
         let deadlines = Deadlines::default();
@@ -83,19 +83,12 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
     /// The problem of the scene, which asks this token whether to end.
     pub(crate) fn problem_until(&self, interrupt: Interrupt) -> Result<AnyProblem<'_, K::State>, BuildError> {
         let kind = self.kind;
-        let counted = || {
-            let counted = Counted::new(kind.checker().clone(), &self.queries);
-            let counted = counted.with_interrupt(interrupt.clone());
-            if self.counts_exactly { counted.exactly() } else { counted }
+        let counting = Counting::new(&self.queries, interrupt.clone()).exactly(self.counts_exactly);
+        let by = match motion(kind, self.request) {
+            MotionValidator::Certified => By::Certificates(kind.tolerance()),
+            MotionValidator::Discrete(length) => By::States(&self.space, resolution(length)),
         };
-        let check: AnyCheck<'_, K::State> = match motion(kind, self.request) {
-            MotionValidator::Certified => {
-                Box::new(build_error(Certified::new(kind.space(), counted(), kind.tolerance()))?)
-            }
-            MotionValidator::Discrete(length) => {
-                Box::new(build_error(Discrete::new(&self.space, counted(), resolution(length)))?)
-            }
-        };
+        let check = build_error(kind.motions(by, &counting))?;
         let deadlines = Some(&self.deadlines);
         let check: AnyCheck<'_, K::State> =
             Box::new(Possible { kind, check, interrupt: interrupt.clone(), deadlines });
@@ -110,7 +103,7 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         };
         let problem = Problem::new(&self.space, local, verifier, kind.start().clone(), goals::of_kind(kind));
         let problem = problem.map_err(|e| written(kind, e))?;
-        let problem = problem.with_obstacles(kind.obstacles(&counted)).with_interrupt(interrupt);
+        let problem = problem.with_obstacles(kind.any_obstacles(&counting)).with_interrupt(interrupt);
         Ok(match kind.input_system() {
             Some(system) => problem.with_inputs(system),
             None => problem,
@@ -256,7 +249,7 @@ impl<S: PartialEq> MotionValidity<S> for Verifying<'_, S> {
 }
 
 /// A check that finds no motion free that the robot cannot make, and none at all once it is told to end.
-pub(crate) struct Possible<'k, K, M> {
+pub(crate) struct Possible<'k, K: ?Sized, M> {
     pub(crate) kind: &'k K,
     pub(crate) check: M,
     pub(crate) interrupt: Interrupt,
@@ -264,7 +257,7 @@ pub(crate) struct Possible<'k, K, M> {
     pub(crate) deadlines: Option<&'k Deadlines>,
 }
 
-impl<K: RobotKind, M: MotionValidity<K::State>> MotionValidity<K::State> for Possible<'_, K, M> {
+impl<K: RobotKind + ?Sized, M: MotionValidity<K::State>> MotionValidity<K::State> for Possible<'_, K, M> {
     fn check_motion(&mut self, from: &K::State, to: &K::State) -> MotionCheck {
         self.check_extension(from, to, KnownFree::Neither)
     }
@@ -286,7 +279,7 @@ impl<K: RobotKind, M: MotionValidity<K::State>> MotionValidity<K::State> for Pos
 }
 
 /// The error, with the state as messages write it.
-fn written<K: RobotKind>(kind: &K, mut error: BuildError) -> BuildError {
+fn written<K: RobotKind + ?Sized>(kind: &K, mut error: BuildError) -> BuildError {
     if let BuildError::Outside { state, .. }
     | BuildError::NotFree { state, .. }
     | BuildError::Refused { state, .. } = &mut error
@@ -300,7 +293,7 @@ fn written<K: RobotKind>(kind: &K, mut error: BuildError) -> BuildError {
 }
 
 /// How motions are checked while planning.
-pub(crate) fn motion<K: RobotKind>(kind: &K, request: &Request) -> MotionValidator {
+pub(crate) fn motion<K: RobotKind + ?Sized>(kind: &K, request: &Request) -> MotionValidator {
     match (request.motion, kind.sampled()) {
         (MotionValidator::Certified, Some(length)) => MotionValidator::Discrete(length),
         (motion, _) => motion,

@@ -307,7 +307,7 @@ pub(crate) trait AnyRegional: Send + Sync {
     fn assemble(&self, built: &[Vec<u8>], connected: &[Vec<u8>]) -> Result<Box<dyn Any + Send>, Error>;
 }
 
-struct RobotRegional<'s, K: RobotKind> {
+struct RobotRegional<'s, K: RobotKind + ?Sized> {
     prepared: Prepared<'s, K>,
     regions: AnyRegions<K::State>,
     /// That of the builder of a roadmap with this request.
@@ -315,7 +315,7 @@ struct RobotRegional<'s, K: RobotKind> {
 }
 
 /// The work of a request.
-pub(crate) fn regional<'s, K: RobotKind>(
+pub(crate) fn regional<'s, K: RobotKind + ?Sized>(
     kind: &'s K,
     request: &'s Request,
 ) -> Result<Box<dyn AnyRegional + 's>, Error> {
@@ -359,7 +359,7 @@ fn add_region<S: mp_cspace::StateVector>(
     Ok(before..map.len() as NodeId)
 }
 
-impl<K: RobotKind> RobotRegional<'_, K> {
+impl<K: RobotKind + ?Sized> RobotRegional<'_, K> {
     fn checker(&self, interrupt: &Interrupt) -> Result<AnyEdgeChecker<'_, K::State>, Error> {
         match (self.prepared.problem_until(interrupt.clone()), interrupt.raised()) {
             // Once it is told to end, start and goal count as not free.
@@ -369,7 +369,7 @@ impl<K: RobotKind> RobotRegional<'_, K> {
     }
 }
 
-impl<K: RobotKind> AnyRegional for RobotRegional<'_, K> {
+impl<K: RobotKind + ?Sized> AnyRegional for RobotRegional<'_, K> {
     fn regions(&self) -> u64 {
         u64::from(self.regions.subdivision().regions())
     }

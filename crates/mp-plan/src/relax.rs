@@ -1,12 +1,12 @@
 //! Relaxing a path by a snake.
 
-use crate::counted::Counted;
 use crate::field::{self, AnyField};
+use crate::motion::{By, Counting};
 use crate::prepared::Possible;
 use crate::{Control, Error, Finish, RelaxField, Request, RobotKind, Stage};
 use mp_cspace::erased::{AnyCheck, AnyGradient, AnySpace};
 use mp_cspace::shorten::reduce;
-use mp_cspace::{Certified, Demand, Interrupt, Path, Space, verify_path};
+use mp_cspace::{Demand, Interrupt, Path, Space, verify_path};
 use mp_snake::{Params, relax};
 use mp_tree::TreeState;
 use std::sync::atomic::AtomicU64;
@@ -18,7 +18,7 @@ const RELAX_RANGE: f64 = 0.03;
 const MOST_STRETCH: f64 = 1.15;
 
 /// Refuses to relax what cannot be relaxed, before planning.
-pub(crate) fn check<K: RobotKind>(kind: &K, request: &Request) -> Result<(), Error> {
+pub(crate) fn check<K: RobotKind + ?Sized>(kind: &K, request: &Request) -> Result<(), Error> {
     if request.finish != Finish::Relax {
         return Ok(());
     }
@@ -32,13 +32,12 @@ pub(crate) fn check<K: RobotKind>(kind: &K, request: &Request) -> Result<(), Err
 }
 
 /// The clearance gradient of the robot.
-fn gradient<'k, K: RobotKind>(
+fn gradient<'k, K: RobotKind + ?Sized>(
     kind: &'k K,
     unused: &'k AtomicU64,
     interrupt: &Interrupt,
 ) -> Result<AnyGradient<'k, K::State>, Error> {
-    let knowledge =
-        kind.obstacles(&|| Counted::new(kind.checker().clone(), unused).with_interrupt(interrupt.clone()));
+    let knowledge = kind.any_obstacles(&Counting::new(unused, interrupt.clone()));
     knowledge.gradient.ok_or_else(|| {
         Error::new("this robot knows no clearance gradient, so its paths cannot be relaxed")
             .help("leave relaxing out: shortening needs none")
@@ -49,7 +48,7 @@ fn gradient<'k, K: RobotKind>(
 const RELAXING_PART: f64 = 0.5;
 
 /// The path, [relaxed] if the request says so, within the time `left`.
-pub(crate) fn relax_if_requested<K: RobotKind>(
+pub(crate) fn relax_if_requested<K: RobotKind + ?Sized>(
     kind: &K,
     request: &Request,
     path: Path<K::State>,
@@ -69,7 +68,7 @@ pub(crate) fn relax_if_requested<K: RobotKind>(
 
 /// The path without the states that it does not need, relaxed by a snake; the path itself if the result does not pass the
 /// verifier. In the metric of the space itself the result is no longer than the path.
-fn relaxed<K: RobotKind>(
+fn relaxed<K: RobotKind + ?Sized>(
     kind: &K,
     field: &RelaxField,
     path: Path<K::State>,
@@ -78,14 +77,15 @@ fn relaxed<K: RobotKind>(
     let _span = tracing::info_span!("relax", %field).entered();
     let unused = AtomicU64::new(0);
     let gradient = gradient(kind, &unused, interrupt)?;
-    let check = Certified::new(kind.space(), kind.checker().clone(), kind.tolerance())?;
+    let check =
+        kind.motions(By::Certificates(kind.tolerance()), &Counting::new(&unused, interrupt.clone()))?;
     let mut check: AnyCheck<'_, K::State> =
         Box::new(Possible { kind, check, interrupt: interrupt.clone(), deadlines: None });
-    let space = AnySpace::new(kind.space());
+    let space = AnySpace::new(&kind.any_space());
     let short = reduce(&space, &mut check, &path);
     let range = RELAX_RANGE * space.extent();
     let field = field::make(kind, field, range, Some(&short), gradient)?;
-    let mut verifier: AnyCheck<'_, K::State> = Box::new(kind.verifier()?);
+    let mut verifier: AnyCheck<'_, K::State> = Box::new(kind.any_verifier()?);
     verifier.interrupt_by(interrupt);
     relaxed_by(&space, check, verifier, field, range, short, path)
 }

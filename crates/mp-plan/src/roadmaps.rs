@@ -55,7 +55,11 @@ impl<'r> RoadmapFile<'r> {
     ///
     /// # Errors
     /// When roadmaps of such robots cannot be kept, or another process grows the roadmap in this file.
-    pub(crate) fn new<K: RobotKind>(kind: &K, path: &'r Path, metric: MetricName) -> Result<Self, Error> {
+    pub(crate) fn new<K: RobotKind + ?Sized>(
+        kind: &K,
+        path: &'r Path,
+        metric: MetricName,
+    ) -> Result<Self, Error> {
         let Some(fingerprint) = kind.fingerprint(metric) else {
             let help = "leave the file of the roadmap out";
             return Err(Error::new("roadmaps are kept of rigid bodies only").help(help));
@@ -100,7 +104,7 @@ impl<'r> GrowingFile<'r> {
     ///
     /// # Errors
     /// As [`RoadmapFile::new`].
-    pub(crate) fn of_request<K: RobotKind>(
+    pub(crate) fn of_request<K: RobotKind + ?Sized>(
         kind: &K,
         request: &'r Request,
         clock: Clock,

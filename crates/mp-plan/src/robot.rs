@@ -17,23 +17,23 @@ pub use planar::{PlanarBody, PlanarScene};
 pub use rigid::{RigidScene, RigidSpace};
 
 use crate::goals::turning;
+use crate::motion::Motion;
 use crate::numbers::plain;
 use crate::path::continued;
-use crate::roadmaps::RoadmapState;
 use crate::{Error, Length, MetricName};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
-    DefaultNn, Demand, Factored, InputSystem, Interrupt, Interrupted, MotionClearance, MotionValidity,
-    ObstacleKnowledge, Space as _, StateVector, Validity,
+    DefaultNn, Demand, InputSystem, Interrupt, Interrupted, MotionClearance, MotionValidity,
+    ObstacleKnowledge, Space as _, Validity,
     nn::Embed,
     obstacles::{ClearanceGradient, ObstacleHints},
 };
 use mp_geom::{Aabb, TriMesh};
 pub use mp_io::Column;
 use mp_io::PlacedBody;
-use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use serde::{Deserialize, Serialize};
+use std::any::Any;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -166,24 +166,11 @@ impl<'c, S> Measured<'c, S> {
 /// this crate works with it: planning by name, checking, explaining, shortening, relaxing, roadmaps. Planners must be
 /// compiled for its type of configuration; [`compile_for!`](mp_tree::compile_for) of mp-tree and mp-roadmap does that for
 /// a new type. docs/own-robot.md is a guide.
-pub trait RobotKind: fmt::Debug + Send + Sync {
-    /// A configuration.
-    type State: TreeState + RoadmapState + StateVector + 'static;
-    /// The space of configurations, under its default metric.
-    type Space: Factored<State = Self::State> + Clone + Send + fmt::Debug;
-    /// The check of configurations and motions while planning.
-    type Checker: Checker<Self::State>;
-    /// The independent check of finished paths: it shares no code with the checker.
-    type Verifier<'c>: MotionValidity<Self::State> + Clone + Send + Sync
-    where
-        Self: 'c;
-
+pub trait RobotKind: Motion + Any + fmt::Debug + Send + Sync {
     /// The name of the scene.
     fn name(&self) -> &str;
     /// The name of the space in reports: `SE3`, `6 joints`.
     fn space_name(&self) -> String;
-    /// The space.
-    fn space(&self) -> &Self::Space;
     /// The start configuration.
     fn start(&self) -> &Self::State;
     /// The goal configurations, at least one.
@@ -193,19 +180,6 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     /// [`goals`](Self::goals), which are then examples.
     fn goal_parts(&self) -> Option<&[Vec<mp_io::GoalPart>]> {
         None
-    }
-
-    /// The same robot among the same obstacles, with another start and other goals, of which there is at least one. By
-    /// default an error: override it for front ends in which ends are moved.
-    ///
-    /// # Errors
-    /// When such robots cannot be given other ends.
-    fn with_ends(&self, _start: Self::State, _goals: Vec<Self::State>) -> Result<Self, Error>
-    where
-        Self: Sized,
-    {
-        Err(Error::new(format!("{} cannot be given another start or goal", self.name()))
-            .help("make the scene again with other ends"))
     }
 
     /// Whether the robot can make the motion at all, obstacles aside. By default it can make any.
@@ -237,9 +211,7 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
         None
     }
 
-    /// The checker. Clone it to use it.
-    fn checker(&self) -> &Self::Checker;
-    /// Makes what the first [`verifier`](Self::verifier) would make otherwise, if that takes long, unless `interrupt` says to end: it is a
+    /// Makes what the first [verifier](Motion::any_verifier) would make otherwise, if that takes long, unless `interrupt` says to end: it is a
     /// part of loading. By default nothing.
     ///
     /// # Errors
@@ -247,11 +219,6 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     fn make_ready(&self, _interrupt: &Interrupt) -> Result<(), Interrupted> {
         Ok(())
     }
-    /// A verifier.
-    ///
-    /// # Errors
-    /// When the robot cannot be verified.
-    fn verifier(&self) -> Result<Self::Verifier<'_>, Error>;
     /// The clearance (m) that certified checks resolve: a motion that comes nearer to contact is not free.
     fn tolerance(&self) -> f64;
     /// How far apart configurations are tested along motions, where no clearance is known that could certify them: then only
@@ -268,14 +235,6 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     /// that grazes every corner is of no use.
     fn shortcut_clearance(&self) -> f64 {
         20.0 * self.tolerance()
-    }
-    /// What planners may know of the obstacles, from checkers that `counted` makes, whose queries are counted.
-    /// By default nothing: planners that need such knowledge refuse the robot.
-    fn obstacles<'c>(
-        &'c self,
-        _counted: &dyn Fn() -> Counted<'c, Self::Checker>,
-    ) -> ObstacleKnowledge<'c, Self::State> {
-        ObstacleKnowledge::default()
     }
     /// The space under a metric, with an index for it.
     ///
@@ -348,14 +307,6 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     fn given_start(&self) -> Vec<f64> {
         self.row(self.start())
     }
-    /// The same scene, whose start was given by this row. By default that makes no difference.
-    #[must_use]
-    fn starting_as(self, _row: &[f64]) -> Self
-    where
-        Self: Sized,
-    {
-        self
-    }
     /// Writes the problem to `folder` for other planners, as docs/formats/export.md describes. Returns the main file.
     ///
     /// # Errors
@@ -378,7 +329,7 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     }
     /// How far a configuration is from the one that it should be, and how far it may be. Files often have only four digits.
     fn mismatch(&self, q: &Self::State, wanted: &Self::State) -> Mismatch {
-        Mismatch { off: self.space().distance(q, wanted), allowed: 1e-3, unit: "" }
+        Mismatch { off: self.any_space().distance(q, wanted), allowed: 1e-3, unit: "" }
     }
     /// A configuration as text for messages.
     fn written(&self, q: &Self::State) -> String {

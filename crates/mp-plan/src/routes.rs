@@ -26,7 +26,7 @@ struct Listed<S> {
 }
 
 /// At most `count` routes: see [`Scene::routes`](crate::Scene::routes).
-pub(crate) fn routes<K: RobotKind>(
+pub(crate) fn routes<K: RobotKind + ?Sized>(
     kind: &K,
     request: &Request,
     count: usize,
@@ -42,7 +42,7 @@ pub(crate) fn routes<K: RobotKind>(
     prepared.interrupt_by(prepared.interrupt_of(control, PLANNING_PART));
     let apart = match apart {
         Length::Absolute(length) => length,
-        Length::Fraction(part) => part * kind.space().extent(),
+        Length::Fraction(part) => part * kind.any_space().extent(),
     };
     control.stage(Stage::Planning);
     let listed = match &planner {
@@ -105,8 +105,13 @@ fn one_path_only(planner: &PlannerKind) -> Error {
 }
 
 /// Whether some point of the path is farther than `apart` from all points of each of the others, a quarter of that apart.
-fn is_far<K: RobotKind>(kind: &K, report: &Report, others: &[Report], apart: f64) -> Result<bool, Error> {
-    let space = kind.space();
+fn is_far<K: RobotKind + ?Sized>(
+    kind: &K,
+    report: &Report,
+    others: &[Report],
+    apart: f64,
+) -> Result<bool, Error> {
+    let space = kind.any_space();
     let points = |report: &Report| {
         let rows = report.path.clone().unwrap_or_default();
         let path = PathRows { format: kind.path_format(), columns: Vec::new(), rows };
@@ -131,7 +136,7 @@ fn is_far<K: RobotKind>(kind: &K, report: &Report, others: &[Report], apart: f64
 }
 
 /// The routes in the graph of a planner that grows one.
-fn of_tree<K: RobotKind>(
+fn of_tree<K: RobotKind + ?Sized>(
     prepared: &Prepared<'_, K>,
     name: &str,
     count: usize,
@@ -171,7 +176,7 @@ fn of_tree<K: RobotKind>(
 
 /// The routes in a roadmap.
 #[cfg(feature = "roadmaps")]
-fn of_roadmap<K: RobotKind>(
+fn of_roadmap<K: RobotKind + ?Sized>(
     prepared: &Prepared<'_, K>,
     info: &mp_cspace::registry::PlannerInfo,
     count: usize,

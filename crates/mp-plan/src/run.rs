@@ -128,7 +128,7 @@ pub(crate) struct FoundRun {
 }
 
 /// The request, prepared for a robot.
-pub(crate) fn prepare<'s, K: RobotKind>(
+pub(crate) fn prepare<'s, K: RobotKind + ?Sized>(
     kind: &'s K,
     request: &'s Request,
 ) -> Result<Box<dyn AnyPrepared + 's>, Error> {
@@ -137,7 +137,7 @@ pub(crate) fn prepare<'s, K: RobotKind>(
     Ok(Box::new(Prepared::new(kind, request)?))
 }
 
-impl<K: RobotKind> AnyPrepared for Prepared<'_, K> {
+impl<K: RobotKind + ?Sized> AnyPrepared for Prepared<'_, K> {
     fn seed(&self) -> u64 {
         self.request.seed
     }
@@ -162,7 +162,7 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> NamedPlanner<'p, S>
 }
 
 /// A run for one kind of robot.
-pub(crate) struct RobotRun<'p, 'k, K: RobotKind> {
+pub(crate) struct RobotRun<'p, 'k, K: RobotKind + ?Sized> {
     prepared: &'p Prepared<'k, K>,
     /// None where the run ended before its planner was made.
     made: Option<NamedPlanner<'p, K::State>>,
@@ -190,7 +190,7 @@ struct Found<S> {
     over: Option<Option<StopReason>>,
 }
 
-impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
+impl<'p, 'k, K: RobotKind + ?Sized> RobotRun<'p, 'k, K> {
     /// Makes the planner of the request, which has the part `part` of the budget of time.
     pub(crate) fn new(
         prepared: &'p Prepared<'k, K>,
@@ -328,7 +328,7 @@ impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
     }
 }
 
-impl<K: RobotKind> AnyRun for RobotRun<'_, '_, K> {
+impl<K: RobotKind + ?Sized> AnyRun for RobotRun<'_, '_, K> {
     fn advance(&mut self, pause: &mut dyn Stop, control: &mut Control<'_>) -> bool {
         RobotRun::advance(self, pause, control)
     }

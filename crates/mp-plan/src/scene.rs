@@ -68,7 +68,7 @@ impl Scene {
     /// [`ArmScene`](crate::ArmScene), [`PlanarScene`](crate::PlanarScene).
     pub fn new(robot: impl RobotKind + 'static) -> Self {
         Self {
-            robot: Arc::new(robot),
+            robot: Arc::new(crate::any_robot::OfState(Arc::new(robot) as Arc<crate::AnyKind<_>>)),
             file: None,
             inputs: Arc::default(),
             folders: Arc::default(),

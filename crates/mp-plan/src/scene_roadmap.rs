@@ -117,14 +117,14 @@ pub(crate) trait AnySceneRoadmap: Send {
     fn save(&self, file: &Path) -> Result<(), Error>;
 }
 
-struct RobotRoadmap<K: RobotKind> {
+struct RobotRoadmap<K: RobotKind + ?Sized> {
     kind: Arc<K>,
     request: Request,
     roadmap: AnyRoadmap<K::State>,
 }
 
 /// Builds a roadmap with the planner of the request.
-pub(crate) fn build<K: RobotKind + 'static>(
+pub(crate) fn build<K: RobotKind + ?Sized + 'static>(
     kind: Arc<K>,
     request: &Request,
     control: &mut Control<'_>,
@@ -136,7 +136,7 @@ pub(crate) fn build<K: RobotKind + 'static>(
 
 /// A roadmap that was built elsewhere, for this robot: a [`Roadmap`].
 #[cfg(all(feature = "ranks", feature = "roadmaps"))]
-pub(crate) fn of_map<K: RobotKind + 'static>(
+pub(crate) fn of_map<K: RobotKind + ?Sized + 'static>(
     kind: Arc<K>,
     request: &Request,
     map: Box<dyn std::any::Any + Send>,
@@ -162,7 +162,7 @@ fn planner(request: &Request) -> Result<&'static PlannerInfo, Error> {
 }
 
 /// Grows `map`, or the roadmap in the file of the request, or a new one, until the budget is used up.
-fn grown<K: RobotKind>(
+fn grown<K: RobotKind + ?Sized>(
     kind: &K,
     request: &Request,
     map: Option<Roadmap<K::State>>,
@@ -195,7 +195,7 @@ fn grown<K: RobotKind>(
     Ok(AnyRoadmap::new(&prepared.space, map, prepared.index.clone(), NEIGHBOURS)?)
 }
 
-impl<K: RobotKind> AnySceneRoadmap for RobotRoadmap<K> {
+impl<K: RobotKind + ?Sized> AnySceneRoadmap for RobotRoadmap<K> {
     fn query(&mut self, start: &[f64], goal: &[f64], control: &mut Control<'_>) -> Result<Report, Error> {
         let (kind, request) = (&*self.kind, &self.request);
         let _span = tracing::info_span!("query", scene = kind.name()).entered();

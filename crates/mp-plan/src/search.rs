@@ -38,7 +38,7 @@ pub struct Search<S> {
 ///
 /// # Errors
 /// When the request is not valid for this robot, or a roadmap cannot be read or written.
-pub fn search<K: RobotKind>(
+pub fn search<K: RobotKind + ?Sized>(
     kind: &K,
     request: &Request,
     control: &mut Control<'_>,
@@ -47,7 +47,7 @@ pub fn search<K: RobotKind>(
 }
 
 /// [`search`] within the part `part` of the budget of time.
-pub(crate) fn search_within<K: RobotKind>(
+pub(crate) fn search_within<K: RobotKind + ?Sized>(
     kind: &K,
     request: &Request,
     control: &mut Control<'_>,

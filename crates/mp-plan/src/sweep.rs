@@ -36,9 +36,9 @@ struct Shown<S> {
 impl<S: Clone> Shown<S> {
     /// All of at most 10⁴. Of more of them, each at which no point of the robot has moved by 1/5000 of the whole way since the last one
     /// shown is left out: what is drawn is nowhere farther from the path than that.
-    fn of<K: RobotKind<State = S>>(kind: &K, path: &PathRows) -> Result<Self, Error> {
+    fn of<K: RobotKind<State = S> + ?Sized>(kind: &K, path: &PathRows) -> Result<Self, Error> {
         let states = states(kind, path)?;
-        let robot = kind.checker();
+        let robot = kind.any_checker();
         let edges = states.windows(2).map(|w| {
             let length = robot.motion_bound(&w[0], &w[1]);
             (length, kind.seconds(&w[0], &w[1]).unwrap_or(length))
@@ -63,10 +63,10 @@ impl<S: Clone> Shown<S> {
 }
 
 /// Poses along a path.
-pub(crate) fn sweep<K: RobotKind>(kind: &K, path: Option<&PathRows>) -> Result<Sweep, Error> {
+pub(crate) fn sweep<K: RobotKind + ?Sized>(kind: &K, path: Option<&PathRows>) -> Result<Sweep, Error> {
     let shown = path.map(|path| Shown::of(kind, path)).transpose()?;
     let (states, lengths) = shown.map(|shown| (shown.states, shown.lengths)).unwrap_or_default();
-    let at = |edge: usize, t: f64| kind.space().interpolate(&states[edge], &states[edge + 1], t);
+    let at = |edge: usize, t: f64| kind.any_space().interpolate(&states[edge], &states[edge + 1], t);
     let places = evenly(&lengths, kind.picture_spacing());
     // Many edges are short.
     let parts = if lengths.len() > 2_000 { 2 } else { 16 };
@@ -120,9 +120,9 @@ impl Track {
 const MAX_BETWEEN: f64 = 2000.0;
 
 /// Configurations along a path, neighbours so near that poses between them may be interpolated linearly.
-pub(crate) fn track<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Track, Error> {
+pub(crate) fn track<K: RobotKind + ?Sized>(kind: &K, path: &PathRows) -> Result<Track, Error> {
     let Shown { states, lengths, ways } = Shown::of(kind, path)?;
-    let mut checker = kind.checker().clone();
+    let mut checker = kind.any_checker();
     let total: f64 = lengths.iter().sum();
     let spacing = (0.1 * kind.picture_spacing()).max(total / MAX_BETWEEN);
     let mut track = Track::default();
@@ -139,7 +139,7 @@ pub(crate) fn track<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Track, Er
         let length = ways[edge];
         for k in 0..parts {
             let t = f64::from(k) / f64::from(parts);
-            add(&kind.space().interpolate(&states[edge], &states[edge + 1], t), way + length * t);
+            add(&kind.any_space().interpolate(&states[edge], &states[edge + 1], t), way + length * t);
         }
         way += length;
     }

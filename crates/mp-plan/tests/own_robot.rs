@@ -4,8 +4,8 @@ use mp_cspace::{
     Clearance, JointRange, Joints, KnownFree, MotionCheck, MotionClearance, MotionValidity, Validity,
 };
 use mp_plan::{
-    Body, BodyShape, Column, Control, Error, Finish, Length, Measured, MetricName, PathRows, Queries,
-    Request, RobotKind, Scene, Touch,
+    Body, BodyShape, Column, Configured, Control, Error, Finish, Length, Measured, MetricName, PathRows,
+    Queries, Request, RobotKind, Scene, Touch, TypedMotion,
 };
 use nalgebra::{DVector, Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 
@@ -94,32 +94,37 @@ impl MotionValidity<Configuration> for Steps<'_> {
     }
 }
 
-impl RobotKind for Crane {
+impl Configured for Crane {
     type State = Configuration;
+}
+
+impl TypedMotion for Crane {
     type Space = Joints<Configuration>;
     type Checker = Load;
     type Verifier<'c> = Steps<'c>;
-
-    fn name(&self) -> &str {
-        "crane"
-    }
-    fn space_name(&self) -> String {
-        "crane".to_owned()
-    }
     fn space(&self) -> &Self::Space {
         &self.space
-    }
-    fn start(&self) -> &Configuration {
-        &self.ends[0]
-    }
-    fn goals(&self) -> &[Configuration] {
-        &self.ends[1..]
     }
     fn checker(&self) -> &Load {
         &self.check
     }
     fn verifier(&self) -> Result<Steps<'_>, Error> {
         Ok(Steps(self))
+    }
+}
+
+impl RobotKind for Crane {
+    fn name(&self) -> &str {
+        "crane"
+    }
+    fn space_name(&self) -> String {
+        "crane".to_owned()
+    }
+    fn start(&self) -> &Configuration {
+        &self.ends[0]
+    }
+    fn goals(&self) -> &[Configuration] {
+        &self.ends[1..]
     }
     fn tolerance(&self) -> f64 {
         TOLERANCE

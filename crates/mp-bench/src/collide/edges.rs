@@ -6,7 +6,7 @@ use crate::error::{IntoError, Result};
 use crate::experiment::Table;
 use crate::scenes::Rigid;
 use mp_cspace::{Certified, Discrete, KnownFree, MotionValidity, Resolution, Rng, Space};
-use mp_plan::RobotKind;
+use mp_plan::{RobotKind, TypedMotion};
 use nalgebra::Isometry3;
 
 /// The pairs in whose scenes edges are checked.

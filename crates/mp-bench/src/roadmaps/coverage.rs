@@ -8,7 +8,7 @@ use crate::scenes::{Rigid, either};
 use mp_cspace::{
     DefaultNn, Direction, Extension, Iterations, LocalPlanner, NodeId, Nodes, Reach, Rng, Space, Validity,
 };
-use mp_plan::{RigidScene, RigidSpace, RobotKind};
+use mp_plan::{RigidScene, RigidSpace, TypedMotion};
 use mp_roadmap::algo::{prm, visibility_prm};
 use mp_roadmap::{Builder, Learning, Reachable, Roadmap};
 use serde::{Deserialize, Serialize};

@@ -7,7 +7,7 @@ use crate::experiment::{Table, short};
 use crate::output::note;
 use crate::scenes::{Rigid, either};
 use mp_cspace::{DefaultNn, Nodes, Rng};
-use mp_plan::{RigidScene, RigidSpace, RobotKind};
+use mp_plan::{RigidScene, RigidSpace, TypedMotion};
 use mp_roadmap::algo::prm;
 use mp_roadmap::{Builder, Learning, Reachable};
 

@@ -12,7 +12,7 @@ use mp_cspace::{DefaultNn, Iterations, Nodes, Outcome, Rng, Stop, obstacles::Obs
 use mp_geom::Aabb;
 use mp_geom::primitives::cuboid;
 use mp_io::{Body, PlacedBody, RigidProblem, SpaceKind};
-use mp_plan::{Control, Error, RigidScene, RigidSpace, RobotKind, search};
+use mp_plan::{Control, Error, RigidScene, RigidSpace, TypedMotion, search};
 use mp_roadmap::algo::{prm, visibility_prm};
 use mp_roadmap::{
     AroundObstacles, Builder, ByGeometry, Candidate, Connector, Learning, LinkState, MilestoneKind,

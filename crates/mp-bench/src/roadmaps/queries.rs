@@ -6,7 +6,7 @@ use crate::experiment::{Median, Table, mean, short};
 use crate::output::note;
 use crate::scenes::{Rigid, either};
 use mp_cspace::{Certified, Deadline, Nodes, Outcome, Planner, Problem, Rng, Space, Straight, Validity};
-use mp_plan::{RigidScene, RigidSpace, RobotKind};
+use mp_plan::{RigidScene, RigidSpace, RobotKind, TypedMotion};
 use mp_roadmap::algo::prm;
 use mp_roadmap::{Builder, EdgeChecker, Learning, PATIENCE, Reachable, RoadmapQueries};
 use mp_robot::{RigidBody, Verifier};

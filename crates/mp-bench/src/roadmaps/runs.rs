@@ -7,7 +7,7 @@ use crate::experiment::{Lab, Log};
 use crate::output::note;
 use crate::scenes::{Rigid, bare, either};
 use mp_cspace::{Cancel, DefaultNn, Outcome, StopReason};
-use mp_plan::{Control, Request, RigidScene, RigidSpace, RobotKind, Stage, Watch, search};
+use mp_plan::{Control, Request, RigidScene, RigidSpace, RobotKind, Stage, TypedMotion, Watch, search};
 use mp_roadmap::RoadmapQueries;
 use serde::{Deserialize, Serialize};
 

@@ -26,7 +26,7 @@ struct Version {
 ///
 /// # Errors
 /// When the text is no certificate, or the kind of robot has no model.
-pub(crate) fn differences<K: RobotKind>(kind: &K, text: &str) -> Result<Vec<String>, Error> {
+pub(crate) fn differences<K: RobotKind + ?Sized>(kind: &K, text: &str) -> Result<Vec<String>, Error> {
     let unread = |e: serde_json::Error| Error::new(format!("the certificate cannot be read: {e}"));
     let Version { certificate } = serde_json::from_str(text).map_err(unread)?;
     if certificate != VERSION {
@@ -49,7 +49,7 @@ pub(crate) fn differences<K: RobotKind>(kind: &K, text: &str) -> Result<Vec<Stri
     let path = PathRows { format: kind.path_format(), columns: kind.columns(), rows: claims.path };
     let states = states(kind, &path)?;
     found.extend(end_faults(kind, &states).into_iter().map(|fault| format!("its path {fault}")));
-    let outside = states.iter().position(|q| !kind.space().contains(q));
+    let outside = states.iter().position(|q| !kind.any_space().contains(q));
     found.extend(
         outside.map(|i| format!("configuration {} of its path is {}", i + 1, kind.out_of_bounds(&states[i]))),
     );

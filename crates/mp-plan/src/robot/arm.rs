@@ -9,6 +9,7 @@ use super::{
     hints_and_gradient, no_metric,
 };
 use crate::goals::{GoalPart, examples, rows, turning};
+use crate::motion::{Configured, TypedMotion};
 use crate::numbers::plain_row;
 use crate::path::continued;
 use crate::{Error, MetricName, brief, plain};
@@ -403,12 +404,40 @@ impl Queries for Arm {
     }
 }
 
-impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
+impl<C: LinkedSpace> Configured for LinkedScene<C> {
     type State = Configuration;
+}
+
+impl<C: LinkedSpace> TypedMotion for LinkedScene<C> {
     type Space = C;
     type Checker = Arm;
     type Verifier<'c> = ArmVerifier<'c, C>;
+    fn space(&self) -> &C {
+        &self.space
+    }
+    fn with_ends(&self, start: Configuration, goals: Vec<Configuration>) -> Result<Self, Error> {
+        // The lines of the file say nothing about these ends.
+        let given_start = C::row(&start);
+        Ok(Self { start, given_start, goals, goal_parts: None, source: None, ..self.clone() })
+    }
+    fn checker(&self) -> &Arm {
+        &self.arm
+    }
+    fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
+        Ok(ArmVerifier::new(&self.space, &self.arm)?)
+    }
+    fn obstacles<'c>(
+        &'c self,
+        counted: &dyn Fn() -> Counted<'c, Arm>,
+    ) -> ObstacleKnowledge<'c, Configuration> {
+        hints_and_gradient(counted)
+    }
+    fn starting_as(self, row: &[f64]) -> Self {
+        Self { given_start: row.to_vec(), ..self }
+    }
+}
 
+impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     fn name(&self) -> &str {
         &self.name
     }
@@ -419,9 +448,6 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
             false => format!("{joints} joints"),
         }
     }
-    fn space(&self) -> &C {
-        &self.space
-    }
     fn start(&self) -> &Configuration {
         &self.start
     }
@@ -431,29 +457,12 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
         self.goal_parts.as_deref()
     }
-    fn with_ends(&self, start: Configuration, goals: Vec<Configuration>) -> Result<Self, Error> {
-        // The lines of the file say nothing about these ends.
-        let given_start = C::row(&start);
-        Ok(Self { start, given_start, goals, goal_parts: None, source: None, ..self.clone() })
-    }
 
-    fn checker(&self) -> &Arm {
-        &self.arm
-    }
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         self.arm.make_ready(interrupt)
     }
-    fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
-        Ok(ArmVerifier::new(&self.space, &self.arm)?)
-    }
     fn tolerance(&self) -> f64 {
         self.arm.tolerance()
-    }
-    fn obstacles<'c>(
-        &'c self,
-        counted: &dyn Fn() -> Counted<'c, Arm>,
-    ) -> ObstacleKnowledge<'c, Configuration> {
-        hints_and_gradient(counted)
     }
     fn measured(&self, metric: MetricName) -> Result<Measured<'_, Configuration>, Error> {
         match metric {
@@ -592,9 +601,6 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     }
     fn given_start(&self) -> Vec<f64> {
         self.given_start.clone()
-    }
-    fn starting_as(self, row: &[f64]) -> Self {
-        Self { given_start: row.to_vec(), ..self }
     }
     fn rows(&self, path: &Path<Configuration>) -> Vec<Vec<f64>> {
         let rows: Vec<_> = path.states.iter().map(|q| self.row(q)).collect();

@@ -8,6 +8,7 @@ mod system;
 use super::model::{self, DriveModel, MotionModel};
 use super::{Body, Column, End, Measured, RobotKind, Touch, no_metric};
 use crate::goals::{GoalPart, examples};
+use crate::motion::{Configured, TypedMotion};
 use crate::{Error, MetricName};
 use check::{DrivenChecker, DrivenVerifier};
 use mp_cspace::shorten::Effort;
@@ -29,7 +30,9 @@ const ROUNDING: f64 = 1e-9;
 const ROUND_UP: f64 = 1.0 + 1e-9;
 
 /// A kind of robot that can be moved by inputs.
-pub trait SpeedBound: RobotKind<Space: Embed + 'static, State: StateVector, Checker: Debug> + Clone {
+pub trait SpeedBound:
+    RobotKind + TypedMotion<Space: Embed + 'static, State: StateVector, Checker: Debug> + Clone
+{
     /// Whether the last number of a configuration is the time (s).
     const TIMED: bool = false;
 
@@ -145,40 +148,20 @@ impl<K: SpeedBound> DrivenScene<K> {
     }
 }
 
-impl<K: SpeedBound> RobotKind for DrivenScene<K> {
+impl<K: SpeedBound> Configured for DrivenScene<K> {
     type State = DVector<f64>;
+}
+
+impl<K: SpeedBound> TypedMotion for DrivenScene<K> {
     type Space = DrivenSpace<K::Space>;
     type Checker = DrivenChecker<K>;
     type Verifier<'c>
         = DrivenVerifier<'c, K>
     where
         Self: 'c;
-
-    fn name(&self) -> &str {
-        self.robot.name()
-    }
-    fn space_name(&self) -> String {
-        let by = match self.space.system.drive {
-            Drive::Car { .. } => "a car",
-            Drive::Unicycle { .. } => "a unicycle",
-            Drive::Velocities { .. } => "by velocities",
-            Drive::Accelerations { .. } => "by accelerations",
-        };
-        format!("{}, {by}", self.robot.space_name())
-    }
     fn space(&self) -> &Self::Space {
         &self.space
     }
-    fn start(&self) -> &DVector<f64> {
-        &self.start
-    }
-    fn goals(&self) -> &[DVector<f64>] {
-        &self.goals
-    }
-    fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
-        Some(&self.goal_parts)
-    }
-
     /// Goals keep the widths of the intervals of the first goal of the scene.
     fn with_ends(&self, start: DVector<f64>, goals: Vec<DVector<f64>>) -> Result<Self, Error> {
         let first = self.goal_parts.first().cloned().unwrap_or_default();
@@ -201,6 +184,41 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
         let mut scene = Self { robot: Arc::new(robot), start, goal_parts, ..self.clone() };
         scene.goals = scene.examples();
         Ok(scene)
+    }
+    fn checker(&self) -> &DrivenChecker<K> {
+        &self.checker
+    }
+    fn verifier(&self) -> Result<DrivenVerifier<'_, K>, Error> {
+        Ok(DrivenVerifier { scene: self, verifier: self.robot.verifier()? })
+    }
+    fn starting_as(mut self, row: &[f64]) -> Self {
+        let own = self.robot.given_start().len().min(row.len());
+        self.robot = Arc::new(K::clone(&self.robot).starting_as(&row[..own]));
+        self
+    }
+}
+
+impl<K: SpeedBound> RobotKind for DrivenScene<K> {
+    fn name(&self) -> &str {
+        self.robot.name()
+    }
+    fn space_name(&self) -> String {
+        let by = match self.space.system.drive {
+            Drive::Car { .. } => "a car",
+            Drive::Unicycle { .. } => "a unicycle",
+            Drive::Velocities { .. } => "by velocities",
+            Drive::Accelerations { .. } => "by accelerations",
+        };
+        format!("{}, {by}", self.robot.space_name())
+    }
+    fn start(&self) -> &DVector<f64> {
+        &self.start
+    }
+    fn goals(&self) -> &[DVector<f64>] {
+        &self.goals
+    }
+    fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
+        Some(&self.goal_parts)
     }
 
     fn can_move(&self, from: &DVector<f64>, to: &DVector<f64>) -> bool {
@@ -236,14 +254,8 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
         Some(self.shortened_path(path, check, effort, rng))
     }
 
-    fn checker(&self) -> &DrivenChecker<K> {
-        &self.checker
-    }
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         self.robot.make_ready(interrupt)
-    }
-    fn verifier(&self) -> Result<DrivenVerifier<'_, K>, Error> {
-        Ok(DrivenVerifier { scene: self, verifier: self.robot.verifier()? })
     }
     fn tolerance(&self) -> f64 {
         self.robot.tolerance()
@@ -347,11 +359,6 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
         let mut row = self.row(self.start());
         row.iter_mut().zip(self.robot.given_start()).for_each(|(x, given)| *x = given);
         row
-    }
-    fn starting_as(mut self, row: &[f64]) -> Self {
-        let own = self.robot.given_start().len().min(row.len());
-        self.robot = Arc::new(K::clone(&self.robot).starting_as(&row[..own]));
-        self
     }
     fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
         let system = &self.space.system;

@@ -7,6 +7,7 @@ use super::{
     no_metric,
 };
 use crate::goals::{GoalPart, examples};
+use crate::motion::{Configured, TypedMotion};
 use crate::numbers::told_apart;
 use crate::{Error, MetricName, brief, plain};
 use mp_cspace::space_time::SpaceTime;
@@ -24,7 +25,7 @@ use std::fmt::Debug;
 const TIME_TOLERANCE: f64 = 1e-3;
 
 /// A kind of robot that can be among obstacles that move.
-pub trait WithMoving: RobotKind<Space: Embed + 'static, State: StateVector> + Clone {
+pub trait WithMoving: RobotKind + TypedMotion<Space: Embed + 'static, State: StateVector> + Clone {
     /// The robot among all of them: what planners check positions at times with.
     type Among: Checker<(Self::State, f64)> + Debug + 'static;
     /// The independent check of finished paths.
@@ -76,7 +77,7 @@ pub struct MovingScene<K: WithMoving> {
 }
 
 /// The state of a robot at a time.
-type Moment<K> = (<K as RobotKind>::State, f64);
+type Moment<K> = (<K as Configured>::State, f64);
 
 impl<K: WithMoving> MovingScene<K> {
     /// The robot of `still` among its obstacles, and also among `obstacles`, each with the name and shape of a body, which move
@@ -174,34 +175,20 @@ impl<K: WithMoving<Checker: Debug> + SpeedBound> SpeedBound for MovingScene<K> {
     }
 }
 
-impl<K: WithMoving> RobotKind for MovingScene<K> {
+impl<K: WithMoving> Configured for MovingScene<K> {
     type State = DVector<f64>;
+}
+
+impl<K: WithMoving> TypedMotion for MovingScene<K> {
     type Space = AsVectors<SpaceTime<K::Space>>;
     type Checker = OnVectors<K::Among, Moment<K>>;
     type Verifier<'c>
         = OnVectors<K::AmongVerifier<'c>, Moment<K>>
     where
         Self: 'c;
-
-    fn name(&self) -> &str {
-        self.still.name()
-    }
-    fn space_name(&self) -> String {
-        format!("{} and time", self.still.space_name())
-    }
     fn space(&self) -> &Self::Space {
         &self.space
     }
-    fn start(&self) -> &DVector<f64> {
-        &self.start
-    }
-    fn goals(&self) -> &[DVector<f64>] {
-        &self.goals
-    }
-    fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
-        Some(&self.goal_parts)
-    }
-
     /// The times of the goals are of no account: the robot may arrive whenever the scene says.
     fn with_ends(&self, start: DVector<f64>, goals: Vec<DVector<f64>>) -> Result<Self, Error> {
         let (first, _) = self.moment(&start);
@@ -214,6 +201,35 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         scene.goals = examples(&scene, &scene.goal_parts);
         Ok(scene)
     }
+    fn checker(&self) -> &Self::Checker {
+        &self.among
+    }
+    fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
+        Ok(OnVectors::new(self.still.among_verifier(&self.space.0, self.among.inner())?))
+    }
+    fn starting_as(mut self, row: &[f64]) -> Self {
+        let own = self.still.given_start().len().min(row.len());
+        self.still = self.still.starting_as(&row[..own]);
+        self
+    }
+}
+
+impl<K: WithMoving> RobotKind for MovingScene<K> {
+    fn name(&self) -> &str {
+        self.still.name()
+    }
+    fn space_name(&self) -> String {
+        format!("{} and time", self.still.space_name())
+    }
+    fn start(&self) -> &DVector<f64> {
+        &self.start
+    }
+    fn goals(&self) -> &[DVector<f64>] {
+        &self.goals
+    }
+    fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
+        Some(&self.goal_parts)
+    }
 
     fn can_move(&self, from: &DVector<f64>, to: &DVector<f64>) -> bool {
         self.space.0.can_move(&self.moment(from), &self.moment(to))
@@ -225,14 +241,8 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         "rrt"
     }
 
-    fn checker(&self) -> &Self::Checker {
-        &self.among
-    }
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         self.still.make_ready(interrupt)
-    }
-    fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
-        Ok(OnVectors::new(self.still.among_verifier(&self.space.0, self.among.inner())?))
     }
     fn tolerance(&self) -> f64 {
         self.still.tolerance()
@@ -329,11 +339,6 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         let mut row = self.row(self.start());
         row.iter_mut().zip(self.still.given_start()).for_each(|(x, given)| *x = given);
         row
-    }
-    fn starting_as(mut self, row: &[f64]) -> Self {
-        let own = self.still.given_start().len().min(row.len());
-        self.still = self.still.starting_as(&row[..own]);
-        self
     }
     fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
         let positions: Vec<_> = rows.iter().map(|row| row[..row.len().saturating_sub(1)].to_vec()).collect();

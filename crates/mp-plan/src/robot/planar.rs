@@ -6,6 +6,7 @@ use super::{
     SpeedBound, Touch, WithMoving, greatest_speed, hints_and_gradient, no_metric,
 };
 use crate::goals::{GoalPart, examples, rows};
+use crate::motion::{Configured, TypedMotion};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};
 use mp_cspace::erased::CompiledIndex;
@@ -371,20 +372,46 @@ impl<B: PlanarBody> PlanarScene<B> {
     }
 }
 
-impl<B: PlanarBody> RobotKind for PlanarScene<B> {
+impl<B: PlanarBody> Configured for PlanarScene<B> {
     type State = B::State;
+}
+
+impl<B: PlanarBody> TypedMotion for PlanarScene<B> {
     type Space = B::Space;
     type Checker = B;
     type Verifier<'c> = B::Verifier<'c>;
+    fn space(&self) -> &B::Space {
+        &self.space
+    }
+    fn with_ends(&self, start: B::State, goals: Vec<B::State>) -> Result<Self, Error> {
+        let mut scene = self.clone();
+        scene.problem.file.start = B::row(&start);
+        let exactly = |q: &B::State| B::row(q).into_iter().map(GoalPart::Exactly).collect();
+        scene.problem.file.goals = goals.iter().map(exactly).collect();
+        (scene.start, scene.goals, scene.goal_parts) = (start, goals, None);
+        Ok(scene)
+    }
+    fn checker(&self) -> &B {
+        &self.robot
+    }
+    fn verifier(&self) -> Result<B::Verifier<'_>, Error> {
+        Ok(self.robot.verifier(&self.space))
+    }
+    fn obstacles<'c>(&'c self, counted: &dyn Fn() -> Counted<'c, B>) -> ObstacleKnowledge<'c, B::State> {
+        hints_and_gradient(counted)
+    }
+    fn starting_as(mut self, row: &[f64]) -> Self {
+        self.problem.file.start = row.to_vec();
+        self
+    }
+}
 
+impl<B: PlanarBody> RobotKind for PlanarScene<B> {
     fn name(&self) -> &str {
         &self.problem.name
     }
     fn space_name(&self) -> String {
         B::SPACE.to_owned()
-    }
-    fn space(&self) -> &B::Space {
-        &self.space
     }
     fn start(&self) -> &B::State {
         &self.start
@@ -397,21 +424,6 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         self.goal_parts.as_deref()
     }
 
-    fn with_ends(&self, start: B::State, goals: Vec<B::State>) -> Result<Self, Error> {
-        let mut scene = self.clone();
-        scene.problem.file.start = B::row(&start);
-        let exactly = |q: &B::State| B::row(q).into_iter().map(GoalPart::Exactly).collect();
-        scene.problem.file.goals = goals.iter().map(exactly).collect();
-        (scene.start, scene.goals, scene.goal_parts) = (start, goals, None);
-        Ok(scene)
-    }
-
-    fn checker(&self) -> &B {
-        &self.robot
-    }
-    fn verifier(&self) -> Result<B::Verifier<'_>, Error> {
-        Ok(self.robot.verifier(&self.space))
-    }
     fn tolerance(&self) -> f64 {
         self.robot.tolerance()
     }
@@ -420,9 +432,6 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
     }
     fn shortcut_clearance(&self) -> f64 {
         (SHORTCUT_CLEARANCE * self.robot.radius()).max(self.tolerance())
-    }
-    fn obstacles<'c>(&'c self, counted: &dyn Fn() -> Counted<'c, B>) -> ObstacleKnowledge<'c, B::State> {
-        hints_and_gradient(counted)
     }
     fn measured(&self, metric: MetricName) -> Result<Measured<'_, B::State>, Error> {
         match metric {
@@ -529,10 +538,6 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
     }
     fn given_start(&self) -> Vec<f64> {
         self.problem.file.start[..B::COLUMNS.len()].to_vec()
-    }
-    fn starting_as(mut self, row: &[f64]) -> Self {
-        self.problem.file.start = row.to_vec();
-        self
     }
 
     fn bodies(&self) -> Vec<Body> {

@@ -6,6 +6,7 @@ use super::{
     SpeedBound, Touch, WithMoving, hints_and_gradient,
 };
 use crate::goals::{GoalPart, examples, rows};
+use crate::motion::{Configured, TypedMotion};
 use crate::numbers::{fingerprint, plain};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};
@@ -300,20 +301,45 @@ impl<P: Placement> Queries for AmongMoving<P> {
     }
 }
 
-impl<M: RigidSpace> RobotKind for RigidScene<M> {
+impl<M: RigidSpace> Configured for RigidScene<M> {
     type State = M::State;
+}
+
+impl<M: RigidSpace> TypedMotion for RigidScene<M> {
     type Space = M::Space;
     type Checker = RigidBody<M>;
     type Verifier<'c> = Verifier<'c, M::Space, M>;
+    fn space(&self) -> &M::Space {
+        &self.space
+    }
+    fn with_ends(&self, start: M::State, goals: Vec<M::State>) -> Result<Self, Error> {
+        let mut problem = self.problem.clone();
+        problem.start = M::pose(&start);
+        problem.goal = goals.first().map_or(problem.goal, M::pose);
+        let space = M::space(&problem.position_bounds())?;
+        let (robot, radius) = (self.robot.clone(), self.radius);
+        Ok(Self { problem, space, robot, start, goals, goal_parts: None, radius })
+    }
+    fn checker(&self) -> &RigidBody<M> {
+        &self.robot
+    }
+    fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
+        Ok(Verifier::new(&self.space, &self.robot)?)
+    }
+    fn obstacles<'c>(
+        &'c self,
+        counted: &dyn Fn() -> Counted<'c, RigidBody<M>>,
+    ) -> ObstacleKnowledge<'c, M::State> {
+        ObstacleKnowledge { geometry: Some(AnyGeometry::new(counted())), ..hints_and_gradient(counted) }
+    }
+}
 
+impl<M: RigidSpace> RobotKind for RigidScene<M> {
     fn name(&self) -> &str {
         &self.problem.name
     }
     fn space_name(&self) -> String {
         self.problem.space.to_string()
-    }
-    fn space(&self) -> &M::Space {
-        &self.space
     }
     fn start(&self) -> &M::State {
         &self.start
@@ -326,32 +352,11 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
         self.goal_parts.as_deref()
     }
 
-    fn with_ends(&self, start: M::State, goals: Vec<M::State>) -> Result<Self, Error> {
-        let mut problem = self.problem.clone();
-        problem.start = M::pose(&start);
-        problem.goal = goals.first().map_or(problem.goal, M::pose);
-        let space = M::space(&problem.position_bounds())?;
-        let (robot, radius) = (self.robot.clone(), self.radius);
-        Ok(Self { problem, space, robot, start, goals, goal_parts: None, radius })
-    }
-
-    fn checker(&self) -> &RigidBody<M> {
-        &self.robot
-    }
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         self.robot.make_ready(interrupt)
     }
-    fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
-        Ok(Verifier::new(&self.space, &self.robot)?)
-    }
     fn tolerance(&self) -> f64 {
         self.robot.tolerance()
-    }
-    fn obstacles<'c>(
-        &'c self,
-        counted: &dyn Fn() -> Counted<'c, RigidBody<M>>,
-    ) -> ObstacleKnowledge<'c, M::State> {
-        ObstacleKnowledge { geometry: Some(AnyGeometry::new(counted())), ..hints_and_gradient(counted) }
     }
     fn measured(&self, metric: MetricName) -> Result<Measured<'_, M::State>, Error> {
         let space = self.space.clone();

@@ -5,7 +5,9 @@ use mp_cspace::{
     Clearance, DefaultNn, Factored, Interrupt, JointRange, Joints, MotionCheck, MotionClearance,
     MotionValidity, Rng, Space, Validity, nn::Layout,
 };
-use mp_plan::{Body, BodyShape, Column, Error, Measured, MetricName, Queries, RobotKind, Touch};
+use mp_plan::{
+    Body, BodyShape, Column, Configured, Error, Measured, MetricName, Queries, RobotKind, Touch, TypedMotion,
+};
 use nalgebra::{DVector, Isometry3, Point2};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -168,32 +170,37 @@ impl Counting {
     }
 }
 
-impl RobotKind for Counting {
+impl Configured for Counting {
     type State = State;
+}
+
+impl TypedMotion for Counting {
     type Space = Square;
     type Checker = Discs;
     type Verifier<'c> = Steps<'c>;
-
-    fn name(&self) -> &str {
-        "counting"
-    }
-    fn space_name(&self) -> String {
-        "square".to_owned()
-    }
     fn space(&self) -> &Square {
         &self.space
-    }
-    fn start(&self) -> &State {
-        &self.ends[0]
-    }
-    fn goals(&self) -> &[State] {
-        &self.ends[1..]
     }
     fn checker(&self) -> &Discs {
         &self.check
     }
     fn verifier(&self) -> Result<Steps<'_>, Error> {
         Ok(Steps(self, Interrupt::never()))
+    }
+}
+
+impl RobotKind for Counting {
+    fn name(&self) -> &str {
+        "counting"
+    }
+    fn space_name(&self) -> String {
+        "square".to_owned()
+    }
+    fn start(&self) -> &State {
+        &self.ends[0]
+    }
+    fn goals(&self) -> &[State] {
+        &self.ends[1..]
     }
     fn tolerance(&self) -> f64 {
         1e-3
