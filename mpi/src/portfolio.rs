@@ -46,8 +46,9 @@ pub(crate) struct Race {
 impl Race {
     /// Refuses what cannot be planned, and outputs that are inputs, or each other.
     fn check(&self, scene: &Scene, request: &Request) -> Result<(), Error> {
-        scene.check_ends()?;
-        scene.prepare(request)?;
+        let kept = scene.for_request(request)?;
+        kept.check_ends()?;
+        kept.prepare(request)?;
         let mut claims = Claims::default();
         scene.inputs_on_disk().iter().for_each(|file| claims.input(file));
         for (option, file) in

@@ -137,6 +137,8 @@ class Report(InScene):
         The length of the path as it was found, and as it is.
     clearance : float or None
         A lower bound on the clearance along the path, metres.
+    clearance_kept : float
+        The clearance from obstacles that was asked for, metres; zero for none.
     shortened : bool
         Whether the path was shortened.
     fingerprint : str or None
@@ -178,6 +180,7 @@ class Report(InScene):
     path_file: str | None = None
     picture_file: str | None = None
     certificate_file: str | None = None
+    clearance_kept: float = 0.0
     _scene: Scene | None = field(default=None)
 
     @classmethod
@@ -199,6 +202,8 @@ class Report(InScene):
     def to_dict(self) -> dict[str, Any]:
         """Plain data, with lists in place of arrays: what ``mp plan --json`` prints."""
         members: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "_scene"}
+        if self.clearance_kept == 0.0:
+            del members["clearance_kept"]
         members["columns"] = [vars(column) for column in self.columns]
         members["stages"] = [vars(stage) for stage in self.stages]
         for name in ("path", "first_path"):
@@ -286,6 +291,7 @@ class Verdict:
     path_length: float
     clearance: float
     faults: tuple[str, ...]
+    clearance_kept: float = 0.0
 
     def __bool__(self) -> bool:
         return self.free
@@ -355,6 +361,7 @@ def verdict(text: str) -> Verdict:
         path_length=_number(m["path_length"]),
         clearance=_number(m["clearance"]),
         faults=tuple(m["faults"]),
+        clearance_kept=m.get("clearance_kept", 0.0),
     )
 
 

@@ -68,6 +68,7 @@ class Options:
     field: str = "clearance"
     first_only: bool = False
     roadmap: File | None = None
+    clearance: float = 0.0
 
     def to_json(self, scene: Scene) -> str:
         """Return the request as ``mp plan --request`` reads it, with the planner that suits the scene if none is named."""
@@ -77,6 +78,7 @@ class Options:
                 "settings": {key: _setting(value) for key, value in (self.settings or {}).items()},
                 "metric": self.metric,
                 "motion": self.motion,
+                "clearance": float(self.clearance),
                 "budget": budget(self.time, self.iterations, self.queries, self.nodes),
                 "seed": int(self.seed),
                 "threads": int(self.threads),
@@ -461,6 +463,31 @@ class Scene:
             goals = self._path(goal)
         return self._from(self._native.with_ends(starts, goals.tolist()), self._robot)
 
+    def keeping(self, clearance: float) -> Scene:
+        """Return the same scene, in which paths keep a clearance from obstacles.
+
+        Planning, shortening, checking, explaining and certificates mind it. The links of an arm may be nearer to each other.
+
+        Parameters
+        ----------
+        clearance : float
+            Metres; zero for none.
+
+        Examples
+        --------
+        >>> scene = mp.Scene("easy")
+        >>> scene.keeping(0.1).check(scene.plan(clearance=0.1)).free
+        True
+        >>> scene.keeping(0.1).check(scene.plan()).free
+        False
+        """
+        return self._from(self._native.keeping(float(clearance)), self._robot)
+
+    @property
+    def clearance_kept(self) -> float:
+        """The clearance that paths keep from obstacles, metres: see :meth:`keeping`."""
+        return self._native.clearance_kept
+
     # --- what it is ------------------------------------------------------------------------------------------------
 
     @property
@@ -564,6 +591,7 @@ class Scene:
         field: str = "clearance",
         first_only: bool = False,
         roadmap: File | None = None,
+        clearance: float = 0.0,
         progress: bool | Callable[[Progress], object] = False,
         cancel: Cancel | None = None,
     ) -> Report:
@@ -599,6 +627,9 @@ class Scene:
             Whether to stop at the first path, also with an anytime planner.
         roadmap : path, optional
             The file of a roadmap, for planners that build one: read if it exists, grown, and written at the end.
+        clearance : float
+            What the path keeps from obstacles all along, metres; the links of an arm may be nearer to each other. Zero for what
+            the scene :meth:`keeps <keeping>`.
         progress : bool or callable
             Called with :class:`Progress` at most ten times a second, in the calling thread; ``True`` shows a bar of ``tqdm``.
         cancel : Cancel, optional
@@ -624,7 +655,7 @@ class Scene:
         """
         options = Options(
             planner, seed, time, iterations, queries, nodes, settings, metric, motion, threads, finish, field,
-            first_only, roadmap,
+            first_only, roadmap, clearance,
         )  # fmt: skip
         return self.plan_by(options, progress=progress, cancel=cancel)
 
@@ -921,6 +952,7 @@ def _restored(
     main: str | None,
     files: dict[str, bytes],
     ends: tuple[list[float], list[list[float]]] | None,
+    clearance: float = 0.0,
 ) -> Scene:
     """Make a scene from a pickle."""
     if shipped is not None:
@@ -929,7 +961,7 @@ def _restored(
         native = _mp.Scene.from_files(main, files, False)
     else:
         raise Error("the scene was not made from files, and cannot be read back")
-    return Scene._from(native if ends is None else native.with_ends(*ends))
+    return Scene._from((native if ends is None else native.with_ends(*ends)).keeping(clearance))
 
 
 def _table(given: Any) -> tuple[list[str] | None, Any]:

@@ -150,12 +150,24 @@ impl Scene {
         Ok(Self { scene, ends: Some((start, goals)), ..self.clone() })
     }
 
-    /// What makes the scene again: the name of a shipped scene or of the main file, the contents of all files, other start and goals.
+    /// Keeping a clearance (m) from obstacles.
+    fn keeping(&self, clearance: f64) -> PyResult<Self> {
+        Ok(Self { scene: self.scene.keeping(clearance).to_python()?, ..self.clone() })
+    }
+
+    /// The clearance (m) that it keeps.
+    #[getter]
+    fn clearance_kept(&self) -> f64 {
+        self.scene.clearance_kept()
+    }
+
+    /// What makes the scene again: the name of a shipped scene or of the main file, the contents of all files, other start and goals, and
+    /// the clearance kept.
     #[expect(clippy::type_complexity, reason = "the state of a pickle, which only `mp_motion` reads")]
     fn state<'py>(
         &self,
         py: Python<'py>,
-    ) -> PyResult<(Option<String>, Option<PathBuf>, Bound<'py, PyDict>, Option<Ends>)> {
+    ) -> PyResult<(Option<String>, Option<PathBuf>, Bound<'py, PyDict>, Option<Ends>, f64)> {
         let files = PyDict::new(py);
         if self.shipped.is_none() {
             for path in self.scene.inputs() {
@@ -164,7 +176,7 @@ impl Scene {
             }
         }
         let main = self.scene.file().map(Path::to_owned);
-        Ok((self.shipped.clone(), main, files, self.ends.clone()))
+        Ok((self.shipped.clone(), main, files, self.ends.clone(), self.scene.clearance_kept()))
     }
 
     #[getter]

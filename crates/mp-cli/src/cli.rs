@@ -89,6 +89,10 @@ pub(crate) struct Plan {
     /// distance of the metric, or a percentage of the extent). The path that is written is certified in both cases.
     #[arg(long, value_name = "CHECK", default_value = "certified", value_parser = parsed::<MotionValidator>)]
     pub(crate) motion: MotionValidator,
+    /// Keep this clearance from obstacles all along, metres: planning, shortening, the proof and the certificate mind it. The links of an
+    /// arm may be nearer to each other.
+    #[arg(long, value_name = "M", value_parser = positive_number)]
+    pub(crate) clearance: Option<f64>,
     /// Plan this many times, with seeds N, N + 1, …, and print a table.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: u32,
@@ -213,6 +217,9 @@ pub(crate) struct Check {
     /// Explain this configuration instead: numbers separated by blanks or commas.
     #[arg(long, value_name = "NUMBERS", conflicts_with = "path", allow_hyphen_values = true)]
     pub(crate) at: Option<String>,
+    /// The clearance from obstacles that is asked for, metres: what comes nearer is not free.
+    #[arg(long, value_name = "M", value_parser = positive_number)]
+    pub(crate) clearance: Option<f64>,
     /// The file for the certificate: a proof that the path is free, which `mp verify-certificate` replays with code of its own.
     #[arg(long, value_name = "FILE", conflicts_with = "at")]
     pub(crate) certificate: Option<PathBuf>,

@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
             Some(time) => Interrupt::by(cancel, clock, began.saturating_add(time)),
         };
         match scene_until(given, &interrupt)? {
-            Ok(scene) => scenes.push(scene),
+            Ok(scene) => scenes.push(scene.for_request(&request)?),
             Err(reason) => {
                 let name = given.file_stem().unwrap_or(given.as_os_str()).to_string_lossy();
                 let report = Report::not_loaded(&name, &request, reason, clock.now().saturating_sub(began));

@@ -32,6 +32,7 @@ pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
         planner: args.planner.clone().unwrap_or(Request::default().planner),
         metric: args.metric,
         motion: args.motion,
+        clearance: args.clearance.unwrap_or(0.0),
         budget: Budget { time_s: Some(args.time), iterations: args.iterations, ..Budget::default() },
         seed: args.seed,
         threads,

@@ -59,6 +59,9 @@ pub(crate) fn summary(report: &Report) -> String {
     }
     if let Some(clearance) = report.clearance {
         let text = match clearance.is_finite() {
+            true if report.clearance_kept > 0.0 => {
+                format!("at least {} m, {} m asked for", brief(clearance), brief(report.clearance_kept))
+            }
             true => format!("at least {} m", brief(clearance)),
             false => "there is nothing to hit".to_owned(),
         };
@@ -220,6 +223,7 @@ mod tests {
             path_length_found: time.map(|_| 20.0),
             path_length: time.map(|_| 12.5),
             clearance: time.map(|_| 0.01),
+            clearance_kept: 0.0,
             shortened: true,
             path_file: None,
             picture_file: None,

@@ -91,6 +91,8 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn certificate_differences(&self, certificate: &str) -> Result<Vec<String>, Error>;
     fn explain(&self, row: &[f64]) -> Result<Explanation, Error>;
     fn check_ends(&self) -> Result<Vec<String>, Error>;
+    fn keeping(&self, kept: f64) -> Result<Arc<dyn AnyRobot>, Error>;
+    fn kept(&self) -> f64;
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted>;
     fn lint(&self) -> Vec<String>;
     fn bodies(&self) -> Vec<Body>;
@@ -240,6 +242,12 @@ impl<S: Configuration> AnyRobot for OfState<S> {
     }
     fn check_ends(&self) -> Result<Vec<String>, Error> {
         check_ends(&*self.0)
+    }
+    fn keeping(&self, kept: f64) -> Result<Arc<dyn AnyRobot>, Error> {
+        Ok(Arc::new(Self(self.0.any_keeping(kept)?)))
+    }
+    fn kept(&self) -> f64 {
+        self.0.kept()
     }
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         self.0.make_ready(interrupt)

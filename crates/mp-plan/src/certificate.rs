@@ -74,7 +74,7 @@ impl Certificate {
 }
 
 /// The certificate of a path. `clearance` (m) is a lower bound on the clearance along it, 0 if none is known: the certificate proves
-/// half of it, or a twentieth of the tolerance of the robot where that is more.
+/// half of it, and what the robot keeps at least, or a twentieth of its tolerance where that is more.
 ///
 /// # Errors
 /// When the path is of another robot, is not free, turns exactly half way round in one edge, or the kind of robot is your own and
@@ -93,7 +93,9 @@ pub(crate) fn certificate<K: RobotKind + ?Sized>(
         agrees(&model, row, &kind.poses(q)).map_err(|e| e.context(what()))?;
     }
     let clearance = if clearance.is_finite() { clearance } else { 0.0 };
-    let margin = (0.5 * clearance).max(0.05 * kind.tolerance());
+    // All of what is kept, and half of what is beyond.
+    let kept = if clearance > kind.kept() { kind.kept() } else { 0.0 };
+    let margin = (0.5 * (clearance + kept)).max(0.05 * kind.tolerance());
     let mut prover = Prover::new(&model, margin, interrupt).map_err(|e| Error::new(e).context(what()))?;
     // A path of one configuration is an edge from there to itself.
     let ends = path.rows.iter().zip(path.rows.iter().skip(1).chain(path.rows.last()));

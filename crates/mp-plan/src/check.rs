@@ -30,6 +30,9 @@ pub struct Verdict {
     pub path_length: f64,
     /// A lower bound (m) on the clearance along the path; 0 when it is not free, or none is known.
     pub clearance: f64,
+    /// The clearance (m) from obstacles that was asked for; left out where none was.
+    #[serde(default, skip_serializing_if = "crate::request::is_zero")]
+    pub clearance_kept: f64,
     /// What is wrong. Empty when the path is free.
     pub faults: Vec<String>,
     /// What is inside of closed surfaces, which have no inside unless they are made solid.
@@ -83,7 +86,7 @@ pub(crate) fn clearance<K: RobotKind + ?Sized>(
         return None;
     }
     let unused = AtomicU64::new(0);
-    let mut checker = Counted::new(kind.any_checker(), &unused).with_interrupt(interrupt.clone());
+    let mut checker = Counted::new(kind.any_measure(), &unused).with_interrupt(interrupt.clone());
     let tightest = least_clearance(&kind.any_space(), &mut checker, path, accuracy)?;
     interrupt.raised().is_none().then_some(tightest.clearance)
 }
@@ -143,6 +146,7 @@ pub(crate) fn check<K: RobotKind + ?Sized>(
         configurations: states.states.len(),
         path_length: report.length,
         clearance,
+        clearance_kept: kind.kept(),
         faults,
     })
 }
@@ -165,6 +169,9 @@ pub(crate) fn fault_text<K: RobotKind + ?Sized>(kind: &K, path: &Path<K::State>,
     let touching = kind.touching(&state);
     let what = match (check, touching.is_empty()) {
         _ if kind.sampled().is_some() => "collides".to_owned(),
+        (_, true) if kind.kept() > 0.0 => {
+            format!("comes nearer to an obstacle than {} m", brief(kind.kept()))
+        }
         (MotionCheck::Unproven { .. }, _) | (_, true) => {
             format!("comes nearer to contact than {} m", brief(kind.tolerance()))
         }

@@ -28,7 +28,7 @@ pub struct Explanation {
 pub(crate) fn explain<K: RobotKind + ?Sized>(kind: &K, q: &K::State) -> Explanation {
     let (in_bounds, fault) = (kind.any_space().contains(q), fault(kind, q));
     let clearance = match in_bounds {
-        true => kind.any_checker().clearance(q, f64::INFINITY).max(0.0),
+        true => kind.any_measure().clearance(q, f64::INFINITY).max(0.0),
         false => 0.0,
     };
     let nearest = fault.is_some().then(|| kind.nearest_free(q)).flatten();
@@ -52,16 +52,21 @@ fn fault<K: RobotKind + ?Sized>(kind: &K, q: &K::State) -> Option<String> {
         return (!kind.any_checker().is_valid(q)).then(|| "in collision".to_owned());
     }
     let tolerance = kind.tolerance();
-    let clearance = kind.any_checker().clearance(q, tolerance);
-    if clearance >= tolerance {
+    if kind.any_checker().clearance(q, tolerance) >= tolerance {
         return None;
     }
     let touching = kind.touching(q);
     Some(match touching.is_empty() {
         true => {
-            let [clearance, tolerance] = told_apart(clearance, tolerance);
-            let between = kind.closest(q).map_or_else(String::new, |names| format!(" between {names}"));
-            format!("{clearance} m from contact{between}: at least {tolerance} m is needed")
+            let (between, distance) = match kind.closest(q) {
+                Some((names, distance)) => (format!(" between {names}"), distance),
+                None => (String::new(), kind.any_measure().clearance(q, f64::INFINITY)),
+            };
+            // Links may be nearer to each other than what is kept from obstacles.
+            let kept = if distance < tolerance { 0.0 } else { kind.kept() };
+            let [distance, needed] = told_apart(distance, kept + tolerance);
+            let needs = if kept > 0.0 { "must be kept" } else { "is needed" };
+            format!("{distance} m from contact{between}: at least {needed} m {needs}")
         }
         false if touching.iter().any(|touch| touch.part.is_some()) => {
             format!("in collision: {}", list(&touching))
@@ -86,6 +91,7 @@ pub(crate) fn refused<K: RobotKind + ?Sized>(kind: &K, name: &str, q: &K::State)
     let mut help = match kind.nearest_free(q) {
         _ if !kind.any_space().contains(q) => kind.bounds_remedy(q),
         Some(free) => format!("the nearest free configuration found is {}", kind.written(&free)),
+        None if kind.kept() > 0.0 => "nothing nearby keeps that clearance: ask for less".to_owned(),
         None => "no free configuration was found nearby: is the scene in metres, the robot in its frame?"
             .to_owned(),
     };

@@ -69,9 +69,17 @@ pub(crate) fn finish_given<K: RobotKind + ?Sized>(
     finish(kind, &relaxed, request, control, rest, planned, &mut Vec::new())?.map_err(ended)
 }
 
-/// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](RobotKind::shortcut_clearance) or is an
-/// edge of the given path. The same seed gives the same path, unless `interrupt` ends it early: then the path is what it is after the
-/// last change.
+/// In passages too narrow for the clearance of shortcuts they keep this part of it.
+const NARROW: f64 = 0.1;
+
+/// Of two paths that lead through narrow passages, the one that keeps more elsewhere is taken if the other is not shorter than this part
+/// of its length.
+const FAR_SHORTER: f64 = 0.8;
+
+/// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](RobotKind::shortcut_clearance), or leads through a
+/// passage where the given path does not keep it: there they keep a tenth of it, or are edges of the given path; so does all of it where the
+/// way is far shorter then. The same seed gives the
+/// same path, unless `interrupt` ends it early: then the path is what it is after the last change.
 ///
 /// # Errors
 /// When the tolerance of the robot is not valid.
@@ -84,24 +92,63 @@ pub fn shorten<K: RobotKind + ?Sized>(
     let _span = tracing::info_span!("shorten").entered();
     let (space, unused) = (AnySpace::new(&kind.any_space()), AtomicU64::new(0));
     let counting = Counting::new(&unused, interrupt.clone());
-    let interrupt = interrupt.clone();
-    let mut check: AnyCheck<'_, K::State> = match kind.sampled() {
-        None => {
-            let check = kind.motions(By::Certificates(kind.shortcut_clearance()), &counting)?;
-            Box::new(Possible { kind, check, interrupt, deadlines: None })
-        }
-        Some(length) => {
-            let check = kind.motions(By::States(&space, resolution(length)), &counting)?;
-            let verifier: AnyCheck<'_, K::State> = Box::new(kind.any_verifier()?);
-            let check = Both { check, verifier };
-            Box::new(Possible { kind, check, interrupt, deadlines: None })
-        }
-    };
+    let wide = kind.shortcut_clearance();
+    let narrow = (NARROW * wide).max(kind.tolerance());
+    // A clearance that was asked for is enough.
+    let has_wide = kind.kept() == 0.0 && kind.sampled().is_none();
+    let mut check = possible(
+        kind,
+        interrupt,
+        match kind.sampled() {
+            None => kind.motions(By::Certificates(if has_wide { wide } else { narrow }), &counting)?,
+            Some(length) => {
+                let check = kind.motions(By::States(&space, resolution(length)), &counting)?;
+                Box::new(Both { check, verifier: Box::new(kind.any_verifier()?) })
+            }
+        },
+    );
     let mut rng = Rng::stream(seed, STREAM);
-    Ok(match kind.shortened(path, &mut check, Effort::default(), &mut rng) {
-        Some(short) => short,
-        None => shorten_by(&kind.any_space(), check, path, rng),
-    })
+    if let Some(short) = kind.shortened(path, &mut check, Effort::default(), &mut rng) {
+        return Ok(short);
+    }
+    let space = kind.any_space();
+    let short = shorten_by(&space, &mut check, path, &mut rng);
+    if !has_wide {
+        return Ok(short);
+    }
+    let edges = short.states.windows(2);
+    let roomy: Vec<bool> = edges.map(|w| check.check_motion(&w[0], &w[1]).is_free()).collect();
+    if roomy.iter().all(|roomy| *roomy) {
+        return Ok(short);
+    }
+    let mut narrow = possible(kind, interrupt, kind.motions(By::Certificates(narrow), &counting)?);
+    let mut states: Vec<K::State> = short.states.first().cloned().into_iter().collect();
+    let mut first = 0;
+    for passage in roomy.chunk_by(|a, b| a == b) {
+        let edges = &short.states[first..=first + passage.len()];
+        first += passage.len();
+        match passage[0] || passage.len() == 1 {
+            true => states.extend_from_slice(&edges[1..]),
+            false => {
+                let part = shorten_by(&space, &mut narrow, &Path::straight(edges.to_vec()), &mut rng);
+                states.extend(part.states.into_iter().skip(1));
+            }
+        }
+    }
+    let short = Path::straight(states);
+    // There are passages where little is kept: a far shorter way may lead through others.
+    let other = shorten_by(&space, &mut narrow, &short, &mut rng);
+    let is_far_shorter = other.length(&space) < FAR_SHORTER * short.length(&space);
+    Ok(if is_far_shorter { other } else { short })
+}
+
+/// `check`, which finds no motion free that the robot cannot make.
+fn possible<'k, K: RobotKind + ?Sized>(
+    kind: &'k K,
+    interrupt: &Interrupt,
+    check: AnyCheck<'k, K::State>,
+) -> AnyCheck<'k, K::State> {
+    Box::new(Possible { kind, check, interrupt: interrupt.clone(), deadlines: None })
 }
 
 /// A sampled check, and the verifier of what it finds free: a path made short by samples alone would graze what is between them.
@@ -122,11 +169,11 @@ impl<S> MotionValidity<S> for Both<'_, S> {
 /// [`shorten`] with a check behind a pointer: compiled for each space instead of each robot.
 fn shorten_by<C: Factored>(
     space: &C,
-    mut check: AnyCheck<'_, C::State>,
+    check: &mut AnyCheck<'_, C::State>,
     path: &Path<C::State>,
-    mut rng: Rng,
+    rng: &mut Rng,
 ) -> Path<C::State> {
-    simplify(space, &mut check, path, Effort::default(), &mut rng)
+    simplify(space, check, path, Effort::default(), rng)
 }
 
 /// Shortens `found` if the request says so, and verifies what will be written, within the time `left`. If the shortened path does

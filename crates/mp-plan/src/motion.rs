@@ -72,6 +72,20 @@ pub trait TypedMotion: Configured + Sized {
     fn starting_as(self, _row: &[f64]) -> Self {
         self
     }
+    /// The same robot, which keeps the clearance `kept` (m) from obstacles, in place of the one kept before:
+    /// [`RobotKind::kept`] says which. What is nearer counts as in contact for checker and verifier, and the checker gives clearances that
+    /// are less by this much. By default an error.
+    ///
+    /// # Errors
+    /// When such robots cannot keep a clearance.
+    fn keeping(&self, _kept: f64) -> Result<Self, Error> {
+        Err(Error::new("this robot cannot keep a clearance from obstacles")
+            .help("ask for none, or implement `TypedMotion::keeping` and `checker_keeping` for it"))
+    }
+    /// The checker of [`keeping`](Self::keeping); `None`, the default, where the robot cannot keep a clearance.
+    fn checker_keeping(&self, _kept: f64) -> Option<Self::Checker> {
+        None
+    }
 }
 
 /// How queries are counted, and what ends them.
@@ -116,6 +130,13 @@ pub trait Motion: Configured {
     fn any_space(&self) -> AnyFactored<'_, Self::State>;
     /// A checker.
     fn any_checker(&self) -> AnyChecker<Self::State>;
+    /// A checker that keeps no clearance: what it measures is the distance to obstacles itself.
+    fn any_measure(&self) -> AnyChecker<Self::State>;
+    /// The same robot, which keeps a clearance from obstacles: [`TypedMotion::keeping`].
+    ///
+    /// # Errors
+    /// When such robots cannot keep a clearance.
+    fn any_keeping(&self, kept: f64) -> Result<Arc<AnyKind<Self::State>>, Error>;
     /// A verifier.
     ///
     /// # Errors
@@ -150,6 +171,12 @@ impl<K: TypedMotion + RobotKind> Motion for K {
     }
     fn any_checker(&self) -> AnyChecker<Self::State> {
         AnyChecker(Box::new(self.checker().clone()))
+    }
+    fn any_measure(&self) -> AnyChecker<Self::State> {
+        AnyChecker(Box::new(self.checker_keeping(0.0).unwrap_or_else(|| self.checker().clone())))
+    }
+    fn any_keeping(&self, kept: f64) -> Result<Arc<AnyKind<Self::State>>, Error> {
+        Ok(Arc::new(self.keeping(kept)?))
     }
     fn any_verifier(&self) -> Result<AnyVerifier<'_, Self::State>, Error> {
         Ok(AnyVerifier(Box::new(self.verifier()?)))

@@ -68,6 +68,7 @@ impl Report {
             planner: request.planner.clone(),
             metric: request.metric.to_string(),
             motion: request.motion.to_string(),
+            clearance_kept: request.clearance,
             seed: request.seed,
             stages: vec![StageTime::new(RunStage::Loading, spent, Some(reason))],
             ..Self::empty()
@@ -105,6 +106,7 @@ impl Report {
             path_length_found: None,
             path_length: None,
             clearance: None,
+            clearance_kept: 0.0,
             shortened: false,
             fingerprint: None,
             path_file: None,
@@ -138,6 +140,7 @@ pub(crate) fn reported<K: RobotKind + ?Sized>(
         planner: PlannerKind::new(&request.planner)?.to_string(),
         metric: request.metric.to_string(),
         motion: crate::prepared::motion(kind, request).to_string(),
+        clearance_kept: kind.kept(),
         seed: request.seed,
         iterations: found.progress.iterations,
         nodes: found.progress.nodes,

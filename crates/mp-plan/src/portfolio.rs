@@ -245,13 +245,15 @@ impl Scene {
         }
         // Each run has one thread, and ends with its first path.
         let request = Request { threads: 1, first_only: true, ..request.clone() };
+        let scene = &self.for_request(&request)?;
+        let request = Request { clearance: scene.clearance_kept(), ..request };
         let began = control.time_if_limited(&request);
-        self.check_ends()?;
+        scene.check_ends()?;
         control.spend_since(began);
         let began = control.clock.now();
         control.stage(Stage::Planning);
         // What is wrong with the request is said as always, before it is said of a run.
-        drop(self.prepared(&request)?.begin(Rng::seed(request.seed), control)?);
+        drop(scene.prepared(&request)?.begin(Rng::seed(request.seed), control)?);
         let identity = self.portfolio_identity(&request, portfolio)?;
         let threads = options.threads.max(1);
         let budget = &request.budget;
@@ -279,8 +281,7 @@ impl Scene {
         let start = Start::shared(link, Some(Start::new(identity, &rounds)))?;
         let run_options = mp_ranks::Options { threads, cancel: control.cancel.clone() };
         let work = |item: u64, hand: &mp_ranks::Hand| {
-            Lane { scene: self, request: &request, dealt: &dealt, start: &start, clocks: &clocks }
-                .work(item, hand)
+            Lane { scene, request: &request, dealt: &dealt, start: &start, clocks: &clocks }.work(item, hand)
         };
         let job = link.is_master().then_some(&mut rounds as &mut dyn mp_ranks::Job);
         let ran = mp_ranks::run(link, &run_options, job, &work)?;
@@ -291,7 +292,7 @@ impl Scene {
         let (found, counts, work, by_schedule) = rounds.into_found(cancelled);
         let time = control.clock.now().saturating_sub(began);
         let complete = found.ended_by.is_none_or(|reason| !is_of_machine(reason));
-        let mut report = self.found_report(&request, found, time, control)?;
+        let mut report = scene.found_report(&request, found, time, control)?;
         report.portfolio = Some(counts);
         if by_schedule {
             let by = StoppedBy::Schedule;

@@ -33,6 +33,10 @@ pub struct Request {
     pub metric: MetricName,
     /// How motions are checked while planning. The path returned is always verified with other code.
     pub motion: MotionValidator,
+    /// The clearance (m) that the path keeps from obstacles all along; an arm's links may be nearer to each other. Zero for that of the
+    /// [scene](crate::Scene::keeping), which keeps none unless told to.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub clearance: f64,
     /// When to give up.
     pub budget: Budget,
     /// The seed of all randomness.
@@ -312,6 +316,12 @@ macro_rules! as_text {
 }
 as_text!(Length, MotionValidator, RelaxField);
 
+/// Whether a member is left out: what was written before it was there stays the same.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+pub(crate) fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
 /// A minute.
 impl Default for Budget {
     fn default() -> Self {
@@ -327,6 +337,7 @@ impl Default for Request {
             settings: BTreeMap::new(),
             metric: MetricName::Default,
             motion: MotionValidator::Certified,
+            clearance: 0.0,
             budget: Budget::default(),
             seed: 1,
             threads: 1,
@@ -392,6 +403,12 @@ impl Request {
         Self { motion, ..self }
     }
 
+    /// Sets the clearance (m) that the path keeps from obstacles.
+    #[must_use]
+    pub fn clearance(self, clearance: f64) -> Self {
+        Self { clearance, ..self }
+    }
+
     /// Sets the budget of time, in seconds.
     #[must_use]
     pub fn time(mut self, seconds: f64) -> Self {
@@ -445,6 +462,7 @@ impl Request {
                 Error::new(format!("the budget of time is {time} s")).help("give a number above zero")
             );
         }
+        crate::scene::check_clearance(self.clearance)?;
         if self.roadmap.is_some() && !planner.is_roadmap() {
             let help = "take a planner that builds a roadmap, such as prm";
             return Err(Error::new(format!("{planner} has no roadmap to keep")).help(help));

@@ -221,6 +221,10 @@ pub trait RobotKind: Motion + Any + fmt::Debug + Send + Sync {
     }
     /// The clearance (m) that certified checks resolve: a motion that comes nearer to contact is not free.
     fn tolerance(&self) -> f64;
+    /// The clearance (m) that it [keeps](crate::TypedMotion::keeping) from obstacles: by default none.
+    fn kept(&self) -> f64 {
+        0.0
+    }
     /// How far apart configurations are tested along motions, where no clearance is known that could certify them: then only
     /// [`Validity`] is asked, a request for `certified` motions means this, and reports give no clearance. By default motions are
     /// certified.
@@ -231,10 +235,11 @@ pub trait RobotKind: Motion + Any + fmt::Debug + Send + Sync {
     fn accuracy(&self) -> f64 {
         self.tolerance()
     }
-    /// The clearance (m) that shortcuts keep. It is more than the tolerance, which planning may use fully, because a path
-    /// that grazes every corner is of no use.
+    /// The clearance (m) that shortcuts keep where there is room, and where no clearance is [kept](Self::kept) that was asked for: a
+    /// fiftieth of the size of the robots of this crate, because a path that grazes every corner is of no use. In passages that are
+    /// narrower they keep a tenth of it.
     fn shortcut_clearance(&self) -> f64 {
-        20.0 * self.tolerance()
+        200.0 * self.tolerance()
     }
     /// The space under a metric, with an index for it.
     ///
@@ -244,8 +249,9 @@ pub trait RobotKind: Motion + Any + fmt::Debug + Send + Sync {
 
     /// What touches what at a configuration.
     fn touching(&self, q: &Self::State) -> Vec<Touch>;
-    /// What is nearest to contact at a configuration, as messages name it: `tool and table`. By default it is not known.
-    fn closest(&self, _q: &Self::State) -> Option<String> {
+    /// What is nearest to contact at a configuration, as messages name it, such as `tool and table`, and how far apart that is (m). By
+    /// default it is not known.
+    fn closest(&self, _q: &Self::State) -> Option<(String, f64)> {
         None
     }
     /// What to do about contacts at the start or a goal, besides moving it. By default there is nothing else.

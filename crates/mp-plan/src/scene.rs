@@ -48,6 +48,15 @@ pub struct Scene {
     feature: Option<&'static str>,
 }
 
+/// Refuses a clearance that is no length.
+pub(crate) fn check_clearance(clearance: f64) -> Result<(), Error> {
+    match clearance >= 0.0 && clearance.is_finite() {
+        true => Ok(()),
+        false => Err(Error::new(format!("the clearance to keep is {clearance} m"))
+            .help("give a finite number of metres, zero or more")),
+    }
+}
+
 /// A scene as an editor keeps it: its document, and the meshes that are not written into the document.
 #[derive(Clone, Debug)]
 pub struct EditedScene {
@@ -283,6 +292,56 @@ impl Scene {
         Ok(Self { robot: self.robot.with_ends(start, goals)?, ..self.clone() })
     }
 
+    /// The same scene, in which paths keep the clearance `clearance` (m) from obstacles, in place of the one kept before. All methods mind
+    /// it: planning, shortening, relaxing, checking, explaining, roadmaps and certificates. The links of an arm may be nearer to each
+    /// other than that.
+    ///
+    /// ```
+    /// use mp_plan::{Request, Scene};
+    /// let scene = Scene::find("cubicles")?.keeping(0.5)?;
+    /// let report = scene.plan(&Request::default())?;
+    /// assert!(report.clearance >= Some(0.5));
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the clearance is not a finite number from zero on, or the kind of robot is your own and cannot keep one.
+    pub fn keeping(&self, clearance: f64) -> Result<Self, Error> {
+        check_clearance(clearance)?;
+        match clearance == self.clearance_kept() {
+            true => Ok(self.clone()),
+            false => Ok(Self { robot: self.robot.keeping(clearance)?, ..self.clone() }),
+        }
+    }
+
+    /// The clearance (m) that paths [keep](Self::keeping) from obstacles: zero unless told to.
+    #[must_use]
+    pub fn clearance_kept(&self) -> f64 {
+        self.robot.kept()
+    }
+
+    /// The scene that a request is about: this one, keeping the clearance of the request if it has one.
+    ///
+    /// # Errors
+    /// As [`keeping`](Self::keeping).
+    pub fn for_request(&self, request: &Request) -> Result<Self, Error> {
+        self.keeping(if request.clearance == 0.0 { self.clearance_kept() } else { request.clearance })
+    }
+
+    /// The robot that a request is about.
+    fn robot_for(&self, request: &Request) -> Result<Arc<dyn AnyRobot>, Error> {
+        Ok(self.for_request(request)?.robot)
+    }
+
+    /// Refuses a request whose clearance the scene does not keep.
+    fn keeps(&self, request: &Request) -> Result<(), Error> {
+        match [0.0, self.clearance_kept()].contains(&request.clearance) {
+            true => Ok(()),
+            false => Err(Error::new(format!("the scene keeps no clearance of {} m", request.clearance))
+                .help("take the scene that `Scene::for_request` gives")),
+        }
+    }
+
     /// The planner that is taken when none is named: one that suits the robot.
     #[must_use]
     pub fn default_planner(&self) -> &'static str {
@@ -318,7 +377,7 @@ impl Scene {
     /// # Errors
     /// As [`plan`](Self::plan).
     pub fn plan_with(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
-        let mut report = self.robot.plan(request, control)?;
+        let mut report = self.robot_for(request)?.plan(request, control)?;
         report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(report)
     }
@@ -339,21 +398,22 @@ impl Scene {
         apart: Length,
         control: &mut Control<'_>,
     ) -> Result<Vec<Report>, Error> {
-        let began = control.time_if_limited(request);
-        self.check_ends()?;
+        let (began, robot) = (control.time_if_limited(request), self.robot_for(request)?);
+        robot.check_ends()?;
         control.spend_since(began);
-        let mut reports = self.robot.routes(request, count.max(1), apart, control)?;
+        let mut reports = robot.routes(request, count.max(1), apart, control)?;
         for report in &mut reports {
             report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         }
         Ok(reports)
     }
 
-    /// Prepares a run that is advanced in pieces.
+    /// Prepares a run that is advanced in pieces. A request with a clearance needs the scene that [`for_request`](Self::for_request) gives.
     ///
     /// # Errors
-    /// As [`plan`](Self::plan).
+    /// As [`plan`](Self::plan), and when the scene does not keep the clearance of the request.
     pub fn prepare<'s>(&'s self, request: &'s Request) -> Result<PreparedRun<'s>, Error> {
+        self.keeps(request)?;
         self.check_ends()?;
         let file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(PreparedRun { prepared: self.robot.prepare(request)?, file })
@@ -362,6 +422,7 @@ impl Scene {
     /// The request, prepared for a run that makes no report itself.
     #[cfg(feature = "ranks")]
     pub(crate) fn prepared<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error> {
+        self.keeps(request)?;
         self.robot.prepare(request)
     }
 
@@ -374,7 +435,7 @@ impl Scene {
         time: Duration,
         control: &mut Control<'_>,
     ) -> Result<Report, Error> {
-        let mut report = self.robot.found_report(request, found, time, control)?;
+        let mut report = self.robot_for(request)?.found_report(request, found, time, control)?;
         report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(report)
     }
@@ -408,17 +469,19 @@ impl Scene {
     /// As [`roadmap`](Self::roadmap).
     #[cfg(feature = "roadmaps")]
     pub fn roadmap_with(&self, request: &Request, control: &mut Control<'_>) -> Result<SceneRoadmap, Error> {
-        let roadmap = Arc::clone(&self.robot).roadmap(request, control)?;
+        let roadmap = self.robot_for(request)?.roadmap(request, control)?;
         Ok(SceneRoadmap { roadmap, file: self.file.as_ref().map(|file| file.display().to_string()) })
     }
 
     /// The work on a roadmap by regions, for the ranks of a cluster: one round of the planner `regional-prm`. Its parameters say how large
-    /// the roadmap is. The request has no budget but that of time, which is for the caller to watch.
+    /// the roadmap is. The request has no budget but that of time, which is for the caller to watch. A request with a clearance needs the
+    /// scene that [`for_request`](Self::for_request) gives.
     ///
     /// # Errors
     /// When the request is not valid, for this scene or for such work.
     #[cfg(all(feature = "ranks", feature = "roadmaps"))]
     pub fn regions<'s>(&'s self, request: &'s Request) -> Result<crate::RegionalWork<'s>, Error> {
+        self.keeps(request)?;
         self.check_ends()?;
         let file = self.file.as_ref().map(|file| file.display().to_string());
         crate::RegionalWork::new(&self.robot, file, request)
@@ -436,7 +499,8 @@ impl Scene {
     }
 
     /// Finishes a path from elsewhere, between any two configurations: verifies it, shortens or relaxes it as the request says, and
-    /// verifies the result as it will be written. Of the request, the finish, its field, the seed and the budget of time count.
+    /// verifies the result as it will be written. Of the request, the finish, its field, the clearance, the seed and the budget of time
+    /// count.
     ///
     /// ```
     /// use mp_plan::{Control, Finish, PathRows, Request, Scene};
@@ -456,7 +520,7 @@ impl Scene {
         request: &Request,
         control: &mut Control<'_>,
     ) -> Result<Finished, Error> {
-        self.robot.finish(path, request, control)
+        self.robot_for(request)?.finish(path, request, control)
     }
 
     /// Verifies a path from the start to a goal, with a verifier that shares no code with the planners' checks.

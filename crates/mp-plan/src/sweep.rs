@@ -122,7 +122,7 @@ const MAX_BETWEEN: f64 = 2000.0;
 /// Configurations along a path, neighbours so near that poses between them may be interpolated linearly.
 pub(crate) fn track<K: RobotKind + ?Sized>(kind: &K, path: &PathRows) -> Result<Track, Error> {
     let Shown { states, lengths, ways } = Shown::of(kind, path)?;
-    let mut checker = kind.any_checker();
+    let mut checker = kind.any_measure();
     let total: f64 = lengths.iter().sum();
     let spacing = (0.1 * kind.picture_spacing()).max(total / MAX_BETWEEN);
     let mut track = Track::default();

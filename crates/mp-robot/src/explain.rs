@@ -42,6 +42,14 @@ impl<P: Placement> RigidBody<P> {
         contacts
     }
 
+    /// The name of the obstacle nearest to the robot at `q`, and its distance (m); `None` when there are no obstacles.
+    pub fn closest(&mut self, q: &P::State) -> Option<(String, f64)> {
+        let shared = &*self.shared;
+        let scene = &shared.obstacles.scene;
+        let (distance, id) = scene.clearance(&mut self.query, &shared.robot, &P::pose(q), f64::INFINITY);
+        Some((scene.body(id?)?.name().to_owned(), distance))
+    }
+
     /// The names of the solid obstacles (closed, triangles facing outward) that contain the first vertex of the robot at
     /// `q`. A robot inside an obstacle that touches nothing counts as free, but can never leave: worth a warning.
     #[must_use]

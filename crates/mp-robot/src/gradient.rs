@@ -21,10 +21,13 @@ impl<P: Placement> ClearanceGradient<P::State> for RigidBody<P> {
         let shared = std::sync::Arc::clone(&self.shared);
         let inside = self.point_inside(&pose);
         // For a point deep inside, the surface may be farther away than the reach.
-        let enough = if inside { f64::INFINITY } else { reach };
+        let kept = self.kept();
+        let enough = if inside { f64::INFINITY } else { reach + kept };
         let (clearance, nearest) =
             shared.obstacles.scene.clearance(&mut self.query, &shared.robot, &pose, enough);
-        let Some(body) = nearest.and_then(|id| shared.obstacles.scene.body(id)) else { return clearance };
+        let Some(body) = nearest.and_then(|id| shared.obstacles.scene.body(id)) else {
+            return clearance - kept;
+        };
         let (robot, other) = (&shared.robot, (body.mesh(), body.pose()));
         let nested = clearance <= 0.0 && self.query.nested(robot, &pose, other.0, other.1);
         let apart = (clearance > 0.0 || nested).then(|| self.query.distance(robot, &pose, other.0, other.1));
@@ -35,13 +38,13 @@ impl<P: Placement> ClearanceGradient<P::State> for RigidBody<P> {
             }
             None => match self.first_contact(&pose) {
                 Some(found) => found,
-                None => return 0.0,
+                None => return 0.0 - kept,
             },
         };
         if let Some(direction) = direction.try_normalize(0.0) {
             write_gradient::<P>(&pose, &at, &direction, gradient);
         }
-        value
+        value - kept
     }
 }
 

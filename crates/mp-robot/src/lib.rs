@@ -47,6 +47,7 @@ mod explain;
 mod features;
 mod gradient;
 mod hints;
+mod kept;
 mod moving;
 mod obstacles;
 mod placement;

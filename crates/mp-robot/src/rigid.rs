@@ -1,6 +1,7 @@
 //! A rigid body among obstacles that stand still.
 
 use crate::features::SceneFeatures;
+use crate::kept::beyond;
 use crate::obstacles::{MAX_TRIANGLES, Obstacles, make_once, resolved_tolerance};
 use crate::solid_obstacle::SolidObstacle;
 use crate::{BodyRadii, CheckCounters, Placement, Planar, Point, Spatial};
@@ -93,6 +94,8 @@ pub struct RigidBody<P: Placement> {
     /// The ends of the last motion that has a state where nothing is inside of anything: where it touches nothing, that holds for
     /// all of it.
     apart: Option<[Isometry3<f64>; 2]>,
+    /// The clearance (m) to keep.
+    kept: f64,
     placement: PhantomData<P>,
 }
 
@@ -210,8 +213,22 @@ impl<P: Placement> RigidBody<P> {
             counters: CheckCounters::default(),
             poses: Vec::new(),
             apart: None,
+            kept: 0.0,
             placement: PhantomData,
         })
+    }
+
+    /// The same body, which keeps the clearance `kept` (m) from obstacles: what is nearer counts as in contact, all clearances are less by
+    /// this much, and a [`Verifier`](crate::Verifier) of it proves that it is kept.
+    #[must_use]
+    pub fn keeping(self, kept: f64) -> Self {
+        Self { kept: kept.max(0.0), apart: None, ..self }
+    }
+
+    /// The clearance (m) that it [keeps](Self::keeping): zero, unless asked for.
+    #[must_use]
+    pub fn kept(&self) -> f64 {
+        self.kept
     }
 
     /// Makes what a [`Verifier`](crate::Verifier) would make at its first use, which takes long for large meshes, unless `interrupt`
@@ -310,17 +327,23 @@ impl<P: Placement> RigidBody<P> {
         nested
     }
 
-    /// The clearance of surfaces.
+    /// The clearance of surfaces, beyond what is kept.
     pub(crate) fn surface_clearance(&mut self, pose: &Isometry3<f64>, enough: f64) -> f64 {
         self.counters.clearance_checks += 1;
-        let shared = &*self.shared;
-        shared.obstacles.scene.surface_clearance(&mut self.query, &shared.robot, pose, enough).0
+        let (shared, query) = (&*self.shared, &mut self.query);
+        let scene = &shared.obstacles.scene;
+        beyond(self.kept, enough, |limit| scene.surface_clearance(query, &shared.robot, pose, limit).0)
     }
 
     fn collides(&mut self, pose: &Isometry3<f64>) -> bool {
         self.counters.collision_checks += 1;
         let shared = &*self.shared;
-        shared.obstacles.scene.collides(&mut self.query, &shared.robot, pose) || self.point_inside(pose)
+        let scene = &shared.obstacles.scene;
+        let touches = match self.kept > 0.0 {
+            true => scene.within(&mut self.query, &shared.robot, pose, self.kept),
+            false => scene.collides(&mut self.query, &shared.robot, pose),
+        };
+        touches || self.point_inside(pose)
     }
 }
 
@@ -331,6 +354,9 @@ impl<P: Placement> Validity<P::State> for RigidBody<P> {
     }
 
     fn first_invalid(&mut self, states: &[P::State]) -> Option<usize> {
+        if self.kept > 0.0 {
+            return states.iter().position(|q| !self.is_valid(q));
+        }
         self.poses.clear();
         self.poses.extend(states.iter().map(P::pose));
         let shared = &*self.shared;
@@ -346,9 +372,11 @@ impl<P: Placement> Clearance<P::State> for RigidBody<P> {
     fn clearance(&mut self, q: &P::State, enough: f64) -> f64 {
         self.counters.clearance_checks += 1;
         let pose = P::pose(q);
-        let shared = &*self.shared;
-        let (clearance, _) = shared.obstacles.scene.clearance(&mut self.query, &shared.robot, &pose, enough);
-        if self.point_inside(&pose) { 0.0 } else { clearance }
+        let (shared, query) = (&*self.shared, &mut self.query);
+        let scene = &shared.obstacles.scene;
+        let clearance =
+            beyond(self.kept, enough, |limit| scene.clearance(query, &shared.robot, &pose, limit).0);
+        if self.point_inside(&pose) { 0.0 } else { clearance.max(0.0) }
     }
 
     fn in_contact(&mut self, q: &P::State) -> bool {
@@ -377,7 +405,7 @@ impl<P: Placement> MotionClearance<P::State> for RigidBody<P> {
                 &shared.robot,
                 &middle,
                 &motion,
-                margin,
+                margin + self.kept,
             ) {
                 IntervalCheck::Free if self.is_nested_on([from, to], &middle) => {
                     return IntervalClearance::Collision { at: 0.0 };

@@ -34,6 +34,8 @@ pub struct Verifier<'c, C, P> {
     solids: Vec<SolidObstacle>,
     radius: f64,
     tolerance: f64,
+    /// The clearance (m) that the robot keeps, to which the tolerance is added.
+    kept: f64,
     sweep: Sweep,
     interrupt: Interrupt,
     /// The end of the last motion that was found free, where nothing is inside of anything.
@@ -76,6 +78,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
             solids: solids.iter().map(|(_, solid)| solid.clone()).collect(),
             radius: shared.robot_mesh.vertices().iter().map(from_origin).fold(0.0, f64::max),
             tolerance,
+            kept: robot.kept(),
             sweep: Sweep::default(),
             interrupt: Interrupt::never(),
             apart: None,
@@ -83,7 +86,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
         })
     }
 
-    /// The clearance (m) that motions found free keep from every obstacle.
+    /// The clearance (m) that motions found free keep from every obstacle, beyond what the robot [keeps](RigidBody::keeping).
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -109,11 +112,16 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
         self.judged(clearance)
     }
 
+    /// The clearance (m) of motions found free.
+    pub(crate) fn margin(&self) -> f64 {
+        self.kept + self.tolerance
+    }
+
     /// What a clearance (m) means.
     pub(crate) fn judged(&self, clearance: f64) -> MotionCheck {
         match clearance {
-            c if c <= 0.0 => MotionCheck::Collision { at: 0.0 },
-            c if c >= self.tolerance => MotionCheck::Free { clearance: c },
+            c if c <= self.kept => MotionCheck::Collision { at: 0.0 },
+            c if c >= self.margin() => MotionCheck::Free { clearance: c },
             _ => MotionCheck::Unproven { at: 0.0 },
         }
     }
@@ -125,11 +133,11 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
             || self.solids.iter().any(|solid| solid.contains(&pose.translation.vector.into()))
     }
 
-    /// Whether the robot surely touches an obstacle at a pose.
+    /// Whether the robot surely touches an obstacle at a pose, or is nearer than the clearance to keep.
     fn touches(&self, pose: &Isometry3<f64>) -> bool {
         let Some(world) = &self.world else { return false };
-        let touching = self.robot.at_least(pose, world, &Isometry3::identity(), self.tolerance);
-        touching.is_err_and(|distance| distance <= 0.0)
+        let touching = self.robot.at_least(pose, world, &Isometry3::identity(), self.margin());
+        touching.is_err_and(|distance| distance <= self.kept)
     }
 
     /// An upper bound (m) on the distance between the places of a robot point at two poses.
@@ -156,7 +164,7 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<P::State> for Veri
         if self.interrupt.ask() {
             return MotionCheck::Unproven { at: 0.0 };
         }
-        match self.sweep.sweep(&self.robot, pose_at, world, self.tolerance) {
+        match self.sweep.sweep(&self.robot, pose_at, world, self.margin(), self.tolerance) {
             SweepCheck::Free { clearance } if self.interrupt.raised().is_none() => {
                 self.apart = Some(ends[1]);
                 MotionCheck::Free { clearance }

@@ -54,6 +54,7 @@ pub fn request(draw: &mut Draw, scene: &Scene, planner: Option<&str>) -> Request
         settings,
         metric,
         motion,
+        clearance: 0.0,
         budget: Budget {
             time_s: Some(MOST_SECONDS),
             iterations: Some(draw.logarithmic(0.05 * most, most) as u64),

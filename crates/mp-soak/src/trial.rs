@@ -152,6 +152,7 @@ impl Problem {
             self.judge_refusal(&error, &mut trial);
             return trial;
         }
+        request.clearance = self.clearance();
         let mut answer = scene.plan(&request);
         for simpler in [Simpler::Plain, Simpler::Unset, Simpler::Default] {
             let Err(error) = &answer else { break };
@@ -186,9 +187,24 @@ impl Problem {
             trial.outcome = Outcome::Solved;
             let path =
                 PathRows { format: scene.path_format(), columns: report.columns.clone(), rows: rows.clone() };
+            let scene = scene.keeping(request.clearance).unwrap_or(scene);
             self.judge_path(&scene, &path, &mut rest, &mut trial);
         }
         trial
+    }
+
+    /// A clearance (m) to keep, in one problem of five: less than start and goals have.
+    fn clearance(&self) -> f64 {
+        let (mut draw, case) = (self.rest.clone(), &self.world.case);
+        (0..2000).for_each(|_| {
+            draw.bits();
+        });
+        let examples = case.goals.iter().map(|goal| case.example(goal));
+        let ends = std::iter::once(Some(case.start.clone())).chain(examples);
+        let clearance =
+            |row: Option<Vec<f64>>| row.and_then(|row| case.clearance_at(&row).ok()).unwrap_or(0.0);
+        let least = ends.map(clearance).fold(f64::INFINITY, f64::min);
+        if draw.chance(0.2) && least.is_finite() { draw.within(0.1, 0.9) * least } else { 0.0 }
     }
 
     /// An end was refused: the oracle must agree that one is not free.
@@ -250,7 +266,8 @@ impl Problem {
                 return;
             }
         };
-        let judged = case.judge(&rows);
+        let kept = scene.clearance_kept();
+        let judged = case.judge_keeping(&rows, kept);
         if let Some(fault) = &judged.fault {
             let sort = match fault {
                 Fault::Contact { .. } => "path collides",
@@ -290,7 +307,7 @@ impl Problem {
         for _ in 0..3 {
             let mut damaged = rows.to_vec();
             damage(&mut damaged, case.extent, rest);
-            let judged = case.judge(&damaged);
+            let judged = case.judge_keeping(&damaged, scene.clearance_kept());
             // The verifier is asked about ends a little off too; it allows more.
             let Some(fault @ (Fault::Contact { .. } | Fault::Invalid(_))) = &judged.fault else { continue };
             trial.damaged += 1;

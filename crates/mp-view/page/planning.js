@@ -80,6 +80,7 @@ export class PlanningPanel {
     const stepRow = labelled("Step of the check", step);
     stepRow.hidden = motion !== "discrete";
     this.motion = select([["certified", "certified"], ["discrete", "discrete"]], motion, (value) => (stepRow.hidden = value !== "discrete"));
+    this.clearance = numberField(request.clearance || null, { step: "any", min: 0, placeholder: "0" });
     this.seed = numberField(request.seed, { step: 1, max: Number.MAX_SAFE_INTEGER, placeholder: "0" });
     this.next = checkbox("another seed for each run", false, () => {});
     this.time = numberField(request.budget.time_s, { step: "any" });
@@ -92,6 +93,7 @@ export class PlanningPanel {
     this.first = checkbox("stop at the first path", request.first_only, () => {});
     const search = section("How to search", false, [
       labelled("Metric", this.metric), labelled("Motion check", this.motion), stepRow,
+      labelled("Clearance to keep, m", this.clearance),
       labelled("Seed", this.seed), this.next,
       labelled("Most seconds", this.time), labelled("Most iterations", this.iterations), labelled("Most nodes", this.nodes),
       labelled("The path found", this.finish), fieldRow, this.first]);
@@ -166,6 +168,7 @@ export class PlanningPanel {
       settings,
       metric: value(this.metric),
       motion: value(this.motion) === "discrete" ? `discrete:${value(this.resolution)}` : "certified",
+      clearance: limit(this.clearance) ?? 0,
       budget: { time_s: limit(this.time), iterations: limit(this.iterations), nodes: limit(this.nodes) },
       seed: limit(this.seed) ?? 0,
       finish: value(this.finish),

@@ -473,7 +473,7 @@ mod tests {
                         false
                     });
                     let mut sweep = Sweep::default();
-                    let swept = match sweep.sweep(a, pose_at, b, 1e-3) {
+                    let swept = match sweep.sweep(a, pose_at, b, 1e-3, 1e-3) {
                         SweepCheck::Free { clearance } => (0, clearance.to_bits()),
                         SweepCheck::Collision { at } => (1, at.to_bits()),
                         SweepCheck::TooClose { at } => (2, at.to_bits()),

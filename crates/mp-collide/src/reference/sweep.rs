@@ -19,7 +19,7 @@ pub enum SweepCheck {
         /// The fraction.
         at: f64,
     },
-    /// The meshes are nearer than twice the margin at fraction `at` of the motion, or the search was given up
+    /// The meshes are nearer than the margin and the slack at fraction `at` of the motion, or the search was given up
     /// there.
     TooClose {
         /// The fraction.
@@ -40,7 +40,7 @@ pub enum SweepCheck {
 ///   separated from a static triangle by a direction.
 ///
 /// Where this does not separate, the largest is split: static balls, moving balls or, when it is longer than those,
-/// the motion. Triangles nearer than twice the margin in the middle of a part end the search.
+/// the motion. Triangles nearer than the margin and the slack in the middle of a part end the search.
 #[derive(Clone, Debug, Default)]
 pub struct Sweep {
     parts: Vec<Part>,
@@ -124,6 +124,8 @@ impl Moment {
 struct Task<'a> {
     standing: &'a RefMesh,
     margin: f64,
+    /// Nearer than the margin and this (m) the search ends.
+    slack: f64,
     touching: f64,
 }
 
@@ -150,7 +152,7 @@ impl Sweep {
     /// motion that takes its frame to `pose_at` of the fractions 0 to 1.
     ///
     /// The motion must take the origin on a straight line and turn by at most half a turn about a fixed axis,
-    /// both at constant speed. Every motion with a distance of at least twice the margin all along is found
+    /// both at constant speed. Every motion with a distance of at least the margin and the `slack` (metres, positive) all along is found
     /// free, unless it takes more than 20 million comparisons. A pose that is not finite or not a rigid motion,
     /// and coordinates beyond 1e75, give a collision.
     pub fn sweep(
@@ -159,6 +161,7 @@ impl Sweep {
         pose_at: impl Fn(f64) -> Isometry3<f64>,
         standing: &RefMesh,
         margin: f64,
+        slack: f64,
     ) -> SweepCheck {
         self.parts.clear();
         self.moments.clear();
@@ -177,7 +180,7 @@ impl Sweep {
         let turn = 2.0 * mp_math::atan2(between.imag().norm(), between.w.abs());
         self.parts.push(Part { ends: [0, 1], bend: turn * turn / 8.0, halves: None });
         let far = self.moments.iter().map(|moment| moment.origin.norm()).fold(0.0, f64::max);
-        let task = Task { standing, margin, touching: TOUCHING * (size + far) };
+        let task = Task { standing, margin, slack, touching: TOUCHING * (size + far) };
         self.near.push(Near { ball: standing.root, way: Vector3::zeros() });
         self.open.push(Open { ball: moving.root, part: 0, near: [0, 1] });
 
@@ -203,7 +206,7 @@ impl Sweep {
             if near[0] == near[1] {
                 continue;
             }
-            let short = swath.length <= ball.radius.max(2.0 * margin);
+            let short = swath.length <= ball.radius.max(2.0 * slack);
             if let Content::Parts(parts) = ball.content
                 && short
             {
@@ -357,21 +360,22 @@ impl Task<'_> {
         }
     }
 
-    /// A direction along which a moved triangle is twice the margin apart from a static one.
+    /// A direction along which a moved triangle is the margin and the slack apart from a static one.
     ///
     /// # Errors
     /// Their distance when it is less.
     fn way(&self, moved: &Triangle, near: &Near) -> Result<Vector3<f64>, f64> {
         let mut made = None;
         let Some(stands) = self.stands(near, &mut made) else { return Err(0.0) };
-        let enough = 2.0 * self.margin + self.touching;
+        let wanted = self.margin + self.slack;
+        let enough = wanted + self.touching;
         let (gap, way) = SweptTriangle::new(*moved, *moved).gap_from(stands, near.way, enough);
         if gap >= enough {
             return Ok(way);
         }
         let gap = triangle_gap(moved, stands);
         let distance = gap.norm();
-        let far = distance > self.touching && distance >= 2.0 * self.margin;
+        let far = distance > self.touching && distance >= wanted;
         if far { Ok(gap / distance) } else { Err(distance) }
     }
 }
@@ -413,7 +417,7 @@ mod tests {
             let pose_at = motion(pose_from_six(from), by.map(|v| v * short));
             let clearance = |t: f64| bar.clearance(&pose_at(t), &other, &Isometry3::identity(), 10.0);
             let sampled = (0..=60).map(|k| clearance(f64::from(k) / 60.0)).fold(f64::INFINITY, f64::min);
-            match Sweep::default().sweep(&bar, &pose_at, &other, margin) {
+            match Sweep::default().sweep(&bar, &pose_at, &other, margin, margin) {
                 SweepCheck::Free { clearance } => {
                     prop_assert!(clearance >= margin && clearance <= sampled + 1e-12, "{} {}", clearance, sampled);
                 }
@@ -435,11 +439,11 @@ mod tests {
             ([-1.0, 0.3, 0.2, 0.4, 0.5, 0.6], [2.0, 0.5, -0.5, 1.0, -2.0, 1.0]),
             ([-0.05, 0.8, 0.0, 1.57, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 3.1]),
         ] {
-            let found = sweep.sweep(&bar, motion(pose_from_six(from), by), &wall, 1e-5);
+            let found = sweep.sweep(&bar, motion(pose_from_six(from), by), &wall, 1e-5, 1e-5);
             assert!(!matches!(found, SweepCheck::Free { .. }), "{found:?}");
         }
         let beside = motion(pose_from_six([-0.71, 0.0, 0.0, 0.0, 0.0, 0.0]), [0.0, 1.0, 0.0, 0.0, 0.0, 3.1]);
-        assert!(matches!(sweep.sweep(&bar, beside, &wall, 1e-5), SweepCheck::Free { .. }));
+        assert!(matches!(sweep.sweep(&bar, beside, &wall, 1e-5, 1e-5), SweepCheck::Free { .. }));
         assert!(sweep.compared() < 20_000, "{}", sweep.compared());
     }
 
@@ -460,8 +464,8 @@ mod tests {
             ]);
             let by =
                 [mp_math::cos(0.9 * x), 0.4 * mp_math::sin(1.7 * x), 0.1, 0.5, mp_math::sin(0.3 * x), 0.2];
-            let again = used.sweep(&bar, motion(from, by), &other, 1e-4);
-            assert_eq!(again, Sweep::default().sweep(&bar, motion(from, by), &other, 1e-4), "{i}");
+            let again = used.sweep(&bar, motion(from, by), &other, 1e-4, 1e-4);
+            assert_eq!(again, Sweep::default().sweep(&bar, motion(from, by), &other, 1e-4, 1e-4), "{i}");
         }
     }
 
@@ -470,7 +474,10 @@ mod tests {
         let [bar, other] = meshes();
         for x in [f64::NAN, f64::INFINITY, 1e80] {
             let jump = |t: f64| Isometry3::translation(if t > 0.3 { x } else { 5.0 }, 0.0, 0.0);
-            assert!(matches!(Sweep::default().sweep(&bar, jump, &other, 1e-3), SweepCheck::Collision { .. }));
+            assert!(matches!(
+                Sweep::default().sweep(&bar, jump, &other, 1e-3, 1e-3),
+                SweepCheck::Collision { .. }
+            ));
         }
     }
 }

@@ -73,6 +73,27 @@ impl Scene {
             || self.nested(query, mesh, pose_wm).is_some()
     }
 
+    /// Whether `mesh` at `pose_wm` collides with any body, or its surface is at most `tolerance` (metres) from that of one, to
+    /// rounding.
+    pub fn within(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+        tolerance: f64,
+    ) -> bool {
+        let mut merged = self.merged.iter();
+        // Rounding of boxes is far below this part.
+        let reach = tolerance.max(0.0) * (1.0 + 1e-9);
+        merged.any(|merged| query.within(mesh, pose_wm, &merged.mesh, &Isometry3::identity(), tolerance))
+            || self
+                .near_by(mesh, pose_wm, reach, !self.is_merged(), |_, body| {
+                    query.within(mesh, pose_wm, &body.mesh, &body.pose, tolerance).then_some(())
+                })
+                .is_some()
+            || self.nested(query, mesh, pose_wm).is_some()
+    }
+
     /// A lower bound on the distance from `mesh` at `pose_wm` to the bodies, exact when below `enough`
     /// (metres), and the nearest body in that case; otherwise some value of at least `enough` and no body.
     /// 0 exactly when it collides. Infinity when there are no bodies.
@@ -154,11 +175,23 @@ impl Scene {
         mesh: &CollisionMesh,
         pose_wm: &Isometry3<f64>,
         fixed: bool,
+        visit: impl FnMut(BodyId, &Body) -> Option<T>,
+    ) -> Option<T> {
+        self.near_by(mesh, pose_wm, 0.0, fixed, visit)
+    }
+
+    /// [`near`](Self::near) with the box of the mesh enlarged by `reach` (metres).
+    fn near_by<T>(
+        &self,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+        reach: f64,
+        fixed: bool,
         mut visit: impl FnMut(BodyId, &Body) -> Option<T>,
     ) -> Option<T> {
         let mut phases = self.phases(fixed).peekable();
         phases.peek()?;
-        let own = bounds(mesh, pose_wm);
+        let own = bounds(mesh, pose_wm).map(|own| own.enlarged(reach));
         phases.find_map(|broad| {
             broad.find(
                 |bounds| own.is_none_or(|own| own.intersects(bounds)),

@@ -435,6 +435,12 @@ impl<C: LinkedSpace> TypedMotion for LinkedScene<C> {
     fn starting_as(self, row: &[f64]) -> Self {
         Self { given_start: row.to_vec(), ..self }
     }
+    fn keeping(&self, kept: f64) -> Result<Self, Error> {
+        Ok(Self { arm: self.arm.clone().keeping(kept), ..self.clone() })
+    }
+    fn checker_keeping(&self, kept: f64) -> Option<Arm> {
+        Some(self.arm.clone().keeping(kept))
+    }
 }
 
 impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
@@ -463,6 +469,9 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     }
     fn tolerance(&self) -> f64 {
         self.arm.tolerance()
+    }
+    fn kept(&self) -> f64 {
+        self.arm.kept()
     }
     fn measured(&self, metric: MetricName) -> Result<Measured<'_, Configuration>, Error> {
         match metric {
@@ -497,9 +506,9 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
         };
         contacts.into_iter().map(touch).collect()
     }
-    fn closest(&self, q: &Configuration) -> Option<String> {
+    fn closest(&self, q: &Configuration) -> Option<(String, f64)> {
         let gap = self.arm.clone().closest(q.as_slice())?;
-        Some(format!("{} and {}", gap.link, gap.other))
+        Some((format!("{} and {}", gap.link, gap.other), gap.distance))
     }
     fn remedy(&self, touching: &[Touch]) -> Option<String> {
         let own = touching.iter().any(|touch| touch.with_itself);

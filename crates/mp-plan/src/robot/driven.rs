@@ -126,11 +126,7 @@ impl<K: SpeedBound> DrivenScene<K> {
         start.velocity.iter_mut().zip(velocity).for_each(|(v, given)| *v = *given);
         let start = space.system.vector(&start);
         let robot = Arc::new(robot);
-        let checker = DrivenChecker {
-            robot: Arc::clone(&robot),
-            space: space.clone(),
-            checker: robot.checker().clone(),
-        };
+        let checker = DrivenChecker::new(&robot, &space, robot.checker().clone());
         let ends = vec![start.clone()];
         let mut scene = Self { robot, space, checker, start, goals: ends, goal_parts: goals, columns };
         scene.goals = scene.examples();
@@ -196,6 +192,14 @@ impl<K: SpeedBound> TypedMotion for DrivenScene<K> {
         self.robot = Arc::new(K::clone(&self.robot).starting_as(&row[..own]));
         self
     }
+    fn keeping(&self, kept: f64) -> Result<Self, Error> {
+        let robot = Arc::new(self.robot.keeping(kept)?);
+        let checker = DrivenChecker::new(&robot, &self.space, robot.checker().clone());
+        Ok(Self { robot, checker, ..self.clone() })
+    }
+    fn checker_keeping(&self, kept: f64) -> Option<DrivenChecker<K>> {
+        Some(DrivenChecker::new(&self.robot, &self.space, self.robot.checker_keeping(kept)?))
+    }
 }
 
 impl<K: SpeedBound> RobotKind for DrivenScene<K> {
@@ -260,6 +264,9 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     fn tolerance(&self) -> f64 {
         self.robot.tolerance()
     }
+    fn kept(&self) -> f64 {
+        self.robot.kept()
+    }
     fn accuracy(&self) -> f64 {
         self.robot.accuracy()
     }
@@ -273,7 +280,7 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     fn touching(&self, q: &DVector<f64>) -> Vec<Touch> {
         self.robot.touching(&self.parts(q).q)
     }
-    fn closest(&self, q: &DVector<f64>) -> Option<String> {
+    fn closest(&self, q: &DVector<f64>) -> Option<(String, f64)> {
         self.robot.closest(&self.parts(q).q)
     }
     fn remedy(&self, touching: &[Touch]) -> Option<String> {

@@ -53,6 +53,8 @@ pub trait WithMoving: RobotKind + TypedMotion<Space: Embed + 'static, State: Sta
     {
         verifier.check_motion(q, q)
     }
+    /// The same among all of them, keeping the clearance `kept` (m).
+    fn among_keeping(among: &Self::Among, kept: f64) -> Self::Among;
     /// The speed (m/s) that no point of a moving obstacle ever exceeds.
     fn obstacle_speed(among: &Self::Among) -> f64;
     /// The trajectories of the moving obstacles.
@@ -212,6 +214,13 @@ impl<K: WithMoving> TypedMotion for MovingScene<K> {
         self.still = self.still.starting_as(&row[..own]);
         self
     }
+    fn keeping(&self, kept: f64) -> Result<Self, Error> {
+        let among = OnVectors::new(K::among_keeping(self.among.inner(), kept));
+        Ok(Self { still: self.still.keeping(kept)?, among, ..self.clone() })
+    }
+    fn checker_keeping(&self, kept: f64) -> Option<Self::Checker> {
+        Some(OnVectors::new(K::among_keeping(self.among.inner(), kept)))
+    }
 }
 
 impl<K: WithMoving> RobotKind for MovingScene<K> {
@@ -246,6 +255,9 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
     }
     fn tolerance(&self) -> f64 {
         self.still.tolerance()
+    }
+    fn kept(&self) -> f64 {
+        self.still.kept()
     }
     fn accuracy(&self) -> f64 {
         self.still.accuracy()

@@ -29,7 +29,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 /// The clearance that shortcuts keep, as a fraction of the robot's radius.
-const SHORTCUT_CLEARANCE: f64 = 0.002;
+const SHORTCUT_CLEARANCE: f64 = 0.02;
 /// Between two copies of the robot in a picture its origin moves about this many radii.
 const PICTURE_SPACING: f64 = 1.5;
 /// Corners of the ring that a disc is drawn as.
@@ -109,6 +109,9 @@ impl<B: PlanarBody> WithMoving for PlanarScene<B> {
         among: &AmongMovingAreas<B>,
     ) -> Result<Self::AmongVerifier<'c>, Error> {
         Ok(B::moving_verifier(space, among))
+    }
+    fn among_keeping(among: &AmongMovingAreas<B>, kept: f64) -> AmongMovingAreas<B> {
+        among.clone().keeping(kept)
     }
     fn obstacle_speed(among: &AmongMovingAreas<B>) -> f64 {
         among.greatest_speed()
@@ -404,6 +407,12 @@ impl<B: PlanarBody> TypedMotion for PlanarScene<B> {
         self.problem.file.start = row.to_vec();
         self
     }
+    fn keeping(&self, kept: f64) -> Result<Self, Error> {
+        Ok(Self { robot: self.robot.clone().keeping_clearance(kept), ..self.clone() })
+    }
+    fn checker_keeping(&self, kept: f64) -> Option<B> {
+        Some(self.robot.clone().keeping_clearance(kept))
+    }
 }
 
 impl<B: PlanarBody> RobotKind for PlanarScene<B> {
@@ -426,6 +435,9 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
 
     fn tolerance(&self) -> f64 {
         self.robot.tolerance()
+    }
+    fn kept(&self) -> f64 {
+        self.robot.clearance_kept()
     }
     fn accuracy(&self) -> f64 {
         self.tolerance().max(1e-4 * self.robot.radius())
@@ -453,7 +465,7 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
                 touches.push(Touch { part: None, other: other.to_owned(), with_itself: false, depth: None });
             }
         };
-        if self.robot.clone().clearance(q, f64::MIN_POSITIVE) > 0.0 {
+        if self.robot.clone().keeping_clearance(0.0).clearance(q, f64::MIN_POSITIVE) > 0.0 {
             return Vec::new();
         }
         for ring in &rings {

@@ -264,6 +264,9 @@ impl<M: RigidSpace> WithMoving for RigidScene<M> {
     {
         verifier.check_state(q, enough)
     }
+    fn among_keeping(among: &AmongMoving<M>, kept: f64) -> AmongMoving<M> {
+        among.clone().keeping(kept)
+    }
     fn obstacle_speed(among: &AmongMoving<M>) -> f64 {
         among.greatest_speed()
     }
@@ -320,6 +323,12 @@ impl<M: RigidSpace> TypedMotion for RigidScene<M> {
         let (robot, radius) = (self.robot.clone(), self.radius);
         Ok(Self { problem, space, robot, start, goals, goal_parts: None, radius })
     }
+    fn keeping(&self, kept: f64) -> Result<Self, Error> {
+        Ok(Self { robot: self.robot.clone().keeping(kept), ..self.clone() })
+    }
+    fn checker_keeping(&self, kept: f64) -> Option<RigidBody<M>> {
+        Some(self.robot.clone().keeping(kept))
+    }
     fn checker(&self) -> &RigidBody<M> {
         &self.robot
     }
@@ -358,6 +367,9 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
     fn tolerance(&self) -> f64 {
         self.robot.tolerance()
     }
+    fn kept(&self) -> f64 {
+        self.robot.kept()
+    }
     fn measured(&self, metric: MetricName) -> Result<Measured<'_, M::State>, Error> {
         let space = self.space.clone();
         let robot = &self.problem.robot.mesh;
@@ -390,6 +402,10 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
             depth: Some(c.depth),
         };
         contacts.into_iter().map(touch).collect()
+    }
+    fn closest(&self, q: &M::State) -> Option<(String, f64)> {
+        let (obstacle, distance) = self.robot.clone().closest(q)?;
+        Some((format!("{} and {obstacle}", self.problem.robot.name), distance))
     }
     fn enclosures(&self, q: &M::State) -> Vec<[String; 2]> {
         let robot = &self.problem.robot.name;

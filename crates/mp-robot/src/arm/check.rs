@@ -2,6 +2,7 @@
 
 use super::Arm;
 use super::robot::{LinkBody, are_nested};
+use crate::kept::beyond;
 use mp_cspace::{
     Clearance, ClearanceSearch, Coordinates, IntervalClearance, LeastClearance, MotionClearance,
     MotionInterval, Rng, Validity, obstacles::ObstacleHints,
@@ -19,7 +20,12 @@ impl Arm {
         let frames = &mut scratch.frames;
         robot.kinematics.frames_into(q, frames);
         for body in robot.moving() {
-            if obstacles.scene.collides(query, &body.tree, &frames[body.frame]) {
+            let (scene, tree, pose) = (&obstacles.scene, &body.tree, &frames[body.frame]);
+            let touches = match self.kept > 0.0 {
+                true => scene.within(query, tree, pose, self.kept),
+                false => scene.collides(query, tree, pose),
+            };
+            if touches {
                 return true;
             }
         }
@@ -43,10 +49,10 @@ impl<Q: Coordinates> Validity<Q> for Arm {
 }
 
 impl<Q: Coordinates> Clearance<Q> for Arm {
-    /// The least distance of links from obstacles and from each other.
+    /// The least distance of links from obstacles, beyond what is kept, and from each other.
     fn clearance(&mut self, q: &Q, enough: f64) -> f64 {
         self.counters.clearance_checks += 1;
-        let Self { robot, obstacles, query, scratch, interrupt, .. } = self;
+        let Self { robot, obstacles, query, scratch, interrupt, kept, .. } = self;
         if interrupt.ask() || !robot.kinematics.is_configuration(q.as_slice()) {
             return 0.0;
         }
@@ -55,8 +61,9 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
         let enough = if enough.is_nan() { f64::INFINITY } else { enough };
         let mut least = f64::INFINITY;
         for body in robot.moving() {
-            let limit = enough.min(least);
-            least = least.min(obstacles.scene.clearance(query, &body.tree, &frames[body.frame], limit).0);
+            let scene = &obstacles.scene;
+            let found = |limit| scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
+            least = least.min(beyond(*kept, enough.min(least), found));
             if least <= 0.0 {
                 return 0.0;
             }
@@ -154,7 +161,7 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, Q>) -> IntervalClearance {
         self.counters.clearance_checks += 1;
         let [from, to, middle] = [interval.from, interval.to, interval.middle].map(Q::as_slice);
-        let Self { robot, obstacles, query, scratch, .. } = self;
+        let Self { robot, obstacles, query, scratch, kept, .. } = self;
         let kinematics = &robot.kinematics;
         if ![from, to, middle].into_iter().all(|q| kinematics.is_configuration(q)) {
             return IntervalClearance::Collision { at: 0.0 };
@@ -169,8 +176,12 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         for body in robot.moving() {
             let near = body.near(&base, interval.half, scratch);
             let far = scratch.far[body.last()] + base.far(body.chain.from_base);
-            let clearance =
-                |limit| obstacles.scene.surface_clearance(query, &body.tree, &frames[body.frame], limit).0;
+            let scene = &obstacles.scene;
+            let clearance = |enough| {
+                beyond(*kept, enough, |limit| {
+                    scene.surface_clearance(query, &body.tree, &frames[body.frame], limit).0
+                })
+            };
             if let Some(answer) = proven.add(near, far, f64::NEG_INFINITY, clearance) {
                 return answer;
             }
@@ -202,7 +213,7 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
     /// Link by link and pair by pair, as [`interval_clearance`](Self::interval_clearance): what keeps enough clearance over a
     /// part of the motion is not looked at again in its halves.
     fn least_along(&mut self, search: &ClearanceSearch<'_, Q>) -> LeastClearance {
-        let Self { robot, obstacles, query, scratch, counters, .. } = self;
+        let Self { robot, obstacles, query, scratch, counters, kept, .. } = self;
         let kinematics = &robot.kinematics;
         let ends = [search.from, search.to].map(Q::as_slice);
         if !ends.into_iter().all(|q| kinematics.is_configuration(q)) {
@@ -233,7 +244,8 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
                         let body = moving[part];
                         let near = body.near(&base, half, scratch);
                         let scene = &obstacles.scene;
-                        (near, scene.clearance(query, &body.tree, &frames[body.frame], wanted + near).0)
+                        let found = |limit| scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
+                        (near, beyond(*kept, wanted + near, found))
                     }
                     Some(pair) => {
                         let pair = &robot.pairs[pair];

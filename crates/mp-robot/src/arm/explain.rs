@@ -76,10 +76,10 @@ impl Arm {
         contacts
     }
 
-    /// The link and the obstacle, or the two links, that are nearest to each other at `q`: of those that must not touch. `None`
-    /// when there are none, or `q` is not a configuration.
+    /// The link and the obstacle, or the two links, that are nearest to each other at `q`: of those that must not touch. Where a clearance
+    /// is [kept](Arm::keeping), that is what obstacles count beyond. `None` when there are none, or `q` is not a configuration.
     pub fn closest(&mut self, q: &[f64]) -> Option<ArmGap> {
-        let Self { robot, obstacles, query, scratch, .. } = self;
+        let Self { robot, obstacles, query, scratch, kept, .. } = self;
         if !robot.kinematics.is_configuration(q) {
             return None;
         }
@@ -87,23 +87,27 @@ impl Arm {
         let frames = &scratch.frames;
         let (mut closest, mut least) = (None, f64::INFINITY);
         for body in robot.moving() {
-            let found = obstacles.scene.clearance(query, &body.tree, &frames[body.frame], least);
+            let found = obstacles.scene.clearance(query, &body.tree, &frames[body.frame], least + *kept);
             if let (distance, Some(other)) = found
-                && distance < least
+                && distance - *kept < least
             {
-                (closest, least) = (Some((body.link, Err(other))), distance);
+                (closest, least) = (Some((body.link, Err(other), distance)), distance - *kept);
             }
         }
         for pair in &robot.pairs {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
             let distance = query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], least);
             if distance < least {
-                (closest, least) = (Some((a.link, Ok(b.link))), distance);
+                (closest, least) = (Some((a.link, Ok(b.link), distance)), distance);
             }
         }
         let link = |link: usize| robot.kinematics.attached[link].name.clone();
         let obstacle = |id| obstacles.scene.body(id).map_or_else(String::new, |body| body.name().to_owned());
-        closest.map(|(a, b)| ArmGap { link: link(a), other: b.map_or_else(obstacle, link), distance: least })
+        closest.map(|(a, b, distance)| ArmGap {
+            link: link(a),
+            other: b.map_or_else(obstacle, link),
+            distance,
+        })
     }
     /// What is inside of what, where nothing touches at `q`: pairs of names, the inner one first, of links and obstacles, or links and
     /// links that must not touch. The outer ones are closed surfaces that face outward and are no [solids](TriMesh::solids); what is

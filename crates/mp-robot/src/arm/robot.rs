@@ -261,6 +261,8 @@ pub struct Arm {
     pub(super) scratch: Scratch,
     /// What checks of clearance ask whether to end.
     pub(super) interrupt: Interrupt,
+    /// The clearance (m) to keep from obstacles.
+    pub(super) kept: f64,
 }
 
 impl Arm {
@@ -293,7 +295,22 @@ impl Arm {
             counters: CheckCounters::default(),
             scratch: Scratch::default(),
             interrupt: Interrupt::never(),
+            kept: 0.0,
         })
+    }
+
+    /// The same arm, which keeps the clearance `kept` (m) from obstacles, not between its own links: what is nearer counts as in contact,
+    /// clearances of obstacles are less by this much, and an [`ArmVerifier`](crate::ArmVerifier) of it proves that it is kept.
+    #[must_use]
+    pub fn keeping(mut self, kept: f64) -> Self {
+        self.scratch.apart.clear();
+        Self { kept: kept.max(0.0), ..self }
+    }
+
+    /// The clearance (m) that it [keeps](Self::keeping) from obstacles: zero, unless asked for.
+    #[must_use]
+    pub fn kept(&self) -> f64 {
+        self.kept
     }
 
     /// The same arm, whose clearance is zero once `interrupt` says to end: searches for a free configuration end soon then.

@@ -294,6 +294,8 @@ pub struct ArmVerifier<'c, C> {
     world: Option<Arc<RefMesh>>,
     pairs: Vec<CheckedPair>,
     tolerance: f64,
+    /// The clearance (m) that the arm keeps from obstacles, to which the tolerance is added.
+    kept: f64,
     parts: u64,
     interrupt: Interrupt,
     /// The end of the last motion that was found free, where nothing is inside of anything.
@@ -344,13 +346,15 @@ where
             world,
             pairs,
             tolerance,
+            kept: arm.kept(),
             parts: 0,
             interrupt: Interrupt::never(),
             apart: None,
         })
     }
 
-    /// The clearance (m) that motions found free keep between links and everything else.
+    /// The clearance (m) that motions found free keep between links and everything else, beyond what the arm [keeps](Arm::keeping) from
+    /// obstacles.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -374,6 +378,11 @@ where
             joints: self.tree.coordinates.iter().enumerate().map(travel).collect(),
             base: (self.tree.pose > 0).then(|| base_travel(base_a, base_b)),
         }
+    }
+
+    /// The clearance (m) that the two of a pair keep.
+    fn kept_from(&self, pair: &CheckedPair) -> f64 {
+        if pair.other.is_none() { self.kept } else { 0.0 }
     }
 
     /// A lower bound on the distance of a pair that is at least `enough`; else, as an error, the distance of two of their
@@ -431,13 +440,14 @@ where
                 if self.interrupt.ask() {
                     return MotionCheck::Unproven { at };
                 }
-                match self.distance(pair, &poses, approach + self.tolerance) {
+                let kept = self.kept_from(pair);
+                match self.distance(pair, &poses, approach + kept + self.tolerance) {
                     Ok(distance) => least = least.min(distance - approach),
                     // The first distance found need not be the least.
-                    Err(_) if self.distance(pair, &poses, 0.0).is_err() => {
+                    Err(_) if self.distance(pair, &poses, kept).is_err() => {
                         return MotionCheck::Collision { at };
                     }
-                    Err(distance) if distance < 2.0 * self.tolerance => {
+                    Err(distance) if distance < kept + 2.0 * self.tolerance => {
                         return MotionCheck::Unproven { at };
                     }
                     Err(_) => near.push(i),
@@ -455,7 +465,10 @@ where
     fn touches(&self, q: &C::State) -> bool {
         let mut poses = Vec::new();
         self.tree.poses_into(q.as_slice(), &mut poses);
-        let touching = |pair| self.distance(pair, &poses, self.tolerance).is_err_and(|d| d <= 0.0);
+        let touching = |pair| {
+            let kept = self.kept_from(pair);
+            self.distance(pair, &poses, kept + self.tolerance).is_err_and(|d| d <= kept)
+        };
         self.pairs.iter().any(touching)
     }
 }

@@ -6,6 +6,7 @@ mod verify;
 pub use trajectory::{Trajectory, TrajectoryError};
 pub use verify::MovingVerifier;
 
+use crate::kept::beyond;
 use crate::{CheckCounters, Placement, RigidBody, RobotError};
 use mp_collide::reference::RefMesh;
 use mp_collide::{CollisionMesh, Query, Scene};
@@ -88,6 +89,12 @@ impl<P: Placement> AmongMoving<P> {
         })
     }
 
+    /// The same, which keeps the clearance `kept` (m) from all obstacles: see [`RigidBody::keeping`].
+    #[must_use]
+    pub fn keeping(self, kept: f64) -> Self {
+        Self { body: self.body.keeping(kept), apart: None, ..self }
+    }
+
     /// The robot among the obstacles that stand still.
     #[must_use]
     pub fn body(&self) -> &RigidBody<P> {
@@ -152,22 +159,26 @@ impl<P: Placement> Clearance<(P::State, f64)> for AmongMoving<P> {
         for obstacle in self.moving.iter() {
             self.counters.clearance_checks += 1;
             let seen = obstacle.trajectory.pose(*time).inv_mul(&pose);
-            let enough = enough.min(least);
-            let robot = &self.body.shared.robot;
-            least = least.min(obstacle.scene.clearance(&mut self.query, robot, &seen, enough).0);
+            let (robot, query) = (&self.body.shared.robot, &mut self.query);
+            let found = |limit| obstacle.scene.clearance(query, robot, &seen, limit).0;
+            least = least.min(beyond(self.body.kept(), enough.min(least), found));
         }
-        least
+        least.max(0.0)
     }
 
     fn in_contact(&mut self, (q, time): &(P::State, f64)) -> bool {
         if self.body.in_contact(q) {
             return true;
         }
-        let pose = P::pose(q);
+        let (pose, kept) = (P::pose(q), self.body.kept());
         self.moving.iter().any(|obstacle| {
             self.counters.collision_checks += 1;
             let seen = obstacle.trajectory.pose(*time).inv_mul(&pose);
-            obstacle.scene.collides(&mut self.query, &self.body.shared.robot, &seen)
+            let (scene, query, robot) = (&obstacle.scene, &mut self.query, &self.body.shared.robot);
+            match kept > 0.0 {
+                true => scene.within(query, robot, &seen, kept),
+                false => scene.collides(query, robot, &seen),
+            }
         })
     }
 }
@@ -190,9 +201,9 @@ impl<P: Placement> MotionClearance<(P::State, f64)> for AmongMoving<P> {
         for obstacle in self.moving.iter() {
             self.counters.clearance_checks += 1;
             let seen = obstacle.trajectory.pose(time).inv_mul(&pose);
-            let (robot, enough) = (&self.body.shared.robot, enough.min(least));
-            let found = obstacle.scene.surface_clearance(&mut self.query, robot, &seen, enough);
-            least = least.min(found.0);
+            let (robot, query) = (&self.body.shared.robot, &mut self.query);
+            let found = |limit| obstacle.scene.surface_clearance(query, robot, &seen, limit).0;
+            least = least.min(beyond(self.body.kept(), enough.min(least), found));
         }
         if least > 0.0 && self.apart.is_none_or(|apart| apart != ends) {
             let inside = |obstacle: &MovingObstacle| {

@@ -25,6 +25,8 @@ pub struct MovingVerifier<'c, C, P> {
     radius: f64,
     moving: Arc<[MovingObstacle]>,
     tolerance: f64,
+    /// The clearance (m) that the robot keeps, to which the tolerance is added.
+    kept: f64,
 }
 
 /// Parts of a motion shorter than this are not tested. What is not shown free by then is not free.
@@ -47,6 +49,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
             robot: robot.body().shared.reference(),
             radius,
             moving: Arc::clone(robot.moving()),
+            kept: robot.body().kept(),
         })
     }
 
@@ -101,12 +104,12 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
             let when = |t: f64| from.1 + (to.1 - from.1) * t;
             let approach = half
                 * (rate + obstacle.trajectory.speed(obstacle.radius, when(a), when(b)) * (to.1 - from.1));
-            let needed = (approach + self.tolerance) * (1.0 + 1e-9);
+            let needed = (approach + self.kept + self.tolerance) * (1.0 + 1e-9);
             let pose: Isometry3<f64> = P::pose(&q);
             match self.robot.at_least(&pose, &obstacle.reference, &obstacle.trajectory.pose(time), needed) {
                 Ok(distance) => least = least.min(distance - approach),
-                Err(distance) if distance <= 0.0 => return Err(MotionCheck::Collision { at }),
-                Err(distance) if distance < self.tolerance || half < SHORTEST => {
+                Err(distance) if distance <= self.kept => return Err(MotionCheck::Collision { at }),
+                Err(distance) if distance < self.kept + self.tolerance || half < SHORTEST => {
                     return Err(MotionCheck::Unproven { at });
                 }
                 Err(_) => open.extend([(at, b), (a, at)]),

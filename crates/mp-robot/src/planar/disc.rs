@@ -39,6 +39,8 @@ pub struct DiscRobot {
     world: Arc<PlanarWorld>,
     radius: f64,
     tolerance: f64,
+    /// The clearance (m) to keep.
+    kept: f64,
     counters: CheckCounters,
 }
 
@@ -54,7 +56,25 @@ impl DiscRobot {
         }
         let world = world.into();
         let tolerance = super::tolerance(&world, radius);
-        Ok(Self { world, radius, tolerance, counters: CheckCounters::default() })
+        Ok(Self { world, radius, tolerance, kept: 0.0, counters: CheckCounters::default() })
+    }
+
+    /// The same disc, which keeps the clearance `kept` (m) from obstacles: what is nearer counts as in contact, and clearances are less by
+    /// this much, as if it were so much larger.
+    #[must_use]
+    pub fn keeping(self, kept: f64) -> Self {
+        Self { kept: kept.max(0.0), ..self }
+    }
+
+    /// The clearance (m) that it [keeps](Self::keeping): zero, unless asked for.
+    #[must_use]
+    pub fn kept(&self) -> f64 {
+        self.kept
+    }
+
+    /// Its radius and what it keeps.
+    fn reach(&self) -> f64 {
+        self.radius + self.kept
     }
 
     /// The world in which it moves.
@@ -82,10 +102,10 @@ impl DiscRobot {
     }
 
     /// The distance (m) between the disc and the nearest obstacle. If its centre is in an obstacle: minus the sum of the
-    /// radius and the distance of the centre from the boundary. Infinite if there are no obstacles.
+    /// radius and the distance of the centre from the boundary. Infinite if there are no obstacles. Less by what it [keeps](Self::keeping).
     #[must_use]
     pub fn signed_clearance(&self, q: &Vector2<f64>) -> f64 {
-        self.world.signed_distance(&Point2::from(*q)) - self.radius
+        self.world.signed_distance(&Point2::from(*q)) - self.reach()
     }
 
     /// The [`signed_clearance`](DiscRobot::signed_clearance), and the direction in which it grows fastest: a unit
@@ -96,8 +116,8 @@ impl DiscRobot {
         let Some(near) = self.world.nearest(&p) else { return (f64::INFINITY, Vector2::zeros()) };
         let away = (p - near.point).try_normalize(0.0).unwrap_or_default();
         match self.world.contains(&p) {
-            true => (-near.distance - self.radius, -away),
-            false => (near.distance - self.radius, away),
+            true => (-near.distance - self.reach(), -away),
+            false => (near.distance - self.reach(), away),
         }
     }
 
@@ -109,7 +129,7 @@ impl DiscRobot {
         let near = self.world.nearest(&p)?;
         match around {
             Some(obstacle) => Some(Some(obstacle)),
-            None => (near.distance <= self.radius || self.world.contains(&p)).then_some(near.obstacle),
+            None => (near.distance <= self.reach() || self.world.contains(&p)).then_some(near.obstacle),
         }
     }
 }
@@ -151,7 +171,7 @@ impl MotionClearance<Vector2<f64>> for DiscRobot {
         let [a, b] = [interval.middle - half, interval.middle + half].map(Point2::from);
         let margin = interval.margin;
         let clearance = self.clearance(interval.middle, f64::INFINITY);
-        if clearance >= 2.0 * margin && self.world.nearest_to_segment(&a, &b, self.radius + margin).is_none()
+        if clearance >= 2.0 * margin && self.world.nearest_to_segment(&a, &b, self.reach() + margin).is_none()
         {
             let travel = (interval.to - interval.from).norm();
             return IntervalClearance::FreeOver { part: interval.half.max((clearance - margin) / travel) };
@@ -172,9 +192,9 @@ impl MotionValidity<Vector2<f64>> for DiscRobot {
         }
         let [a, b] = [from, to].map(|q| Point2::from(*q));
         if a == b {
-            return match self.world.is_clear(&a, self.radius + self.tolerance) {
+            return match self.world.is_clear(&a, self.reach() + self.tolerance) {
                 true => MotionCheck::Free { clearance: self.tolerance },
-                false if self.world.is_clear(&a, self.radius) => MotionCheck::Unproven { at: 0.0 },
+                false if self.world.is_clear(&a, self.reach()) => MotionCheck::Unproven { at: 0.0 },
                 false => MotionCheck::Collision { at: 0.0 },
             };
         }
@@ -182,12 +202,12 @@ impl MotionValidity<Vector2<f64>> for DiscRobot {
         if known == KnownFree::Neither && self.world.contains(&a) {
             return MotionCheck::Collision { at: 0.0 };
         }
-        match self.world.nearest_to_segment(&a, &b, self.radius + self.tolerance) {
+        match self.world.nearest_to_segment(&a, &b, self.reach() + self.tolerance) {
             None => MotionCheck::Free { clearance: self.tolerance },
             Some(near) => {
                 let length = (b - a).norm();
                 let at = if length > 0.0 { ((near.on_segment - a).norm() / length).min(1.0) } else { 0.0 };
-                match near.distance <= self.radius {
+                match near.distance <= self.reach() {
                     true => MotionCheck::Collision { at },
                     false => MotionCheck::Unproven { at },
                 }

@@ -31,8 +31,13 @@ pub trait PlanarRobot: Validity<Self::Configuration> + MotionClearance<Self::Con
     fn place(q: &Self::Configuration) -> Isometry2<f64>;
     /// The largest distance (m) of a point of the robot from its origin.
     fn reach(&self) -> f64;
-    /// The clearance (m) that motions found free keep.
+    /// The clearance (m) that motions found free keep, beyond [what it keeps](Self::clearance_kept).
     fn least_clearance(&self) -> f64;
+    /// The same robot, which keeps this clearance (m) from obstacles.
+    #[must_use]
+    fn keeping_clearance(self, kept: f64) -> Self;
+    /// The clearance (m) that it keeps.
+    fn clearance_kept(&self) -> f64;
     /// The checks made by this clone so far.
     fn checks(&self) -> CheckCounters;
 }
@@ -54,6 +59,12 @@ impl PlanarRobot for DiscRobot {
     }
     fn least_clearance(&self) -> f64 {
         self.tolerance()
+    }
+    fn keeping_clearance(self, kept: f64) -> Self {
+        self.keeping(kept)
+    }
+    fn clearance_kept(&self) -> f64 {
+        self.kept()
     }
     fn checks(&self) -> CheckCounters {
         self.counters()
@@ -78,6 +89,12 @@ impl PlanarRobot for PolygonRobot {
     }
     fn least_clearance(&self) -> f64 {
         self.tolerance()
+    }
+    fn keeping_clearance(self, kept: f64) -> Self {
+        self.keeping(kept)
+    }
+    fn clearance_kept(&self) -> f64 {
+        self.kept()
     }
     fn checks(&self) -> CheckCounters {
         self.counters()
@@ -141,6 +158,13 @@ impl<R: PlanarRobot> AmongMovingAreas<R> {
         Ok(Self { body, moving: areas.into(), seen })
     }
 
+    /// The same, which keeps the clearance `kept` (m) from all obstacles: see [`DiscRobot::keeping`].
+    #[must_use]
+    pub fn keeping(self, kept: f64) -> Self {
+        let seen = self.seen.into_iter().map(|robot| robot.keeping_clearance(kept)).collect();
+        Self { body: self.body.keeping_clearance(kept), seen, ..self }
+    }
+
     /// The robot among the obstacles that stand still.
     #[must_use]
     pub fn body(&self) -> &R {
@@ -175,9 +199,10 @@ impl<R: PlanarRobot> AmongMovingAreas<R> {
 
     /// The indices of the moving areas that the robot touches.
     pub fn touching(&mut self, (q, time): &(R::Configuration, f64)) -> Vec<usize> {
-        let touches =
-            |(area, robot): (&MovingArea, &mut R)| !robot.is_valid(&R::seen_from(&area.frame(*time), q));
-        let each = self.moving.iter().zip(&mut self.seen).map(touches).enumerate();
+        let touches = |(area, robot): (&MovingArea, &R)| {
+            !robot.clone().keeping_clearance(0.0).is_valid(&R::seen_from(&area.frame(*time), q))
+        };
+        let each = self.moving.iter().zip(&self.seen).map(touches).enumerate();
         each.filter_map(|(i, touched)| touched.then_some(i)).collect()
     }
 }
@@ -229,7 +254,8 @@ pub struct MovingAreasVerifier<'c, C, V> {
     moving: Arc<[MovingArea]>,
     seen: Vec<V>,
     radius: f64,
-    tolerance: f64,
+    /// The clearance (m) of motions found free.
+    margin: f64,
 }
 
 impl<'c, C> MovingAreasVerifier<'c, C, DiscVerifier> {
@@ -260,7 +286,7 @@ impl<'c, C, V> MovingAreasVerifier<'c, C, V> {
             moving: Arc::clone(&robot.moving),
             seen: robot.seen.iter().map(&verifier).collect(),
             radius: robot.body.reach(),
-            tolerance: 0.1 * robot.body.least_clearance(),
+            margin: robot.body.clearance_kept() + 0.1 * robot.body.least_clearance(),
         }
     }
 }
@@ -315,11 +341,11 @@ where
             let (_, _, angle) = pose.rotation.euler_angles();
             let seen = q.seen_in(pose.translation.vector.xy(), angle);
             match verifier.check_motion(&seen, &seen) {
-                MotionCheck::Free { clearance } if clearance >= (approach + self.tolerance) * ROUND_UP => {
+                MotionCheck::Free { clearance } if clearance >= (approach + self.margin) * ROUND_UP => {
                     least = least.min(clearance - approach);
                 }
                 MotionCheck::Collision { .. } => return Err(MotionCheck::Collision { at }),
-                MotionCheck::Free { clearance } if clearance >= self.tolerance && half >= SHORTEST => {
+                MotionCheck::Free { clearance } if clearance >= self.margin && half >= SHORTEST => {
                     open.extend([(at, b), (a, at)]);
                 }
                 _ => return Err(MotionCheck::Unproven { at }),

@@ -39,6 +39,8 @@ pub struct PolygonRobot {
     world: Arc<PlanarWorld>,
     body: Arc<Polygon>,
     radius: f64,
+    /// The clearance (m) to keep.
+    kept: f64,
     counters: CheckCounters,
 }
 
@@ -70,7 +72,21 @@ impl PolygonRobot {
     #[must_use]
     pub fn new(world: impl Into<Arc<PlanarWorld>>, body: Polygon) -> Self {
         let radius = body.radius_about(&Point2::origin());
-        Self { world: world.into(), body: body.into(), radius, counters: CheckCounters::default() }
+        let counters = CheckCounters::default();
+        Self { world: world.into(), body: body.into(), radius, kept: 0.0, counters }
+    }
+
+    /// The same robot, which keeps the clearance `kept` (m) from obstacles: what is nearer counts as in contact, and clearances are less by
+    /// this much.
+    #[must_use]
+    pub fn keeping(self, kept: f64) -> Self {
+        Self { kept: kept.max(0.0), ..self }
+    }
+
+    /// The clearance (m) that it [keeps](Self::keeping): zero, unless asked for.
+    #[must_use]
+    pub fn kept(&self) -> f64 {
+        self.kept
     }
 
     /// The world in which it moves.
@@ -139,21 +155,23 @@ impl PolygonRobot {
         if !finite(q) {
             return 0.0;
         }
-        if let Some(around) = self.far(q, enough) {
-            return around;
+        let reach = enough + self.kept;
+        if let Some(around) = self.far(q, reach) {
+            return (around - self.kept).max(enough);
         }
         let pose = BodyPose::of(q);
-        let near = self.nearest(&pose, enough);
-        if near.is_some_and(|n| n.2 <= 0.0) || self.nested(&pose) {
+        let near = self.nearest(&pose, reach);
+        if near.is_some_and(|n| n.2 <= self.kept) || self.nested(&pose) {
             return 0.0;
         }
-        near.map_or(enough, |n| n.2)
+        near.map_or(enough, |n| n.2 - self.kept)
     }
 
     /// The distance (m) between robot and obstacles, and how it changes with x, y and angle (m/m, m/m, m/rad).
     ///
     /// In collision: minus the depth of the robot corner that is deepest in an obstacle, and the gradient that leads it out;
-    /// zeros if no corner is in an obstacle. Infinite and zeros if there are no obstacles.
+    /// zeros if no corner is in an obstacle. Infinite and zeros if there are no obstacles. The distance is less by what the robot
+    /// [keeps](Self::keeping).
     #[must_use]
     pub fn clearance_and_gradient(&self, q: &Se2State) -> (f64, [f64; 3]) {
         let pose = BodyPose::of(q);
@@ -165,7 +183,7 @@ impl PolygonRobot {
             return (f64::INFINITY, [0.0; 3]);
         };
         if distance > 0.0 && !self.nested(&pose) {
-            return (distance, toward(on_body, (on_body - on_obstacle) / distance));
+            return (distance - self.kept, toward(on_body, (on_body - on_obstacle) / distance));
         }
         let mut deepest = (0.0, [0.0; 3]);
         for corner in self.body.rings().iter().flatten() {
@@ -176,7 +194,7 @@ impl PolygonRobot {
                 deepest = (-near.distance, toward(p, (near.point - p) / near.distance));
             }
         }
-        deepest
+        (deepest.0 - self.kept, deepest.1)
     }
 }
 
@@ -201,9 +219,9 @@ impl Clearance<Se2State> for PolygonRobot {
 impl ClearanceGradient<Se2State> for PolygonRobot {
     fn clearance_gradient(&mut self, q: &Se2State, reach: f64, gradient: &mut [f64]) -> f64 {
         self.counters.clearance_checks += 1;
-        let (clearance, along) = match (finite(q), self.far(q, reach)) {
+        let (clearance, along) = match (finite(q), self.far(q, reach + self.kept)) {
             (false, _) => (0.0, [0.0; 3]),
-            (true, Some(far)) => (far, [0.0; 3]),
+            (true, Some(far)) => (far - self.kept, [0.0; 3]),
             (true, None) => self.clearance_and_gradient(q),
         };
         gradient.copy_from_slice(&along);

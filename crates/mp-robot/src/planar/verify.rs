@@ -16,6 +16,8 @@ pub struct DiscVerifier {
     obstacles: Arc<EdgeList>,
     radius: f64,
     tolerance: f64,
+    /// The clearance (m) that the robot keeps, to which the tolerance is added.
+    kept: f64,
     interrupt: Interrupt,
 }
 
@@ -25,10 +27,11 @@ impl DiscVerifier {
     pub fn new(robot: &DiscRobot) -> Self {
         let obstacles = Arc::new(EdgeList::new(robot.world()));
         let interrupt = Interrupt::never();
-        Self { obstacles, radius: robot.radius(), tolerance: 0.1 * robot.tolerance(), interrupt }
+        let (radius, tolerance, kept) = (robot.radius(), 0.1 * robot.tolerance(), robot.kept());
+        Self { obstacles, radius, tolerance, kept, interrupt }
     }
 
-    /// The clearance (m) that motions found free keep from every obstacle.
+    /// The clearance (m) that motions found free keep from every obstacle, beyond what the robot [keeps](DiscRobot::keeping).
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -50,11 +53,11 @@ impl MotionValidity<Vector2<f64>> for DiscVerifier {
             return MotionCheck::Unproven { at: 0.0 };
         }
         let clearance = self.obstacles.nearest(&segment) - self.radius;
-        if clearance >= self.tolerance {
+        if clearance >= self.kept + self.tolerance {
             return MotionCheck::Free { clearance };
         }
         let at = self.nearest_fraction(&segment);
-        if clearance <= 0.0 { MotionCheck::Collision { at } } else { MotionCheck::Unproven { at } }
+        if clearance <= self.kept { MotionCheck::Collision { at } } else { MotionCheck::Unproven { at } }
     }
     fn interrupt_by(&mut self, interrupt: &Interrupt) {
         self.interrupt = interrupt.clone();
@@ -94,6 +97,8 @@ pub struct PolygonVerifier<'c, C> {
     body: Arc<Vec<Vec<Point2<f64>>>>,
     radius: f64,
     tolerance: f64,
+    /// The clearance (m) that the robot keeps, to which the tolerance is added.
+    kept: f64,
     interrupt: Interrupt,
 }
 
@@ -105,10 +110,10 @@ impl<'c, C: Space<State = Se2State>> PolygonVerifier<'c, C> {
         let body = rings(robot.body());
         let radius = body.iter().flatten().map(|p| p.coords.norm()).fold(0.0, f64::max);
         let (tolerance, interrupt) = (0.1 * robot.tolerance(), Interrupt::never());
-        Self { space, obstacles, body: Arc::new(body), radius, tolerance, interrupt }
+        Self { space, obstacles, body: Arc::new(body), radius, tolerance, kept: robot.kept(), interrupt }
     }
 
-    /// The clearance (m) that motions found free keep from every obstacle.
+    /// The clearance (m) that motions found free keep from every obstacle, beyond what the robot [keeps](PolygonRobot::keeping).
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -156,7 +161,8 @@ impl<C: Space<State = Se2State>> MotionValidity<Se2State> for PolygonVerifier<'_
             return MotionCheck::Collision { at: 0.0 };
         }
         // The edges to which the robot can come near.
-        let reach = self.radius + self.tolerance;
+        let margin = self.kept + self.tolerance;
+        let reach = self.radius + margin;
         let edges = self.obstacles.edges.iter().filter(|e| box_distance(e, &segment) <= 2.0 * reach);
         let near: Vec<[Point2<f64>; 2]> = edges.copied().collect();
         let turn = (to.angle - from.angle).rem_euclid(std::f64::consts::TAU);
@@ -171,12 +177,12 @@ impl<C: Space<State = Se2State>> MotionValidity<Se2State> for PolygonVerifier<'_
             if self.interrupt.ask() {
                 return MotionCheck::Unproven { at };
             }
-            if distance <= 0.0 {
+            if distance <= self.kept {
                 return MotionCheck::Collision { at };
             }
-            if distance - travel >= self.tolerance {
+            if distance - travel >= margin {
                 least = least.min(distance - travel);
-            } else if distance < self.tolerance || depth == MAX_DEPTH {
+            } else if distance < margin || depth == MAX_DEPTH {
                 return MotionCheck::Unproven { at };
             } else {
                 open.extend([(at, b, depth + 1), (a, at, depth + 1)]);

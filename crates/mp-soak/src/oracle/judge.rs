@@ -18,7 +18,7 @@ const PLACES: usize = 16;
 /// What is wrong with a path.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
-    /// Two bodies touch.
+    /// Two bodies touch, or are nearer than what is to be kept.
     Contact {
         /// The edge, from 0.
         edge: usize,
@@ -173,6 +173,8 @@ struct Bodies<'c> {
     still: Vec<Ready<'c>>,
     moving: Vec<Ready<'c>>,
     pairs: Vec<Pair>,
+    /// The clearance (m) to keep from what is no part of the robot.
+    kept: f64,
 }
 
 /// Two bodies that must not touch.
@@ -184,7 +186,7 @@ enum Pair {
 }
 
 impl<'c> Bodies<'c> {
-    fn new(case: &'c Case) -> Self {
+    fn new(case: &'c Case, kept: f64) -> Self {
         let ready = |bodies: &'c [Body]| bodies.iter().map(Ready::new).collect::<Vec<_>>();
         let moving: Vec<_> = case.moving.iter().map(|mover| Ready::new(&mover.body)).collect();
         let mut pairs: Vec<Pair> = case.pairs.iter().map(|[i, j]| Pair::Own(*i, *j)).collect();
@@ -195,7 +197,7 @@ impl<'c> Bodies<'c> {
                 pairs.extend((0..moving.len()).map(|j| Pair::Moving(i, j)));
             }
         }
-        Self { case, robot: ready(&case.robot), still: ready(&case.still), moving, pairs }
+        Self { case, robot: ready(&case.robot), still: ready(&case.still), moving, pairs, kept }
     }
 
     /// The two bodies of a pair, each with its pose.
@@ -210,7 +212,8 @@ impl<'c> Bodies<'c> {
 
     fn distance(&self, pair: Pair, frames: &[Isometry3<f64>], than: f64) -> f64 {
         let [(a, at), (b, to)] = self.placed(pair, frames);
-        a.distance(&at, b, &to, than)
+        let kept = if matches!(pair, Pair::Own(..)) { 0.0 } else { self.kept };
+        a.distance(&at, b, &to, than + kept) - kept
     }
 
     fn names(&self, pair: Pair) -> String {
@@ -284,6 +287,12 @@ impl Case {
     /// Judges a path: whether it is free all along, leads from the start to a goal, and goes as the robot can.
     #[must_use]
     pub fn judge(&self, rows: &[Vec<f64>]) -> Judged {
+        self.judge_keeping(rows, 0.0)
+    }
+
+    /// As [`judge`](Self::judge), where what comes nearer to an obstacle than `kept` (m) counts as touching it.
+    #[must_use]
+    pub fn judge_keeping(&self, rows: &[Vec<f64>], kept: f64) -> Judged {
         let mut judged =
             Judged { fault: None, finished: true, edges: 0, tests: 0, least: f64::INFINITY, travel: 0.0 };
         let rows: Result<Vec<Row<'_>>, String> = rows.iter().map(|row| self.row(row)).collect();
@@ -294,7 +303,7 @@ impl Case {
                 return judged;
             }
         };
-        let bodies = Bodies::new(self);
+        let bodies = Bodies::new(self, kept);
         // A path of one row stands still.
         let to = rows.iter().skip(usize::from(rows.len() > 1));
         for (i, (from, to)) in rows.iter().zip(to).enumerate() {
@@ -331,7 +340,7 @@ impl Case {
         let row: Vec<f64> = row.iter().copied().chain(std::iter::repeat_n(0.0, inputs)).collect();
         let row = self.row(&row)?;
         self.check_limits(&row)?;
-        let bodies = Bodies::new(self);
+        let bodies = Bodies::new(self, 0.0);
         let frames = self.frames(&row.moment);
         let mut least = f64::INFINITY;
         for pair in &bodies.pairs {

@@ -131,6 +131,7 @@ impl Session {
                     return Err(Error::new(format!("run {run} goes on already")));
                 }
                 // What is wrong with start, goal and request is the reply, not an event.
+                let scene = scene.for_request(&request)?;
                 scene.prepare(&request)?;
                 runs.insert(run, begin(run, scene, *request, paused, Arc::clone(&self.wake)));
             }

@@ -65,7 +65,7 @@ impl Worker {
                 if request.threads > 1 {
                     return Err(Error::new("a page has one thread").help("take `threads` = 1"));
                 }
-                let scene = self.desk.scene_to_plan(message)?;
+                let scene = self.desk.scene_to_plan(message)?.for_request(&request)?;
                 let outbox = Outbox::new(number, scene.clone(), &request);
                 // A run borrows these, and outlives this call.
                 let (scene, request) = (&*Box::leak(Box::new(scene)), &*Box::leak(request));

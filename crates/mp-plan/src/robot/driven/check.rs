@@ -18,6 +18,13 @@ pub struct DrivenChecker<K: SpeedBound> {
     pub(super) checker: K::Checker,
 }
 
+impl<K: SpeedBound> DrivenChecker<K> {
+    /// The checker of `robot` in `space`, which asks `checker` about single configurations.
+    pub(super) fn new(robot: &Arc<K>, space: &DrivenSpace<K::Space>, checker: K::Checker) -> Self {
+        Self { robot: Arc::clone(robot), space: space.clone(), checker }
+    }
+}
+
 impl<K: SpeedBound> Queries for DrivenChecker<K> {
     fn queries(&self) -> u64 {
         self.checker.queries()
@@ -97,7 +104,7 @@ impl<K: SpeedBound> MotionValidity<DVector<f64>> for DrivenVerifier<'_, K> {
             }
         }
         let travel = self.scene.robot.speed_bound(&space.system.rates(&a, &b)) * b.duration * ROUND_UP;
-        let tolerance = 0.1 * self.scene.robot.tolerance();
+        let margin = self.scene.robot.kept() + 0.1 * self.scene.robot.tolerance();
         let mut least = f64::INFINITY;
         let mut open = vec![(0.0_f64, 1.0_f64)];
         while let Some((begin, end)) = open.pop() {
@@ -107,13 +114,13 @@ impl<K: SpeedBound> MotionValidity<DVector<f64>> for DrivenVerifier<'_, K> {
             }
             let now = space.system.flow(&space.positions, &a, &b.input, at * b.duration);
             let near = half * travel;
-            let needed = (near + tolerance) * ROUND_UP;
+            let needed = (near + margin) * ROUND_UP;
             match K::check_state(&mut self.verifier, &now.q, 2.0 * needed) {
                 _ if !space.positions.contains(&now.q) => return MotionCheck::Unproven { at },
                 MotionCheck::Free { clearance } if clearance >= needed => {
                     least = least.min(clearance - near);
                 }
-                MotionCheck::Free { clearance } if clearance >= tolerance && half >= SHORTEST => {
+                MotionCheck::Free { clearance } if clearance >= margin && half >= SHORTEST => {
                     open.extend([(at, end), (begin, at)]);
                 }
                 MotionCheck::Collision { .. } => return MotionCheck::Collision { at },

@@ -1,0 +1,119 @@
+//! Paths that keep a clearance from obstacles, for each kind of robot.
+
+use mp_plan::{Interrupt, MotionValidator, PathRows, Request, Scene};
+
+/// Scenes, each with a clearance (m) that its ends have.
+const SCENES: [(&str, f64); 9] = [
+    ("cubicles", 0.5),
+    ("arm", 0.03),
+    ("gempa-2", 0.1),
+    ("docks", 0.015),
+    ("rrs-low", 0.03),
+    ("planar-bugtrap", 0.1),
+    ("crossing", 0.1),
+    ("velocities", 0.05),
+    ("warehouse", 0.02),
+];
+
+fn request(scene: &Scene) -> Request {
+    Request::new(scene.default_planner()).seed(1).iterations(50_000)
+}
+
+/// The path of a request, and the clearance of its report.
+fn planned(scene: &Scene, request: &Request) -> (PathRows, f64) {
+    let report = scene.plan(request).unwrap();
+    assert!(report.solved, "{}: {:?}", scene.name(), report.why);
+    let rows = report.path.unwrap();
+    let clearance = report.clearance.unwrap();
+    (PathRows { format: scene.path_format(), columns: scene.columns(), rows }, clearance)
+}
+
+#[test]
+fn paths_keep_what_is_asked_for() {
+    for (name, clearance) in SCENES {
+        let scene = Scene::find(name).unwrap();
+        let (path, known) = planned(&scene, &request(&scene).clearance(clearance));
+        // Links of the arm may be nearer to each other.
+        assert!(known >= clearance || name == "arm", "{name}: {known}");
+        assert!(scene.keeping(clearance).unwrap().check(&path).unwrap().free, "{name}");
+        // The verifier of the plain scene measures by itself.
+        let verdict = scene.check(&path).unwrap();
+        assert!(verdict.free && (verdict.clearance >= clearance || name == "arm"), "{name}: {verdict:?}");
+        let certificate =
+            scene.keeping(clearance).unwrap().certificate(&path, known, &Interrupt::never()).unwrap();
+        assert!(certificate.clearance() >= Some(clearance.min(known)), "{name}");
+    }
+}
+
+#[test]
+fn more_than_a_path_keeps_is_refused() {
+    for (name, clearance) in SCENES.into_iter().filter(|(name, _)| *name != "arm") {
+        let scene = Scene::find(name).unwrap();
+        let (path, known) = planned(&scene, &request(&scene));
+        assert!(known < clearance, "{name} keeps {known} unasked: choose more here");
+        let verdict = scene.keeping(known + 2.0 * clearance).unwrap().check(&path).unwrap();
+        let fault = verdict.faults.join(" ");
+        assert!(!verdict.free && fault.contains("nearer to an obstacle than"), "{name}: {fault}");
+        assert_eq!(verdict.clearance_kept, known + 2.0 * clearance);
+    }
+}
+
+#[test]
+fn sampled_motions_and_roadmaps_mind_it() {
+    let scene = Scene::find("easy").unwrap();
+    for planner in ["rrt-connect", "prm", "lazy-prm", "obprm", "rrs", "visibility-prm"] {
+        for motion in [MotionValidator::Certified, "discrete:1%".parse().unwrap()] {
+            let request = Request::new(planner).seed(3).iterations(20_000).clearance(0.1).motion(motion);
+            let report = scene.plan(&request).unwrap();
+            assert!(
+                !report.solved || report.clearance >= Some(0.1),
+                "{planner} {motion}: {:?}",
+                report.clearance
+            );
+            assert!(report.solved || planner == "rrs", "{planner} {motion}: {:?}", report.why);
+            assert_eq!(report.clearance_kept, 0.1);
+        }
+    }
+}
+
+#[test]
+fn ends_too_near_are_said_with_what_is_near() {
+    let scene = Scene::find("arm").unwrap();
+    let error = scene.plan(&request(&scene).clearance(0.5)).unwrap_err().report();
+    assert!(error.contains(" m from contact between ") && error.contains("must be kept"), "{error}");
+    let scene = Scene::find("rrs-high").unwrap();
+    let error = scene.plan(&request(&scene).clearance(0.2)).unwrap_err().report();
+    assert!(error.contains("0.185 m from contact") && error.contains("nearest free"), "{error}");
+}
+
+#[test]
+fn clearances_that_are_no_lengths_are_refused() {
+    let scene = Scene::find("easy").unwrap();
+    for clearance in [-1.0, f64::NAN, f64::INFINITY] {
+        assert!(scene.keeping(clearance).is_err());
+        assert!(scene.plan(&request(&scene).clearance(clearance)).is_err());
+    }
+    let asked = request(&scene).clearance(0.1);
+    assert!(scene.prepare(&asked).is_err(), "the scene keeps none");
+    let kept = scene.for_request(&asked).unwrap();
+    assert_eq!(kept.clearance_kept(), 0.1);
+    assert!(kept.prepare(&asked).is_ok());
+}
+
+/// A request without a clearance plans with that of the scene, to the same bytes as with it.
+#[test]
+fn it_may_be_said_of_the_scene_or_of_the_request() {
+    let scene = Scene::find("cubicles").unwrap();
+    let asked = scene.plan(&request(&scene).clearance(0.3)).unwrap();
+    let kept = scene.keeping(0.3).unwrap().plan(&request(&scene)).unwrap();
+    assert_eq!(asked.without_times(), kept.without_times());
+}
+
+#[test]
+fn the_sample_does_not_graze() {
+    let scene = Scene::find("cubicles").unwrap();
+    for seed in 1..=5 {
+        let (_, clearance) = planned(&scene, &request(&scene).seed(seed));
+        assert!(clearance > 0.01, "seed {seed}: {clearance}");
+    }
+}
