@@ -78,7 +78,7 @@ class Options:
                 "settings": {key: _setting(value) for key, value in (self.settings or {}).items()},
                 "metric": self.metric,
                 "motion": self.motion,
-                "clearance": float(self.clearance),
+                **({"clearance": float(self.clearance)} if self.clearance else {}),
                 "budget": budget(self.time, self.iterations, self.queries, self.nodes),
                 "seed": int(self.seed),
                 "threads": int(self.threads),
