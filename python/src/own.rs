@@ -6,20 +6,21 @@ mod verifier;
 use crate::callback::{Callback, Failure};
 use check::{Check, Functions};
 use mp_cspace::erased::{AnyIndex, AnySpace};
-use mp_cspace::{JointRange, Joints, Linear, Metric, Rng, ScaledEuclidean, Space, Validity, WithMetric};
-use mp_plan::{
-    Body, Column, Configured, Error, Length, Measured, MetricName, Mismatch, RobotKind, Touch, TypedMotion,
+use mp_cspace::{
+    Configuration, JointRange, Joints, Linear, Metric, Rng, ScaledEuclidean, Space, Validity, WithMetric,
 };
-use nalgebra::{DVector, Isometry3};
+use mp_plan::{
+    Appearance, Body, Column, Description, Error, Length, Measured, MetricName, Mismatch, Motion, Touch,
+    TypedMotion,
+};
+use nalgebra::Isometry3;
 use pyo3::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use verifier::Verifier;
 
-/// A configuration: as Python sees it, but for periodic numbers, which are angles in (-π, π].
-type State = DVector<f64>;
 /// Where it moves.
-type OwnSpace = WithMetric<Joints<State>, ScaledEuclidean>;
+type OwnSpace = WithMetric<Joints<Configuration>, ScaledEuclidean>;
 
 /// What the Python half says of a robot: its members there have the same names.
 #[derive(Debug, FromPyObject)]
@@ -59,7 +60,7 @@ impl Numbers {
         !self.periodic[i] || (self.low[i] == -PI && self.high[i] == PI)
     }
 
-    fn row(&self, state: &State) -> Vec<f64> {
+    fn row(&self, state: &Configuration) -> Vec<f64> {
         let number = |(i, x): (usize, &f64)| match self.is_same(i) {
             true => *x,
             false => (self.low[i] + (x + PI) / self.factor(i)).min(self.high[i]),
@@ -67,12 +68,12 @@ impl Numbers {
         state.iter().enumerate().map(number).collect()
     }
 
-    fn state(&self, row: &[f64]) -> State {
+    fn state(&self, row: &[f64]) -> Configuration {
         let number = |(i, x): (usize, &f64)| match self.is_same(i) {
             true => *x,
             false => (x - self.low[i]) * self.factor(i) - PI,
         };
-        State::from_iterator(row.len(), row.iter().enumerate().map(number))
+        row.iter().enumerate().map(number).collect()
     }
 }
 
@@ -88,8 +89,8 @@ pub(crate) struct Own {
     verify: Option<Arc<Callback>>,
     resolution: Length,
     tolerance: f64,
-    start: State,
-    goals: Vec<State>,
+    start: Configuration,
+    goals: Vec<Configuration>,
 }
 
 impl Own {
@@ -150,23 +151,19 @@ struct Distance {
     extent: f64,
 }
 
-impl Metric<Joints<State>> for Distance {
+impl Metric<Joints<Configuration>> for Distance {
     type Nn = Linear;
 
-    fn distance(&self, _: &Joints<State>, from: &State, to: &State) -> f64 {
+    fn distance(&self, _: &Joints<Configuration>, from: &Configuration, to: &Configuration) -> f64 {
         check::number(&self.function, &self.numbers, "distance", &[from, to]).unwrap_or(0.0)
     }
-    fn extent(&self, _: &Joints<State>) -> f64 {
+    fn extent(&self, _: &Joints<Configuration>) -> f64 {
         self.extent
     }
 }
 
 /// So many configurations are tried to find a free one.
 const TRIES: u32 = 200;
-
-impl Configured for Own {
-    type State = State;
-}
 
 impl TypedMotion for Own {
     type Space = OwnSpace;
@@ -175,8 +172,8 @@ impl TypedMotion for Own {
     fn space(&self) -> &OwnSpace {
         &self.space
     }
-    fn with_ends(&self, start: State, goals: Vec<State>) -> Result<Self, Error> {
-        let wrapped = |q: &State| self.space.space().wrapped(q);
+    fn with_ends(&self, start: Configuration, goals: Vec<Configuration>) -> Result<Self, Error> {
+        let wrapped = |q: &Configuration| self.space.space().wrapped(q);
         Ok(Self { start: wrapped(&start), goals: goals.iter().map(wrapped).collect(), ..self.clone() })
     }
     fn checker(&self) -> &Check {
@@ -187,17 +184,11 @@ impl TypedMotion for Own {
     }
 }
 
-impl RobotKind for Own {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn space_name(&self) -> String {
-        format!("{} numbers", self.columns.len())
-    }
-    fn start(&self) -> &State {
+impl Motion for Own {
+    fn start(&self) -> &Configuration {
         &self.start
     }
-    fn goals(&self) -> &[State] {
+    fn goals(&self) -> &[Configuration] {
         &self.goals
     }
     fn tolerance(&self) -> f64 {
@@ -206,7 +197,7 @@ impl RobotKind for Own {
     fn sampled(&self) -> Option<Length> {
         (!self.check.knows_clearance()).then_some(self.resolution)
     }
-    fn measured(&self, metric: MetricName) -> Result<Measured<'_, State>, Error> {
+    fn measured(&self, metric: MetricName) -> Result<Measured<'_>, Error> {
         let joints = self.space.space();
         match (metric, &self.distance) {
             (MetricName::Default, Some(function)) => {
@@ -228,16 +219,25 @@ impl RobotKind for Own {
             )),
         }
     }
-    fn touching(&self, _: &State) -> Vec<Touch> {
-        Vec::new()
-    }
-    fn nearest_free(&self, q: &State) -> Option<State> {
+    fn nearest_free(&self, q: &Configuration) -> Option<Configuration> {
         let (mut check, mut rng) = (self.check.clone(), Rng::seed(1));
         let near = |i| {
             let other = self.space.sample_uniform(&mut rng);
             self.space.interpolate(q, &other, f64::from(i) / f64::from(TRIES))
         };
         (1..=TRIES).map(near).find(|near| check.is_valid(near))
+    }
+}
+
+impl Description for Own {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn space_name(&self) -> String {
+        format!("{} numbers", self.columns.len())
+    }
+    fn touching(&self, _: &Configuration) -> Vec<Touch> {
+        Vec::new()
     }
     fn columns(&self) -> Vec<Column> {
         self.columns.to_vec()
@@ -246,19 +246,22 @@ impl RobotKind for Own {
         let n = &self.numbers;
         (0..n.low.len()).map(|i| (!n.periodic[i]).then_some([n.low[i], n.high[i]])).collect()
     }
-    fn row(&self, q: &State) -> Vec<f64> {
+    fn row(&self, q: &Configuration) -> Vec<f64> {
         self.numbers.row(q)
     }
-    fn state(&self, row: &[f64]) -> State {
+    fn state(&self, row: &[f64]) -> Configuration {
         self.space.space().wrapped(&self.numbers.state(row))
     }
-    fn mismatch(&self, q: &State, wanted: &State) -> Mismatch {
+    fn mismatch(&self, q: &Configuration, wanted: &Configuration) -> Mismatch {
         Mismatch { off: self.space.distance(q, wanted), allowed: 1e-6 * self.space.extent(), unit: "" }
     }
+}
+
+impl Appearance for Own {
     fn bodies(&self) -> Vec<Body> {
         Vec::new()
     }
-    fn poses(&self, _: &State) -> Vec<Isometry3<f64>> {
+    fn poses(&self, _: &Configuration) -> Vec<Isometry3<f64>> {
         Vec::new()
     }
     fn picture_spacing(&self) -> f64 {

@@ -6,7 +6,7 @@ use crate::options::Common;
 use crate::scenes::{Rigid, either};
 use mp_cspace::{Rng, Space, Validity};
 use mp_plan::{
-    Finish, Interrupt, RegionalWork, Request, RigidScene, RigidSpace, RobotKind, Scene, SceneRoadmap,
+    Description, Finish, Interrupt, RegionalWork, Request, RigidScene, RigidSpace, Scene, SceneRoadmap,
     TypedMotion,
 };
 use mp_ranks::{Policy, simulate};
@@ -210,7 +210,7 @@ fn asked(mut roadmap: SceneRoadmap, ends: &[Vec<f64>]) -> Result<Built> {
 
 /// Free configurations, uniform in the space.
 fn free<M: RigidSpace>(scene: &RigidScene<M>, count: usize) -> Vec<Vec<f64>> {
-    let (mut robot, mut rng) = (scene.robot().clone(), Rng::stream(1, 99));
+    let (mut robot, mut rng) = (scene.checker().clone(), Rng::stream(1, 99));
     let samples = std::iter::repeat_with(|| scene.space().sample_uniform(&mut rng));
     samples.filter(|q| robot.is_valid(q)).take(count).map(|q| scene.row(&q)).collect()
 }

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::output::note;
 use mp_cspace::{Cancel, Outcome, Space, StopReason};
 use mp_io::{RigidProblem, SpaceKind};
-use mp_plan::{Budget, Control, Finish, Request, RigidScene, RobotKind, Scene, TypedMotion, search};
+use mp_plan::{Budget, Control, Finish, Request, RigidScene, Robot, Scene, TypedMotion, search};
 use mp_robot::{Planar, Spatial};
 use serde::{Deserialize, Serialize};
 
@@ -81,7 +81,7 @@ impl Rigid {
 
     /// A plain run; `None` when it was interrupted.
     pub(crate) fn plan(&self, request: &Request, cancel: &Cancel) -> Result<Option<Planned>> {
-        fn on<K: RobotKind>(scene: &K, request: &Request, cancel: &Cancel) -> Result<Option<Planned>> {
+        fn on<K: Robot>(scene: &K, request: &Request, cancel: &Cancel) -> Result<Option<Planned>> {
             let mut control = Control { cancel: cancel.clone(), ..Control::default() };
             let found = search(scene, request, &mut control)?;
             Ok(Some(Planned {

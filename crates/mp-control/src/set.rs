@@ -1,7 +1,7 @@
 //! Input sets: the inputs that a system may get.
 
 use crate::{Input, InputError};
-use mp_cspace::{Halton, Joints, ParameterError, Rng, Sampler, Space, SpaceError};
+use mp_cspace::{Configuration, Halton, Joints, ParameterError, Rng, Sampler, Space, SpaceError};
 use nalgebra::{DVector, SVector};
 use std::f64::consts::TAU;
 
@@ -272,7 +272,7 @@ fn spread(limits: &[f64], count: usize) -> Result<Vec<Vec<f64>>, InputError> {
     }
     let n = limits.len();
     let even = 2 * n.div_ceil(2);
-    let cube = Joints::<DVector<f64>>::intervals(&vec![0.0; even], &vec![1.0; even])?;
+    let cube = Joints::<Configuration>::intervals(&vec![0.0; even], &vec![1.0; even])?;
     // The sequence draws nothing from the generator.
     let (mut halton, mut rng) = (Halton::new(&cube), Rng::seed(0));
     let mut direction = || -> Vec<f64> {

@@ -417,7 +417,7 @@ fn spaces_with_velocities_conform() {
     kit(&WithMetric::new(space.clone(), ScaledEuclidean::new(&space, weights).unwrap()));
     kit(&Product::with_velocity(Se2::new([0.0; 2], [2.0; 2]).unwrap(), [1.0; 3]).unwrap());
     kit(&Product::with_velocity_dyn(
-        Joints::<DVector<f64>>::intervals(&[0.0; 6], &[3.0; 6]).unwrap(),
+        Joints::<Configuration>::intervals(&[0.0; 6], &[3.0; 6]).unwrap(),
         &[1.0; 6],
     )
     .unwrap());

@@ -20,7 +20,7 @@ mod space;
 
 pub use factored::AnyFactored;
 pub use geometry::AnyGeometry;
-pub use index::{AnyEmbed, AnyIndex, CompiledIndex, CoordinateState};
+pub use index::{AnyIndex, CompiledIndex};
 pub use space::AnySpace;
 
 use crate::{MotionValidity, Straight};

@@ -80,7 +80,7 @@ impl<C: Space> Sampler<C::State> for Ball<'_, C> {
 /// factors exact and the others random.
 ///
 /// ```
-/// use mp_cspace::{FixedFactors, Goal, Rng, Sampler, Se2, Se2State};
+/// use mp_cspace::{Configuration, FixedFactors, Goal, Rng, Sampler, Se2, Se2State};
 /// let space = Se2::new([0.0, 0.0], [1.0, 1.0])?;
 /// let mut goal = FixedFactors::new(&space, Se2State::new(0.9, 0.1, 0.0), [0, 1], 0.01)?;
 /// assert!(goal.reached(&Se2State::new(0.9, 0.105, 2.0)));
@@ -156,8 +156,8 @@ impl<C: Factored> Sampler<C::State> for FixedFactors<'_, C> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Joints, Rn, Se3};
-    use nalgebra::{DVector, Vector2};
+    use crate::{Configuration, Joints, Rn, Se3};
+    use nalgebra::Vector2;
 
     /// Samples have the fixed factors exactly, and vary over much of the range of the others.
     fn holds<C: Factored>(space: &C, fixed: &[usize]) {
@@ -180,16 +180,16 @@ mod tests {
     #[test]
     fn some_components_are_fixed_and_others_free() {
         let body = Se3::new([0.0; 3], [1.0; 3]).unwrap();
-        let arm = Joints::<DVector<f64>>::intervals(&[-1.0; 5], &[1.0; 5]).unwrap();
+        let arm = Joints::<Configuration>::intervals(&[-1.0; 5], &[1.0; 5]).unwrap();
         for fixed in [vec![0, 1, 2], vec![3], vec![1]] {
             holds(&body, &fixed);
             holds(&arm, &fixed);
         }
-        let goal = FixedFactors::new(&arm, DVector::zeros(5), [1, 1, 4], 0.1).unwrap();
-        assert!(goal.reached(&DVector::from_vec(vec![1.0, 0.1, 1.0, 1.0, -0.05])));
-        assert!(!goal.reached(&DVector::from_vec(vec![0.0, 0.0, 0.0, 0.0, 0.11])));
+        let goal = FixedFactors::new(&arm, Configuration::zeros(5), [1, 1, 4], 0.1).unwrap();
+        assert!(goal.reached(&Configuration::from(vec![1.0, 0.1, 1.0, 1.0, -0.05])));
+        assert!(!goal.reached(&Configuration::from(vec![0.0, 0.0, 0.0, 0.0, 0.11])));
         let refused = |factors: &[usize], tolerance| {
-            let goal = FixedFactors::new(&arm, DVector::zeros(5), factors.iter().copied(), tolerance);
+            let goal = FixedFactors::new(&arm, Configuration::zeros(5), factors.iter().copied(), tolerance);
             goal.unwrap_err().to_string()
         };
         assert!(refused(&[], 0.1).contains("at least 1"));

@@ -58,6 +58,7 @@
 //! | whether your own implementation is right | `testkit`, with the feature `testkit` |
 
 pub mod angle;
+mod configuration;
 mod edge_checker;
 pub mod erased;
 mod error;
@@ -86,6 +87,7 @@ pub mod testkit;
 mod trace;
 mod validity;
 
+pub use configuration::Configuration;
 pub use edge_checker::EdgeChecker;
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
@@ -110,8 +112,8 @@ pub use registry::Demand;
 pub use rng::Rng;
 pub use sampler::{Bridge, Gaussian, GoalBias, Halton, Sampler, Uniform};
 pub use space::{
-    AsVectors, Coordinates, Factored, FloatingJoints, JointRange, Joints, Product, Rn, Se2, Se2State, Se3,
-    So3, Space, TrueMetric,
+    AsVectors, Coordinates, Factored, FloatingJoints, JointRange, Joints, OnVectors, Product, Rn, Se2,
+    Se2State, Se3, So3, Space, TrueMetric,
 };
 pub use stop::{Deadline, Iterations, Motions, Nodes, Or, Progress, Stop};
 pub use validity::{

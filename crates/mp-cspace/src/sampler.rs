@@ -156,8 +156,7 @@ impl<S, A: Sampler<S>, G: Sampler<S>> Sampler<S> for GoalBias<A, G> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Joints, Rn};
-    use nalgebra::DVector;
+    use crate::{Configuration, Joints, Rn};
     use nalgebra::Vector2;
 
     #[test]
@@ -178,7 +177,7 @@ mod tests {
     /// Each eighth of every axis gets its share, in 12 dimensions, with leaps too.
     #[test]
     fn halton_fills_every_axis() {
-        let cube = Joints::<DVector<f64>>::intervals(&[0.0; 12], &[1.0; 12]).unwrap();
+        let cube = Joints::<Configuration>::intervals(&[0.0; 12], &[1.0; 12]).unwrap();
         assert!(Halton::new(&cube).leap(6).is_err() && Halton::new(&cube).leap(0).is_err());
         let mut rng = Rng::seed(0);
         let n = 4000;

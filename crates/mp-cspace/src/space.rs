@@ -19,7 +19,7 @@ pub use se2::{Se2, Se2State};
 pub use se3::Se3;
 pub use so3::So3;
 pub(crate) use so3::twice;
-pub use vectors::AsVectors;
+pub use vectors::{AsVectors, OnVectors};
 
 use crate::{Rng, layout::Layout};
 use std::fmt::Debug;

@@ -1,16 +1,16 @@
 //! Nearest neighbours: every index agrees with the linear scan, to the bit, on friendly and on
 //! unfriendly data, and does little work on either.
 
-use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
+use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex};
 use mp_cspace::testkit::check_nearest_neighbors;
 use mp_cspace::{
-    DefaultNn, Euclidean, FloatingJoints, Hit, JointRange, Joints, KdTree, Linear, Manhattan,
-    MaxDisplacement, Metric, MetricFn, MetricTree, NearestNeighbors, Product, Rn, Rng, ScaledEuclidean, Se2,
-    Se3, So3, Space, TrueMetric, WithMetric,
+    AsVectors, Configuration, DefaultNn, Euclidean, FloatingJoints, Hit, JointRange, Joints, KdTree, Linear,
+    Manhattan, MaxDisplacement, Metric, MetricFn, MetricTree, NearestNeighbors, Product, Rn, Rng,
+    ScaledEuclidean, Se2, Se3, So3, Space, TrueMetric, WithMetric,
     angle::rotation_angle,
     nn::{Embed, Layout},
 };
-use nalgebra::{DVector, Point2, Point3, SVector, UnitQuaternion, Vector2};
+use nalgebra::{Point2, Point3, SVector, UnitQuaternion, Vector2};
 use proptest::prelude::*;
 use rand::RngExt;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -43,31 +43,31 @@ fn compiled_agrees_on<C: CompiledIndex>(space: C) {
 }
 
 /// An index by the coordinates of the space, compiled in the library for all spaces of its states.
-fn agrees_by_coordinates<C: Embed<State: CoordinateState> + Clone + Send + 'static>(space: C) {
+fn agrees_by_coordinates<C: Embed<State = Configuration> + Clone + Send + 'static>(space: C) {
     check_nearest_neighbors(&AnySpace::new(&space), &mut AnyIndex::by_coordinates(&space), 500, 1);
 }
 
 #[test]
 fn default_index_of_every_space() {
     agrees_on(Rn::<1>::new([0.0], [1.0]).unwrap());
-    compiled_agrees_on(Rn::<2>::new([0.0; 2], [1.0, 30.0]).unwrap());
+    compiled_agrees_on(AsVectors(Rn::<2>::new([0.0; 2], [1.0, 30.0]).unwrap()));
     agrees_on(Rn::<3>::new([1e6; 3], [1e6 + 1.0; 3]).unwrap());
     agrees_on(Rn::<6>::new([-1.0; 6], [1.0; 6]).unwrap());
     agrees_on(Rn::<19>::new([-1.0; 19], [1.0; 19]).unwrap());
-    compiled_agrees_on(Joints::<DVector<f64>>::intervals(&[0.0; 5], &[1.0; 5]).unwrap());
-    compiled_agrees_on(Joints::<DVector<f64>>::intervals(&[0.0; 20], &[1.0; 20]).unwrap());
+    compiled_agrees_on(Joints::<Configuration>::intervals(&[0.0; 5], &[1.0; 5]).unwrap());
+    compiled_agrees_on(Joints::<Configuration>::intervals(&[0.0; 20], &[1.0; 20]).unwrap());
     agrees_on(circles::<1>());
     agrees_on(So3);
     agrees_on(circles::<2>());
     agrees_on(circles::<7>());
     let ranges = [JointRange::Interval { low: -6.0, high: 6.0 }, JointRange::Circle, JointRange::Circle];
     agrees_on(Joints::<SVector<f64, 3>>::new(ranges).unwrap());
-    compiled_agrees_on(Joints::<DVector<f64>>::new(ranges.repeat(7)).unwrap());
-    agrees_by_coordinates(WithMetric::new(Joints::<DVector<f64>>::new(ranges).unwrap(), Manhattan));
-    compiled_agrees_on(Se2::new([0.0; 2], [10.0; 2]).unwrap());
-    compiled_agrees_on(Se2::new([0.0; 2], [1.0; 2]).unwrap().with_rotation_weight(3.0).unwrap());
-    compiled_agrees_on(se3());
-    compiled_agrees_on(se3().with_rotation_weight(1e-3).unwrap());
+    compiled_agrees_on(Joints::<Configuration>::new(ranges.repeat(7)).unwrap());
+    agrees_by_coordinates(WithMetric::new(Joints::<Configuration>::new(ranges).unwrap(), Manhattan));
+    compiled_agrees_on(AsVectors(Se2::new([0.0; 2], [10.0; 2]).unwrap()));
+    compiled_agrees_on(AsVectors(Se2::new([0.0; 2], [1.0; 2]).unwrap().with_rotation_weight(3.0).unwrap()));
+    compiled_agrees_on(AsVectors(se3()));
+    compiled_agrees_on(AsVectors(se3().with_rotation_weight(1e-3).unwrap()));
     agrees_on(Product::new(se3(), 2.0, circles::<2>(), 0.1).unwrap());
     let floating = FloatingJoints::new(se3(), Joints::new(ranges).unwrap()).unwrap();
     agrees_by_coordinates(floating.clone());
@@ -78,11 +78,11 @@ fn default_index_of_every_space() {
 #[test]
 fn default_index_under_other_metrics() {
     agrees_on(WithMetric::new(Rn::<4>::new([0.0; 4], [1.0; 4]).unwrap(), Manhattan));
-    agrees_by_coordinates(WithMetric::new(se3(), Manhattan));
-    agrees_by_coordinates(WithMetric::new(se3(), Euclidean));
+    agrees_by_coordinates(AsVectors(WithMetric::new(se3(), Manhattan)));
+    agrees_by_coordinates(AsVectors(WithMetric::new(se3(), Euclidean)));
     agrees_on(WithMetric::new(Product::new(So3, 1.0, circles::<3>(), 1.0).unwrap(), Euclidean));
     let weights = ScaledEuclidean::new(&se3(), [1.0, 10.0, 0.1, 3.0]).unwrap();
-    agrees_by_coordinates(WithMetric::new(se3(), weights));
+    agrees_by_coordinates(AsVectors(WithMetric::new(se3(), weights)));
     let corners = [[0.3, 0.0, 0.0], [0.0, 0.4, 0.0], [0.0, 0.1, -0.5]].map(Point3::from);
     agrees_on(WithMetric::new(se3(), MaxDisplacement::new(corners).unwrap()));
     let rod = MaxDisplacement::planar([Point2::new(-1.0, 0.0), Point2::new(1.0, 0.0)]).unwrap();
@@ -426,9 +426,9 @@ proptest! {
         points in prop::collection::vec(prop::collection::vec(prop::num::f64::ANY, 3), 1..120),
         query in prop::collection::vec(prop::num::f64::ANY, 3),
     ) {
-        let space = Joints::<DVector<f64>>::intervals(&[-1.0; 3], &[1.0; 3]).unwrap();
-        let points: Vec<_> = points.into_iter().map(DVector::from_vec).collect();
-        let query = [DVector::from_vec(query)];
+        let space = Joints::<Configuration>::intervals(&[-1.0; 3], &[1.0; 3]).unwrap();
+        let points: Vec<_> = points.into_iter().map(Configuration::from).collect();
+        let query = [Configuration::from(query)];
         agrees_along(&space, KdTree::<16>::new(), &points, &query);
         agrees_along(&space, MetricTree::new(), &points, &query);
     }

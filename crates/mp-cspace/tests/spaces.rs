@@ -5,7 +5,7 @@ use mp_cspace::nn::Embed;
 use mp_cspace::space_time::{ForwardInTime, SpaceTime};
 use mp_cspace::testkit::{SpaceKit, check_local_planner, check_true_metric};
 use mp_cspace::*;
-use nalgebra::{DVector, Isometry3, Point2, Point3, SVector, UnitQuaternion, Vector3, Vector4};
+use nalgebra::{Isometry3, Point2, Point3, SVector, UnitQuaternion, Vector3, Vector4};
 use proptest::prelude::*;
 use proptest::test_runner;
 use std::fmt::Debug;
@@ -119,7 +119,7 @@ fn se3() -> Se3 {
 spaces! {
     rn: r3(), SpaceKit::new(), geodesic_axioms;
     rn_far_from_zero: Rn::<2>::new([1e9, -1e9], [1e9 + 1.0, -1e9 + 3.0]).unwrap(), SpaceKit::new().tolerance(1e-6), axioms;
-    rn_dyn: Joints::<DVector<f64>>::intervals(&[0.0; 7], &[2.0; 7]).unwrap(), SpaceKit::new(), geodesic_axioms;
+    rn_dyn: Joints::<Configuration>::intervals(&[0.0; 7], &[2.0; 7]).unwrap(), SpaceKit::new(), geodesic_axioms;
     so2: circles::<1>(), SpaceKit::new(), geodesic_axioms;
     so3: So3, SpaceKit::new(), geodesic_axioms;
     se2_space: se2(), SpaceKit::new(), geodesic_axioms;
@@ -127,7 +127,7 @@ spaces! {
     se3_heavy: se3().with_rotation_weight(30.0).unwrap(), SpaceKit::new(), geodesic_axioms;
     torus: circles::<3>(), SpaceKit::new(), geodesic_axioms;
     joints_static: joints::<Vector4<f64>>(), SpaceKit::new(), geodesic_axioms;
-    joints_dynamic: joints::<DVector<f64>>(), SpaceKit::new(), geodesic_axioms;
+    joints_dynamic: joints::<Configuration>(), SpaceKit::new(), geodesic_axioms;
     joints_manhattan: WithMetric::new(joints::<Vector4<f64>>(), Manhattan), SpaceKit::new(), geodesic_axioms;
     floating_joints: floating(), SpaceKit::new(), geodesic_axioms;
     floating_scaled: WithMetric::new(floating(), ScaledEuclidean::new(&floating(), [1.0, 2.0, 1.0, 0.3, 0.5, 0.1, 1.0, 2.0]).unwrap()), SpaceKit::new(), geodesic_axioms;
@@ -179,11 +179,11 @@ fn bad_parameters_are_errors() {
     assert!(matches!(Rn::new([0.0], [f64::INFINITY]), Err(SpaceError::NotFinite { axis: 0, .. })));
     assert!(matches!(Rn::new([-1e300], [1e300]), Err(SpaceError::NotFinite { .. })));
     assert!(matches!(Rn::<0>::new([], []), Err(SpaceError::Empty { .. })));
-    assert!(matches!(Joints::<DVector<f64>>::intervals(&[0.0], &[1.0, 2.0]), Err(SpaceError::Count { .. })));
+    assert!(matches!(Joints::<Configuration>::intervals(&[0.0], &[1.0, 2.0]), Err(SpaceError::Count { .. })));
     let interval = |low, high| JointRange::Interval { low, high };
     assert!(matches!(Joints::<Vector3<f64>>::new([JointRange::Circle]), Err(SpaceError::Count { .. })));
-    assert!(matches!(Joints::<DVector<f64>>::new([]), Err(SpaceError::Empty { .. })));
-    let one = |range| Joints::<DVector<f64>>::new([JointRange::Circle, range]);
+    assert!(matches!(Joints::<Configuration>::new([]), Err(SpaceError::Empty { .. })));
+    let one = |range| Joints::<Configuration>::new([JointRange::Circle, range]);
     assert!(matches!(one(interval(0.3, 0.3)), Err(SpaceError::EmptyRange { axis: 1, .. })));
     assert!(matches!(one(interval(nan, 0.3)), Err(SpaceError::NotFinite { axis: 1, .. })));
     assert!(Se2::new([0.0, 0.0], [1.0, 0.0]).is_err() && Se3::new([0.0; 3], [1.0, nan, 1.0]).is_err());
@@ -239,8 +239,8 @@ fn joints_are_boxes_and_tori() {
 /// A floating base with joints is the product of both spaces, with its states in one list.
 #[test]
 fn floating_joints_are_a_product() {
-    let (list, pair) = (floating(), Product::new(se3(), 1.0, joints::<DVector<f64>>(), 1.0).unwrap());
-    let flat = |q: &(Isometry3<f64>, DVector<f64>)| list.state(&q.0, q.1.as_slice());
+    let (list, pair) = (floating(), Product::new(se3(), 1.0, joints::<Configuration>(), 1.0).unwrap());
+    let flat = |q: &(Isometry3<f64>, Configuration)| list.state(&q.0, q.1.as_slice());
     assert_eq!((list.dim(), list.factors()), (pair.dim(), pair.factors()));
     assert!((list.extent() - pair.extent()).abs() < 1e-12);
     for seed in 0..100 {
@@ -273,7 +273,7 @@ fn floating_joints_are_a_product() {
     let state = flat(&pair.sample_uniform(&mut mp_cspace::Rng::seed(1)));
     let mut long = state.clone();
     long[6] += 0.1;
-    let short = DVector::from_column_slice(&state.as_slice()[..10]);
+    let short = Configuration::from(&state.as_slice()[..10]);
     assert!(list.contains(&state) && !list.contains(&long) && !list.contains(&short));
     assert_eq!(FloatingJoints::split(&[0.0; 6]), None);
 }
@@ -289,7 +289,7 @@ fn states_that_are_not_contained() {
         assert!(!se2().contains(&Se2State { angle, ..Se2State::default() }));
     }
     assert!(circles::<1>().contains(&[std::f64::consts::PI].into()));
-    assert!(!Joints::<DVector<f64>>::intervals(&[0.0; 2], &[1.0; 2]).unwrap().contains(&vec![0.5].into()));
+    assert!(!Joints::<Configuration>::intervals(&[0.0; 2], &[1.0; 2]).unwrap().contains(&vec![0.5].into()));
     let long = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1.1, 0.0, 0.0, 0.0));
     let bad = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(nan, 0.0, 0.0, 0.0));
     assert!(!So3.contains(&long) && !So3.contains(&bad));
@@ -395,5 +395,5 @@ fn positions_and_rotations_are_taken_apart() {
     holds(&se3(), true);
     holds(&WithMetric::new(se3(), Manhattan), true);
     holds(&r3(), false);
-    holds(&joints::<DVector<f64>>(), false);
+    holds(&joints::<Configuration>(), false);
 }

@@ -6,13 +6,14 @@
 
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::{
-    Cancel, Certified, DefaultNn, Goals, Iterations, KnownFree, MotionCheck, MotionValidity, Nodes, Outcome,
-    Path, Planner, Problem, Rn, Rng, Se3, Stop, Straight, Workers, registry::Settings,
+    AsVectors, Cancel, Certified, Configuration, DefaultNn, Goals, Iterations, KnownFree, MotionCheck,
+    MotionValidity, Nodes, Outcome, Path, Planner, Problem, Rn, Rng, Se3, StateVector, Stop, Straight,
+    Workers, registry::Settings,
 };
-use mp_plan::{RigidScene, RobotKind, TypedMotion};
+use mp_plan::{Motion, RigidScene, TypedMotion};
 use mp_robot::Spatial;
-use mp_tree::{AnyPlanner, Rrt, RrtConnect, TreeState, Tuning};
-use nalgebra::{DVector, Isometry3};
+use mp_tree::{Rrt, RrtConnect, Tuning, erased};
+use nalgebra::Isometry3;
 use std::error::Error;
 use std::io::Write;
 use std::sync::Arc;
@@ -39,13 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         report(&mut out, &format!("empty R², {nodes} nodes"), times)?;
         let times = in_turn(&|by_name| grow(&space, nodes, by_name))?;
         report(&mut out, &format!("empty SE(3), {nodes} nodes"), times)?;
-        let joints = mp_cspace::Joints::<DVector<f64>>::new(vec![
-            mp_cspace::JointRange::Interval {
-                low: -3.0,
-                high: 3.0
-            };
-            6
-        ])?;
+        let joints = Rn::<6>::new([-3.0; 6], [3.0; 6])?;
         let times = in_turn(&|by_name| grow(&joints, nodes, by_name))?;
         report(&mut out, &format!("empty space of 6 joints, {nodes} nodes"), times)?;
     }
@@ -78,31 +73,34 @@ fn seeded(seeds: u64, run: &dyn Fn(u64) -> Result<(), Box<dyn Error>>) -> Timed 
 
 /// RRT-Connect on a scene, by type or by name.
 fn solve(scene: &RigidScene<Spatial>, seed: u64, by_name: bool) -> Result<(), Box<dyn Error>> {
-    let (space, verifier) = (scene.space(), scene.verifier()?);
-    let (start, goal) = (*scene.start(), scene.goals().to_vec());
-    let check = || Certified::new(space, scene.checker().clone(), scene.tolerance());
+    let (space, robot, verifier) = (scene.space(), scene.robot(), scene.verifier()?);
+    let (start, goals) = (scene.start().clone(), scene.goals().to_vec());
     let mut stop = Iterations(20_000).or(Cancel::new());
     let mut rng = Rng::seed(seed);
-    let outcome = match by_name {
+    let found = match by_name {
         false => {
-            let problem =
-                Problem::new(space, Straight::new(space, check()?), verifier, start, Goals::states(goal))?;
-            RrtConnect::new(problem, Tuning::default())?.solve(&mut rng, &mut stop, &mut ())
+            let (space, placed) = (&space.0, |q: &Configuration| q.to().ok_or("no placement"));
+            let check = Certified::new(space, robot.clone(), scene.tolerance())?;
+            let goals = goals.iter().map(placed).collect::<Result<Vec<Isometry3<f64>>, _>>()?;
+            let (local, verifier) = (Straight::new(space, check), verifier.inner().clone());
+            let problem = Problem::new(space, local, verifier, placed(&start)?, Goals::states(goals))?;
+            path_of(RrtConnect::new(problem, Tuning::default())?.solve(&mut rng, &mut stop, &mut ()))
         }
         true => {
             let any = AnySpace::new(space);
             let make = || {
-                let check = check().map_err(|e| mp_cspace::BuildError::Unmade { reason: e.to_string() })?;
+                let check = Certified::new(space, scene.checker().clone(), scene.tolerance());
+                let check = check.map_err(|e| mp_cspace::BuildError::Unmade { reason: e.to_string() })?;
                 let local = Straight::new(&any, Box::new(check) as _);
-                Problem::new(&any, local, verifier.clone(), start, Goals::states(goal.clone()))
+                Problem::new(&any, local, verifier.clone(), start.clone(), Goals::states(goals.clone()))
             };
             let (index, settings) = (AnyIndex::of(space), Settings::default());
-            let mut planner: AnyPlanner<'_, Isometry3<f64>, ()> =
-                TreeState::tree_planner("rrt-connect", Arc::new(make), index, &settings, &Workers::single())?;
-            planner.solve(&mut rng, &mut stop, &mut ())
+            let workers = Workers::single();
+            let mut planner = erased::build("rrt-connect", Arc::new(make), index, &settings, &workers)?;
+            path_of(planner.solve(&mut rng, &mut stop, &mut ()))
         }
     };
-    std::hint::black_box(path_of(outcome));
+    std::hint::black_box(found);
     Ok(())
 }
 
@@ -129,27 +127,27 @@ impl<S> MotionValidity<S> for Free {
 /// The time (ms) in which an RRT grows to so many nodes where nothing is in the way, toward a goal that is never met.
 fn grow<C>(space: &C, nodes: usize, by_name: bool) -> Timed
 where
-    C: DefaultNn<State: TreeState, Nn: 'static> + Clone + Send + 'static,
+    C: DefaultNn<State: StateVector, Nn: Send + Sync + 'static> + Clone + Send + 'static,
+    AsVectors<C>: DefaultNn<State = Configuration, Nn: 'static>,
 {
     let start = space.sample_uniform(&mut Rng::seed(9));
-    let never = || Goals::region(|_: &C::State| false);
     let (mut rng, mut stop) = (Rng::seed(1), Nodes(nodes));
     let began = Instant::now();
     match by_name {
         false => {
-            let problem = Problem::new(space, Straight::new(space, Free), Free, start, never())?;
+            let never = Goals::region(|_: &C::State| false);
+            let problem = Problem::new(space, Straight::new(space, Free), Free, start, never)?;
             Rrt::new(problem, Tuning::default())?.solve(&mut rng, &mut stop, &mut ());
         }
         true => {
-            let any = AnySpace::new(space);
+            let (rows, start) = (AsVectors(space.clone()), Configuration::of(&start));
+            let any = AnySpace::new(&rows);
             let make = || {
                 let local = Straight::new(&any, Box::new(Free) as _);
-                Problem::new(&any, local, Free, start.clone(), never())
+                Problem::new(&any, local, Free, start.clone(), Goals::region(|_: &Configuration| false))
             };
-            let index = AnyIndex::of(space);
-            let settings = Settings::default();
-            let mut planner =
-                TreeState::tree_planner("rrt", Arc::new(make), index, &settings, &Workers::single())?;
+            let (index, settings) = (AnyIndex::of(&rows), Settings::default());
+            let mut planner = erased::build("rrt", Arc::new(make), index, &settings, &Workers::single())?;
             planner.solve(&mut rng, &mut stop, &mut ());
         }
     }

@@ -9,7 +9,7 @@ mod motion;
 mod prove;
 
 use crate::path::states;
-use crate::{Error, MotionModel, PathRows, RobotKind, brief};
+use crate::{Error, MotionModel, PathRows, Robot, brief};
 use mp_cspace::Interrupt;
 use nalgebra::Isometry3;
 use prove::Prover;
@@ -79,8 +79,8 @@ impl Certificate {
 /// # Errors
 /// When the path is of another robot, is not free, turns exactly half way round in one edge, or the kind of robot is your own and
 /// has no model; and when `interrupt` says to end.
-pub(crate) fn certificate<K: RobotKind + ?Sized>(
-    kind: &K,
+pub(crate) fn certificate(
+    kind: &dyn Robot,
     path: &PathRows,
     clearance: f64,
     interrupt: &Interrupt,
@@ -124,7 +124,7 @@ pub(crate) fn certificate<K: RobotKind + ?Sized>(
 }
 
 /// Name and unit of each number of a row.
-fn columns<K: RobotKind + ?Sized>(kind: &K) -> Vec<String> {
+fn columns(kind: &dyn Robot) -> Vec<String> {
     kind.columns().iter().map(ToString::to_string).collect()
 }
 

@@ -5,10 +5,10 @@ use crate::explain::{enclosures, list};
 use crate::goals::next_to;
 use crate::numbers::{brief, plain};
 use crate::path::states;
-use crate::{Error, PathRows, RobotKind};
+use crate::{Error, PathRows, Robot};
 use mp_cspace::erased::AnyCheck;
 use mp_cspace::{
-    Interrupt, MotionCheck, Path, Space, least_clearance,
+    Configuration, Interrupt, MotionCheck, Path, Space, least_clearance,
     path::{PathFault, PathReport},
     verify_path,
 };
@@ -64,21 +64,21 @@ impl Verdict {
 }
 
 /// Verifies a path edge by edge. Where `interrupt` says to end, the path has a fault.
-pub(crate) fn verified<K: RobotKind + ?Sized>(
-    kind: &K,
-    path: &Path<K::State>,
+pub(crate) fn verified(
+    kind: &dyn Robot,
+    path: &Path<Configuration>,
     interrupt: &Interrupt,
 ) -> Result<PathReport, Error> {
-    let mut verifier: AnyCheck<'_, K::State> = Box::new(kind.any_verifier()?);
+    let mut verifier: AnyCheck<'_, Configuration> = Box::new(kind.any_verifier()?);
     verifier.interrupt_by(interrupt);
     Ok(verify_path(&kind.any_space(), path, &mut verifier))
 }
 
 /// A lower bound on the clearance (m) along a free path, to within `accuracy` (m); `None` where none is known, or `interrupt` says
 /// to end.
-pub(crate) fn clearance<K: RobotKind + ?Sized>(
-    kind: &K,
-    path: &Path<K::State>,
+pub(crate) fn clearance(
+    kind: &dyn Robot,
+    path: &Path<Configuration>,
     accuracy: f64,
     interrupt: &Interrupt,
 ) -> Option<f64> {
@@ -92,7 +92,7 @@ pub(crate) fn clearance<K: RobotKind + ?Sized>(
 }
 
 /// Whether a path, which has a state, begins elsewhere than at the start, or ends elsewhere than at a goal.
-pub(crate) fn end_faults<K: RobotKind + ?Sized>(kind: &K, states: &[K::State]) -> Vec<String> {
+pub(crate) fn end_faults(kind: &dyn Robot, states: &[Configuration]) -> Vec<String> {
     let mut faults = Vec::new();
     let (first, last) = (&states[0], &states[states.len() - 1]);
     let start = kind.mismatch(first, kind.start());
@@ -114,11 +114,7 @@ pub(crate) fn end_faults<K: RobotKind + ?Sized>(kind: &K, states: &[K::State]) -
 }
 
 /// Checks that a path is free and leads from the start to a goal. Where `interrupt` says to end, the path has a fault.
-pub(crate) fn check<K: RobotKind + ?Sized>(
-    kind: &K,
-    path: &PathRows,
-    interrupt: &Interrupt,
-) -> Result<Verdict, Error> {
+pub(crate) fn check(kind: &dyn Robot, path: &PathRows, interrupt: &Interrupt) -> Result<Verdict, Error> {
     let _span = tracing::info_span!("check", scene = kind.name()).entered();
     let states = Path::straight(states(kind, path)?);
     let mut faults = end_faults(kind, &states.states);
@@ -152,7 +148,7 @@ pub(crate) fn check<K: RobotKind + ?Sized>(
 }
 
 /// A fault as text, with the configuration at which it occurs and what touches there.
-pub(crate) fn fault_text<K: RobotKind + ?Sized>(kind: &K, path: &Path<K::State>, fault: PathFault) -> String {
+pub(crate) fn fault_text(kind: &dyn Robot, path: &Path<Configuration>, fault: PathFault) -> String {
     let (edge, check) = match fault {
         PathFault::Motion { edge, check } => (edge, check),
         PathFault::OutOfBounds { state } => {

@@ -1,8 +1,8 @@
 //! What is wrong with a configuration, or with the ends of a scene.
 
 use crate::numbers::told_apart;
-use crate::{End, Error, RobotKind, Touch};
-use mp_cspace::{Clearance, Space, Validity};
+use crate::{End, Error, Robot, Touch};
+use mp_cspace::{Clearance, Configuration, Space, Validity};
 use serde::{Deserialize, Serialize};
 
 /// Why a configuration is free or not.
@@ -25,7 +25,7 @@ pub struct Explanation {
 }
 
 /// Explains a configuration.
-pub(crate) fn explain<K: RobotKind + ?Sized>(kind: &K, q: &K::State) -> Explanation {
+pub(crate) fn explain(kind: &dyn Robot, q: &Configuration) -> Explanation {
     let (in_bounds, fault) = (kind.any_space().contains(q), fault(kind, q));
     let clearance = match in_bounds {
         true => kind.any_measure().clearance(q, f64::INFINITY).max(0.0),
@@ -44,7 +44,7 @@ pub(crate) fn explain<K: RobotKind + ?Sized>(kind: &K, q: &K::State) -> Explanat
 }
 
 /// What is wrong with a configuration, to follow the words "the start is".
-fn fault<K: RobotKind + ?Sized>(kind: &K, q: &K::State) -> Option<String> {
+fn fault(kind: &dyn Robot, q: &Configuration) -> Option<String> {
     if !kind.any_space().contains(q) {
         return Some(kind.out_of_bounds(q));
     }
@@ -76,7 +76,7 @@ fn fault<K: RobotKind + ?Sized>(kind: &K, q: &K::State) -> Option<String> {
 }
 
 /// Start and goals, with the names that messages give them.
-fn ends<K: RobotKind + ?Sized>(kind: &K) -> impl Iterator<Item = (End, String, &K::State)> {
+fn ends(kind: &dyn Robot) -> impl Iterator<Item = (End, String, &Configuration)> {
     let many = kind.goals().len() > 1;
     let goals = kind.goals().iter().enumerate().map(move |(i, q)| {
         let name = if many { format!("goal {}", i + 1) } else { "the goal".to_owned() };
@@ -86,7 +86,7 @@ fn ends<K: RobotKind + ?Sized>(kind: &K) -> impl Iterator<Item = (End, String, &
 }
 
 /// An error message and a remedy for the configuration that messages call `name`; `None` when it is free.
-pub(crate) fn refused<K: RobotKind + ?Sized>(kind: &K, name: &str, q: &K::State) -> Option<(String, String)> {
+pub(crate) fn refused(kind: &dyn Robot, name: &str, q: &Configuration) -> Option<(String, String)> {
     let fault = fault(kind, q)?;
     let mut help = match kind.nearest_free(q) {
         _ if !kind.any_space().contains(q) => kind.bounds_remedy(q),
@@ -107,7 +107,7 @@ pub(crate) fn refused<K: RobotKind + ?Sized>(kind: &K, name: &str, q: &K::State)
 const LISTED: usize = 3;
 
 /// A warning of what is inside of closed surfaces, if anything is.
-pub(crate) fn enclosures<K: RobotKind + ?Sized>(kind: &K, q: &K::State) -> Option<String> {
+pub(crate) fn enclosures(kind: &dyn Robot, q: &Configuration) -> Option<String> {
     let found = kind.enclosures(q);
     let named = found.iter().take(LISTED).map(|[inner, outer]| format!("{inner} is inside of {outer}"));
     let named = named.collect::<Vec<_>>().join(", ");
@@ -122,7 +122,7 @@ pub(crate) fn enclosures<K: RobotKind + ?Sized>(kind: &K, q: &K::State) -> Optio
 
 /// An error if the start or a goal is not free: it says what touches, how deep, and the nearest free configuration.
 /// Otherwise returns what is odd about them.
-pub(crate) fn check_ends<K: RobotKind + ?Sized>(kind: &K) -> Result<Vec<String>, Error> {
+pub(crate) fn check_ends(kind: &dyn Robot) -> Result<Vec<String>, Error> {
     for (end, name, q) in ends(kind) {
         if let Some((message, help)) = refused(kind, &name, q) {
             return Err(kind.fault(end, message, help));
@@ -133,7 +133,7 @@ pub(crate) fn check_ends<K: RobotKind + ?Sized>(kind: &K) -> Result<Vec<String>,
 }
 
 /// What is wrong or odd about a scene.
-pub(crate) fn lint<K: RobotKind + ?Sized>(kind: &K) -> Vec<String> {
+pub(crate) fn lint(kind: &dyn Robot) -> Vec<String> {
     let mut found: Vec<String> =
         ends(kind).filter_map(|(_, name, q)| Some(format!("{name} is {}", fault(kind, q)?))).collect();
     found.extend(ends(kind).filter_map(|(_, name, q)| Some(format!("at {name} {}", enclosures(kind, q)?))));

@@ -1,9 +1,9 @@
 //! The fields that push snakes: made by name, and as an image of a world of the plane.
 
 use crate::motion::Counting;
-use crate::{Error, RelaxField, RobotKind};
+use crate::{Error, RelaxField, Robot};
 use mp_cspace::erased::AnyGradient;
-use mp_cspace::{Path, StateVector};
+use mp_cspace::{Configuration, Path};
 use mp_snake::{Field, Grid, Repulsion, With};
 use nalgebra::Vector2;
 #[cfg(feature = "planar")]
@@ -36,10 +36,10 @@ pub struct FieldImage {
 }
 
 /// A field of any kind.
-pub(crate) struct AnyField<'a, S>(Box<dyn Field<S> + 'a>);
+pub(crate) struct AnyField<'a>(Box<dyn Field<Configuration> + 'a>);
 
-impl<S> Field<S> for AnyField<'_, S> {
-    fn energy(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
+impl Field<Configuration> for AnyField<'_> {
+    fn energy(&mut self, q: &Configuration, gradient: &mut [f64]) -> f64 {
         self.0.energy(q, gradient)
     }
     fn clearance(&self) -> Option<f64> {
@@ -48,16 +48,11 @@ impl<S> Field<S> for AnyField<'_, S> {
 }
 
 /// An image as the energy of states that begin with x and y (m).
-struct OnPlane {
-    image: Grid,
-    numbers: Vec<f64>,
-}
+struct OnPlane(Grid);
 
-impl<S: StateVector> Field<S> for OnPlane {
-    fn energy(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
-        self.numbers.clear();
-        q.write(&mut self.numbers);
-        let (energy, slope) = self.image.at(&Vector2::new(self.numbers[0], self.numbers[1]));
+impl Field<Configuration> for OnPlane {
+    fn energy(&mut self, q: &Configuration, gradient: &mut [f64]) -> f64 {
+        let (energy, slope) = self.0.at(&Vector2::new(q[0], q[1]));
         gradient.fill(0.0);
         gradient.iter_mut().zip(slope.iter()).for_each(|(g, s)| *g = *s);
         energy
@@ -65,7 +60,7 @@ impl<S: StateVector> Field<S> for OnPlane {
 }
 
 /// Refuses a field that does not suit the robot, or whose file cannot be read.
-pub(crate) fn check<K: RobotKind + ?Sized>(kind: &K, field: &RelaxField) -> Result<(), Error> {
+pub(crate) fn check(kind: &dyn Robot, field: &RelaxField) -> Result<(), Error> {
     let names: Vec<_> = kind.columns().into_iter().map(|column| column.name).collect();
     let place = matches!(kind.limits()[..], [Some(_), Some(_), ..]);
     let (suits, whom) = match field {
@@ -85,16 +80,16 @@ pub(crate) fn check<K: RobotKind + ?Sized>(kind: &K, field: &RelaxField) -> Resu
 }
 
 /// The field `name` with a range (m). That of risk is the landscape of `path`.
-pub(crate) fn make<'k, K: RobotKind + ?Sized>(
-    kind: &'k K,
+pub(crate) fn make<'k>(
+    kind: &'k dyn Robot,
     name: &RelaxField,
     range: f64,
-    path: Option<&Path<K::State>>,
-    gradient: AnyGradient<'k, K::State>,
-) -> Result<AnyField<'k, K::State>, Error> {
+    path: Option<&Path<Configuration>>,
+    gradient: AnyGradient<'k, Configuration>,
+) -> Result<AnyField<'k>, Error> {
     let repulsion = Repulsion::new(gradient, range)?;
     let Some(image) = image(kind, name, range, path)? else { return Ok(AnyField(Box::new(repulsion))) };
-    let image = OnPlane { image, numbers: Vec::new() };
+    let image = OnPlane(image);
     Ok(match name {
         RelaxField::Paper => AnyField(Box::new(image)),
         _ => AnyField(Box::new(With::new(repulsion, image, 1.0)?)),
@@ -102,12 +97,7 @@ pub(crate) fn make<'k, K: RobotKind + ?Sized>(
 }
 
 #[cfg(not(feature = "planar"))]
-fn image<K: RobotKind + ?Sized>(
-    _: &K,
-    name: &RelaxField,
-    _: f64,
-    _: Option<&Path<K::State>>,
-) -> Result<Option<Grid>, Error> {
+fn image(_: &K, name: &RelaxField, _: f64, _: Option<&Path<Configuration>>) -> Result<Option<Grid>, Error> {
     match name {
         RelaxField::Clearance => Ok(None),
         _ => Err(crate::kinds::left_out("planar")),
@@ -128,11 +118,11 @@ const STRIDE: f64 = 5.0 / 3.0;
 
 /// The image of a field that has one.
 #[cfg(feature = "planar")]
-fn image<K: RobotKind + ?Sized>(
-    kind: &K,
+fn image(
+    kind: &dyn Robot,
     name: &RelaxField,
     range: f64,
-    path: Option<&Path<K::State>>,
+    path: Option<&Path<Configuration>>,
 ) -> Result<Option<Grid>, Error> {
     if *name == RelaxField::Clearance {
         return Ok(None);
@@ -172,7 +162,7 @@ fn image<K: RobotKind + ?Sized>(
 
 /// The bounds of x and y (m).
 #[cfg(feature = "planar")]
-fn bounds<K: RobotKind + ?Sized>(kind: &K) -> Result<[[f64; 2]; 2], Error> {
+fn bounds(kind: &dyn Robot) -> Result<[[f64; 2]; 2], Error> {
     match kind.limits()[..] {
         [Some(x), Some(y), ..] => Ok([x, y]),
         _ => Err(not_drawn(kind).help("its robot has no bounds of x and y")),
@@ -208,14 +198,14 @@ fn read_image(file: &std::path::Path, bounds: [[f64; 2]; 2]) -> Result<Grid, Err
 }
 
 #[cfg(feature = "planar")]
-fn not_drawn<K: RobotKind + ?Sized>(kind: &K) -> Error {
+fn not_drawn(kind: &dyn Robot) -> Error {
     Error::new(format!("the field of {} is not drawn", kind.name()))
 }
 
 /// The image of the field `name` with about so many `cells` along the longer side. Coordinates of `row` other than the place stay.
 #[cfg(feature = "planar")]
-pub(crate) fn field<K: RobotKind + ?Sized>(
-    kind: &K,
+pub(crate) fn field(
+    kind: &dyn Robot,
     name: &RelaxField,
     row: &[f64],
     path: Option<&PathRows>,

@@ -6,10 +6,10 @@ use crate::path::states;
 use crate::prepared::{Possible, resolution};
 use crate::relax::relax_if_requested;
 use crate::report::{RunStage, StageTime};
-use crate::{Control, Error, Finish, PathRows, Request, RobotKind, Stage, StoppedBy};
+use crate::{Control, Error, Finish, PathRows, Request, Robot, Stage, StoppedBy};
 use mp_cspace::erased::{AnyCheck, AnySpace};
 use mp_cspace::shorten::{Effort, simplify};
-use mp_cspace::{Factored, Interrupt, MotionCheck, MotionValidity, Path, Rng};
+use mp_cspace::{Configuration, Factored, Interrupt, MotionCheck, MotionValidity, Path, Rng};
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
@@ -35,8 +35,8 @@ pub struct Finished {
 }
 
 /// Finishes a path from elsewhere, between any two configurations.
-pub(crate) fn finish_given<K: RobotKind + ?Sized>(
-    kind: &K,
+pub(crate) fn finish_given(
+    kind: &dyn Robot,
     path: &PathRows,
     request: &Request,
     control: &mut Control<'_>,
@@ -76,19 +76,19 @@ const NARROW: f64 = 0.1;
 /// of its length.
 const FAR_SHORTER: f64 = 0.8;
 
-/// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](RobotKind::shortcut_clearance), or leads through a
+/// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](crate::Motion::shortcut_clearance), or leads through a
 /// passage where the given path does not keep it: there they keep a tenth of it, or are edges of the given path; so does all of it where the
 /// way is far shorter then. The same seed gives the
 /// same path, unless `interrupt` ends it early: then the path is what it is after the last change.
 ///
 /// # Errors
 /// When the tolerance of the robot is not valid.
-pub fn shorten<K: RobotKind + ?Sized>(
-    kind: &K,
-    path: &Path<K::State>,
+pub fn shorten(
+    kind: &dyn Robot,
+    path: &Path<Configuration>,
     seed: u64,
     interrupt: &Interrupt,
-) -> Result<Path<K::State>, Error> {
+) -> Result<Path<Configuration>, Error> {
     let _span = tracing::info_span!("shorten").entered();
     let (space, unused) = (AnySpace::new(&kind.any_space()), AtomicU64::new(0));
     let counting = Counting::new(&unused, interrupt.clone());
@@ -122,7 +122,7 @@ pub fn shorten<K: RobotKind + ?Sized>(
         return Ok(short);
     }
     let mut narrow = possible(kind, interrupt, kind.motions(By::Certificates(narrow), &counting)?);
-    let mut states: Vec<K::State> = short.states.first().cloned().into_iter().collect();
+    let mut states: Vec<Configuration> = short.states.first().cloned().into_iter().collect();
     let mut first = 0;
     for passage in roomy.chunk_by(|a, b| a == b) {
         let edges = &short.states[first..=first + passage.len()];
@@ -143,22 +143,22 @@ pub fn shorten<K: RobotKind + ?Sized>(
 }
 
 /// `check`, which finds no motion free that the robot cannot make.
-fn possible<'k, K: RobotKind + ?Sized>(
-    kind: &'k K,
+fn possible<'k>(
+    kind: &'k dyn Robot,
     interrupt: &Interrupt,
-    check: AnyCheck<'k, K::State>,
-) -> AnyCheck<'k, K::State> {
+    check: AnyCheck<'k, Configuration>,
+) -> AnyCheck<'k, Configuration> {
     Box::new(Possible { kind, check, interrupt: interrupt.clone(), deadlines: None })
 }
 
 /// A sampled check, and the verifier of what it finds free: a path made short by samples alone would graze what is between them.
-struct Both<'a, S> {
-    check: AnyCheck<'a, S>,
-    verifier: AnyCheck<'a, S>,
+struct Both<'a> {
+    check: AnyCheck<'a, Configuration>,
+    verifier: AnyCheck<'a, Configuration>,
 }
 
-impl<S> MotionValidity<S> for Both<'_, S> {
-    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
+impl MotionValidity<Configuration> for Both<'_> {
+    fn check_motion(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
         match self.check.check_motion(from, to) {
             MotionCheck::Free { .. } => self.verifier.check_motion(from, to),
             hit => hit,
@@ -181,9 +181,9 @@ fn shorten_by<C: Factored>(
 ///
 /// # Errors
 /// Inside: why there is no path. `found`, written and read again, does not pass either, or not in time.
-pub(crate) fn finish<K: RobotKind + ?Sized>(
-    kind: &K,
-    found: &Path<K::State>,
+pub(crate) fn finish(
+    kind: &dyn Robot,
+    found: &Path<Configuration>,
     request: &Request,
     control: &mut Control<'_>,
     left: Option<Duration>,
@@ -286,13 +286,13 @@ impl Timed<'_, '_> {
 }
 
 /// A path written as text, and read again.
-struct Written<S> {
+struct Written {
     rows: PathRows,
-    read: Path<S>,
+    read: Path<Configuration>,
 }
 
-impl<S> Written<S> {
-    fn of<K: RobotKind<State = S> + ?Sized>(kind: &K, path: &Path<S>) -> Result<Self, Error> {
+impl Written {
+    fn of(kind: &dyn Robot, path: &Path<Configuration>) -> Result<Self, Error> {
         let rows = PathRows { format: kind.path_format(), columns: kind.columns(), rows: kind.rows(path) };
         let rows = rows.read_back()?;
         let read = Path::straight(rows.rows.iter().map(|row| kind.state(row)).collect());
@@ -304,10 +304,10 @@ impl<S> Written<S> {
 ///
 /// # Errors
 /// Inside: whether it does not pass, or was not verified because `interrupt` said to end.
-fn verified_as_written<K: RobotKind + ?Sized>(
-    kind: &K,
-    path: &Path<K::State>,
-    written: &Written<K::State>,
+fn verified_as_written(
+    kind: &dyn Robot,
+    path: &Path<Configuration>,
+    written: &Written,
     shortened: bool,
     interrupt: &Interrupt,
 ) -> Result<Result<Finished, StoppedBy>, Error> {
@@ -336,12 +336,7 @@ fn verified_as_written<K: RobotKind + ?Sized>(
 }
 
 /// With a better bound on the clearance, if there is time for one.
-fn measured<K: RobotKind + ?Sized>(
-    kind: &K,
-    written: &Written<K::State>,
-    finished: Finished,
-    interrupt: &Interrupt,
-) -> Finished {
+fn measured(kind: &dyn Robot, written: &Written, finished: Finished, interrupt: &Interrupt) -> Finished {
     let Some(known) = finished.clearance else { return finished };
     let clearance = clearance(kind, &written.read, kind.accuracy(), interrupt);
     Finished { clearance: Some(clearance.map_or(known, |c| c.max(known))), ..finished }

@@ -9,10 +9,9 @@ use crate::list::{Next, ResultsReader, merged};
 use crate::{
     Error, ItemResult, Length, MotionValidator, PathFileKind, ProblemList, RelaxField, Report, Request, Scene,
 };
-use mp_cspace::Se2State;
+use mp_cspace::Configuration;
 use mp_io::InMemory;
 use mp_robot::{ArmModel, Kinematics};
-use nalgebra::{DVector, Isometry3};
 use std::path::Path;
 use std::str::FromStr;
 use std::sync::OnceLock;
@@ -165,26 +164,17 @@ pub fn checked_path(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn roadmap(bytes: &[u8]) -> Result<(), Error> {
-    let Some((kind, body)) = bytes.split_first() else { return Ok(()) };
-    match kind % 3 {
-        0 => roadmap_of::<Isometry3<f64>>(body),
-        1 => roadmap_of::<Se2State>(body),
-        _ => roadmap_of::<DVector<f64>>(body),
-    }
-}
-
-fn roadmap_of<S: mp_cspace::StateVector + Clone>(body: &[u8]) -> Result<(), Error> {
     /// Any number.
     const FINGERPRINT: u64 = 7;
-    let empty = mp_roadmap::Roadmap::<S, ()>::new().to_bytes(FINGERPRINT);
+    let empty = mp_roadmap::Roadmap::<Configuration, ()>::new().to_bytes(FINGERPRINT);
     // Magic number, version and fingerprint are before the counts.
     let mut file = empty[..20].to_vec();
-    file.extend_from_slice(body);
+    file.extend_from_slice(bytes);
     file.extend(xxhash_rust::xxh3::xxh3_64(&file).to_le_bytes());
-    let read = mp_roadmap::Roadmap::<S, ()>::from_bytes(&file, FINGERPRINT);
+    let read = mp_roadmap::Roadmap::<Configuration, ()>::from_bytes(&file, FINGERPRINT);
     let map =
         read.map_err(|e| Error::new(e.to_string()).help("delete the file, and build the roadmap anew"))?;
-    let again = mp_roadmap::Roadmap::<S, ()>::from_bytes(&map.to_bytes(FINGERPRINT), FINGERPRINT);
+    let again = mp_roadmap::Roadmap::<Configuration, ()>::from_bytes(&map.to_bytes(FINGERPRINT), FINGERPRINT);
     let again = again.unwrap_or_else(|e| panic!("what was written cannot be read: {e}"));
     assert_eq!(again.to_bytes(FINGERPRINT), map.to_bytes(FINGERPRINT));
     Ok(())

@@ -1,8 +1,8 @@
 //! Goals of which some numbers are fixed, some are in intervals, and some are free.
 
-use crate::RobotKind;
+use crate::{Description, Robot};
 use mp_cspace::angle::wrap_angle;
-use mp_cspace::{Clearance, Goals, Rng, Sampler, Space};
+use mp_cspace::{Clearance, Configuration, Goals, Rng, Sampler, Space};
 pub use mp_io::GoalPart;
 use rand::RngExt;
 
@@ -12,7 +12,7 @@ const TRIES: usize = 1000;
 const ROUNDING: f64 = 1e-9;
 
 /// Which numbers of a configuration are angles without limits, that is, the same after a full turn.
-pub(crate) fn turning<K: RobotKind + ?Sized>(kind: &K) -> Vec<bool> {
+pub(crate) fn turning<K: Description + ?Sized>(kind: &K) -> Vec<bool> {
     let limits = kind.limits();
     let turns = |(i, column): (usize, crate::Column)| {
         column.unit == "rad" && limits.get(i).is_some_and(Option::is_none)
@@ -41,12 +41,12 @@ fn row_at(turning: &[bool], goal: &[GoalPart], mut row: Vec<f64>) -> Vec<f64> {
 }
 
 /// The configuration of a goal that is next to `q`.
-pub(crate) fn next_to<K: RobotKind + ?Sized>(kind: &K, goal: &[GoalPart], q: &K::State) -> K::State {
+pub(crate) fn next_to(kind: &dyn Robot, goal: &[GoalPart], q: &Configuration) -> Configuration {
     kind.state(&row_at(&turning(kind), goal, kind.row(q)))
 }
 
 /// A configuration of a goal, drawn at random.
-fn drawn<K: RobotKind + ?Sized>(kind: &K, goal: &[GoalPart], rng: &mut Rng) -> K::State {
+fn drawn(kind: &dyn Robot, goal: &[GoalPart], rng: &mut Rng) -> Configuration {
     let mut row = kind.row(&kind.any_space().sample_uniform(rng));
     for (part, x) in goal.iter().zip(&mut row) {
         match *part {
@@ -59,24 +59,24 @@ fn drawn<K: RobotKind + ?Sized>(kind: &K, goal: &[GoalPart], rng: &mut Rng) -> K
 }
 
 /// Draws from the goals of a robot, each equally likely.
-struct FromGoals<'k, K: RobotKind + ?Sized> {
-    kind: &'k K,
+struct FromGoals<'k> {
+    kind: &'k dyn Robot,
     goals: &'k [Vec<GoalPart>],
 }
 
-impl<K: RobotKind + ?Sized> Sampler<K::State> for FromGoals<'_, K> {
-    fn sample(&mut self, rng: &mut Rng) -> K::State {
+impl Sampler<Configuration> for FromGoals<'_> {
+    fn sample(&mut self, rng: &mut Rng) -> Configuration {
         let which = if self.goals.len() > 1 { rng.random_range(0..self.goals.len()) } else { 0 };
         drawn(self.kind, &self.goals[which], rng)
     }
 }
 
 /// The goals of a robot, for planners: the configurations, or what they may be.
-pub(crate) fn of_kind<K: RobotKind + ?Sized>(kind: &K) -> Goals<'_, K::State> {
+pub(crate) fn of_kind(kind: &dyn Robot) -> Goals<'_, Configuration> {
     let Some(goals) = kind.goal_parts() else { return Goals::states(kind.goals().iter().cloned()) };
     let rounding = ROUNDING * kind.any_space().extent().max(1.0);
     let turning = turning(kind);
-    let reached = move |q: &K::State| {
+    let reached = move |q: &Configuration| {
         let row = kind.row(q);
         let there = |goal: &Vec<GoalPart>| kind.state(&row_at(&turning, goal, row.clone()));
         goals.iter().any(|goal| kind.any_space().distance(q, &there(goal)) <= rounding)
@@ -86,7 +86,7 @@ pub(crate) fn of_kind<K: RobotKind + ?Sized>(kind: &K) -> Goals<'_, K::State> {
 
 /// One configuration for each goal, free if one is found: with the numbers of the start where the goal leaves them free, or
 /// else drawn at random, always the same.
-pub(crate) fn examples<K: RobotKind + ?Sized>(kind: &K, goals: &[Vec<GoalPart>]) -> Vec<K::State> {
+pub(crate) fn examples(kind: &dyn Robot, goals: &[Vec<GoalPart>]) -> Vec<Configuration> {
     let (mut checker, mut rng) = (kind.any_checker(), Rng::seed(0));
     let enough = 2.0 * kind.tolerance();
     let example = |goal: &Vec<GoalPart>| {
@@ -97,7 +97,8 @@ pub(crate) fn examples<K: RobotKind + ?Sized>(kind: &K, goals: &[Vec<GoalPart>])
             }
         }
         let first = kind.state(&row);
-        let mut free = |q: &K::State| kind.any_space().contains(q) && checker.clearance(q, enough) >= enough;
+        let mut free =
+            |q: &Configuration| kind.any_space().contains(q) && checker.clearance(q, enough) >= enough;
         if free(&first) {
             return first;
         }
@@ -116,7 +117,7 @@ pub(crate) fn rows(goals: &[Vec<GoalPart>]) -> Option<Vec<Vec<f64>>> {
 }
 
 /// A goal as people write it: `x 1.5 to 1.7, y 2, yaw free`.
-pub(crate) fn written<K: RobotKind + ?Sized>(kind: &K, goal: &[GoalPart]) -> String {
+pub(crate) fn written(kind: &dyn Robot, goal: &[GoalPart]) -> String {
     let part = |(column, part): (crate::Column, &GoalPart)| match part {
         GoalPart::Exactly(v) => format!("{} {}", column.name, crate::plain(*v)),
         GoalPart::Between([low, high]) => {

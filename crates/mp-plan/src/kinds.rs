@@ -2,7 +2,7 @@
 //! is much smaller.
 
 use crate::robot::{DrivenScene, PlanarBody, PlanarScene, RigidScene, RigidSpace, greatest_speed};
-use crate::{Error, RobotKind, Scene, TypedMotion};
+use crate::{Error, Robot, Scene, TypedMotion};
 use mp_cspace::Interrupt;
 use mp_io::{PlanarProblem, PlanarShape, RigidProblem, RigidTask, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
@@ -120,7 +120,7 @@ fn space(scene: RigidScene<Spatial>) -> Result<Scene, Error> {
     Ok(of_kind!("space", scene))
 }
 
-fn plane<K: RobotKind + 'static>(scene: K) -> Result<Scene, Error> {
+fn plane<K: Robot + 'static>(scene: K) -> Result<Scene, Error> {
     Ok(of_kind!("plane", scene))
 }
 

@@ -52,14 +52,13 @@
 //! | find out what is odd about a scene | [`Scene::lint`] |
 //! | find out what is in a file | [`info::Info`] |
 //! | draw | `Scene::picture`, `Scene::film` (feature `pictures`), [`Scene::bodies`], [`Scene::poses`], [`Scene::sweep`] |
-//! | add your own kind of robot | [`RobotKind`] |
-//! | work with states instead of rows of numbers | [`search`], [`shorten`] with a [`RobotKind`] |
+//! | add your own kind of robot | [`Robot`] |
+//! | work with states instead of rows of numbers | [`search`], [`shorten`] with a [`Robot`] |
 //!
 //! Units are metres, radians and seconds. The crate prints nothing. It reports through `tracing`, with the spans `load`,
 //! `build`, `plan`, `roadmap`, `query`, `relax`, `shorten`, `verify`, `check` and `certificate`.
 
 mod alone;
-mod any_robot;
 mod certificate;
 mod check;
 mod counted;
@@ -132,9 +131,7 @@ pub use list::{
     RESULTS_VERSION, ResultsHeader, SceneFingerprint, Shard, Tally, merge_results,
 };
 pub use many::plan_many;
-pub use motion::{
-    AnyChecker, AnyKind, AnyVerifier, By, Configuration, Configured, Counting, Motion, TypedMotion,
-};
+pub use motion::{AnyChecker, AnyMotion, AnyVerifier, By, Counting, TypedMotion};
 pub use numbers::{brief, count, plain, positive_number};
 pub use output::{Claims, is_standard, make_folder, write_file};
 pub use parallel::in_parallel;
@@ -149,12 +146,12 @@ pub use portfolio_counts::{PortfolioCounts, PortfolioSchedule};
 pub use regional::{RegionalTally, RegionalWork};
 pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, RelaxField, Request};
-pub use roadmaps::{Roadmap, RoadmapState};
+pub use roadmaps::Roadmap;
 pub use robot::{
-    ArmScene, Body, BodyShape, Checker, Column, Counted, Drive, DriveModel, DrivenScene, End, FloatingScene,
-    LinkedScene, LinkedSpace, Measured, Mismatch, ModelBody, ModelFrame, ModelPair, ModelPart, MotionModel,
-    MovingScene, PathFormat, PlanarBody, PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, SpeedBound,
-    Step, Touch, WithMoving,
+    Appearance, ArmScene, Body, BodyShape, Checker, Column, Counted, Description, Drive, DriveModel,
+    DrivenScene, End, FloatingScene, LinkedScene, LinkedSpace, Measured, Mismatch, ModelBody, ModelFrame,
+    ModelPair, ModelPart, Motion, MotionModel, MovingScene, PathFormat, PlanarBody, PlanarScene, Queries,
+    RigidScene, RigidSpace, Robot, SpeedBound, Step, Touch, WithMoving,
 };
 pub use run::{PreparedRun, Run};
 pub use runs::{Medians, Runs, median, medians};

@@ -1,42 +1,29 @@
-//! What plans with a robot needs to know of its motions: by types, and behind pointers, so that what plans is compiled once for each
-//! type of configuration, not once for each kind of robot.
+//! What plans with a robot needs to know of its motions: by types, and behind pointers, so that what plans is compiled once for all
+//! kinds of robots.
 
 use crate::counted::Counted;
-use crate::roadmaps::RoadmapState;
 use crate::robot::{Checker, Queries};
-use crate::{Error, RobotKind};
+use crate::{Error, Robot};
 use mp_cspace::erased::{AnyCheck, AnyFactored, AnySpace};
 use mp_cspace::{
-    Certified, Clearance, ClearanceSearch, Discrete, Factored, Interrupt, IntervalClearance, KnownFree,
-    LeastClearance, MotionCheck, MotionClearance, MotionInterval, MotionValidity, ObstacleKnowledge,
-    ParameterError, Resolution, StateVector, Validity,
+    Certified, Clearance, ClearanceSearch, Configuration, Discrete, Factored, Interrupt, IntervalClearance,
+    KnownFree, LeastClearance, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
+    ObstacleKnowledge, ParameterError, Resolution, Validity,
 };
-use mp_tree::TreeState;
 use std::fmt::{self, Debug};
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
-/// A type of configuration that planners are compiled for.
-pub trait Configuration: TreeState + RoadmapState + StateVector + 'static {}
-impl<S: TreeState + RoadmapState + StateVector + 'static> Configuration for S {}
-
-/// What a robot's configurations are.
-pub trait Configured {
-    /// A configuration.
-    type State: Configuration;
-}
-
-/// A robot behind a pointer.
-pub type AnyKind<S> = dyn RobotKind<State = S>;
-
-/// The motions of a robot among its obstacles, by types. Implement it for a robot of your own, beside [`RobotKind`].
-pub trait TypedMotion: Configured + Sized {
+/// The motions of a robot among its obstacles, by types. Implement it for a robot of your own, beside the parts of [`Robot`]. A space and
+/// checks whose states are no [`Configuration`] become such by [`AsVectors`](mp_cspace::AsVectors) and
+/// [`OnVectors`](mp_cspace::OnVectors).
+pub trait TypedMotion: Sized {
     /// The space of configurations, under its default metric.
-    type Space: Factored<State = Self::State> + Clone + Send + Debug;
+    type Space: Factored<State = Configuration> + Clone + Send + Debug;
     /// The check of configurations and motions while planning.
-    type Checker: Checker<Self::State> + 'static;
+    type Checker: Checker<Configuration> + 'static;
     /// The independent check of finished paths: it shares no code with the checker.
-    type Verifier<'c>: MotionValidity<Self::State> + Clone + Send + Sync
+    type Verifier<'c>: MotionValidity<Configuration> + Clone + Send + Sync
     where
         Self: 'c;
 
@@ -54,7 +41,7 @@ pub trait TypedMotion: Configured + Sized {
     fn obstacles<'c>(
         &'c self,
         _counted: &dyn Fn() -> Counted<'c, Self::Checker>,
-    ) -> ObstacleKnowledge<'c, Self::State> {
+    ) -> ObstacleKnowledge<'c, Configuration> {
         ObstacleKnowledge::default()
     }
 
@@ -63,7 +50,7 @@ pub trait TypedMotion: Configured + Sized {
     ///
     /// # Errors
     /// When such robots cannot be given other ends.
-    fn with_ends(&self, _start: Self::State, _goals: Vec<Self::State>) -> Result<Self, Error> {
+    fn with_ends(&self, _start: Configuration, _goals: Vec<Configuration>) -> Result<Self, Error> {
         Err(Error::new("this robot cannot be given another start or goal")
             .help("make the scene again with other ends"))
     }
@@ -73,7 +60,7 @@ pub trait TypedMotion: Configured + Sized {
         self
     }
     /// The same robot, which keeps the clearance `kept` (m) from obstacles, in place of the one kept before:
-    /// [`RobotKind::kept`] says which. What is nearer counts as in contact for checker and verifier, and the checker gives clearances that
+    /// [`Motion::kept`](crate::Motion::kept) says which. What is nearer counts as in contact for checker and verifier, and the checker gives clearances that
     /// are less by this much. By default an error.
     ///
     /// # Errors
@@ -117,131 +104,131 @@ impl<'c> Counting<'c> {
 
 /// How motions are checked.
 #[derive(Clone, Copy, Debug)]
-pub enum By<'c, S> {
+pub enum By<'c> {
     /// With a certificate of this tolerance (m).
     Certificates(f64),
     /// At states so far apart in this space.
-    States(&'c AnySpace<'c, S>, Resolution),
+    States(&'c AnySpace<'c, Configuration>, Resolution),
 }
 
 /// The motions of a robot among its obstacles, behind pointers: [`TypedMotion`] gives them.
-pub trait Motion: Configured {
+pub trait AnyMotion {
     /// The space.
-    fn any_space(&self) -> AnyFactored<'_, Self::State>;
+    fn any_space(&self) -> AnyFactored<'_, Configuration>;
     /// A checker.
-    fn any_checker(&self) -> AnyChecker<Self::State>;
+    fn any_checker(&self) -> AnyChecker;
     /// A checker that keeps no clearance: what it measures is the distance to obstacles itself.
-    fn any_measure(&self) -> AnyChecker<Self::State>;
+    fn any_measure(&self) -> AnyChecker;
     /// The same robot, which keeps a clearance from obstacles: [`TypedMotion::keeping`].
     ///
     /// # Errors
     /// When such robots cannot keep a clearance.
-    fn any_keeping(&self, kept: f64) -> Result<Arc<AnyKind<Self::State>>, Error>;
+    fn any_keeping(&self, kept: f64) -> Result<Arc<dyn Robot>, Error>;
     /// A verifier.
     ///
     /// # Errors
     /// When the robot cannot be verified.
-    fn any_verifier(&self) -> Result<AnyVerifier<'_, Self::State>, Error>;
+    fn any_verifier(&self) -> Result<AnyVerifier<'_>, Error>;
     /// The check of motions while planning.
     ///
     /// # Errors
     /// When tolerance or resolution are not valid.
     fn motions<'c>(
         &'c self,
-        by: By<'c, Self::State>,
+        by: By<'c>,
         counting: &Counting<'c>,
-    ) -> Result<AnyCheck<'c, Self::State>, ParameterError>;
+    ) -> Result<AnyCheck<'c, Configuration>, ParameterError>;
     /// What planners may know of the obstacles.
-    fn any_obstacles<'c>(&'c self, counting: &Counting<'c>) -> ObstacleKnowledge<'c, Self::State>;
+    fn any_obstacles<'c>(&'c self, counting: &Counting<'c>) -> ObstacleKnowledge<'c, Configuration>;
     /// The same robot with other ends, the start given by a row.
     ///
     /// # Errors
     /// When such robots cannot be given other ends.
     fn any_with_ends(
         &self,
-        start: Self::State,
-        goals: Vec<Self::State>,
+        start: Configuration,
+        goals: Vec<Configuration>,
         row: &[f64],
-    ) -> Result<Arc<AnyKind<Self::State>>, Error>;
+    ) -> Result<Arc<dyn Robot>, Error>;
 }
 
-impl<K: TypedMotion + RobotKind> Motion for K {
-    fn any_space(&self) -> AnyFactored<'_, Self::State> {
+impl<K: TypedMotion + Robot> AnyMotion for K {
+    fn any_space(&self) -> AnyFactored<'_, Configuration> {
         AnyFactored::new(self.space())
     }
-    fn any_checker(&self) -> AnyChecker<Self::State> {
+    fn any_checker(&self) -> AnyChecker {
         AnyChecker(Box::new(self.checker().clone()))
     }
-    fn any_measure(&self) -> AnyChecker<Self::State> {
+    fn any_measure(&self) -> AnyChecker {
         AnyChecker(Box::new(self.checker_keeping(0.0).unwrap_or_else(|| self.checker().clone())))
     }
-    fn any_keeping(&self, kept: f64) -> Result<Arc<AnyKind<Self::State>>, Error> {
+    fn any_keeping(&self, kept: f64) -> Result<Arc<dyn Robot>, Error> {
         Ok(Arc::new(self.keeping(kept)?))
     }
-    fn any_verifier(&self) -> Result<AnyVerifier<'_, Self::State>, Error> {
+    fn any_verifier(&self) -> Result<AnyVerifier<'_>, Error> {
         Ok(AnyVerifier(Box::new(self.verifier()?)))
     }
     fn motions<'c>(
         &'c self,
-        by: By<'c, Self::State>,
+        by: By<'c>,
         counting: &Counting<'c>,
-    ) -> Result<AnyCheck<'c, Self::State>, ParameterError> {
+    ) -> Result<AnyCheck<'c, Configuration>, ParameterError> {
         let counted = counting.of(self.checker().clone());
         Ok(match by {
             By::Certificates(tolerance) => Box::new(Certified::new(self.space(), counted, tolerance)?),
             By::States(space, resolution) => Box::new(Discrete::new(space, counted, resolution)?),
         })
     }
-    fn any_obstacles<'c>(&'c self, counting: &Counting<'c>) -> ObstacleKnowledge<'c, Self::State> {
+    fn any_obstacles<'c>(&'c self, counting: &Counting<'c>) -> ObstacleKnowledge<'c, Configuration> {
         self.obstacles(&|| counting.of(self.checker().clone()))
     }
     fn any_with_ends(
         &self,
-        start: Self::State,
-        goals: Vec<Self::State>,
+        start: Configuration,
+        goals: Vec<Configuration>,
         row: &[f64],
-    ) -> Result<Arc<AnyKind<Self::State>>, Error> {
+    ) -> Result<Arc<dyn Robot>, Error> {
         Ok(Arc::new(self.with_ends(start, goals)?.starting_as(row)))
     }
 }
 
 /// The methods of [`Checker`] as a trait object.
-trait ErasedChecker<S>: Validity<S> + MotionClearance<S> + Queries + Send + Sync {
-    fn boxed(&self) -> Box<dyn ErasedChecker<S>>;
+trait ErasedChecker: Validity<Configuration> + MotionClearance<Configuration> + Queries + Send + Sync {
+    fn boxed(&self) -> Box<dyn ErasedChecker>;
 }
 
-impl<S, R: Checker<S> + 'static> ErasedChecker<S> for R {
-    fn boxed(&self) -> Box<dyn ErasedChecker<S>> {
+impl<R: Checker<Configuration> + 'static> ErasedChecker for R {
+    fn boxed(&self) -> Box<dyn ErasedChecker> {
         Box::new(self.clone())
     }
 }
 
 /// Any [`Checker`] behind a pointer.
-pub struct AnyChecker<S>(Box<dyn ErasedChecker<S>>);
+pub struct AnyChecker(Box<dyn ErasedChecker>);
 
-impl<S> Clone for AnyChecker<S> {
+impl Clone for AnyChecker {
     fn clone(&self) -> Self {
         Self((*self.0).boxed())
     }
 }
 
-impl<S> Debug for AnyChecker<S> {
+impl Debug for AnyChecker {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("AnyChecker").field("queries", &self.0.queries()).finish_non_exhaustive()
     }
 }
 
-impl<S> Queries for AnyChecker<S> {
+impl Queries for AnyChecker {
     fn queries(&self) -> u64 {
         self.0.queries()
     }
 }
 
-impl<S> Validity<S> for AnyChecker<S> {
-    fn is_valid(&mut self, q: &S) -> bool {
+impl Validity<Configuration> for AnyChecker {
+    fn is_valid(&mut self, q: &Configuration) -> bool {
         self.0.is_valid(q)
     }
-    fn first_invalid(&mut self, states: &[S]) -> Option<usize> {
+    fn first_invalid(&mut self, states: &[Configuration]) -> Option<usize> {
         self.0.first_invalid(states)
     }
     fn batch_size(&self) -> usize {
@@ -249,23 +236,23 @@ impl<S> Validity<S> for AnyChecker<S> {
     }
 }
 
-impl<S> Clearance<S> for AnyChecker<S> {
-    fn clearance(&mut self, q: &S, enough: f64) -> f64 {
+impl Clearance<Configuration> for AnyChecker {
+    fn clearance(&mut self, q: &Configuration, enough: f64) -> f64 {
         self.0.clearance(q, enough)
     }
-    fn in_contact(&mut self, q: &S) -> bool {
+    fn in_contact(&mut self, q: &Configuration) -> bool {
         self.0.in_contact(q)
     }
 }
 
-impl<S> MotionClearance<S> for AnyChecker<S> {
-    fn motion_bound(&self, from: &S, to: &S) -> f64 {
+impl MotionClearance<Configuration> for AnyChecker {
+    fn motion_bound(&self, from: &Configuration, to: &Configuration) -> f64 {
         self.0.motion_bound(from, to)
     }
-    fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
+    fn interval_clearance(&mut self, interval: &MotionInterval<'_, Configuration>) -> IntervalClearance {
         self.0.interval_clearance(interval)
     }
-    fn least_along(&mut self, search: &ClearanceSearch<'_, S>) -> LeastClearance {
+    fn least_along(&mut self, search: &ClearanceSearch<'_, Configuration>) -> LeastClearance {
         self.0.least_along(search)
     }
     fn contact_first(&self) -> bool {
@@ -274,36 +261,41 @@ impl<S> MotionClearance<S> for AnyChecker<S> {
 }
 
 /// The methods of a verifier as a trait object.
-trait ErasedVerifier<'c, S>: MotionValidity<S> + Send + Sync {
-    fn boxed(&self) -> Box<dyn ErasedVerifier<'c, S> + 'c>;
+trait ErasedVerifier: MotionValidity<Configuration> + Send + Sync {
+    fn boxed<'c>(&self) -> Box<dyn ErasedVerifier + 'c>
+    where
+        Self: 'c;
 }
 
-impl<'c, S, V: MotionValidity<S> + Clone + Send + Sync + 'c> ErasedVerifier<'c, S> for V {
-    fn boxed(&self) -> Box<dyn ErasedVerifier<'c, S> + 'c> {
+impl<V: MotionValidity<Configuration> + Clone + Send + Sync> ErasedVerifier for V {
+    fn boxed<'c>(&self) -> Box<dyn ErasedVerifier + 'c>
+    where
+        Self: 'c,
+    {
         Box::new(self.clone())
     }
 }
 
 /// Any verifier behind a pointer.
-pub struct AnyVerifier<'c, S>(Box<dyn ErasedVerifier<'c, S> + 'c>);
+pub struct AnyVerifier<'c>(Box<dyn ErasedVerifier + 'c>);
 
-impl<S> Clone for AnyVerifier<'_, S> {
+impl Clone for AnyVerifier<'_> {
     fn clone(&self) -> Self {
         Self((*self.0).boxed())
     }
 }
 
-impl<S> Debug for AnyVerifier<'_, S> {
+impl Debug for AnyVerifier<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("AnyVerifier").finish_non_exhaustive()
     }
 }
 
-impl<S> MotionValidity<S> for AnyVerifier<'_, S> {
-    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
+impl MotionValidity<Configuration> for AnyVerifier<'_> {
+    fn check_motion(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
         self.0.check_motion(from, to)
     }
-    fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
+    fn check_extension(&mut self, from: &Configuration, to: &Configuration, known: KnownFree) -> MotionCheck {
         self.0.check_extension(from, to, known)
     }
     fn interrupt_by(&mut self, interrupt: &Interrupt) {

@@ -1,6 +1,7 @@
 //! Paths as rows of named numbers.
 
-use crate::{Column, Error, PathFormat, RobotKind};
+use crate::{Column, Error, PathFormat, Robot};
+use mp_cspace::Configuration;
 use mp_cspace::angle::angle_difference;
 use mp_io::{JointPath, PathFile};
 use serde::Serialize;
@@ -172,7 +173,7 @@ pub(crate) fn continued(turning: &[bool], given: &[f64], mut rows: Vec<Vec<f64>>
 }
 
 /// The states of the rows of a path from a file.
-pub(crate) fn states<K: RobotKind + ?Sized>(kind: &K, path: &PathRows) -> Result<Vec<K::State>, Error> {
+pub(crate) fn states(kind: &dyn Robot, path: &PathRows) -> Result<Vec<Configuration>, Error> {
     let columns = kind.columns();
     if !path.columns.is_empty() && path.columns != columns {
         let listed =
@@ -200,16 +201,12 @@ pub(crate) fn states<K: RobotKind + ?Sized>(kind: &K, path: &PathRows) -> Result
 }
 
 /// The configuration of one row.
-pub(crate) fn state<K: RobotKind + ?Sized>(kind: &K, row: &[f64]) -> Result<K::State, Error> {
-    let columns = RobotKind::columns(kind);
+pub(crate) fn state(kind: &dyn Robot, row: &[f64]) -> Result<Configuration, Error> {
+    let columns = kind.columns();
     if row.len() == columns.len() && row.iter().all(|v| v.is_finite()) {
         return Ok(kind.state(row));
     }
     let names: Vec<_> = columns.iter().map(ToString::to_string).collect();
-    Err(Error::new(format!(
-        "a configuration of {} has {} finite numbers",
-        RobotKind::name(kind),
-        columns.len()
-    ))
-    .help(format!("give in order: {}", names.join(", "))))
+    Err(Error::new(format!("a configuration of {} has {} finite numbers", kind.name(), columns.len()))
+        .help(format!("give in order: {}", names.join(", "))))
 }

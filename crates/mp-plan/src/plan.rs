@@ -10,18 +10,14 @@ use crate::report::{RunStage, StageTime};
 use crate::run::FoundRun;
 use crate::run::PLANNING_PART;
 use crate::search::{Search, search_within};
-use crate::{Column, Control, Error, REPORT_VERSION, Report, Request, RobotKind, StoppedBy};
-use mp_cspace::{Outcome, StopReason};
+use crate::{Column, Control, Error, REPORT_VERSION, Report, Request, Robot, StoppedBy};
 #[cfg(feature = "ranks")]
-use mp_cspace::{Path, StateVector};
+use mp_cspace::{Configuration, Path};
+use mp_cspace::{Outcome, StopReason};
 use std::time::Duration;
 
 /// Plans, finishes the path, and makes the report.
-pub(crate) fn plan<K: RobotKind + ?Sized>(
-    kind: &K,
-    request: &Request,
-    control: &mut Control<'_>,
-) -> Result<Report, Error> {
+pub(crate) fn plan(kind: &dyn Robot, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
     let began = control.time_if_limited(request);
     let interrupt = control.interrupt_of(request);
     request.check()?;
@@ -32,8 +28,8 @@ pub(crate) fn plan<K: RobotKind + ?Sized>(
     control.spend_since(began);
     let nothing_left = || (control.left_of(request)? == Duration::ZERO).then_some(StopReason::Deadline);
     if let Some(reason) = interrupt.raised().or_else(nothing_left) {
-        let space = (RobotKind::space_name(kind), RobotKind::columns(kind));
-        return Ok(Report::not_begun(RobotKind::name(kind), Some(space), request, reason, control.spent));
+        let space = (kind.space_name(), kind.columns());
+        return Ok(Report::not_begun(kind.name(), Some(space), request, reason, control.spent));
     }
     let found = search_within(kind, request, control, PLANNING_PART)?;
     let left = left(request, control, &found);
@@ -120,23 +116,23 @@ impl Report {
 }
 
 /// What is left of the budget of time after a search.
-pub(crate) fn left<S>(request: &Request, control: &Control<'_>, found: &Search<S>) -> Option<Duration> {
+pub(crate) fn left(request: &Request, control: &Control<'_>, found: &Search) -> Option<Duration> {
     Some(control.left_of(request)?.saturating_sub(found.time))
 }
 
 /// Finishes the path of a search, if there is one, and makes the report. `why` is a better reason than the outcome gives
 /// why there is no path. Finishing may take the time `left`.
-pub(crate) fn reported<K: RobotKind + ?Sized>(
-    kind: &K,
+pub(crate) fn reported(
+    kind: &dyn Robot,
     request: &Request,
-    found: Search<K::State>,
+    found: Search,
     why: Option<String>,
     control: &mut Control<'_>,
     left: Option<Duration>,
 ) -> Result<Report, Error> {
     let mut report = Report {
-        scene: RobotKind::name(kind).to_owned(),
-        space: RobotKind::space_name(kind),
+        scene: kind.name().to_owned(),
+        space: kind.space_name(),
         planner: PlannerKind::new(&request.planner)?.to_string(),
         metric: request.metric.to_string(),
         motion: crate::prepared::motion(kind, request).to_string(),
@@ -154,7 +150,7 @@ pub(crate) fn reported<K: RobotKind + ?Sized>(
         first_s: found.first.as_ref().map(|(time, ..)| time.as_secs_f64()),
         first_length: found.first.as_ref().map(|(_, length, _)| *length),
         first_path: found.first.as_ref().map(|(.., path)| kind.rows(path)),
-        columns: RobotKind::columns(kind),
+        columns: kind.columns(),
         ..Report::empty()
     };
     let path = match found.outcome {
@@ -193,8 +189,8 @@ pub(crate) fn reported<K: RobotKind + ?Sized>(
 
 /// Finishes the path of a run that took the time `time`, if there is one, and makes the report.
 #[cfg(feature = "ranks")]
-pub(crate) fn found_report<K: RobotKind + ?Sized>(
-    kind: &K,
+pub(crate) fn found_report(
+    kind: &dyn Robot,
     request: &Request,
     found: FoundRun,
     time: Duration,
@@ -205,11 +201,11 @@ pub(crate) fn found_report<K: RobotKind + ?Sized>(
     let mut relaxing = Duration::ZERO;
     let outcome = match path {
         Some(rows) => {
-            let states = rows.iter().map(|row| K::State::read(row)).collect::<Option<Vec<_>>>();
-            let states = states.ok_or_else(|| {
-                Error::new("the path of a run has a state that is none of the robot")
-                    .help("do all processes run the same program with the same scene?")
-            })?;
+            if rows.iter().any(|row| row.len() != kind.start().len()) {
+                return Err(Error::new("the path of a run has a configuration that is none of the robot")
+                    .help("do all processes run the same program with the same scene?"));
+            }
+            let states: Vec<Configuration> = rows.into_iter().map(Configuration::from).collect();
             let budget = request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
             let left = budget.map(|budget| budget.saturating_sub(control.spent).saturating_sub(time));
             let path = relax_if_requested(kind, request, Path::straight(states), control, left)?;
@@ -237,7 +233,7 @@ pub(crate) fn found_report<K: RobotKind + ?Sized>(
 }
 
 /// The stages up to the path found.
-fn stages<S>(found: &Search<S>, control: &Control<'_>) -> Vec<StageTime> {
+fn stages(found: &Search, control: &Control<'_>) -> Vec<StageTime> {
     let planning = found.time.saturating_sub(found.relaxing);
     let mut stages = vec![StageTime::new(RunStage::Planning, planning, found.ended_by)];
     if !control.spent.is_zero() {

@@ -1,6 +1,6 @@
 //! Planners by name: of trees, with meta-planners or without, and of roadmaps.
 
-use crate::{Error, RobotKind, roadmaps};
+use crate::{Error, Robot, roadmaps};
 use mp_cspace::Demand;
 use mp_cspace::registry::{PlannerInfo, Settings};
 use std::fmt;
@@ -65,7 +65,7 @@ impl PlannerKind {
     }
 
     /// Refuses a robot that demands what the planner cannot do.
-    pub(crate) fn meets<K: RobotKind + ?Sized>(&self, kind: &K) -> Result<(), Error> {
+    pub(crate) fn meets(&self, kind: &dyn Robot) -> Result<(), Error> {
         let info = match self {
             Self::Tree(spec) => spec.planner,
             Self::Roadmap(info) => info,

@@ -4,7 +4,7 @@ mod lane;
 mod rounds;
 
 use crate::job_identity::timeless;
-use crate::run::FoundRun;
+use crate::run::{FoundRun, RobotRun};
 use crate::{Clock, Control, Error, PortfolioSchedule, Report, Request, Scene, Stage, StoppedBy};
 use lane::{Lane, Start};
 use mp_cspace::{Rng, StopReason};
@@ -253,7 +253,8 @@ impl Scene {
         let began = control.clock.now();
         control.stage(Stage::Planning);
         // What is wrong with the request is said as always, before it is said of a run.
-        drop(scene.prepared(&request)?.begin(Rng::seed(request.seed), control)?);
+        let prepared = scene.prepared(&request)?;
+        drop(RobotRun::begin(&prepared, Rng::seed(request.seed), control)?);
         let identity = self.portfolio_identity(&request, portfolio)?;
         let threads = options.threads.max(1);
         let budget = &request.budget;

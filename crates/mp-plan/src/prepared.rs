@@ -6,26 +6,25 @@ use crate::motion::{AnyVerifier, By, Counting};
 use crate::planners::PlannerKind;
 use crate::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
 use crate::watch::{Events, WatchAdapter};
-use crate::{Control, Error, Length, Measured, MotionValidator, Request, RobotKind};
+use crate::{Control, Error, Length, Measured, MotionValidator, Request, Robot};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
-    AnyProblem, BuildError, Interrupt, Iterations, KnownFree, MotionCheck, MotionValidity, Nodes,
-    ParameterError, Problem, Resolution, Stop, Straight, Workers, registry::PlannerInfo,
+    AnyProblem, BuildError, Configuration, Interrupt, Iterations, KnownFree, MotionCheck, MotionValidity,
+    Nodes, ParameterError, Problem, Resolution, Stop, Straight, Workers, registry::PlannerInfo,
 };
-use mp_tree::TreeState;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// What the problems and planners of one request are made from.
-pub(crate) struct Prepared<'k, K: RobotKind + ?Sized> {
-    pub(crate) kind: &'k K,
+pub(crate) struct Prepared<'k> {
+    pub(crate) kind: &'k dyn Robot,
     pub(crate) request: &'k Request,
     /// The space under the metric of the request.
-    pub(crate) space: AnySpace<'k, K::State>,
+    pub(crate) space: AnySpace<'k, Configuration>,
     /// An empty index of it.
-    pub(crate) index: AnyIndex<K::State>,
-    verifier: AnyVerifier<'k, K::State>,
+    pub(crate) index: AnyIndex<Configuration>,
+    verifier: AnyVerifier<'k>,
     /// The common count of the queries of all checkers.
     pub(crate) queries: AtomicU64,
     /// Planners of roadmaps tell on several threads which queries are not to be counted: see `QueryMeter` of mp-roadmap.
@@ -37,8 +36,8 @@ pub(crate) struct Prepared<'k, K: RobotKind + ?Sized> {
     unverified: AtomicBool,
 }
 
-impl<'k, K: RobotKind + ?Sized> Prepared<'k, K> {
-    pub(crate) fn new(kind: &'k K, request: &'k Request) -> Result<Self, Error> {
+impl<'k> Prepared<'k> {
+    pub(crate) fn new(kind: &'k dyn Robot, request: &'k Request) -> Result<Self, Error> {
         let planner = PlannerKind::new(&request.planner)?;
         planner.meets(kind)?;
         crate::relax::check(kind, request)?;
@@ -76,12 +75,15 @@ impl<'k, K: RobotKind + ?Sized> Prepared<'k, K> {
     }
 
     /// The problem of the scene. Each thread makes its own.
-    pub(crate) fn problem(&self) -> Result<AnyProblem<'_, K::State>, BuildError> {
+    pub(crate) fn problem(&self) -> Result<AnyProblem<'_, Configuration>, BuildError> {
         self.problem_until(self.interrupt())
     }
 
     /// The problem of the scene, which asks this token whether to end.
-    pub(crate) fn problem_until(&self, interrupt: Interrupt) -> Result<AnyProblem<'_, K::State>, BuildError> {
+    pub(crate) fn problem_until(
+        &self,
+        interrupt: Interrupt,
+    ) -> Result<AnyProblem<'_, Configuration>, BuildError> {
         let kind = self.kind;
         let counting = Counting::new(&self.queries, interrupt.clone()).exactly(self.counts_exactly);
         let by = match motion(kind, self.request) {
@@ -90,10 +92,10 @@ impl<'k, K: RobotKind + ?Sized> Prepared<'k, K> {
         };
         let check = build_error(kind.motions(by, &counting))?;
         let deadlines = Some(&self.deadlines);
-        let check: AnyCheck<'_, K::State> =
+        let check: AnyCheck<'_, Configuration> =
             Box::new(Possible { kind, check, interrupt: interrupt.clone(), deadlines });
         let local = Straight::new(&self.space, check);
-        let mut verifier: AnyCheck<'_, K::State> = Box::new(self.verifier.clone());
+        let mut verifier: AnyCheck<'_, Configuration> = Box::new(self.verifier.clone());
         verifier.interrupt_by(&interrupt);
         let verifier = Verifying {
             verifier,
@@ -115,9 +117,9 @@ impl<'k, K: RobotKind + ?Sized> Prepared<'k, K> {
         &self,
         name: &str,
         workers: &Workers,
-    ) -> Result<mp_tree::AnyPlanner<'_, K::State, ()>, Error> {
+    ) -> Result<mp_tree::AnyPlanner<'_, Configuration, ()>, Error> {
         let (index, settings) = (self.index.clone(), self.request.settings());
-        Ok(TreeState::tree_planner(name, Arc::new(|| self.problem()), index, &settings, workers)?)
+        Ok(mp_tree::erased::build(name, Arc::new(|| self.problem()), index, &settings, workers)?)
     }
 
     /// A planner of roadmaps. It begins with the roadmap in `file`, if there is one.
@@ -126,7 +128,7 @@ impl<'k, K: RobotKind + ?Sized> Prepared<'k, K> {
         info: &PlannerInfo,
         workers: Workers,
         file: Option<&GrowingFile<'_>>,
-    ) -> Result<RoadmapPlanner<'_, K::State>, Error> {
+    ) -> Result<RoadmapPlanner<'_>, Error> {
         let parts = PlannerParts {
             problem: &|| self.problem(),
             index: self.index.clone(),
@@ -167,7 +169,7 @@ impl<'k, K: RobotKind + ?Sized> Prepared<'k, K> {
     pub(crate) fn watched<T>(
         &self,
         control: &mut Control<'_>,
-        run: impl FnOnce(&mut dyn Stop, &mut Events<'_, '_, '_, K::State>) -> T,
+        run: impl FnOnce(&mut dyn Stop, &mut Events<'_, '_, '_>) -> T,
     ) -> T {
         let wanted = control.watch.as_ref().is_some_and(|watch| watch.wants_events());
         let adapter = WatchAdapter::new(control.watch.as_deref_mut(), control.clock);
@@ -227,15 +229,15 @@ impl Deadlines {
 }
 
 /// The verifier of paths, which notes when it was told to end.
-struct Verifying<'a, S> {
-    verifier: AnyCheck<'a, S>,
+struct Verifying<'a> {
+    verifier: AnyCheck<'a, Configuration>,
     interrupt: Interrupt,
     unverified: &'a AtomicBool,
     deadlines: &'a Deadlines,
 }
 
-impl<S: PartialEq> MotionValidity<S> for Verifying<'_, S> {
-    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
+impl MotionValidity<Configuration> for Verifying<'_> {
+    fn check_motion(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
         // A single state is a start or a goal, not a path.
         if from != to {
             self.deadlines.prove(&self.interrupt);
@@ -249,19 +251,19 @@ impl<S: PartialEq> MotionValidity<S> for Verifying<'_, S> {
 }
 
 /// A check that finds no motion free that the robot cannot make, and none at all once it is told to end.
-pub(crate) struct Possible<'k, K: ?Sized, M> {
-    pub(crate) kind: &'k K,
-    pub(crate) check: M,
+pub(crate) struct Possible<'k> {
+    pub(crate) kind: &'k dyn Robot,
+    pub(crate) check: AnyCheck<'k, Configuration>,
     pub(crate) interrupt: Interrupt,
     /// Those of the run that it is a part of.
     pub(crate) deadlines: Option<&'k Deadlines>,
 }
 
-impl<K: RobotKind + ?Sized, M: MotionValidity<K::State>> MotionValidity<K::State> for Possible<'_, K, M> {
-    fn check_motion(&mut self, from: &K::State, to: &K::State) -> MotionCheck {
+impl MotionValidity<Configuration> for Possible<'_> {
+    fn check_motion(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
         self.check_extension(from, to, KnownFree::Neither)
     }
-    fn check_extension(&mut self, from: &K::State, to: &K::State, known: KnownFree) -> MotionCheck {
+    fn check_extension(&mut self, from: &Configuration, to: &Configuration, known: KnownFree) -> MotionCheck {
         if let Some(deadlines) = self.deadlines {
             deadlines.search(&self.interrupt);
         }
@@ -279,7 +281,7 @@ impl<K: RobotKind + ?Sized, M: MotionValidity<K::State>> MotionValidity<K::State
 }
 
 /// The error, with the state as messages write it.
-fn written<K: RobotKind + ?Sized>(kind: &K, mut error: BuildError) -> BuildError {
+fn written(kind: &dyn Robot, mut error: BuildError) -> BuildError {
     if let BuildError::Outside { state, .. }
     | BuildError::NotFree { state, .. }
     | BuildError::Refused { state, .. } = &mut error
@@ -293,7 +295,7 @@ fn written<K: RobotKind + ?Sized>(kind: &K, mut error: BuildError) -> BuildError
 }
 
 /// How motions are checked while planning.
-pub(crate) fn motion<K: RobotKind + ?Sized>(kind: &K, request: &Request) -> MotionValidator {
+pub(crate) fn motion(kind: &dyn Robot, request: &Request) -> MotionValidator {
     match (request.motion, kind.sampled()) {
         (MotionValidator::Certified, Some(length)) => MotionValidator::Discrete(length),
         (motion, _) => motion,

@@ -1,15 +1,14 @@
 //! A roadmap by regions, in numbered items that the ranks of a cluster may do.
 
-use crate::any_robot::AnyRobot;
 use crate::counted::queries_of_thread;
 use crate::planners::PlannerKind;
 use crate::prepared::Prepared;
-use crate::{Error, Request, RobotKind, SceneRoadmap};
-use mp_cspace::{Interrupt, NodeId, Rng};
+use crate::scene_roadmap::of_map;
+use crate::{Error, Request, Robot, SceneRoadmap};
+use mp_cspace::{Configuration, Interrupt, NodeId, Rng};
 use mp_ranks::{Checkpoint, Hand, Items, Job, Link, Options, Work, broadcast, run};
-use mp_roadmap::{AnyEdgeChecker, AnyRegions, InRegions, PATIENCE, Piece, Roadmap, RoadmapState};
+use mp_roadmap::{AnyEdgeChecker, InRegions, PATIENCE, Piece, Roadmap, erased::AnyRegions};
 use rand::RngExt;
-use std::any::Any;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -43,8 +42,8 @@ const NODE: f64 = 25.0;
 /// # Ok::<(), mp_plan::Error>(())
 /// ```
 pub struct RegionalWork<'s> {
-    work: Box<dyn AnyRegional + 's>,
-    robot: &'s Arc<dyn AnyRobot>,
+    work: RobotRegional<'s>,
+    robot: &'s Arc<dyn Robot>,
     file: Option<String>,
     request: &'s Request,
 }
@@ -61,11 +60,11 @@ impl fmt::Debug for RegionalWork<'_> {
 
 impl<'s> RegionalWork<'s> {
     pub(crate) fn new(
-        robot: &'s Arc<dyn AnyRobot>,
+        robot: &'s Arc<dyn Robot>,
         file: Option<String>,
         request: &'s Request,
     ) -> Result<Self, Error> {
-        Ok(Self { work: robot.regional(request)?, robot, file, request })
+        Ok(Self { work: regional(&**robot, request)?, robot, file, request })
     }
 
     /// How many regions there are. Items below are regions.
@@ -138,7 +137,7 @@ impl<'s> RegionalWork<'s> {
     /// When there are more or fewer results than items, or they are not those of this work.
     pub fn finish(&self, built: &[Vec<u8>], connected: &[Vec<u8>]) -> Result<SceneRoadmap, Error> {
         let map = self.work.assemble(built, connected)?;
-        let roadmap = Arc::clone(self.robot).roadmap_of(self.request, map)?;
+        let roadmap = of_map(Arc::clone(self.robot), self.request, map)?;
         Ok(SceneRoadmap { roadmap, file: self.file.clone() })
     }
 
@@ -297,28 +296,16 @@ fn split(joined: &[u8]) -> Vec<&[u8]> {
     results
 }
 
-/// The work for a robot of some kind.
-pub(crate) trait AnyRegional: Send + Sync {
-    fn regions(&self) -> u64;
-    fn items(&self) -> u64;
-    fn pair(&self, item: u64) -> Option<[u64; 2]>;
-    fn free_share(&self, region: u64, interrupt: &Interrupt) -> Result<f64, Error>;
-    fn piece(&self, item: u64, built: &[&[u8]], interrupt: &Interrupt) -> Result<Vec<u8>, Error>;
-    fn assemble(&self, built: &[Vec<u8>], connected: &[Vec<u8>]) -> Result<Box<dyn Any + Send>, Error>;
-}
-
-struct RobotRegional<'s, K: RobotKind + ?Sized> {
-    prepared: Prepared<'s, K>,
-    regions: AnyRegions<K::State>,
+/// The work for a robot.
+struct RobotRegional<'s> {
+    prepared: Prepared<'s>,
+    regions: AnyRegions,
     /// That of the builder of a roadmap with this request.
     seed: u64,
 }
 
 /// The work of a request.
-pub(crate) fn regional<'s, K: RobotKind + ?Sized>(
-    kind: &'s K,
-    request: &'s Request,
-) -> Result<Box<dyn AnyRegional + 's>, Error> {
+fn regional<'s>(kind: &'s dyn Robot, request: &'s Request) -> Result<RobotRegional<'s>, Error> {
     request.check()?;
     let planner = PlannerKind::new(&request.planner)?;
     if !matches!(&planner, PlannerKind::Roadmap(info) if info.name == PLANNER) {
@@ -337,11 +324,11 @@ pub(crate) fn regional<'s, K: RobotKind + ?Sized>(
     let prepared = Prepared::new(kind, request)?;
     let regions = InRegions::read(&prepared.space, prepared.index.clone(), &request.settings())?;
     let seed = Rng::seed(request.seed).random();
-    Ok(Box::new(RobotRegional { prepared, regions, seed }))
+    Ok(RobotRegional { prepared, regions, seed })
 }
 
 /// The piece in a result, of so many members.
-fn piece<S: mp_cspace::StateVector>(result: &[u8], members: Vec<NodeId>) -> Result<Piece<S, ()>, Error> {
+fn piece(result: &[u8], members: Vec<NodeId>) -> Result<Piece<Configuration, ()>, Error> {
     let bytes = result.get(TALLY..).unwrap_or_default();
     Piece::from_bytes(bytes, members).map_err(|e| {
         Error::new(format!("a result of an item is not what it should be: {e}"))
@@ -350,26 +337,21 @@ fn piece<S: mp_cspace::StateVector>(result: &[u8], members: Vec<NodeId>) -> Resu
 }
 
 /// Adds the roadmap of a region.
-fn add_region<S: mp_cspace::StateVector>(
-    map: &mut Roadmap<S>,
-    result: &[u8],
-) -> Result<Range<NodeId>, Error> {
+fn add_region(map: &mut Roadmap<Configuration>, result: &[u8]) -> Result<Range<NodeId>, Error> {
     let before = map.len() as NodeId;
     piece(result, Vec::new())?.insert(map, |_, _, _| true);
     Ok(before..map.len() as NodeId)
 }
 
-impl<K: RobotKind + ?Sized> RobotRegional<'_, K> {
-    fn checker(&self, interrupt: &Interrupt) -> Result<AnyEdgeChecker<'_, K::State>, Error> {
+impl RobotRegional<'_> {
+    fn checker(&self, interrupt: &Interrupt) -> Result<AnyEdgeChecker<'_, Configuration>, Error> {
         match (self.prepared.problem_until(interrupt.clone()), interrupt.raised()) {
             // Once it is told to end, start and goal count as not free.
             (_, Some(_)) => Err(Error::new("told to end")),
             (problem, None) => Ok(AnyEdgeChecker::of(problem?, PATIENCE).0),
         }
     }
-}
 
-impl<K: RobotKind + ?Sized> AnyRegional for RobotRegional<'_, K> {
     fn regions(&self) -> u64 {
         u64::from(self.regions.subdivision().regions())
     }
@@ -401,7 +383,7 @@ impl<K: RobotKind + ?Sized> AnyRegional for RobotRegional<'_, K> {
         }
         let mut checker = self.checker(interrupt)?;
         let before = queries_of_thread();
-        let piece = K::State::regional_piece(&self.regions, item, &map, &mut checker, self.seed);
+        let piece = mp_roadmap::erased::piece(&self.regions, item, &map, &mut checker, self.seed);
         if interrupt.raised().is_some() {
             return Err(Error::new("told to end"));
         }
@@ -412,7 +394,7 @@ impl<K: RobotKind + ?Sized> AnyRegional for RobotRegional<'_, K> {
         Ok(bytes)
     }
 
-    fn assemble(&self, built: &[Vec<u8>], connected: &[Vec<u8>]) -> Result<Box<dyn Any + Send>, Error> {
+    fn assemble(&self, built: &[Vec<u8>], connected: &[Vec<u8>]) -> Result<Roadmap<Configuration>, Error> {
         let results = [built.len() as u64, (built.len() + connected.len()) as u64];
         let items = [self.regions(), self.items()];
         if results != items {
@@ -424,13 +406,13 @@ impl<K: RobotKind + ?Sized> AnyRegional for RobotRegional<'_, K> {
                 connected.len()
             )));
         }
-        let mut map: Roadmap<K::State> = Roadmap::new();
+        let mut map = Roadmap::new();
         let nodes = built.iter().map(|result| add_region(&mut map, result)).collect::<Result<Vec<_>, _>>()?;
         for (result, item) in connected.iter().zip(items[0]..) {
             let pair = self.regions.pair(item).unwrap_or_default();
             let members = pair.iter().flat_map(|&region| nodes[region as usize].clone()).collect();
             piece(result, members)?.insert(&mut map, |_, _, _| true);
         }
-        Ok(Box::new(map))
+        Ok(map)
     }
 }

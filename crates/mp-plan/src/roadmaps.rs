@@ -1,9 +1,9 @@
 //! Planners that build roadmaps, with the feature `roadmaps`. Without it there are none.
 
-use crate::{Error, GrownRoadmap, MetricName, Request, RobotKind};
+use crate::{Error, GrownRoadmap, MetricName, Request, Robot};
 use mp_cspace::erased::AnyIndex;
 use mp_cspace::{
-    AnyProblem, BuildError, Planner, Workers,
+    AnyProblem, BuildError, Configuration, Planner, Workers,
     registry::{PlannerInfo, Settings},
 };
 use mp_cspace::{Clock, Progress, SparseClock, Stop, StopReason};
@@ -21,20 +21,20 @@ use std::time::Duration;
 use std::{cell::Cell, sync::atomic::Ordering};
 
 /// A planner that builds a roadmap.
-pub(crate) struct RoadmapPlanner<'p, S> {
+pub(crate) struct RoadmapPlanner<'p> {
     #[cfg(feature = "roadmaps")]
-    planner: mp_roadmap::AnyPlanner<'p, S, ()>,
+    planner: mp_roadmap::AnyPlanner<'p, Configuration, ()>,
     #[cfg(not(feature = "roadmaps"))]
-    none: (std::convert::Infallible, std::marker::PhantomData<&'p S>),
+    none: (std::convert::Infallible, std::marker::PhantomData<&'p ()>),
 }
 
 /// Makes the problem of a run, once for each thread.
-pub(crate) type MakeProblem<'m, 'c, S> = &'m dyn Fn() -> Result<AnyProblem<'c, S>, BuildError>;
+pub(crate) type MakeProblem<'m, 'c> = &'m dyn Fn() -> Result<AnyProblem<'c, Configuration>, BuildError>;
 
 #[cfg(feature = "roadmaps")]
-pub(crate) use mp_roadmap::planners;
+pub use mp_roadmap::Roadmap;
 #[cfg(feature = "roadmaps")]
-pub use mp_roadmap::{Roadmap, RoadmapState};
+pub(crate) use mp_roadmap::planners;
 
 /// The least time between two checkpoints of a roadmap that grows.
 const CHECKPOINTS: Duration = Duration::from_secs(3);
@@ -55,11 +55,7 @@ impl<'r> RoadmapFile<'r> {
     ///
     /// # Errors
     /// When roadmaps of such robots cannot be kept, or another process grows the roadmap in this file.
-    pub(crate) fn new<K: RobotKind + ?Sized>(
-        kind: &K,
-        path: &'r Path,
-        metric: MetricName,
-    ) -> Result<Self, Error> {
+    pub(crate) fn new(kind: &dyn Robot, path: &'r Path, metric: MetricName) -> Result<Self, Error> {
         let Some(fingerprint) = kind.fingerprint(metric) else {
             let help = "leave the file of the roadmap out";
             return Err(Error::new("roadmaps are kept of rigid bodies only").help(help));
@@ -72,7 +68,7 @@ impl<'r> RoadmapFile<'r> {
 #[cfg(feature = "roadmaps")]
 impl RoadmapFile<'_> {
     /// The roadmap in the file; `None` when there is no file yet.
-    fn read<S: RoadmapState + mp_cspace::StateVector>(&self) -> Result<Option<Roadmap<S>>, Error> {
+    fn read(&self) -> Result<Option<Roadmap<Configuration>>, Error> {
         if !self.path.exists() {
             return Ok(None);
         }
@@ -83,10 +79,7 @@ impl RoadmapFile<'_> {
     }
 
     /// Writes the roadmap to the file.
-    pub(crate) fn write<S: RoadmapState + mp_cspace::StateVector>(
-        &self,
-        map: &Roadmap<S>,
-    ) -> Result<(), Error> {
+    pub(crate) fn write(&self, map: &Roadmap<Configuration>) -> Result<(), Error> {
         Ok(mp_store::write(self.path, &map.to_bytes(self.fingerprint))?)
     }
 }
@@ -104,8 +97,8 @@ impl<'r> GrowingFile<'r> {
     ///
     /// # Errors
     /// As [`RoadmapFile::new`].
-    pub(crate) fn of_request<K: RobotKind + ?Sized>(
-        kind: &K,
+    pub(crate) fn of_request(
+        kind: &dyn Robot,
         request: &'r Request,
         clock: Clock,
     ) -> Result<Option<Self>, Error> {
@@ -120,10 +113,7 @@ impl<'r> GrowingFile<'r> {
     }
 
     /// Writes the roadmap. A failure is only told in the log: the run goes on, and it is an error if writing fails at its end too.
-    pub(crate) fn checkpoint<S: RoadmapState + mp_cspace::StateVector + 'static>(
-        &mut self,
-        planner: &RoadmapPlanner<'_, S>,
-    ) {
+    pub(crate) fn checkpoint(&mut self, planner: &RoadmapPlanner<'_>) {
         let began = self.clock.now();
         if let Err(e) = planner.save(&self.file) {
             tracing::warn!("the roadmap was not saved: {e}");
@@ -136,10 +126,10 @@ impl<'r> GrowingFile<'r> {
 /// Lets `build` work until it stops by itself; when a checkpoint is due, it is stopped, the roadmap is written, and `build`
 /// is called again.
 #[cfg(feature = "roadmaps")]
-pub(crate) fn with_checkpoints<'p, S: RoadmapState + mp_cspace::StateVector + 'static, T>(
-    planner: &mut RoadmapPlanner<'p, S>,
+pub(crate) fn with_checkpoints<'p, T>(
+    planner: &mut RoadmapPlanner<'p>,
     file: &mut Option<GrowingFile<'_>>,
-    mut build: impl FnMut(&mut RoadmapPlanner<'p, S>, &mut Option<Due>) -> T,
+    mut build: impl FnMut(&mut RoadmapPlanner<'p>, &mut Option<Due>) -> T,
 ) -> T {
     loop {
         let mut due = file.as_ref().map(GrowingFile::due);
@@ -168,11 +158,11 @@ impl Stop for Due {
 
 /// What a planner of roadmaps is made from.
 #[cfg_attr(not(feature = "roadmaps"), expect(dead_code, reason = "no roadmap is built"))]
-pub(crate) struct PlannerParts<'m, 'p, S: RoadmapState> {
+pub(crate) struct PlannerParts<'m, 'p> {
     /// Makes the problem, once for each thread.
-    pub(crate) problem: MakeProblem<'m, 'p, S>,
+    pub(crate) problem: MakeProblem<'m, 'p>,
     /// An empty index of the space.
-    pub(crate) index: AnyIndex<S>,
+    pub(crate) index: AnyIndex<Configuration>,
     pub(crate) settings: Settings,
     pub(crate) workers: Workers,
     pub(crate) threads: usize,
@@ -187,11 +177,11 @@ pub(crate) fn planner(name: &str) -> Option<&'static PlannerInfo> {
 }
 
 #[cfg(feature = "roadmaps")]
-impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, S> {
+impl<'p> RoadmapPlanner<'p> {
     /// The planner `info`. It begins with the roadmap in `file`, if there is one.
     pub(crate) fn new(
         info: &PlannerInfo,
-        parts: PlannerParts<'_, 'p, S>,
+        parts: PlannerParts<'_, 'p>,
         file: Option<&GrowingFile<'_>>,
     ) -> Result<Self, Error> {
         let PlannerParts { problem, index, settings, workers, threads, queries } = parts;
@@ -207,14 +197,14 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
             made
         };
         let problem = ParallelProblem::new(workers, threads, problem)?.metered(meter);
-        let mut planner = S::roadmap_planner(info.name, problem, index, &settings)?;
+        let mut planner = mp_roadmap::erased::build(info.name, problem, index, &settings)?;
         if let Some(map) = file.map(|file| file.file.read()).transpose()?.flatten() {
             planner.resume(map)?;
         }
         Ok(Self { planner })
     }
 
-    pub(crate) fn planner(&mut self) -> &mut (dyn Planner<S, Edge = ()> + 'p) {
+    pub(crate) fn planner(&mut self) -> &mut (dyn Planner<Configuration, Edge = ()> + 'p) {
         &mut *self.planner
     }
 
@@ -223,7 +213,7 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
         &mut self,
         rng: &mut Rng,
         stop: &mut dyn Stop,
-        observer: &mut dyn Observer<S>,
+        observer: &mut dyn Observer<Configuration>,
     ) -> StopReason {
         self.planner.build(rng, stop, observer)
     }
@@ -234,7 +224,7 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
     }
 
     /// Continues with this roadmap.
-    pub(crate) fn resume(&mut self, map: Roadmap<S>) -> Result<(), Error> {
+    pub(crate) fn resume(&mut self, map: Roadmap<Configuration>) -> Result<(), Error> {
         Ok(self.planner.resume(map)?)
     }
 
@@ -249,14 +239,14 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
         &mut self,
         file: Option<&GrowingFile<'_>>,
         wanted: bool,
-    ) -> Result<([usize; 2], Option<Roadmap<S>>), Error> {
+    ) -> Result<([usize; 2], Option<Roadmap<Configuration>>), Error> {
         file.map_or(Ok(()), |file| self.save(&file.file))?;
         let map = [self.planner.map().edges(), self.planner.map_mut().components()];
         Ok((map, wanted.then(|| self.planner.map().clone())))
     }
 
     /// The roadmap with its configurations as rows.
-    pub(crate) fn grown(&mut self, row: &dyn Fn(&S) -> Vec<f64>) -> GrownRoadmap {
+    pub(crate) fn grown(&mut self, row: &dyn Fn(&Configuration) -> Vec<f64>) -> GrownRoadmap {
         let map = self.planner.map_mut();
         let mut numbers = HashMap::new();
         let components = (0..map.len() as NodeId).map(|id| {
@@ -274,12 +264,6 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
     }
 }
 
-/// Without the feature `roadmaps`: any state.
-#[cfg(not(feature = "roadmaps"))]
-pub trait RoadmapState: Clone + std::fmt::Debug + PartialEq + Send + Sync {}
-#[cfg(not(feature = "roadmaps"))]
-impl<S: Clone + std::fmt::Debug + PartialEq + Send + Sync> RoadmapState for S {}
-
 /// Without the feature `roadmaps`: a type without values.
 #[cfg(not(feature = "roadmaps"))]
 #[derive(Clone, Debug)]
@@ -296,18 +280,18 @@ pub(crate) fn planner(_: &str) -> Option<&'static PlannerInfo> {
 }
 
 #[cfg(not(feature = "roadmaps"))]
-impl<'p, S: RoadmapState> RoadmapPlanner<'p, S> {
+impl<'p> RoadmapPlanner<'p> {
     pub(crate) fn new(
         info: &PlannerInfo,
-        _: PlannerParts<'_, 'p, S>,
+        _: PlannerParts<'_, 'p>,
         _: Option<&GrowingFile<'_>>,
     ) -> Result<Self, Error> {
         Err(Error::new(format!("{} is not in this program", info.name)))
     }
-    pub(crate) fn planner(&mut self) -> &mut (dyn Planner<S, Edge = ()> + 'p) {
+    pub(crate) fn planner(&mut self) -> &mut (dyn Planner<Configuration, Edge = ()> + 'p) {
         match self.none.0 {}
     }
-    pub(crate) fn grown(&mut self, _: &dyn Fn(&S) -> Vec<f64>) -> GrownRoadmap {
+    pub(crate) fn grown(&mut self, _: &dyn Fn(&Configuration) -> Vec<f64>) -> GrownRoadmap {
         match self.none.0 {}
     }
     pub(crate) fn save(&self, _: &RoadmapFile<'_>) -> Result<(), Error> {
@@ -317,7 +301,7 @@ impl<'p, S: RoadmapState> RoadmapPlanner<'p, S> {
         &mut self,
         _: Option<&GrowingFile<'_>>,
         _: bool,
-    ) -> Result<([usize; 2], Option<Roadmap<S>>), Error> {
+    ) -> Result<([usize; 2], Option<Roadmap<Configuration>>), Error> {
         match self.none.0 {}
     }
 }

@@ -6,7 +6,6 @@ mod model;
 mod moving;
 mod planar;
 mod rigid;
-mod vectors;
 
 pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace};
 pub(crate) use driven::greatest_speed;
@@ -17,14 +16,14 @@ pub use planar::{PlanarBody, PlanarScene};
 pub use rigid::{RigidScene, RigidSpace};
 
 use crate::goals::turning;
-use crate::motion::Motion;
+use crate::motion::AnyMotion;
 use crate::numbers::plain;
 use crate::path::continued;
 use crate::{Error, Length, MetricName};
-use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
+use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex};
 use mp_cspace::{
-    DefaultNn, Demand, InputSystem, Interrupt, Interrupted, MotionClearance, MotionValidity,
-    ObstacleKnowledge, Space as _, Validity,
+    Configuration, DefaultNn, Demand, InputSystem, Interrupt, Interrupted, MotionClearance, MotionValidity,
+    ObstacleKnowledge, OnVectors, Space as _, Validity,
     nn::Embed,
     obstacles::{ClearanceGradient, ObstacleHints},
 };
@@ -54,7 +53,7 @@ pub struct Body {
     pub name: String,
     /// Its shape, in its own frame, metres.
     pub shape: BodyShape,
-    /// Its pose in the world; `None` for a body of the robot, whose pose [`poses`](RobotKind::poses) gives.
+    /// Its pose in the world; `None` for a body of the robot, whose pose [`poses`](Robot::poses) gives.
     pub pose: Option<Isometry3<f64>>,
 }
 
@@ -130,51 +129,58 @@ pub trait Queries {
     fn queries(&self) -> u64;
 }
 
-/// A space under a metric chosen at run time, with a nearest-neighbour index for it: see [`RobotKind::measured`].
-#[derive(Clone, Debug)]
-pub struct Measured<'c, S> {
-    /// The space under the metric.
-    pub space: AnySpace<'c, S>,
-    /// An empty index of it.
-    pub index: AnyIndex<S>,
+impl<A: Queries, S> Queries for OnVectors<A, S> {
+    fn queries(&self) -> u64 {
+        self.inner().queries()
+    }
 }
 
-impl<'c, S> Measured<'c, S> {
+/// A space under a metric chosen at run time, with a nearest-neighbour index for it: see [`Motion::measured`].
+#[derive(Clone, Debug)]
+pub struct Measured<'c> {
+    /// The space under the metric.
+    pub space: AnySpace<'c, Configuration>,
+    /// An empty index of it.
+    pub index: AnyIndex<Configuration>,
+}
+
+impl Measured<'_> {
     /// A copy of `space` with the default index for it.
-    pub fn new<C: DefaultNn<State = S, Nn: 'static> + Clone + Send + 'static>(space: &C) -> Self {
+    pub fn new<C>(space: &C) -> Self
+    where
+        C: DefaultNn<State = Configuration, Nn: 'static> + Clone + Send + 'static,
+    {
         Self { space: AnySpace::new(space), index: AnyIndex::of(space) }
     }
 
     /// As [`new`](Self::new), for a space whose index is compiled in mp-cspace.
-    pub fn compiled<C: CompiledIndex<State = S>>(space: &C) -> Self {
+    pub fn compiled<C: CompiledIndex<State = Configuration>>(space: &C) -> Self {
         Self { space: AnySpace::new(space), index: space.compiled_index() }
     }
 
-    /// A copy of `space` with an index over coordinates, which is compiled once for all spaces of these states.
-    pub fn by_coordinates<C: Embed<State = S> + Clone + Send + 'static>(space: &C) -> Self
-    where
-        S: CoordinateState,
-    {
+    /// A copy of `space` with an index over coordinates, which is compiled once for all spaces.
+    pub fn by_coordinates<C: Embed<State = Configuration> + Clone + Send + 'static>(space: &C) -> Self {
         Self { space: AnySpace::new(space), index: AnyIndex::by_coordinates(space) }
     }
 }
 
-/// A robot of some kind among its obstacles, with start and goals: a scene to plan in.
+/// A robot of some kind among its obstacles, with start and goals: a scene to plan in. What it is asked is cut in three by who asks:
+/// planners its [`Motion`], messages and files its [`Description`], pictures its [`Appearance`].
 ///
-/// Implemented by rigid bodies ([`RigidScene`]), arms ([`ArmScene`], [`FloatingScene`]) and robots of the plane ([`PlanarScene`]). To add a kind,
-/// implement this trait; [`Scene::new`](crate::Scene::new) makes a scene of it, and the rest of
-/// this crate works with it: planning by name, checking, explaining, shortening, relaxing, roadmaps. Planners must be
-/// compiled for its type of configuration; [`compile_for!`](mp_tree::compile_for) of mp-tree and mp-roadmap does that for
-/// a new type. docs/own-robot.md is a guide.
-pub trait RobotKind: Motion + Any + fmt::Debug + Send + Sync {
-    /// The name of the scene.
-    fn name(&self) -> &str;
-    /// The name of the space in reports: `SE3`, `6 joints`.
-    fn space_name(&self) -> String;
+/// Rigid bodies ([`RigidScene`]), arms ([`ArmScene`], [`FloatingScene`]) and robots of the plane ([`PlanarScene`]) are robots. To add a
+/// kind, implement [`TypedMotion`](crate::TypedMotion) and the three parts; [`Scene::new`](crate::Scene::new) makes a scene of it, and
+/// the rest of this crate works with it: planning by name, checking, explaining, shortening, relaxing, roadmaps. docs/own-robot.md is
+/// a guide.
+pub trait Robot: Motion + Description + Appearance + Any + fmt::Debug + Send + Sync {}
+impl<K: Motion + Description + Appearance + Any + fmt::Debug + Send + Sync> Robot for K {}
+
+/// What planners ask of a robot, beside its [typed motions](crate::TypedMotion).
+pub trait Motion: AnyMotion {
     /// The start configuration.
-    fn start(&self) -> &Self::State;
+    fn start(&self) -> &Configuration;
+
     /// The goal configurations, at least one.
-    fn goals(&self) -> &[Self::State];
+    fn goals(&self) -> &[Configuration];
 
     /// What each goal asks of each number of a configuration, if that is not to be one of the configurations
     /// [`goals`](Self::goals), which are then examples.
@@ -183,17 +189,20 @@ pub trait RobotKind: Motion + Any + fmt::Debug + Send + Sync {
     }
 
     /// Whether the robot can make the motion at all, obstacles aside. By default it can make any.
-    fn can_move(&self, _from: &Self::State, _to: &Self::State) -> bool {
+    fn can_move(&self, _from: &Configuration, _to: &Configuration) -> bool {
         true
     }
+
     /// What planners must be able to do to plan for it. By default nothing special.
     fn demands(&self) -> &'static [Demand] {
         &[]
     }
+
     /// How the robot moves by inputs, if it can move in no other way.
-    fn input_system(&self) -> Option<InputSystem<'_, Self::State>> {
+    fn input_system(&self) -> Option<InputSystem<'_, Configuration>> {
         None
     }
+
     /// The planner that is taken when none is named.
     fn default_planner(&self) -> &'static str {
         "rrt-connect"
@@ -203,11 +212,11 @@ pub trait RobotKind: Motion + Any + fmt::Debug + Send + Sync {
     /// shortcuts can be straight. `check` says which motions are free. The same random numbers give the same path.
     fn shortened(
         &self,
-        _path: &mp_cspace::Path<Self::State>,
-        _check: &mut dyn MotionValidity<Self::State>,
+        _path: &mp_cspace::Path<Configuration>,
+        _check: &mut dyn MotionValidity<Configuration>,
         _effort: mp_cspace::shorten::Effort,
         _rng: &mut mp_cspace::Rng,
-    ) -> Option<mp_cspace::Path<Self::State>> {
+    ) -> Option<mp_cspace::Path<Configuration>> {
         None
     }
 
@@ -219,68 +228,98 @@ pub trait RobotKind: Motion + Any + fmt::Debug + Send + Sync {
     fn make_ready(&self, _interrupt: &Interrupt) -> Result<(), Interrupted> {
         Ok(())
     }
+
     /// The clearance (m) that certified checks resolve: a motion that comes nearer to contact is not free.
     fn tolerance(&self) -> f64;
+
     /// The clearance (m) that it [keeps](crate::TypedMotion::keeping) from obstacles: by default none.
     fn kept(&self) -> f64 {
         0.0
     }
+
     /// How far apart configurations are tested along motions, where no clearance is known that could certify them: then only
     /// [`Validity`] is asked, a request for `certified` motions means this, and reports give no clearance. By default motions are
     /// certified.
     fn sampled(&self) -> Option<Length> {
         None
     }
+
     /// The accuracy of the clearance reported for a path, metres.
     fn accuracy(&self) -> f64 {
         self.tolerance()
     }
+
     /// The clearance (m) that shortcuts keep where there is room, and where no clearance is [kept](Self::kept) that was asked for: a
     /// fiftieth of the size of the robots of this crate, because a path that grazes every corner is of no use. In passages that are
     /// narrower they keep a tenth of it.
     fn shortcut_clearance(&self) -> f64 {
         200.0 * self.tolerance()
     }
+
     /// The space under a metric, with an index for it.
     ///
     /// # Errors
     /// When the robot does not support the metric.
-    fn measured(&self, metric: MetricName) -> Result<Measured<'_, Self::State>, Error>;
+    fn measured(&self, metric: MetricName) -> Result<Measured<'_>, Error>;
 
-    /// What touches what at a configuration.
-    fn touching(&self, q: &Self::State) -> Vec<Touch>;
-    /// What is nearest to contact at a configuration, as messages name it, such as `tool and table`, and how far apart that is (m). By
-    /// default it is not known.
-    fn closest(&self, _q: &Self::State) -> Option<(String, f64)> {
+    /// A free configuration near one that is not.
+    fn nearest_free(&self, q: &Configuration) -> Option<Configuration>;
+
+    /// A hash of everything that a roadmap depends on: scene, robot and metric. `None` if roadmaps of such robots cannot
+    /// be saved.
+    fn fingerprint(&self, _metric: MetricName) -> Option<u64> {
         None
     }
+}
+
+/// What messages and files ask of a robot: what its numbers mean, and what is wrong with them.
+pub trait Description: Motion {
+    /// The name of the scene.
+    fn name(&self) -> &str;
+
+    /// The name of the space in reports: `SE3`, `6 joints`.
+    fn space_name(&self) -> String;
+
+    /// What touches what at a configuration.
+    fn touching(&self, q: &Configuration) -> Vec<Touch>;
+
+    /// What is nearest to contact at a configuration, as messages name it, such as `tool and table`, and how far apart that is (m). By
+    /// default it is not known.
+    fn closest(&self, _q: &Configuration) -> Option<(String, f64)> {
+        None
+    }
+
     /// What to do about contacts at the start or a goal, besides moving it. By default there is nothing else.
     fn remedy(&self, _touching: &[Touch]) -> Option<String> {
         None
     }
+
     /// What is wholly inside of a closed surface at a configuration that is free: pairs of names, the inner one first. By default
     /// nothing.
-    fn enclosures(&self, _q: &Self::State) -> Vec<[String; 2]> {
+    fn enclosures(&self, _q: &Configuration) -> Vec<[String; 2]> {
         Vec::new()
     }
-    /// A free configuration near one that is not.
-    fn nearest_free(&self, q: &Self::State) -> Option<Self::State>;
+
     /// What is odd about the scene apart from its ends, such as obstacles that overlap.
     fn lint(&self) -> Vec<String> {
         Vec::new()
     }
+
     /// What is odd about start and goal together without being an error, such as being inside of different solids.
     fn odd_ends(&self) -> Option<String> {
         None
     }
+
     /// What to do about a configuration that is out of bounds.
-    fn bounds_remedy(&self, _q: &Self::State) -> String {
+    fn bounds_remedy(&self, _q: &Configuration) -> String {
         "move it, or widen the bounds".to_owned()
     }
+
     /// Why a configuration is out of bounds, to follow the words "the start is". By default it lists all of its numbers.
-    fn out_of_bounds(&self, q: &Self::State) -> String {
+    fn out_of_bounds(&self, q: &Configuration) -> String {
         format!("out of bounds: {}", self.written(q))
     }
+
     /// An error about one end of the problem. A scene from a file adds the line; the default does not.
     fn fault(&self, _end: End, message: String, help: String) -> Error {
         Error::new(message).help(help)
@@ -288,31 +327,39 @@ pub trait RobotKind: Motion + Any + fmt::Debug + Send + Sync {
 
     /// The meaning of each number of a configuration.
     fn columns(&self) -> Vec<Column>;
+
     /// The least and the largest value of each number, in the order of the columns; `None` for an angle without limits.
     fn limits(&self) -> Vec<Option<[f64; 2]>>;
+
     /// Further facts about the robot, for people: name and text.
     fn details(&self) -> Vec<(String, String)> {
         Vec::new()
     }
+
     /// The format in which paths are written as text.
     fn path_format(&self) -> PathFormat {
         PathFormat::Joints
     }
+
     /// The numbers of one configuration.
-    fn row(&self, q: &Self::State) -> Vec<f64>;
+    fn row(&self, q: &Configuration) -> Vec<f64>;
+
     /// The configuration of a row that has as many numbers as there are columns.
-    fn state(&self, row: &[f64]) -> Self::State;
+    fn state(&self, row: &[f64]) -> Configuration;
+
     /// The rows of a path: by default one for each state, in which angles without limits go on from row to row by the shorter way,
     /// beginning at the [given start](Self::given_start). Rows may be added for readers that interpolate the numbers.
-    fn rows(&self, path: &mp_cspace::Path<Self::State>) -> Vec<Vec<f64>> {
+    fn rows(&self, path: &mp_cspace::Path<Configuration>) -> Vec<Vec<f64>> {
         let rows = path.states.iter().map(|q| self.row(q)).collect();
         continued(&turning(self), &self.given_start(), rows)
     }
+
     /// The row of the start with its angles as they were given: they may be whole turns away from those of [`row`](Self::row), which
     /// it is by default.
     fn given_start(&self) -> Vec<f64> {
         self.row(self.start())
     }
+
     /// Writes the problem to `folder` for other planners, as docs/formats/export.md describes. Returns the main file.
     ///
     /// # Errors
@@ -321,60 +368,70 @@ pub trait RobotKind: Motion + Any + fmt::Debug + Send + Sync {
         Err(Error::new(format!("{} is no rigid body among meshes: only those are exported", self.name()))
             .help("its files are text already"))
     }
+
     /// Everything that decides whether a path is free, as numbers, for certificates: see docs/formats/certificate.md.
     ///
     /// # Errors
     /// When there is no model of such robots. By default there is none.
     fn motion_model(&self) -> Result<MotionModel, Error> {
         Err(Error::new("there are no certificates for this kind of robot")
-            .help("implement `RobotKind::motion_model` for it"))
+            .help("implement `Robot::motion_model` for it"))
     }
+
     /// What is wrong with rows from a file apart from their length, such as leaving the plane.
     fn odd_rows(&self, _rows: &[Vec<f64>]) -> Option<String> {
         None
     }
+
     /// How far a configuration is from the one that it should be, and how far it may be. Files often have only four digits.
-    fn mismatch(&self, q: &Self::State, wanted: &Self::State) -> Mismatch {
+    fn mismatch(&self, q: &Configuration, wanted: &Configuration) -> Mismatch {
         Mismatch { off: self.any_space().distance(q, wanted), allowed: 1e-3, unit: "" }
     }
+
     /// A configuration as text for messages.
-    fn written(&self, q: &Self::State) -> String {
+    fn written(&self, q: &Configuration) -> String {
         format!("[{}]", self.row(q).into_iter().map(plain).collect::<Vec<_>>().join(", "))
     }
+}
 
+/// What pictures, films and viewers ask of a robot.
+pub trait Appearance {
     /// The bodies of the scene: those of the robot first, then the obstacles.
     fn bodies(&self) -> Vec<Body>;
+
     /// How many of the last bodies of the robot are obstacles that move.
     fn moving_obstacles(&self) -> usize {
         0
     }
+
     /// The poses of the bodies of the robot, in the order of [`bodies`](Self::bodies).
-    fn poses(&self, q: &Self::State) -> Vec<Isometry3<f64>>;
+    fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>>;
+
     /// The point whose curve a picture shows: by default the origin of the last body of the robot.
-    fn traced(&self, q: &Self::State) -> Point3<f64> {
+    fn traced(&self, q: &Configuration) -> Point3<f64> {
         self.poses(q).last().map_or(Point3::origin(), |pose| Point3::from(pose.translation.vector))
     }
+
     /// How long a motion takes, seconds, if its states say so: films then run in time, and else at even speed.
-    fn seconds(&self, _from: &Self::State, _to: &Self::State) -> Option<f64> {
+    fn seconds(&self, _from: &Configuration, _to: &Configuration) -> Option<f64> {
         None
     }
+
     /// The distance between two copies of the robot along a path in a picture: about how far its points move, metres.
     fn picture_spacing(&self) -> f64;
+
     /// The bounds of the robot's origin, for pictures that show them.
     fn picture_bounds(&self) -> Option<Aabb> {
         None
     }
+
     /// Whether the scene is best seen from above.
     fn is_planar(&self) -> bool {
         false
     }
+
     /// The problem, if the robot is a rigid body among meshes: front ends edit such scenes.
     fn rigid_problem(&self) -> Option<&mp_io::RigidProblem> {
-        None
-    }
-    /// A hash of everything that a roadmap depends on: scene, robot and metric. `None` if roadmaps of such robots cannot
-    /// be saved.
-    fn fingerprint(&self, _metric: MetricName) -> Option<u64> {
         None
     }
 }
@@ -401,14 +458,16 @@ impl Mismatch {
 pub use crate::counted::Counted;
 
 /// What checkers that `counted` makes know of obstacles: hints, and the clearance gradient.
-pub(crate) fn hints_and_gradient<'c, S, R>(counted: &dyn Fn() -> Counted<'c, R>) -> ObstacleKnowledge<'c, S>
+pub(crate) fn hints_and_gradient<'c, R>(
+    counted: &dyn Fn() -> Counted<'c, R>,
+) -> ObstacleKnowledge<'c, Configuration>
 where
-    S: 'c,
-    R: ObstacleHints<S> + ClearanceGradient<S> + Queries + Send + 'c,
+    R: ObstacleHints<Configuration> + ClearanceGradient<Configuration> + Queries + Send + 'c,
 {
     let mut checker = counted();
-    let gradient =
-        move |q: &S, reach: f64, gradient: &mut [f64]| checker.clearance_gradient(q, reach, gradient);
+    let gradient = move |q: &Configuration, reach: f64, gradient: &mut [f64]| {
+        checker.clearance_gradient(q, reach, gradient)
+    };
     ObstacleKnowledge {
         hints: Some(Box::new(counted())),
         gradient: Some(Box::new(gradient)),

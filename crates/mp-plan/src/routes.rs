@@ -6,10 +6,12 @@ use crate::planners::PlannerKind;
 use crate::prepared::Prepared;
 use crate::run::{PLANNING_PART, Pausing};
 use crate::search::Search;
-use crate::{Control, Error, Finish, Length, PathRows, Report, Request, RobotKind, Stage, planners};
+use crate::{Control, Error, Finish, Length, PathRows, Report, Request, Robot, Stage, planners};
 #[cfg(feature = "roadmaps")]
 use mp_cspace::Stop;
-use mp_cspace::{Iterations, Outcome, Path, Planner, Progress, Rng, Space, StopReason, Workers};
+use mp_cspace::{
+    Configuration, Iterations, Outcome, Path, Planner, Progress, Rng, Space, StopReason, Workers,
+};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -17,8 +19,8 @@ use std::time::Duration;
 const FIRST: u64 = 1000;
 
 /// What was found: paths, the counts, the time, and why it ended.
-struct Listed<S> {
-    paths: Vec<Path<S>>,
+struct Listed {
+    paths: Vec<Path<Configuration>>,
     progress: Progress,
     time: Duration,
     ended: StopReason,
@@ -26,8 +28,8 @@ struct Listed<S> {
 }
 
 /// At most `count` routes: see [`Scene::routes`](crate::Scene::routes).
-pub(crate) fn routes<K: RobotKind + ?Sized>(
-    kind: &K,
+pub(crate) fn routes(
+    kind: &dyn Robot,
     request: &Request,
     count: usize,
     apart: Length,
@@ -105,12 +107,7 @@ fn one_path_only(planner: &PlannerKind) -> Error {
 }
 
 /// Whether some point of the path is farther than `apart` from all points of each of the others, a quarter of that apart.
-fn is_far<K: RobotKind + ?Sized>(
-    kind: &K,
-    report: &Report,
-    others: &[Report],
-    apart: f64,
-) -> Result<bool, Error> {
+fn is_far(kind: &dyn Robot, report: &Report, others: &[Report], apart: f64) -> Result<bool, Error> {
     let space = kind.any_space();
     let points = |report: &Report| {
         let rows = report.path.clone().unwrap_or_default();
@@ -136,13 +133,13 @@ fn is_far<K: RobotKind + ?Sized>(
 }
 
 /// The routes in the graph of a planner that grows one.
-fn of_tree<K: RobotKind + ?Sized>(
-    prepared: &Prepared<'_, K>,
+fn of_tree(
+    prepared: &Prepared<'_>,
     name: &str,
     count: usize,
     apart: f64,
     control: &mut Control<'_>,
-) -> Result<Listed<K::State>, Error> {
+) -> Result<Listed, Error> {
     let workers = Workers::new(prepared.request.threads)?;
     let (clock, began) = (control.clock, control.clock.now());
     let mut planner = prepared.tree_planner(name, &workers)?;
@@ -176,15 +173,15 @@ fn of_tree<K: RobotKind + ?Sized>(
 
 /// The routes in a roadmap.
 #[cfg(feature = "roadmaps")]
-fn of_roadmap<K: RobotKind + ?Sized>(
-    prepared: &Prepared<'_, K>,
+fn of_roadmap(
+    prepared: &Prepared<'_>,
     info: &mp_cspace::registry::PlannerInfo,
     count: usize,
     apart: f64,
     control: &mut Control<'_>,
-) -> Result<Listed<K::State>, Error> {
-    use crate::roadmaps::{GrowingFile, RoadmapState, with_checkpoints};
-    use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, PATIENCE};
+) -> Result<Listed, Error> {
+    use crate::roadmaps::{GrowingFile, with_checkpoints};
+    use mp_roadmap::{AnyEdgeChecker, PATIENCE, erased::AnyRoadmap};
     /// How many of the nearest nodes an end is connected to.
     const NEIGHBOURS: usize = 20;
 
@@ -221,7 +218,8 @@ fn of_roadmap<K: RobotKind + ?Sized>(
         let roadmap = roadmap.unwrap_or_default();
         let mut roadmap = AnyRoadmap::new(&prepared.space, roadmap, prepared.index.clone(), NEIGHBOURS)?;
         let (mut checker, ..) = AnyEdgeChecker::of(prepared.problem()?, PATIENCE);
-        let found = K::State::routes(&mut roadmap, &mut checker, [kind.start(), goal], count, apart);
+        let found =
+            mp_roadmap::erased::routes(&mut roadmap, &mut checker, [kind.start(), goal], count, apart);
         drop(checker);
         let [edges, components] = map;
         if count > 1 && edges > 0 && edges + components == made.nodes() {

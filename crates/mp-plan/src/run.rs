@@ -4,20 +4,20 @@ use crate::plan::{left, reported};
 use crate::planners::PlannerKind;
 use crate::prepared::Prepared;
 use crate::relax::relax_if_requested;
-use crate::roadmaps::{Due, GrowingFile, RoadmapPlanner, RoadmapState};
+use crate::roadmaps::{Due, GrowingFile, RoadmapPlanner};
 use crate::search::Search;
 use crate::watch::Events;
-use crate::{Control, Error, Finish, Report, Request, RobotKind, Stage, StoppedBy};
+use crate::{Control, Error, Finish, Report, Request, Robot, Stage, StoppedBy};
 use mp_cspace::erased::AnySpace;
-use mp_cspace::{Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
-use mp_tree::{TreeState, improve};
+use mp_cspace::{Configuration, Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
+use mp_tree::improve;
 use std::fmt;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 /// A request prepared for a scene: the data that a [`Run`] borrows. [`Scene::prepare`](crate::Scene::prepare) makes it.
 pub struct PreparedRun<'s> {
-    pub(crate) prepared: Box<dyn AnyPrepared + 's>,
+    pub(crate) prepared: Prepared<'s>,
     /// The file of the scene.
     pub(crate) file: Option<String>,
 }
@@ -29,8 +29,8 @@ impl PreparedRun<'_> {
     /// # Errors
     /// When the request is not valid for the robot, or a roadmap cannot be read.
     pub fn begin(&self, control: &mut Control<'_>) -> Result<Run<'_>, Error> {
-        let rng = Rng::seed(self.prepared.seed());
-        Ok(Run { run: self.prepared.begin(rng, control)?, file: self.file.clone() })
+        let rng = Rng::seed(self.prepared.request.seed);
+        Ok(Run { run: RobotRun::begin(&self.prepared, rng, control)?, file: self.file.clone() })
     }
 }
 
@@ -60,7 +60,7 @@ impl fmt::Debug for PreparedRun<'_> {
 /// # Ok::<(), mp_plan::Error>(())
 /// ```
 pub struct Run<'p> {
-    run: Box<dyn AnyRun + 'p>,
+    run: RobotRun<'p, 'p>,
     file: Option<String>,
 }
 
@@ -95,25 +95,7 @@ impl fmt::Debug for Run<'_> {
     }
 }
 
-/// A prepared request for a robot of some kind.
-pub(crate) trait AnyPrepared {
-    /// The seed of the request.
-    fn seed(&self) -> u64;
-    /// Makes the planner, which draws from `rng`.
-    fn begin(&self, rng: Rng, control: &mut Control<'_>) -> Result<Box<dyn AnyRun + '_>, Error>;
-}
-
-/// A run for a robot of some kind.
-pub(crate) trait AnyRun {
-    fn advance(&mut self, pause: &mut dyn Stop, control: &mut Control<'_>) -> bool;
-    fn progress(&mut self) -> Progress;
-    fn finish(self: Box<Self>, control: &mut Control<'_>) -> Result<Report, Error>;
-    /// Ends the run as it is, with the path as found.
-    #[cfg(feature = "ranks")]
-    fn into_found(self: Box<Self>) -> Result<FoundRun, Error>;
-}
-
-/// What a run came to: plain data, from which [`found_report`](crate::any_robot::AnyRobot::found_report) makes a report elsewhere.
+/// What a run came to: plain data, from which [`found_report`](crate::plan::found_report) makes a report elsewhere.
 #[cfg(feature = "ranks")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FoundRun {
@@ -121,39 +103,27 @@ pub(crate) struct FoundRun {
     pub(crate) queries: u64,
     /// Edges and components of a roadmap.
     pub(crate) map: Option<[usize; 2]>,
-    /// The path, if there is one: its states as [numbers](mp_cspace::StateVector), to the bit.
+    /// The path, if there is one: the numbers of its configurations, to the bit.
     pub(crate) path: Option<Vec<Vec<f64>>>,
     /// What ended the run; `None` where the planner ended with its path, or the run is not over.
     pub(crate) ended_by: Option<StopReason>,
 }
 
 /// The request, prepared for a robot.
-pub(crate) fn prepare<'s, K: RobotKind + ?Sized>(
-    kind: &'s K,
-    request: &'s Request,
-) -> Result<Box<dyn AnyPrepared + 's>, Error> {
+pub(crate) fn prepare<'s>(kind: &'s dyn Robot, request: &'s Request) -> Result<Prepared<'s>, Error> {
     request.check()?;
     PlannerKind::new(&request.planner)?;
-    Ok(Box::new(Prepared::new(kind, request)?))
-}
-
-impl<K: RobotKind + ?Sized> AnyPrepared for Prepared<'_, K> {
-    fn seed(&self) -> u64 {
-        self.request.seed
-    }
-    fn begin(&self, rng: Rng, control: &mut Control<'_>) -> Result<Box<dyn AnyRun + '_>, Error> {
-        Ok(Box::new(RobotRun { rng, ..RobotRun::new(self, control, PLANNING_PART)? }))
-    }
+    Prepared::new(kind, request)
 }
 
 /// A planner made by name.
-enum NamedPlanner<'p, S> {
-    Tree(mp_tree::AnyPlanner<'p, S, ()>),
-    Roadmap(RoadmapPlanner<'p, S>),
+enum NamedPlanner<'p> {
+    Tree(mp_tree::AnyPlanner<'p, Configuration, ()>),
+    Roadmap(RoadmapPlanner<'p>),
 }
 
-impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> NamedPlanner<'p, S> {
-    fn planner(&mut self) -> &mut (dyn Planner<S, Edge = ()> + 'p) {
+impl<'p> NamedPlanner<'p> {
+    fn planner(&mut self) -> &mut (dyn Planner<Configuration, Edge = ()> + 'p) {
         match self {
             Self::Tree(planner) => &mut **planner,
             Self::Roadmap(made) => made.planner(),
@@ -161,11 +131,11 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> NamedPlanner<'p, S>
     }
 }
 
-/// A run for one kind of robot.
-pub(crate) struct RobotRun<'p, 'k, K: RobotKind + ?Sized> {
-    prepared: &'p Prepared<'k, K>,
+/// A run.
+pub(crate) struct RobotRun<'p, 'k> {
+    prepared: &'p Prepared<'k>,
     /// None where the run ended before its planner was made.
-    made: Option<NamedPlanner<'p, K::State>>,
+    made: Option<NamedPlanner<'p>>,
     rng: Rng,
     file: Option<GrowingFile<'k>>,
     /// The part of the budget of time that is for planning.
@@ -174,26 +144,35 @@ pub(crate) struct RobotRun<'p, 'k, K: RobotKind + ?Sized> {
     time: Duration,
     /// The counts after the last whole iteration, where another one was cut short.
     whole: Option<Progress>,
-    found: Found<K::State>,
+    found: Found,
 }
 
 /// The part of the budget of time that planning may take; the rest is for shortening and verifying.
 pub(crate) const PLANNING_PART: f64 = 0.9;
 
 /// What a run has found.
-struct Found<S> {
+struct Found {
     /// The last path.
-    best: Option<Path<S>>,
+    best: Option<Path<Configuration>>,
     /// The first path of an anytime planner: when it was found, and its length in the metric.
-    first: Option<(Duration, f64, Path<S>)>,
+    first: Option<(Duration, f64, Path<Configuration>)>,
     /// Whether the run is over, and why it stopped; no reason when it has a path that it does not improve.
     over: Option<Option<StopReason>>,
 }
 
-impl<'p, 'k, K: RobotKind + ?Sized> RobotRun<'p, 'k, K> {
+impl<'p, 'k> RobotRun<'p, 'k> {
+    /// As [`new`](Self::new), with all of the time that is for planning; the planner draws from `rng`.
+    pub(crate) fn begin(
+        prepared: &'p Prepared<'k>,
+        rng: Rng,
+        control: &mut Control<'_>,
+    ) -> Result<Self, Error> {
+        Ok(Self { rng, ..Self::new(prepared, control, PLANNING_PART)? })
+    }
+
     /// Makes the planner of the request, which has the part `part` of the budget of time.
     pub(crate) fn new(
-        prepared: &'p Prepared<'k, K>,
+        prepared: &'p Prepared<'k>,
         control: &mut Control<'_>,
         part: f64,
     ) -> Result<Self, Error> {
@@ -267,7 +246,7 @@ impl<'p, 'k, K: RobotKind + ?Sized> RobotRun<'p, 'k, K> {
     }
 
     /// Relaxes the path found if the request says so, and says what was done.
-    pub(crate) fn into_search(mut self, control: &mut Control<'_>) -> Result<Search<K::State>, Error> {
+    pub(crate) fn into_search(mut self, control: &mut Control<'_>) -> Result<Search, Error> {
         let progress = self.progress();
         let (prepared, Found { best, first, over }) = (self.prepared, self.found);
         let (kind, request) = (prepared.kind, prepared.request);
@@ -322,44 +301,34 @@ impl<'p, 'k, K: RobotKind + ?Sized> RobotRun<'p, 'k, K> {
     }
 
     /// The counts after the last whole iteration.
-    fn progress(&mut self) -> Progress {
+    pub(crate) fn progress(&mut self) -> Progress {
         self.whole
             .unwrap_or_else(|| self.made.as_mut().map(|made| made.planner().progress()).unwrap_or_default())
     }
-}
 
-impl<K: RobotKind + ?Sized> AnyRun for RobotRun<'_, '_, K> {
-    fn advance(&mut self, pause: &mut dyn Stop, control: &mut Control<'_>) -> bool {
-        RobotRun::advance(self, pause, control)
-    }
-    fn progress(&mut self) -> Progress {
-        RobotRun::progress(self)
-    }
-    fn finish(self: Box<Self>, control: &mut Control<'_>) -> Result<Report, Error> {
+    /// Finishes the path found, and makes the report.
+    fn finish(self, control: &mut Control<'_>) -> Result<Report, Error> {
         let (kind, request) = (self.prepared.kind, self.prepared.request);
         let found = self.into_search(control)?;
         let left = left(request, control, &found);
         reported(kind, request, found, None, control, left)
     }
+
+    /// Ends the run as it is, with the path as found.
     #[cfg(feature = "ranks")]
-    fn into_found(mut self: Box<Self>) -> Result<FoundRun, Error> {
-        let progress = RobotRun::progress(&mut self);
+    pub(crate) fn into_found(mut self) -> Result<FoundRun, Error> {
+        let progress = self.progress();
         let map = match &mut self.made {
             None | Some(NamedPlanner::Tree(_)) => None,
             Some(NamedPlanner::Roadmap(made)) => Some(made.keep(self.file.as_ref(), false)?.0),
         };
         // Checkers report their last queries when they are dropped.
         self.made = None;
-        let numbers = |state: &K::State| {
-            let mut numbers = Vec::new();
-            mp_cspace::StateVector::write(state, &mut numbers);
-            numbers
-        };
         Ok(FoundRun {
             progress,
             queries: self.prepared.queries.load(Ordering::Relaxed),
             map,
-            path: self.found.best.map(|path| path.states.iter().map(numbers).collect()),
+            path: self.found.best.map(|path| path.states.iter().map(|q| q.to_vec()).collect()),
             ended_by: self.found.over.flatten(),
         })
     }
@@ -390,23 +359,20 @@ impl Stop for Pausing<'_> {
     }
 }
 
-/// Runs the planner until it is stopped or has its last path. Compiled for each kind of state instead of each kind of robot.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "a closure over all of it would be compiled for each kind of robot"
-)]
-fn search_on<S: TreeState>(
-    planner: &mut dyn Planner<S, Edge = ()>,
-    found: &mut Found<S>,
+/// Runs the planner until it is stopped or has its last path.
+#[expect(clippy::too_many_arguments, reason = "parts of a run, of which some are borrowed")]
+fn search_on(
+    planner: &mut dyn Planner<Configuration, Edge = ()>,
+    found: &mut Found,
     first_only: bool,
-    space: &AnySpace<'_, S>,
+    space: &AnySpace<'_, Configuration>,
     rng: &mut Rng,
     stop: &mut dyn Stop,
-    events: &mut Events<'_, '_, '_, S>,
+    events: &mut Events<'_, '_, '_>,
     time: &dyn Fn() -> Duration,
 ) {
     let (adapter, rows) = (events.adapter, events.rows);
-    let report = |path: &Path<S>| {
+    let report = |path: &Path<Configuration>| {
         let length = path.length(space);
         if let Some(watch) = &mut *adapter.watch.borrow_mut() {
             watch.found(length, &|| rows(path));

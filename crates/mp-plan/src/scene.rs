@@ -1,19 +1,29 @@
 //! A scene of any kind, and what can be done with it.
 
-use crate::any_robot::AnyRobot;
+use crate::certificate::certificate;
+use crate::check::check;
+use crate::explain::{check_ends, explain, lint};
+use crate::finish::finish_given;
+use crate::path::state;
+use crate::plan::plan;
 #[cfg(feature = "ranks")]
-use crate::run::{AnyPrepared, FoundRun};
+use crate::prepared::Prepared;
+#[cfg(feature = "ranks")]
+use crate::run::FoundRun;
+use crate::run::prepare;
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
+use crate::sweep::{sweep, track};
 use crate::{
     Body, Certificate, Column, Control, Error, Explanation, Finished, Length, PathFileKind, PathFormat,
-    PathRows, PreparedRun, RelaxField, Report, Request, RobotKind, Sweep, Track, Verdict,
+    PathRows, PreparedRun, RelaxField, Report, Request, Robot, Sweep, Track, Verdict,
 };
 use mp_cspace::registry::PlannerInfo;
-use mp_cspace::{Interrupt, Interrupted};
+use mp_cspace::{Configuration, Interrupt, Interrupted, Rng, Space, Validity};
 use mp_geom::{Aabb, TriMesh, short_six_from_pose};
 use mp_io::{DocumentShape, SceneDocument};
 use nalgebra::{Isometry3, Point3};
+use std::any::Any;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -33,7 +43,7 @@ use std::time::Duration;
 /// ```
 #[derive(Clone)]
 pub struct Scene {
-    robot: Arc<dyn AnyRobot>,
+    robot: Arc<dyn Robot>,
     file: Option<PathBuf>,
     pub(crate) inputs: Arc<[PathBuf]>,
     /// Folders in which files were sought, with their absolute names.
@@ -75,9 +85,9 @@ impl fmt::Debug for Scene {
 impl Scene {
     /// A scene with a robot of your own kind, or of one of the kinds of this crate: [`RigidScene`](crate::RigidScene),
     /// [`ArmScene`](crate::ArmScene), [`PlanarScene`](crate::PlanarScene).
-    pub fn new(robot: impl RobotKind + 'static) -> Self {
+    pub fn new(robot: impl Robot + 'static) -> Self {
         Self {
-            robot: Arc::new(crate::any_robot::OfState(Arc::new(robot) as Arc<crate::AnyKind<_>>)),
+            robot: Arc::new(robot),
             file: None,
             inputs: Arc::default(),
             folders: Arc::default(),
@@ -151,7 +161,7 @@ impl Scene {
 
     /// The robot, if it is of this kind.
     pub(crate) fn robot<K: 'static>(&self) -> Option<&K> {
-        self.robot.as_any().downcast_ref()
+        (&*self.robot as &dyn Any).downcast_ref()
     }
 
     pub(crate) fn of_feature(self, feature: &'static str) -> Self {
@@ -177,7 +187,7 @@ impl Scene {
     }
 
     /// The feature of this crate that plans for the robot of the scene: `space`, `arms`, …; `None` for a
-    /// [`RobotKind`] of one's own.
+    /// [`Robot`] of one's own.
     #[must_use]
     pub fn feature(&self) -> Option<&'static str> {
         self.feature
@@ -261,7 +271,11 @@ impl Scene {
     /// As [`free_share`](Self::free_share), unless `interrupt` says to end: then it means nothing.
     #[must_use]
     pub fn free_share_until(&self, samples: u32, interrupt: &Interrupt) -> f64 {
-        self.robot.free_share(samples, interrupt)
+        let (mut rng, mut checker) = (Rng::seed(1), self.robot.any_checker());
+        let (space, mut interrupt) = (self.robot.any_space(), interrupt.clone());
+        let tried = (0..samples).take_while(|_| !interrupt.ask());
+        let free = tried.filter(|_| checker.is_valid(&space.sample_uniform(&mut rng))).count();
+        free as f64 / f64::from(samples.max(1))
     }
 
     /// The format in which its paths are written as text.
@@ -273,13 +287,13 @@ impl Scene {
     /// The start configuration.
     #[must_use]
     pub fn start(&self) -> Vec<f64> {
-        self.robot.start()
+        self.robot.given_start()
     }
 
     /// The goal configurations.
     #[must_use]
     pub fn goals(&self) -> Vec<Vec<f64>> {
-        self.robot.goals()
+        self.robot.goals().iter().map(|goal| self.robot.row(goal)).collect()
     }
 
     /// The same scene with another start and other goals, as rows. They need not be free: planning and
@@ -289,7 +303,11 @@ impl Scene {
     /// When there is no goal, a row does not have as many numbers as the robot's configurations, or the kind of robot is your
     /// own and does not support it.
     pub fn with_ends(&self, start: &[f64], goals: &[Vec<f64>]) -> Result<Self, Error> {
-        Ok(Self { robot: self.robot.with_ends(start, goals)?, ..self.clone() })
+        if goals.is_empty() {
+            return Err(Error::new("there is no goal").help("give at least one configuration as a goal"));
+        }
+        let goals = goals.iter().map(|goal| self.state(goal)).collect::<Result<_, _>>()?;
+        Ok(Self { robot: self.robot.any_with_ends(self.state(start)?, goals, start)?, ..self.clone() })
     }
 
     /// The same scene, in which paths keep the clearance `clearance` (m) from obstacles, in place of the one kept before. All methods mind
@@ -310,7 +328,7 @@ impl Scene {
         check_clearance(clearance)?;
         match clearance == self.clearance_kept() {
             true => Ok(self.clone()),
-            false => Ok(Self { robot: self.robot.keeping(clearance)?, ..self.clone() }),
+            false => Ok(Self { robot: self.robot.any_keeping(clearance)?, ..self.clone() }),
         }
     }
 
@@ -328,8 +346,13 @@ impl Scene {
         self.keeping(if request.clearance == 0.0 { self.clearance_kept() } else { request.clearance })
     }
 
+    /// The configuration of a row.
+    fn state(&self, row: &[f64]) -> Result<Configuration, Error> {
+        state(&*self.robot, row)
+    }
+
     /// The robot that a request is about.
-    fn robot_for(&self, request: &Request) -> Result<Arc<dyn AnyRobot>, Error> {
+    fn robot_for(&self, request: &Request) -> Result<Arc<dyn Robot>, Error> {
         Ok(self.for_request(request)?.robot)
     }
 
@@ -377,7 +400,7 @@ impl Scene {
     /// # Errors
     /// As [`plan`](Self::plan).
     pub fn plan_with(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
-        let mut report = self.robot_for(request)?.plan(request, control)?;
+        let mut report = plan(&*self.robot_for(request)?, request, control)?;
         report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(report)
     }
@@ -399,9 +422,9 @@ impl Scene {
         control: &mut Control<'_>,
     ) -> Result<Vec<Report>, Error> {
         let (began, robot) = (control.time_if_limited(request), self.robot_for(request)?);
-        robot.check_ends()?;
+        check_ends(&*robot)?;
         control.spend_since(began);
-        let mut reports = robot.routes(request, count.max(1), apart, control)?;
+        let mut reports = crate::routes::routes(&*robot, request, count.max(1), apart, control)?;
         for report in &mut reports {
             report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         }
@@ -416,14 +439,14 @@ impl Scene {
         self.keeps(request)?;
         self.check_ends()?;
         let file = self.file.as_ref().map(|file| file.display().to_string());
-        Ok(PreparedRun { prepared: self.robot.prepare(request)?, file })
+        Ok(PreparedRun { prepared: prepare(&*self.robot, request)?, file })
     }
 
     /// The request, prepared for a run that makes no report itself.
     #[cfg(feature = "ranks")]
-    pub(crate) fn prepared<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error> {
+    pub(crate) fn prepared<'s>(&'s self, request: &'s Request) -> Result<Prepared<'s>, Error> {
         self.keeps(request)?;
-        self.robot.prepare(request)
+        prepare(&*self.robot, request)
     }
 
     /// The report of a run that made none itself, and took the time `time`.
@@ -435,7 +458,8 @@ impl Scene {
         time: Duration,
         control: &mut Control<'_>,
     ) -> Result<Report, Error> {
-        let mut report = self.robot_for(request)?.found_report(request, found, time, control)?;
+        let mut report =
+            crate::plan::found_report(&*self.robot_for(request)?, request, found, time, control)?;
         report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(report)
     }
@@ -469,7 +493,7 @@ impl Scene {
     /// As [`roadmap`](Self::roadmap).
     #[cfg(feature = "roadmaps")]
     pub fn roadmap_with(&self, request: &Request, control: &mut Control<'_>) -> Result<SceneRoadmap, Error> {
-        let roadmap = self.robot_for(request)?.roadmap(request, control)?;
+        let roadmap = crate::scene_roadmap::build(self.robot_for(request)?, request, control)?;
         Ok(SceneRoadmap { roadmap, file: self.file.as_ref().map(|file| file.display().to_string()) })
     }
 
@@ -520,7 +544,7 @@ impl Scene {
         request: &Request,
         control: &mut Control<'_>,
     ) -> Result<Finished, Error> {
-        self.robot_for(request)?.finish(path, request, control)
+        finish_given(&*self.robot_for(request)?, path, request, control)
     }
 
     /// Verifies a path from the start to a goal, with a verifier that shares no code with the planners' checks.
@@ -536,7 +560,7 @@ impl Scene {
     /// # Errors
     /// As [`check`](Self::check).
     pub fn check_until(&self, path: &PathRows, interrupt: &Interrupt) -> Result<Verdict, Error> {
-        self.robot.check(path, interrupt)
+        check(&*self.robot, path, interrupt)
     }
 
     /// The certificate of a path: a file with which another program proves again that it is free. `clearance` (m) is that of the path, 0 if
@@ -561,7 +585,7 @@ impl Scene {
         clearance: f64,
         interrupt: &Interrupt,
     ) -> Result<Certificate, Error> {
-        self.robot.certificate(path, clearance, interrupt)
+        certificate(&*self.robot, path, clearance, interrupt)
     }
 
     /// In what a certificate differs from this scene, a sentence for each difference; nothing if it is about this scene. Compared are the numbers
@@ -583,7 +607,7 @@ impl Scene {
     /// # Errors
     /// When the text is no certificate of this version; when the kind of robot is your own and has no model.
     pub fn certificate_differences(&self, certificate: &str) -> Result<Vec<String>, Error> {
-        self.robot.certificate_differences(certificate)
+        crate::certificate::differences(&*self.robot, certificate)
     }
 
     /// Explains a configuration: whether it is free, how near to contact, what touches, and where it would be free.
@@ -591,7 +615,7 @@ impl Scene {
     /// # Errors
     /// When the row does not have as many numbers as the robot's configurations.
     pub fn explain(&self, row: &[f64]) -> Result<Explanation, Error> {
-        self.robot.explain(row)
+        Ok(explain(&*self.robot, &self.state(row)?))
     }
 
     /// Checks that start and goals are free. Returns what is odd about them.
@@ -599,7 +623,7 @@ impl Scene {
     /// # Errors
     /// When one is not free: what touches, how deep, and the nearest free configuration.
     pub fn check_ends(&self) -> Result<Vec<String>, Error> {
-        self.robot.check_ends()
+        check_ends(&*self.robot)
     }
 
     /// Makes what planning in large meshes needs and would make at its beginning otherwise, unless `interrupt` says to end. Clones share it.
@@ -613,7 +637,7 @@ impl Scene {
     /// What is wrong or odd about the scene, in sentences. Empty when nothing is.
     #[must_use]
     pub fn lint(&self) -> Vec<String> {
-        self.robot.lint()
+        lint(&*self.robot)
     }
 
     /// The bodies: those of the robot first, then the obstacles.
@@ -627,7 +651,7 @@ impl Scene {
     /// # Errors
     /// When the row does not have as many numbers as the robot's configurations.
     pub fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error> {
-        self.robot.poses(row)
+        Ok(self.robot.poses(&self.state(row)?))
     }
 
     /// The point (m) whose curve pictures show, at a configuration.
@@ -635,7 +659,7 @@ impl Scene {
     /// # Errors
     /// When the row does not have as many numbers as the robot's configurations.
     pub fn traced(&self, row: &[f64]) -> Result<Point3<f64>, Error> {
-        self.robot.traced(row)
+        Ok(self.robot.traced(&self.state(row)?))
     }
 
     /// Poses of the robot along a path; without a path, at start and goal only.
@@ -643,7 +667,7 @@ impl Scene {
     /// # Errors
     /// When the path is of another robot.
     pub fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error> {
-        self.robot.sweep(path)
+        sweep(&*self.robot, path)
     }
 
     /// A path sampled for an animation, with the clearance along it.
@@ -651,7 +675,7 @@ impl Scene {
     /// # Errors
     /// When the path is of another robot, or has no configurations.
     pub fn track(&self, path: &PathRows) -> Result<Track, Error> {
-        self.robot.track(path)
+        track(&*self.robot, path)
     }
 
     /// A field that pushes snakes, for the places of the robot of a world of the plane; otherwise the robot is as in `row`.
@@ -675,7 +699,7 @@ impl Scene {
     ) -> Result<crate::FieldImage, Error> {
         #[cfg(feature = "planar")]
         if self.is_planar_world() {
-            return self.robot.field(field, row, path, range, cells);
+            return crate::field::field(&*self.robot, field, row, path, range, cells);
         }
         Err(Error::new(format!("the field of {} is not drawn", self.name()))
             .help("only that of a world of the plane is"))

@@ -8,9 +8,9 @@ use crate::prepared::Prepared;
 use crate::relax::relax_if_requested;
 use crate::roadmaps::{GrowingFile, Roadmap, RoadmapFile, with_checkpoints};
 use crate::search::Search;
-use crate::{Budget, Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
-use mp_cspace::{Interrupt, Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
-use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, PATIENCE, RoadmapState};
+use crate::{Budget, Control, Error, Report, Request, Robot, Stage, StoppedBy};
+use mp_cspace::{Configuration, Interrupt, Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
+use mp_roadmap::{AnyEdgeChecker, PATIENCE, erased::AnyRoadmap};
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ const NEIGHBOURS: usize = 20;
 ///
 /// [`Scene::roadmap`](crate::Scene::roadmap) builds it. It owns all its data and may be sent to another thread.
 pub struct SceneRoadmap {
-    pub(crate) roadmap: Box<dyn AnySceneRoadmap>,
+    pub(crate) roadmap: RobotRoadmap,
     /// The file of the scene.
     pub(crate) file: Option<String>,
 }
@@ -107,46 +107,35 @@ impl SceneRoadmap {
     }
 }
 
-/// A roadmap of a robot of some kind, behind a pointer.
-pub(crate) trait AnySceneRoadmap: Send {
-    fn query(&mut self, start: &[f64], goal: &[f64], control: &mut Control<'_>) -> Result<Report, Error>;
-    fn grow(&mut self, budget: Budget, control: &mut Control<'_>) -> Result<(), Error>;
-    fn verify(&mut self) -> Result<usize, Error>;
-    fn size(&self) -> [usize; 2];
-    fn components(&mut self) -> usize;
-    fn save(&self, file: &Path) -> Result<(), Error>;
-}
-
-struct RobotRoadmap<K: RobotKind + ?Sized> {
-    kind: Arc<K>,
+/// A roadmap of a robot.
+pub(crate) struct RobotRoadmap {
+    kind: Arc<dyn Robot>,
     request: Request,
-    roadmap: AnyRoadmap<K::State>,
+    roadmap: AnyRoadmap,
 }
 
 /// Builds a roadmap with the planner of the request.
-pub(crate) fn build<K: RobotKind + ?Sized + 'static>(
-    kind: Arc<K>,
+pub(crate) fn build(
+    kind: Arc<dyn Robot>,
     request: &Request,
     control: &mut Control<'_>,
-) -> Result<Box<dyn AnySceneRoadmap>, Error> {
+) -> Result<RobotRoadmap, Error> {
     request.check()?;
     let roadmap = grown(&*kind, request, None, control)?;
-    Ok(Box::new(RobotRoadmap { kind, request: request.clone(), roadmap }))
+    Ok(RobotRoadmap { kind, request: request.clone(), roadmap })
 }
 
 /// A roadmap that was built elsewhere, for this robot: a [`Roadmap`].
 #[cfg(all(feature = "ranks", feature = "roadmaps"))]
-pub(crate) fn of_map<K: RobotKind + ?Sized + 'static>(
-    kind: Arc<K>,
+pub(crate) fn of_map(
+    kind: Arc<dyn Robot>,
     request: &Request,
-    map: Box<dyn std::any::Any + Send>,
-) -> Result<Box<dyn AnySceneRoadmap>, Error> {
-    let map = map.downcast::<Roadmap<K::State>>();
-    let map = map.map_err(|_| Error::new("the roadmap is one for robots of another kind"))?;
+    map: Roadmap<Configuration>,
+) -> Result<RobotRoadmap, Error> {
     let crate::Measured { space, index } = kind.measured(request.metric)?;
-    let roadmap = AnyRoadmap::new(&space, *map, index, NEIGHBOURS)?;
+    let roadmap = AnyRoadmap::new(&space, map, index, NEIGHBOURS)?;
     drop(space);
-    Ok(Box::new(RobotRoadmap { kind, request: request.clone(), roadmap }))
+    Ok(RobotRoadmap { kind, request: request.clone(), roadmap })
 }
 
 /// The planner of the request, which must build roadmaps.
@@ -162,12 +151,12 @@ fn planner(request: &Request) -> Result<&'static PlannerInfo, Error> {
 }
 
 /// Grows `map`, or the roadmap in the file of the request, or a new one, until the budget is used up.
-fn grown<K: RobotKind + ?Sized>(
-    kind: &K,
+fn grown(
+    kind: &dyn Robot,
     request: &Request,
-    map: Option<Roadmap<K::State>>,
+    map: Option<Roadmap<Configuration>>,
     control: &mut Control<'_>,
-) -> Result<AnyRoadmap<K::State>, Error> {
+) -> Result<AnyRoadmap, Error> {
     let info = planner(request)?;
     let _span = tracing::info_span!("roadmap", scene = kind.name(), planner = info.name, seed = request.seed)
         .entered();
@@ -195,7 +184,7 @@ fn grown<K: RobotKind + ?Sized>(
     Ok(AnyRoadmap::new(&prepared.space, map, prepared.index.clone(), NEIGHBOURS)?)
 }
 
-impl<K: RobotKind + ?Sized> AnySceneRoadmap for RobotRoadmap<K> {
+impl RobotRoadmap {
     fn query(&mut self, start: &[f64], goal: &[f64], control: &mut Control<'_>) -> Result<Report, Error> {
         let (kind, request) = (&*self.kind, &self.request);
         let _span = tracing::info_span!("query", scene = kind.name()).entered();
@@ -211,7 +200,7 @@ impl<K: RobotKind + ?Sized> AnySceneRoadmap for RobotRoadmap<K> {
         control.stage(Stage::Planning);
         let began = control.clock.now();
         let (mut checker, ..) = AnyEdgeChecker::of(prepared.problem()?, PATIENCE);
-        let answer = K::State::answer(&mut self.roadmap, &mut checker, &start, &goal);
+        let answer = mp_roadmap::erased::answer(&mut self.roadmap, &mut checker, &start, &goal);
         let time = control.clock.now().saturating_sub(began);
         let mut progress = mp_cspace::Progress::new(0, self.roadmap.map().len(), checker.motions());
         progress.rejected = checker.rejected();
@@ -251,7 +240,7 @@ impl<K: RobotKind + ?Sized> AnySceneRoadmap for RobotRoadmap<K> {
         let _span = tracing::info_span!("verify", scene = self.kind.name()).entered();
         let prepared = Prepared::new(&*self.kind, &self.request)?;
         let (mut checker, ..) = AnyEdgeChecker::of(prepared.problem()?, PATIENCE);
-        Ok(K::State::verify_roadmap(&mut self.roadmap, &mut checker))
+        Ok(mp_roadmap::erased::verify(&mut self.roadmap, &mut checker))
     }
 
     fn size(&self) -> [usize; 2] {

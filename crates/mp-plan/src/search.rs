@@ -4,15 +4,15 @@ use crate::planners::PlannerKind;
 use crate::prepared::Prepared;
 use crate::roadmaps::Roadmap;
 use crate::run::RobotRun;
-use crate::{Control, Error, Request, RobotKind};
-use mp_cspace::{Outcome, Path, Progress, Stop, StopReason};
+use crate::{Control, Error, Request, Robot};
+use mp_cspace::{Configuration, Outcome, Path, Progress, Stop, StopReason};
 use std::time::Duration;
 
 /// The result of running a planner.
 #[derive(Clone, Debug)]
-pub struct Search<S> {
+pub struct Search {
     /// The path, verified by the planner, or the reason why there is none.
-    pub outcome: Outcome<Path<S>>,
+    pub outcome: Outcome<Path<Configuration>>,
     /// The counts of what was done.
     pub progress: Progress,
     /// The number of collision and clearance queries.
@@ -26,11 +26,11 @@ pub struct Search<S> {
     /// Whether a path was found that could not be verified by then.
     pub found_unverified: bool,
     /// For an anytime planner: when it found its first path, the length of that path in the metric, and the path.
-    pub first: Option<(Duration, f64, Path<S>)>,
+    pub first: Option<(Duration, f64, Path<Configuration>)>,
     /// For a planner that builds a roadmap: the numbers of edges and of connected components.
     pub map: Option<[usize; 2]>,
     /// The roadmap itself, if [requested](Control::keep_roadmap).
-    pub roadmap: Option<Roadmap<S>>,
+    pub roadmap: Option<Roadmap<Configuration>>,
 }
 
 /// Runs the planner of a request, and relaxes the path if the request says so. The path is neither shortened nor written
@@ -38,21 +38,17 @@ pub struct Search<S> {
 ///
 /// # Errors
 /// When the request is not valid for this robot, or a roadmap cannot be read or written.
-pub fn search<K: RobotKind + ?Sized>(
-    kind: &K,
-    request: &Request,
-    control: &mut Control<'_>,
-) -> Result<Search<K::State>, Error> {
+pub fn search(kind: &dyn Robot, request: &Request, control: &mut Control<'_>) -> Result<Search, Error> {
     search_within(kind, request, control, 1.0)
 }
 
 /// [`search`] within the part `part` of the budget of time.
-pub(crate) fn search_within<K: RobotKind + ?Sized>(
-    kind: &K,
+pub(crate) fn search_within(
+    kind: &dyn Robot,
     request: &Request,
     control: &mut Control<'_>,
     part: f64,
-) -> Result<Search<K::State>, Error> {
+) -> Result<Search, Error> {
     let _span =
         tracing::info_span!("plan", scene = kind.name(), planner = %request.planner, seed = request.seed)
             .entered();

@@ -1,8 +1,8 @@
 //! Poses of a robot along a path, for pictures and animations.
 
 use crate::path::states;
-use crate::{Error, PathRows, RobotKind};
-use mp_cspace::{Clearance, MotionClearance, Space};
+use crate::{Error, PathRows, Robot};
+use mp_cspace::{Clearance, Configuration, MotionClearance, Space};
 use mp_geom::evenly;
 use nalgebra::{Isometry3, Point3};
 
@@ -25,18 +25,18 @@ const MOST_SHOWN: usize = 10_000;
 const PARTS: f64 = 5_000.0;
 
 /// The configurations of a path that are shown.
-struct Shown<S> {
-    states: Vec<S>,
+struct Shown {
+    states: Vec<Configuration>,
     /// How far (m) the robot moves at most from each to the next.
     lengths: Vec<f64>,
     /// The same, or how long (s) that takes where states say so.
     ways: Vec<f64>,
 }
 
-impl<S: Clone> Shown<S> {
+impl Shown {
     /// All of at most 10⁴. Of more of them, each at which no point of the robot has moved by 1/5000 of the whole way since the last one
     /// shown is left out: what is drawn is nowhere farther from the path than that.
-    fn of<K: RobotKind<State = S> + ?Sized>(kind: &K, path: &PathRows) -> Result<Self, Error> {
+    fn of(kind: &dyn Robot, path: &PathRows) -> Result<Self, Error> {
         let states = states(kind, path)?;
         let robot = kind.any_checker();
         let edges = states.windows(2).map(|w| {
@@ -63,7 +63,7 @@ impl<S: Clone> Shown<S> {
 }
 
 /// Poses along a path.
-pub(crate) fn sweep<K: RobotKind + ?Sized>(kind: &K, path: Option<&PathRows>) -> Result<Sweep, Error> {
+pub(crate) fn sweep(kind: &dyn Robot, path: Option<&PathRows>) -> Result<Sweep, Error> {
     let shown = path.map(|path| Shown::of(kind, path)).transpose()?;
     let (states, lengths) = shown.map(|shown| (shown.states, shown.lengths)).unwrap_or_default();
     let at = |edge: usize, t: f64| kind.any_space().interpolate(&states[edge], &states[edge + 1], t);
@@ -120,13 +120,13 @@ impl Track {
 const MAX_BETWEEN: f64 = 2000.0;
 
 /// Configurations along a path, neighbours so near that poses between them may be interpolated linearly.
-pub(crate) fn track<K: RobotKind + ?Sized>(kind: &K, path: &PathRows) -> Result<Track, Error> {
+pub(crate) fn track(kind: &dyn Robot, path: &PathRows) -> Result<Track, Error> {
     let Shown { states, lengths, ways } = Shown::of(kind, path)?;
     let mut checker = kind.any_measure();
     let total: f64 = lengths.iter().sum();
     let spacing = (0.1 * kind.picture_spacing()).max(total / MAX_BETWEEN);
     let mut track = Track::default();
-    let mut add = |q: &K::State, travel: f64| {
+    let mut add = |q: &Configuration, travel: f64| {
         track.rows.push(kind.row(q));
         track.poses.push(kind.poses(q));
         track.trace.push(kind.traced(q));

@@ -2,7 +2,8 @@
 
 use crate::Request;
 use mp_cspace::{
-    Cancel, Clock, Event, Interrupt, NodeId, Observer, Path, Progress, SparseClock, Stop, StopReason,
+    Cancel, Clock, Configuration, Event, Interrupt, NodeId, Observer, Path, Progress, SparseClock, Stop,
+    StopReason,
 };
 use std::time::Duration;
 
@@ -238,22 +239,22 @@ impl Stop for &WatchAdapter<'_, '_> {
 }
 
 /// Passes events to a watch, with states as rows of numbers.
-pub(crate) struct Events<'t, 'w, 'a, S> {
-    pub(crate) row: &'t dyn Fn(&S) -> Vec<f64>,
-    /// The rows of a path: maybe more than its states, as [`RobotKind::rows`](crate::RobotKind::rows).
-    pub(crate) rows: &'t dyn Fn(&Path<S>) -> Vec<Vec<f64>>,
+pub(crate) struct Events<'t, 'w, 'a> {
+    pub(crate) row: &'t dyn Fn(&Configuration) -> Vec<f64>,
+    /// The rows of a path: maybe more than its states, as [`Robot::rows`](crate::Robot::rows).
+    pub(crate) rows: &'t dyn Fn(&Path<Configuration>) -> Vec<Vec<f64>>,
     pub(crate) adapter: &'t WatchAdapter<'w, 'a>,
     pub(crate) wanted: bool,
 }
 
-impl<S> Observer<S> for Events<'_, '_, '_, S> {
-    fn on(&mut self, event: Event<'_, S>) {
+impl Observer<Configuration> for Events<'_, '_, '_> {
+    fn on(&mut self, event: Event<'_, Configuration>) {
         if !self.wanted {
             return;
         }
         let row = self.row;
         // Edges are stored forward in time; a tree from the goal has its parents later.
-        let between = |tree: usize, through: &[S]| {
+        let between = |tree: usize, through: &[Configuration]| {
             let mut rows: Vec<Vec<f64>> = through.iter().map(row).collect();
             if tree == 1 {
                 rows.reverse();

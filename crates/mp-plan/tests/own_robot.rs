@@ -1,16 +1,14 @@
 //! A kind of robot that is none of ours: a crane with a boom that turns and a trolley that slides, among posts.
 
 use mp_cspace::{
-    Clearance, JointRange, Joints, KnownFree, MotionCheck, MotionClearance, MotionValidity, Validity,
+    Clearance, Configuration, JointRange, Joints, KnownFree, MotionCheck, MotionClearance, MotionValidity,
+    Validity,
 };
 use mp_plan::{
-    Body, BodyShape, Column, Configured, Control, Error, Finish, Length, Measured, MetricName, PathRows,
-    Queries, Request, RobotKind, Scene, Touch, TypedMotion,
+    Appearance, Body, BodyShape, Column, Control, Description, Error, Finish, Length, Measured, MetricName,
+    Motion, PathRows, Queries, Request, Scene, Touch, TypedMotion,
 };
-use nalgebra::{DVector, Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
-
-/// Angle of the boom and place of the trolley on it; the load hangs below and must not come near a post.
-type Configuration = DVector<f64>;
+use nalgebra::{Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 
 /// Radius of the load, metres.
 const LOAD: f64 = 0.3;
@@ -94,10 +92,6 @@ impl MotionValidity<Configuration> for Steps<'_> {
     }
 }
 
-impl Configured for Crane {
-    type State = Configuration;
-}
-
 impl TypedMotion for Crane {
     type Space = Joints<Configuration>;
     type Checker = Load;
@@ -113,13 +107,7 @@ impl TypedMotion for Crane {
     }
 }
 
-impl RobotKind for Crane {
-    fn name(&self) -> &str {
-        "crane"
-    }
-    fn space_name(&self) -> String {
-        "crane".to_owned()
-    }
+impl Motion for Crane {
     fn start(&self) -> &Configuration {
         &self.ends[0]
     }
@@ -132,8 +120,20 @@ impl RobotKind for Crane {
     fn sampled(&self) -> Option<Length> {
         self.sampled
     }
-    fn measured(&self, _: MetricName) -> Result<Measured<'_, Configuration>, Error> {
+    fn measured(&self, _: MetricName) -> Result<Measured<'_>, Error> {
         Ok(Measured::new(&self.space))
+    }
+    fn nearest_free(&self, _: &Configuration) -> Option<Configuration> {
+        None
+    }
+}
+
+impl Description for Crane {
+    fn name(&self) -> &str {
+        "crane"
+    }
+    fn space_name(&self) -> String {
+        "crane".to_owned()
     }
     fn touching(&self, q: &Configuration) -> Vec<Touch> {
         let near = |(_, post): &(usize, &Vector2<f64>)| (*post - place(q)).norm() <= LOAD;
@@ -141,9 +141,6 @@ impl RobotKind for Crane {
         let touch =
             |(i, _)| Touch { part: None, other: format!("post {i}"), with_itself: false, depth: None };
         posts.map(touch).collect()
-    }
-    fn nearest_free(&self, _: &Configuration) -> Option<Configuration> {
-        None
     }
     fn columns(&self) -> Vec<Column> {
         vec![Column::new("turn", "rad"), Column::new("reach", "m")]
@@ -155,8 +152,11 @@ impl RobotKind for Crane {
         q.as_slice().to_vec()
     }
     fn state(&self, row: &[f64]) -> Configuration {
-        DVector::from_column_slice(row)
+        Configuration::from(row)
     }
+}
+
+impl Appearance for Crane {
     fn bodies(&self) -> Vec<Body> {
         let square = |half: f64| {
             let corner = |(x, y): (f64, f64)| Point2::new(x * half, y * half);
@@ -184,7 +184,7 @@ fn crane(goal: [f64; 2]) -> Crane {
         [JointRange::Interval { low: -3.0, high: 3.0 }, JointRange::Interval { low: 1.0, high: BOOM }];
     Crane {
         space: Joints::new(ranges).unwrap(),
-        ends: [DVector::from_vec(vec![-1.0, 4.0]), DVector::from_vec(goal.to_vec())],
+        ends: [Configuration::from(vec![-1.0, 4.0]), Configuration::from(goal.to_vec())],
         check: Load {
             posts: (0..8).map(|i| Vector2::new(1.6 + 0.4 * f64::from(i), 0.0)).collect(),
             blind: false,

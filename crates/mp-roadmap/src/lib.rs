@@ -63,4 +63,6 @@ pub use engine::{
 };
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{BuildError, Path, registry::Settings};
-pub use registry::{AnyRegions, AnyRoadmap, RoadmapState, build, build_with, planner, planners};
+#[cfg(not(test))]
+pub use registry::erased;
+pub use registry::{build, build_with, planner, planners};

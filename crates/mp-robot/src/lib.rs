@@ -5,8 +5,8 @@
 //! | [`FreeFlyer`] | `Isometry3<f64>`, in SE(3) | a mesh, freely in space |
 //! | [`PlanarFlyer`] | [`Se2State`](mp_cspace::Se2State), in SE(2) | a mesh, in the plane z = 0, turning about Z |
 //! | [`PointRobot`] | `Vector3<f64>`, in R³ | a point |
-//! | [`Arm`] | `SVector<f64, N>` or `DVector<f64>`, in [`Joints`](mp_cspace::Joints) | a tree of links |
-//! | [`Arm`] with a [floating](ArmModel::floating) root | `DVector<f64>`, in [`FloatingJoints`](mp_cspace::FloatingJoints) | the same, freely in space |
+//! | [`Arm`] | `SVector<f64, N>` or `Configuration`, in [`Joints`](mp_cspace::Joints) | a tree of links |
+//! | [`Arm`] with a [floating](ArmModel::floating) root | `Configuration`, in [`FloatingJoints`](mp_cspace::FloatingJoints) | the same, freely in space |
 //! | [`DiscRobot`] | `Vector2<f64>`, in R² | a disc among polygons |
 //! | [`PolygonRobot`] | [`Se2State`](mp_cspace::Se2State), in SE(2) | a polygon among polygons |
 //!
@@ -21,7 +21,7 @@
 //! [`ArmVerifier`] proves finished paths with other code.
 //!
 //! ```
-//! use mp_cspace::{Certified, MotionValidity, Se3, Validity};
+//! use mp_cspace::{Configuration, Certified, MotionValidity, Se3, Validity};
 //! use mp_geom::primitives::cuboid;
 //! use mp_robot::{FreeFlyer, Verifier};
 //! use nalgebra::Isometry3;

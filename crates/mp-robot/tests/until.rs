@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Obstacle, obstacle};
-use mp_cspace::{Cancel, Clock, Interrupt};
+use mp_cspace::{Cancel, Clock, Configuration, Interrupt};
 use mp_geom::{TriMesh, primitives};
 use mp_robot::{
     AmongMoving, Arm, ArmError, ArmModel, FreeFlyer, Joint, JointKind, Link, RobotError, Trajectory,
@@ -117,8 +117,8 @@ fn a_search_for_a_free_configuration_ends() {
     let around = obstacle("around", primitives::cuboid(9.0, 9.0, 9.0).unwrap(), [0.0; 6]);
     let (model, cancel) = (arm(&robot), Cancel::new());
     let none = Arm::new(&model, [around]).unwrap();
-    let space = none.space::<nalgebra::DVector<f64>>().unwrap();
-    let q = nalgebra::DVector::zeros(3);
+    let space = none.space::<Configuration>().unwrap();
+    let q = Configuration::zeros(3);
     let queries = |cancel: &Cancel| {
         let mut arm = none.clone().with_interrupt(Interrupt::new(cancel.clone()));
         let _ = arm.nearest_free(&q, &space, 10.0);

@@ -158,7 +158,8 @@ pub use mp_cspace::{
     BuildError, EdgeChecker, Endpoint, Goals, Problem, Step, Verify, Workers,
     registry::{Demand, Parameter, PlannerInfo, Settings, closest},
 };
+#[cfg(not(test))]
+pub use registry::erased;
 pub use registry::{
-    MetaPlanner, PlannerSpec, ProblemFactory, TreeState, build, build_from, build_with, meta_planners,
-    planner, planners,
+    MetaPlanner, PlannerSpec, build, build_from, build_with, meta_planners, planner, planners,
 };

@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     model.base = task.base();
     let obstacles = task.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
     let arm = Arm::new(&model, obstacles)?;
-    // Six coordinates, known when compiling; `DVector` takes any number.
+    // Six coordinates, known when compiling; `Configuration` takes any number.
     let space = arm.space::<Q>()?;
     let state = |values: &[f64]| {
         let fits = values.len() == 6;

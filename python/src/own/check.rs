@@ -1,7 +1,8 @@
 //! The check of configurations and motions by functions of Python.
 
-use super::{Numbers, State};
+use super::Numbers;
 use crate::callback::Callback;
+use mp_cspace::Configuration;
 use mp_cspace::{Clearance, MotionClearance, Validity};
 use mp_plan::Queries;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
@@ -33,12 +34,16 @@ pub(crate) struct Check {
 }
 
 /// Configurations as arguments, one array of shape (columns,) each.
-fn arguments<'py>(py: Python<'py>, numbers: &Numbers, states: &[&State]) -> PyResult<Bound<'py, PyTuple>> {
+fn arguments<'py>(
+    py: Python<'py>,
+    numbers: &Numbers,
+    states: &[&Configuration],
+) -> PyResult<Bound<'py, PyTuple>> {
     PyTuple::new(py, states.iter().map(|q| PyArray1::from_vec(py, numbers.row(q))))
 }
 
 /// Configurations as one argument, of shape (configurations, columns).
-fn batch<'py>(py: Python<'py>, numbers: &Numbers, states: &[State]) -> PyResult<Bound<'py, PyTuple>> {
+fn batch<'py>(py: Python<'py>, numbers: &Numbers, states: &[Configuration]) -> PyResult<Bound<'py, PyTuple>> {
     let rows: Vec<f64> = states.iter().flat_map(|q| numbers.row(q)).collect();
     let array: Bound<'py, PyArray2<f64>> =
         PyArray1::from_vec(py, rows).reshape([states.len(), numbers.low.len()])?;
@@ -50,7 +55,7 @@ pub(super) fn number(
     function: &Callback,
     numbers: &Numbers,
     name: &'static str,
-    states: &[&State],
+    states: &[&Configuration],
 ) -> Option<f64> {
     function.call(
         |py| arguments(py, numbers, states),
@@ -69,7 +74,7 @@ pub(super) fn number(
 }
 
 /// Whether `function`, called `name`, finds a configuration free; not when it fails.
-pub(super) fn is_free(function: &Callback, numbers: &Numbers, name: &'static str, q: &State) -> bool {
+pub(super) fn is_free(function: &Callback, numbers: &Numbers, name: &'static str, q: &Configuration) -> bool {
     let read = |result: &Bound<'_, PyAny>| {
         result.extract::<bool>().map_err(|_| wrong(name, "True or False", result))
     };
@@ -96,7 +101,7 @@ impl Check {
     }
 
     /// The index of the first of many configurations that is not free; the first of all when the function fails.
-    fn first_of_many(&self, function: &Callback, states: &[State]) -> Option<usize> {
+    fn first_of_many(&self, function: &Callback, states: &[Configuration]) -> Option<usize> {
         let read = |result: &Bound<'_, PyAny>| {
             let expected = "an array of truth values";
             let free: PyReadonlyArray1<'_, bool> =
@@ -115,8 +120,8 @@ impl Check {
     }
 }
 
-impl Validity<State> for Check {
-    fn is_valid(&mut self, q: &State) -> bool {
+impl Validity<Configuration> for Check {
+    fn is_valid(&mut self, q: &Configuration) -> bool {
         self.queries += 1;
         match &*self.functions {
             Functions::One(valid) => is_free(valid, &self.numbers, "valid", q),
@@ -126,7 +131,7 @@ impl Validity<State> for Check {
             }
         }
     }
-    fn first_invalid(&mut self, states: &[State]) -> Option<usize> {
+    fn first_invalid(&mut self, states: &[Configuration]) -> Option<usize> {
         match &*self.functions {
             Functions::Many(valid) => {
                 let found = self.first_of_many(valid, states);
@@ -141,16 +146,16 @@ impl Validity<State> for Check {
     }
 }
 
-impl Clearance<State> for Check {
-    fn clearance(&mut self, q: &State, _: f64) -> f64 {
+impl Clearance<Configuration> for Check {
+    fn clearance(&mut self, q: &Configuration, _: f64) -> f64 {
         let Functions::Clearance { clearance, .. } = &*self.functions else { return 0.0 };
         self.queries += 1;
         number(clearance, &self.numbers, "clearance", &[q]).unwrap_or(0.0)
     }
 }
 
-impl MotionClearance<State> for Check {
-    fn motion_bound(&self, from: &State, to: &State) -> f64 {
+impl MotionClearance<Configuration> for Check {
+    fn motion_bound(&self, from: &Configuration, to: &Configuration) -> f64 {
         let Functions::Clearance { displacement, .. } = &*self.functions else { return 0.0 };
         number(displacement, &self.numbers, "displacement", &[from, to]).unwrap_or(f64::INFINITY)
     }

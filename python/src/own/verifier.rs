@@ -1,8 +1,9 @@
 //! The verifier of paths of own robots. It shares no code with the checks of planners, only the functions, unless the robot has one of
 //! its own for it.
 
+use super::Own;
 use super::check::{Functions, is_free, number};
-use super::{Own, State};
+use mp_cspace::Configuration;
 use mp_cspace::{Interrupt, MotionCheck, MotionValidity, Space, Validity};
 use mp_plan::Length;
 
@@ -26,7 +27,7 @@ impl<'k> Verifier<'k> {
     }
 
     /// By the clearance: as long as no point travels as far as that, there is no contact.
-    fn by_clearance(&mut self, from: &State, to: &State) -> MotionCheck {
+    fn by_clearance(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
         let own = self.own;
         let Functions::Clearance { clearance, displacement } = own.check.functions() else {
             return MotionCheck::Unproven { at: 0.0 };
@@ -54,7 +55,7 @@ impl<'k> Verifier<'k> {
     }
 
     /// By configurations that are much nearer to each other than while planning.
-    fn by_steps(&mut self, from: &State, to: &State) -> MotionCheck {
+    fn by_steps(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
         let own = self.own;
         let step = match own.resolution {
             Length::Absolute(length) => length,
@@ -71,7 +72,7 @@ impl<'k> Verifier<'k> {
             if self.interrupt.ask() {
                 return MotionCheck::Unproven { at: fraction(first) };
             }
-            let chunk: Vec<State> = (first..=steps.min(first + CHUNK - 1))
+            let chunk: Vec<Configuration> = (first..=steps.min(first + CHUNK - 1))
                 .map(|i| own.space.interpolate(from, to, fraction(i)))
                 .collect();
             let hit = match &own.verify {
@@ -86,8 +87,8 @@ impl<'k> Verifier<'k> {
     }
 }
 
-impl MotionValidity<State> for Verifier<'_> {
-    fn check_motion(&mut self, from: &State, to: &State) -> MotionCheck {
+impl MotionValidity<Configuration> for Verifier<'_> {
+    fn check_motion(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
         if !self.own.check.knows_clearance() {
             return self.by_steps(from, to);
         }

@@ -5,9 +5,8 @@ use crate::clock::nanoseconds;
 use crate::error::{IntoError, Result};
 use crate::experiment::Table;
 use crate::scenes::Rigid;
-use mp_cspace::{Certified, Discrete, KnownFree, MotionValidity, Resolution, Rng, Space};
-use mp_plan::{RobotKind, TypedMotion};
-use nalgebra::Isometry3;
+use mp_cspace::{Certified, Configuration, Discrete, KnownFree, MotionValidity, Resolution, Rng, Space};
+use mp_plan::{Motion, TypedMotion};
 
 /// The pairs in whose scenes edges are checked.
 pub(crate) const CHECKED: [&str; 2] = ["cubicles", "piano"];
@@ -35,7 +34,7 @@ struct Checked {
     free: Vec<bool>,
 }
 
-type Edge = (Isometry3<f64>, Isometry3<f64>);
+type Edge = (Configuration, Configuration);
 
 impl Costs {
     /// Checks `count` edges that a greedy RRT makes in the scene of a pair with steps of each length, `passes` times in
@@ -45,12 +44,18 @@ impl Costs {
         let Rigid::Space(setting) = Rigid::load(scene)? else {
             return Ok(Vec::new());
         };
-        let (space, robot) = (setting.space(), setting.robot());
+        let (space, robot) = (setting.space(), setting.checker());
         let resolution = Resolution::Fraction(RESOLUTION);
         let mut discrete = Discrete::new(space, robot.clone(), resolution).into_error()?;
         let mut certified = Certified::new(space, robot.clone(), setting.tolerance()).into_error()?;
         let measure = |step| {
-            let edges = edges(space, &mut discrete, [*setting.start(), setting.goals()[0]], step, count);
+            let edges = edges(
+                space,
+                &mut discrete,
+                [setting.start().clone(), setting.goals()[0].clone()],
+                step,
+                count,
+            );
             let mut costs = Self { scene, step, discrete: Checked::none(), certified: Checked::none() };
             for _ in 0..passes {
                 costs.discrete.pass(&edges, &mut discrete);
@@ -73,7 +78,7 @@ impl Checked {
         Self { each: f64::INFINITY, free: Vec::new() }
     }
 
-    fn pass(&mut self, edges: &[Edge], check: &mut impl MotionValidity<Isometry3<f64>>) {
+    fn pass(&mut self, edges: &[Edge], check: &mut impl MotionValidity<Configuration>) {
         let begin = nanoseconds();
         let free = edges.iter().map(|(a, b)| check.check_extension(a, b, KnownFree::From).is_free());
         self.free = free.collect();
@@ -82,10 +87,10 @@ impl Checked {
 }
 
 /// Edges of a tree with two roots that grows toward samples, step by step until a step is blocked; blocked ones included.
-fn edges<C: Space<State = Isometry3<f64>>>(
+fn edges<C: Space<State = Configuration>>(
     space: &C,
-    check: &mut impl MotionValidity<Isometry3<f64>>,
-    roots: [Isometry3<f64>; 2],
+    check: &mut impl MotionValidity<Configuration>,
+    roots: [Configuration; 2],
     step: f64,
     count: usize,
 ) -> Vec<Edge> {
@@ -93,20 +98,21 @@ fn edges<C: Space<State = Isometry3<f64>>>(
     let step = step * space.extent();
     while edges.len() < count {
         let to = space.sample_uniform(&mut rng);
-        let away = |q: &Isometry3<f64>| space.distance(q, &to);
+        let away = |q: &Configuration| space.distance(q, &to);
         let nearest = nodes.iter().min_by(|x, y| away(x).total_cmp(&away(y)));
-        let mut at = nearest.copied().unwrap_or(to);
+        let mut at = nearest.unwrap_or(&to).clone();
         for _ in 0..STEPS {
             let distance = space.distance(&at, &to);
             if distance <= 0.0 || edges.len() == count {
                 break;
             }
-            let end = if distance <= step { to } else { space.interpolate(&at, &to, step / distance) };
-            edges.push((at, end));
+            let end =
+                if distance <= step { to.clone() } else { space.interpolate(&at, &to, step / distance) };
+            edges.push((at.clone(), end.clone()));
             if !check.check_extension(&at, &end, KnownFree::From).is_free() {
                 break;
             }
-            nodes.push(end);
+            nodes.push(end.clone());
             at = end;
         }
     }

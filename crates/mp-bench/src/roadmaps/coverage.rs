@@ -6,7 +6,8 @@ use crate::error::{IntoError, Result};
 use crate::experiment::{Group, Lab, Median, Table, short};
 use crate::scenes::{Rigid, either};
 use mp_cspace::{
-    DefaultNn, Direction, Extension, Iterations, LocalPlanner, NodeId, Nodes, Reach, Rng, Space, Validity,
+    Configuration, Direction, Extension, Iterations, KdTree, LocalPlanner, NodeId, Nodes, Reach, Rng, Space,
+    Validity,
 };
 use mp_plan::{RigidScene, RigidSpace, TypedMotion};
 use mp_roadmap::algo::{prm, visibility_prm};
@@ -67,8 +68,8 @@ fn fresh<S: Clone>(samples: &[S]) -> Vec<Sample<S>> {
 /// The fractions that are seen; nodes are tried in order of distance.
 fn seen<M: RigidSpace>(
     scene: &RigidScene<M>,
-    map: &mut Roadmap<M::State>,
-    samples: &mut [Sample<M::State>],
+    map: &mut Roadmap<Configuration>,
+    samples: &mut [Sample<Configuration>],
 ) -> Result<Seen> {
     let (space, mut local) = (scene.space(), local(scene)?);
     let parts: Vec<NodeId> = (0..map.len() as NodeId).map(|id| map.component(id)).collect();
@@ -133,7 +134,7 @@ struct Measured {
 
 fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
     let space = scene.space();
-    let mut robot = scene.robot().clone();
+    let mut robot = scene.checker().clone();
     let verifier = scene.verifier()?;
     let mut rng = Rng::stream(seed, 7);
     let mut samples = Vec::new();
@@ -143,7 +144,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
             samples.push(q);
         }
     }
-    let index = <M::Space as DefaultNn>::Nn::default();
+    let index = <KdTree>::default();
     let parts = visibility_prm::parts(space, FAILURES).into_error()?;
     let mut few = Builder::new(checker(scene, verifier.clone())?, parts.generator, parts.connector, index);
     let began = nanoseconds();
@@ -157,7 +158,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
     let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
     let learning = Learning { expand: 0.0, ..Learning::default() };
     let parts = prm::parts(space, reach, learning).into_error()?;
-    let index = <M::Space as DefaultNn>::Nn::default();
+    let index = <KdTree>::default();
     let mut many = Builder::new(checker(scene, verifier)?, parts.generator, parts.connector, index);
     let (mut size, mut spent, mut rng) = (4, 0.0, Rng::seed(seed));
     let mut needed: [Option<Needed>; 2] = [None; 2];

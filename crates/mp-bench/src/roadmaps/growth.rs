@@ -6,7 +6,7 @@ use crate::error::{IntoError, Result};
 use crate::experiment::{Table, short};
 use crate::output::note;
 use crate::scenes::{Rigid, either};
-use mp_cspace::{DefaultNn, Nodes, Rng};
+use mp_cspace::{KdTree, Nodes, Rng};
 use mp_plan::{RigidScene, RigidSpace, TypedMotion};
 use mp_roadmap::algo::prm;
 use mp_roadmap::{Builder, Learning, Reachable};
@@ -22,7 +22,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
     let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
     let learning = Learning { expand: 0.0, ..Learning::default() };
     let parts = prm::parts(scene.space(), reach, learning).into_error()?;
-    let index = <M::Space as DefaultNn>::Nn::default();
+    let index = <KdTree>::default();
     let checker = checker(scene, scene.verifier()?)?;
     let mut builder = Builder::new(checker, parts.generator, parts.connector, index);
     let mut table = Table::new([

@@ -1,14 +1,14 @@
 //! Pictures of roadmaps, as SVG: the coverage of whole scenes; the roadmap with which each algorithm solved a corridor; and
 //! the configurations around an obstacle that obstacle-geometry PRM and OBPRM propose.
 
-use super::queries::{Local, checker};
+use super::queries::{Local, SpaceOf, checker};
 use super::scenes::CORRIDORS;
 use super::svg_drawing::{Projection, SvgDrawing};
 use crate::error::{IntoError, Result};
 use crate::experiment::Lab;
 use crate::output::note;
 use crate::scenes::{Rigid, bare, either};
-use mp_cspace::{DefaultNn, Iterations, Nodes, Outcome, Rng, Stop, obstacles::ObstacleGeometry};
+use mp_cspace::{Configuration, Iterations, KdTree, Nodes, Outcome, Rng, Stop, obstacles::ObstacleGeometry};
 use mp_geom::Aabb;
 use mp_geom::primitives::cuboid;
 use mp_io::{Body, PlacedBody, RigidProblem, SpaceKind};
@@ -90,12 +90,12 @@ fn built<'c, M: RigidSpace, G, K>(
     generator: G,
     connector: K,
     mut stop: impl Stop,
-) -> Result<Roadmap<M::State>>
+) -> Result<Roadmap<Configuration>>
 where
-    G: NodeGenerator<M::Space, Local<'c, M>>,
-    K: Connector<M::Space, Local<'c, M>>,
+    G: NodeGenerator<SpaceOf<M>, Local<'c, M>>,
+    K: Connector<SpaceOf<M>, Local<'c, M>>,
 {
-    let index = <M::Space as DefaultNn>::Nn::default();
+    let index = <KdTree>::default();
     let mut builder = Builder::new(checker(scene, scene.verifier()?)?, generator, connector, index);
     builder.build(&mut Rng::seed(1), &mut stop, &mut ());
     Ok(builder.into_map())
@@ -105,12 +105,16 @@ fn obstacles(drawing: &mut SvgDrawing, problem: &RigidProblem) {
     drawing.silhouette(problem.obstacles.iter().map(|o| (&o.mesh, o.pose)), OBSTACLE, 0.6);
 }
 
-fn place<M: RigidSpace>(q: &M::State) -> Point3<f64> {
-    Point3::from(M::pose(q).translation.vector)
+fn pose<M: RigidSpace>(q: &Configuration) -> Isometry3<f64> {
+    q.to().map_or_else(Isometry3::identity, |q| M::pose(&q))
+}
+
+fn place<M: RigidSpace>(q: &Configuration) -> Point3<f64> {
+    Point3::from(pose::<M>(q).translation.vector)
 }
 
 /// Draws edges, the unchecked ones lighter, and nodes of this radius, pixels.
-fn roadmap<M: RigidSpace>(drawing: &mut SvgDrawing, map: &Roadmap<M::State>, radius: f64) {
+fn roadmap<M: RigidSpace>(drawing: &mut SvgDrawing, map: &Roadmap<Configuration>, radius: f64) {
     for (state, colour) in [(LinkState::Unchecked, "#d5dde8"), (LinkState::Free, "#5b7fa8")] {
         let edges = map.all_edges().filter(|(_, _, link)| link.state == state);
         let ends = edges.map(|(_, ends, _)| ends.map(|end| place::<M>(map.state(end))));
@@ -147,8 +151,8 @@ fn passed<M: RigidSpace>(scene: &RigidScene<M>, planner: &str, lab: &Lab) -> Res
     roadmap::<M>(&mut drawing, &map, 2.0);
     let robot = &scene.problem().robot.mesh;
     let steps = path.resampled(scene.space(), 0.02 * path.length(scene.space())).into_error()?;
-    drawing.silhouette(steps.states.iter().map(|q| (robot, M::pose(q))), ORANGE, 0.25);
-    drawing.silhouette(path.states.iter().map(|q| (robot, M::pose(q))), ORANGE, 0.8);
+    drawing.silhouette(steps.states.iter().map(|q| (robot, pose::<M>(q))), ORANGE, 0.25);
+    drawing.silhouette(path.states.iter().map(|q| (robot, pose::<M>(q))), ORANGE, 0.8);
     save(drawing, lab, &format!("corridor-{planner}"))
 }
 
@@ -175,10 +179,10 @@ fn pillar() -> Result<RigidProblem> {
 
 /// Draws the configurations that obstacle-geometry PRM and OBPRM propose around one obstacle.
 fn around<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
-    let robot = scene.robot();
+    let robot = scene.checker();
     let Some(block) = robot.obstacles().first().copied() else { return Err(Error::new("no obstacle")) };
-    let along = |q: &M::State| {
-        let axis: Vector3<f64> = M::pose(q).rotation * robot.robot().axis;
+    let along = |q: &Configuration| {
+        let axis: Vector3<f64> = pose::<M>(q).rotation * robot.robot().axis;
         axis.dot(&block.axis).abs() > 0.9
     };
     let geometry =
@@ -214,11 +218,11 @@ fn around<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     shown(scene, [(&contact, RED), (&free, GREEN), (&vec![], BLUE)], [caption, more], (lab, "obprm-contact"))
 }
 
-fn candidates<'c, M: RigidSpace, G: NodeGenerator<M::Space, Local<'c, M>>>(
+fn candidates<'c, M: RigidSpace, G: NodeGenerator<SpaceOf<M>, Local<'c, M>>>(
     scene: &'c RigidScene<M>,
     mut generator: G,
     attempts: std::ops::Range<u64>,
-) -> Result<Vec<Candidate<M::State, ()>>> {
+) -> Result<Vec<Candidate<Configuration, ()>>> {
     let mut checker = checker(scene, scene.verifier()?)?;
     let (map, mut all, mut out) = (Roadmap::new(), Vec::new(), Vec::new());
     for attempt in attempts {
@@ -231,7 +235,7 @@ fn candidates<'c, M: RigidSpace, G: NodeGenerator<M::Space, Local<'c, M>>>(
 /// Draws robots in their colours, the obstacles, and the spheres around the obstacles.
 fn shown<M: RigidSpace>(
     scene: &RigidScene<M>,
-    robots: [(&Vec<M::State>, &str); 3],
+    robots: [(&Vec<Configuration>, &str); 3],
     captions: [String; 2],
     (lab, name): (&Lab, &str),
 ) -> Result<()> {
@@ -243,7 +247,7 @@ fn shown<M: RigidSpace>(
     let bodies = problem.obstacles.iter().map(|o| (&o.mesh, o.pose, OBSTACLE));
     let placed = robots
         .into_iter()
-        .flat_map(|(states, colour)| states.iter().map(move |q| (&problem.robot.mesh, M::pose(q), colour)));
+        .flat_map(|(states, colour)| states.iter().map(move |q| (&problem.robot.mesh, pose::<M>(q), colour)));
     drawing.solids(bodies.chain(placed));
     save(drawing, lab, name)
 }

@@ -5,11 +5,12 @@ use crate::error::{IntoError, Result};
 use crate::experiment::{Median, Table, mean, short};
 use crate::output::note;
 use crate::scenes::{Rigid, either};
-use mp_cspace::{Certified, Deadline, Nodes, Outcome, Planner, Problem, Rng, Space, Straight, Validity};
-use mp_plan::{RigidScene, RigidSpace, RobotKind, TypedMotion};
+use mp_cspace::{
+    Certified, Deadline, KdTree, Nodes, Outcome, Planner, Problem, Rng, Space, Straight, Validity,
+};
+use mp_plan::{Motion, RigidScene, RigidSpace, TypedMotion};
 use mp_roadmap::algo::prm;
 use mp_roadmap::{Builder, EdgeChecker, Learning, PATIENCE, Reachable, RoadmapQueries};
-use mp_robot::{RigidBody, Verifier};
 use mp_tree::{RrtConnect, Tuning};
 use std::time::Duration;
 
@@ -21,20 +22,22 @@ const NEIGHBOURS: usize = 10;
 /// Seconds of processor time that RRT-Connect may take for one query.
 const CAP: f64 = 2.0;
 
+/// The space of a scene.
+pub(super) type SpaceOf<M> = <RigidScene<M> as TypedMotion>::Space;
 pub(super) type Local<'c, M> =
-    Straight<'c, <M as RigidSpace>::Space, Certified<'c, <M as RigidSpace>::Space, RigidBody<M>>>;
+    Straight<'c, SpaceOf<M>, Certified<'c, SpaceOf<M>, <RigidScene<M> as TypedMotion>::Checker>>;
 
 /// The local planner: straight motions with certified checks.
 pub(super) fn local<M: RigidSpace>(scene: &RigidScene<M>) -> Result<Local<'_, M>> {
-    let check = Certified::new(scene.space(), scene.robot().clone(), scene.tolerance()).into_error()?;
+    let check = Certified::new(scene.space(), scene.checker().clone(), scene.tolerance()).into_error()?;
     Ok(Straight::new(scene.space(), check))
 }
 
 /// The edge checker of roadmaps in a scene.
 pub(super) fn checker<'c, M: RigidSpace>(
     scene: &'c RigidScene<M>,
-    verifier: Verifier<'c, M::Space, M>,
-) -> Result<EdgeChecker<'c, M::Space, Local<'c, M>>> {
+    verifier: <RigidScene<M> as TypedMotion>::Verifier<'c>,
+) -> Result<EdgeChecker<'c, SpaceOf<M>, Local<'c, M>>> {
     Ok(EdgeChecker::new(scene.space(), local(scene)?, verifier, PATIENCE))
 }
 
@@ -46,7 +49,7 @@ pub(super) fn measure(quick: bool) -> Result<Table> {
 fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
     let (sizes, count) = if quick { (&SIZES[..1], 100) } else { (&SIZES[..], QUERIES) };
     let space = scene.space();
-    let mut robot = scene.robot().clone();
+    let mut robot = scene.checker().clone();
     let mut rng = Rng::stream(1, 99);
     let mut free = || loop {
         let q = space.sample_uniform(&mut rng);
@@ -109,7 +112,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
     for &size in sizes {
         let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
         let parts = prm::parts(space, reach, Learning::default()).into_error()?;
-        let index = <M::Space as mp_cspace::DefaultNn>::Nn::default();
+        let index = <KdTree>::default();
         let mut builder =
             Builder::new(checker(scene, verifier.clone())?, parts.generator, parts.connector, index);
         let began = nanoseconds();
@@ -128,7 +131,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
         };
         let map = builder.map().clone();
         ask("roadmap", build, &mut builder.into_answers(NEIGHBOURS));
-        let index = <M::Space as mp_cspace::DefaultNn>::Nn::default();
+        let index = <KdTree>::default();
         let mut answers =
             RoadmapQueries::new(checker(scene, verifier.clone())?, map, index, NEIGHBOURS).into_error()?;
         let began = nanoseconds();

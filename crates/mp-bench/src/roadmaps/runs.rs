@@ -6,8 +6,8 @@ use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Log};
 use crate::output::note;
 use crate::scenes::{Rigid, bare, either};
-use mp_cspace::{Cancel, DefaultNn, Outcome, StopReason};
-use mp_plan::{Control, Request, RigidScene, RigidSpace, RobotKind, Stage, TypedMotion, Watch, search};
+use mp_cspace::{Cancel, KdTree, Outcome, StopReason};
+use mp_plan::{Control, Motion, Request, RigidScene, RigidSpace, Stage, TypedMotion, Watch, search};
 use mp_roadmap::RoadmapQueries;
 use serde::{Deserialize, Serialize};
 
@@ -152,7 +152,7 @@ fn one<M: RigidSpace>(scene: &RigidScene<M>, request: &Request, cancel: &Cancel)
         motions: done.progress.motions,
     };
     if let (true, Some(map)) = (run.solved, done.roadmap) {
-        let index = <<M as RigidSpace>::Space as DefaultNn>::Nn::default();
+        let index = <KdTree>::default();
         let checker = checker(scene, scene.verifier()?)?;
         let mut answers = RoadmapQueries::new(checker, map, index, NEIGHBOURS).into_error()?;
         let began = nanoseconds();

@@ -2,11 +2,10 @@
 
 use super::AnySpace;
 use crate::{
-    DefaultNn, Hit, Joints, KdTree, MetricTree, NearestNeighbors, NodeId, Rn, Rng, Se2, Se2State, Se3, Space,
-    TrueMetric,
+    AsVectors, Configuration, DefaultNn, Hit, Joints, KdTree, MetricTree, NearestNeighbors, NodeId, Rn, Rng,
+    Se2, Se3, Space, TrueMetric,
     nn::{Embed, Layout},
 };
-use nalgebra::{DVector, Isometry3};
 use std::fmt::{self, Debug};
 use std::sync::Arc;
 
@@ -71,17 +70,29 @@ impl<S> AnyIndex<S> {
     }
 }
 
-impl<S: CoordinateState> AnyIndex<S> {
-    /// A [`KdTree`] for a copy of `space`, empty and erased. All spaces of these states share its code: a little slower
-    /// than [`of`](Self::of), but compiled once.
-    pub fn by_coordinates<C: Embed<State = S> + Clone + Send + 'static>(space: &C) -> Self {
-        Self(S::index(AnySpace::new(space), AnyEmbed(Arc::new(space.clone()))).0)
+/// For configurations the indexes of erased spaces are compiled in this crate.
+impl AnyIndex<Configuration> {
+    /// A [`KdTree`] for a copy of `space`, empty and erased. All spaces share its code: a little slower than [`of`](Self::of), but
+    /// compiled once.
+    pub fn by_coordinates<C: Embed<State = Configuration> + Clone + Send + 'static>(space: &C) -> Self {
+        Self::by_layout(AnySpace::new(space), AnyEmbed(Arc::new(space.clone())))
     }
 
-    /// A [`MetricTree`] for a copy of `space`, empty and erased. All spaces of these states share its code: for metrics
-    /// whose distances cost more than a call through a pointer.
-    pub fn by_metric<C: Space<State = S> + TrueMetric + Clone + Send + 'static>(space: &C) -> Self {
-        S::metric_index(AnySpace::new(space))
+    fn by_layout(space: AnySpace<'static, Configuration>, layout: AnyEmbed<Configuration>) -> Self {
+        let space = Arc::new(Embedded { space, layout });
+        Self(Box::new(IndexWithSpace { space, index: <KdTree>::default() }))
+    }
+
+    /// A [`MetricTree`] for a copy of `space`, empty and erased. All spaces share its code: for metrics whose distances cost more than
+    /// a call through a pointer.
+    pub fn by_metric<C: Space<State = Configuration> + TrueMetric + Clone + Send + 'static>(
+        space: &C,
+    ) -> Self {
+        Self::by_distance(&AnySpace::new(space))
+    }
+
+    fn by_distance(space: &AnySpace<'static, Configuration>) -> Self {
+        Self::new(space, MetricTree::default())
     }
 }
 
@@ -101,33 +112,7 @@ impl<S, C: Embed<State = S> + Send> ErasedEmbed<S> for C {
 }
 
 /// Coordinates behind a pointer.
-#[allow(missing_debug_implementations)] // a pointer has nothing to print
-pub struct AnyEmbed<S>(Arc<dyn ErasedEmbed<S>>);
-
-/// States of robots: for these, the indexes of erased spaces are compiled in this crate.
-pub trait CoordinateState: Clone + Debug + PartialEq + Send + Sync + 'static {
-    /// An empty index of a space with these coordinates.
-    #[doc(hidden)]
-    fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<Self>;
-    /// An empty index of a space that uses its distances only.
-    #[doc(hidden)]
-    fn metric_index(space: AnySpace<'static, Self>) -> AnyIndex<Self>;
-}
-
-macro_rules! coordinate_states {
-    ($($state:ty),*) => {
-        $(impl CoordinateState for $state {
-            fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<Self> {
-                let space = Arc::new(Embedded { space, layout });
-                AnyIndex(Box::new(IndexWithSpace { space, index: <KdTree>::default() }))
-            }
-            fn metric_index(space: AnySpace<'static, Self>) -> AnyIndex<Self> {
-                AnyIndex::new(&space, MetricTree::default())
-            }
-        })*
-    };
-}
-coordinate_states!(Isometry3<f64>, Se2State, DVector<f64>);
+struct AnyEmbed<S>(Arc<dyn ErasedEmbed<S>>);
 
 /// An erased space with coordinates.
 struct Embedded<S> {
@@ -179,15 +164,20 @@ pub trait CompiledIndex: Space + Clone + Send + 'static {
 }
 
 macro_rules! compiled {
-    ($($space:ty),*) => {
+    ($($space:ty: $index:ty),* $(,)?) => {
         $(impl CompiledIndex for $space {
             fn compiled_index(&self) -> AnyIndex<Self::State> {
-                AnyIndex::of(self)
+                AnyIndex::new(self, <$index>::default())
             }
         })*
     };
 }
-compiled!(Se3, Se2, Rn<2>, Joints<DVector<f64>>);
+compiled!(
+    AsVectors<Se3>: KdTree<7>,
+    AsVectors<Se2>: KdTree<3>,
+    AsVectors<Rn<2>>: KdTree<2>,
+    Joints<Configuration>: KdTree,
+);
 
 impl<S> Clone for AnyIndex<S> {
     fn clone(&self) -> Self {

@@ -3,10 +3,10 @@
 use super::{DefaultNn, Embed, KdTree};
 use crate::space::twice;
 use crate::{
-    AsVectors, Coordinates, Factored, FloatingJoints, Joints, Product, Rn, Se2, Se2State, Se3, So3, Space,
-    StateVector, angle::wrap_angle, nn::Layout,
+    AsVectors, Configuration, Coordinates, Factored, FloatingJoints, Joints, Product, Rn, Se2, Se2State, Se3,
+    So3, Space, StateVector, angle::wrap_angle, nn::Layout,
 };
-use nalgebra::{DVector, Isometry3, SVector, UnitQuaternion};
+use nalgebra::{Isometry3, SVector, UnitQuaternion};
 
 impl<const N: usize> Embed for Rn<N> {
     fn layout(&self) -> Layout {
@@ -37,7 +37,7 @@ impl<Q: Coordinates> Embed for Joints<Q> {
 impl<const N: usize> DefaultNn for Joints<SVector<f64, N>> {
     type Nn = KdTree<N>;
 }
-impl DefaultNn for Joints<DVector<f64>> {
+impl DefaultNn for Joints<Configuration> {
     type Nn = KdTree;
 }
 
@@ -46,7 +46,7 @@ impl Embed for FloatingJoints {
         self.base().layout().beside(self.joints().layout())
     }
     #[inline]
-    fn embed(&self, state: &DVector<f64>, out: &mut [f64]) -> usize {
+    fn embed(&self, state: &Configuration, out: &mut [f64]) -> usize {
         let Some((base, joints)) = Self::split(state.as_slice()) else { return 0 };
         let n = self.base().embed(&base, out);
         let m = self.joints().dim();
@@ -127,8 +127,8 @@ impl<C: Embed<State: StateVector>> Embed for AsVectors<C> {
     fn layout(&self) -> Layout {
         self.0.layout()
     }
-    fn embed(&self, state: &DVector<f64>, out: &mut [f64]) -> usize {
-        match Self::state(state) {
+    fn embed(&self, state: &Configuration, out: &mut [f64]) -> usize {
+        match state.to() {
             Some(q) => self.0.embed(&q, out),
             None => self.0.layout().dim(),
         }

@@ -1,8 +1,8 @@
 //! Joints on a base that moves freely: the space of a free-flying articulated body.
 
 use super::{Factored, Joints, Se3, Space, TrueMetric};
-use crate::{Rng, SpaceError, layout::Layout};
-use nalgebra::{DVector, Isometry3, Quaternion, Translation3, UnitQuaternion};
+use crate::{Configuration, Rng, SpaceError, layout::Layout};
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 /// SE(3) × joints: the pose of a base that moves freely, and the joints of a body on it.
 ///
@@ -27,7 +27,7 @@ use nalgebra::{DVector, Isometry3, Quaternion, Translation3, UnitQuaternion};
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloatingJoints {
     base: Se3,
-    joints: Joints<DVector<f64>>,
+    joints: Joints<Configuration>,
     extent: f64,
 }
 
@@ -46,7 +46,7 @@ impl FloatingJoints {
     ///
     /// # Errors
     /// When the extent of the product is not finite.
-    pub fn new(base: Se3, joints: Joints<DVector<f64>>) -> Result<Self, SpaceError> {
+    pub fn new(base: Se3, joints: Joints<Configuration>) -> Result<Self, SpaceError> {
         let extent = mp_math::hypot(base.extent(), joints.extent());
         let extent = crate::error::weight("the extent of the space", extent)?;
         Ok(Self { base, joints, extent })
@@ -60,14 +60,14 @@ impl FloatingJoints {
 
     /// The space of the joints.
     #[must_use]
-    pub fn joints(&self) -> &Joints<DVector<f64>> {
+    pub fn joints(&self) -> &Joints<Configuration> {
         &self.joints
     }
 
     /// The state with this pose of the base and these values of the joints. Joints without limits are wrapped to (-π, π].
     #[must_use]
-    pub fn state(&self, base: &Isometry3<f64>, joints: &[f64]) -> DVector<f64> {
-        let joints = self.joints.wrapped(&DVector::from_column_slice(joints));
+    pub fn state(&self, base: &Isometry3<f64>, joints: &[f64]) -> Configuration {
+        let joints = self.joints.wrapped(&Configuration::from(joints));
         joined(base, joints.as_slice())
     }
 
@@ -83,8 +83,8 @@ impl FloatingJoints {
 }
 
 /// A list of the numbers of a pose and of joints.
-fn joined(base: &Isometry3<f64>, joints: &[f64]) -> DVector<f64> {
-    let mut out = DVector::zeros(POSE + joints.len());
+fn joined(base: &Isometry3<f64>, joints: &[f64]) -> Configuration {
+    let mut out = Configuration::zeros(POSE + joints.len());
     put(base, out.as_mut_slice());
     out.as_mut_slice()[POSE..].copy_from_slice(joints);
     out
@@ -102,9 +102,9 @@ fn put(base: &Isometry3<f64>, out: &mut [f64]) {
 impl TrueMetric for FloatingJoints {}
 
 impl Space for FloatingJoints {
-    type State = DVector<f64>;
+    type State = Configuration;
     #[inline]
-    fn distance(&self, from: &DVector<f64>, to: &DVector<f64>) -> f64 {
+    fn distance(&self, from: &Configuration, to: &Configuration) -> f64 {
         let (Some((a, p)), Some((b, q))) = (Self::split(from.as_slice()), Self::split(to.as_slice())) else {
             return self.extent;
         };
@@ -160,7 +160,7 @@ impl Space for FloatingJoints {
     fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
         let (base, joints) = Self::split(from.as_slice())?;
         let (of_base, of_joints) = velocity.split_at_checked(FREE)?;
-        let joints = self.joints.moved(&DVector::from_column_slice(joints), of_joints, time)?;
+        let joints = self.joints.moved(&Configuration::from(joints), of_joints, time)?;
         Some(joined(&self.base.moved(&base, of_base, time)?, joints.as_slice()))
     }
     fn velocity_into(&self, from: &Self::State, to: &Self::State, out: &mut [f64]) -> bool {

@@ -3,12 +3,12 @@
 use super::{Factored, Space, TrueMetric, lerp, scale};
 use crate::angle::{angle_at, angle_difference, angle_lerp, wrap_angle};
 use crate::{Rng, SpaceError, layout::Layout};
-use nalgebra::{DVector, SVector};
+use nalgebra::SVector;
 use rand::RngExt;
 use std::f64::consts::PI;
 use std::fmt::Debug;
 
-/// A list of coordinates: `SVector<f64, N>` where their number is known when compiling, else `DVector<f64>`.
+/// A list of coordinates: `SVector<f64, N>` where their number is known when compiling, else [`Configuration`](crate::Configuration).
 pub trait Coordinates: Clone + Debug + PartialEq + Send + Sync {
     /// The number of coordinates; `None` when it is known only at run time.
     const COUNT: Option<usize>;
@@ -25,22 +25,6 @@ impl<const N: usize> Coordinates for SVector<f64, N> {
     #[inline]
     fn from_fn(_: usize, mut f: impl FnMut(usize) -> f64) -> Self {
         SVector::from_fn(|i, _| f(i))
-    }
-    #[inline]
-    fn as_slice(&self) -> &[f64] {
-        self.as_slice()
-    }
-    #[inline]
-    fn as_mut_slice(&mut self) -> &mut [f64] {
-        self.as_mut_slice()
-    }
-}
-
-impl Coordinates for DVector<f64> {
-    const COUNT: Option<usize> = None;
-    #[inline]
-    fn from_fn(count: usize, mut f: impl FnMut(usize) -> f64) -> Self {
-        DVector::from_fn(count, |i, _| f(i))
     }
     #[inline]
     fn as_slice(&self) -> &[f64] {
@@ -93,7 +77,7 @@ impl JointRange {
 /// circles that of the shorter arc. Radians and metres count alike; a
 /// [`ScaledEuclidean`](crate::ScaledEuclidean) weighs them.
 ///
-/// With `DVector<f64>` as states the number of joints is known at run time. Where all joints are intervals and their
+/// With [`Configuration`](crate::Configuration) as states the number of joints is known at run time. Where all joints are intervals and their
 /// number is known when compiling, [`Rn`](crate::Rn) is the same space, and faster.
 ///
 /// ```
@@ -143,9 +127,8 @@ impl<Q: Coordinates> Joints<Q> {
     /// As [`new`](Self::new), and when the bounds differ in number.
     ///
     /// ```
-    /// use mp_cspace::{Joints, Space};
-    /// use nalgebra::DVector;
-    /// let space = Joints::<DVector<f64>>::intervals(&[0.0; 7], &[1.0; 7])?;
+    /// use mp_cspace::{Configuration, Joints, Space};
+    /// let space = Joints::<Configuration>::intervals(&[0.0; 7], &[1.0; 7])?;
     /// assert_eq!(space.dim(), 7);
     /// # Ok::<(), mp_cspace::SpaceError>(())
     /// ```

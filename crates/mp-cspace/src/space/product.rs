@@ -1,15 +1,15 @@
 //! Products of two spaces; nest them for more.
 
 use super::{Factored, Joints, Rn, Space, TrueMetric};
-use crate::{Rng, SpaceError, error::weight, layout::Layout};
-use nalgebra::{DVector, SVector};
+use crate::{Configuration, Rng, SpaceError, error::weight, layout::Layout};
+use nalgebra::SVector;
 
 /// The product of two spaces. Its states are pairs.
 ///
 /// Distance: `√((wa·da)² + (wb·db)²)`.
 ///
 /// ```
-/// use mp_cspace::{Joints, Product, Rn, Space};
+/// use mp_cspace::{Configuration, Joints, Product, Rn, Space};
 /// use nalgebra::Vector1;
 /// // A planar body on a rail: metres and radians, a radian counting as 0.3 m.
 /// let rail = Rn::<1>::new([0.0], [2.0])?;
@@ -80,7 +80,7 @@ impl<A: Space, const N: usize> Product<A, Rn<N>> {
     }
 }
 
-impl<A: Space> Product<A, Joints<DVector<f64>>> {
+impl<A: Space> Product<A, Joints<Configuration>> {
     /// As [`with_velocity`](Product::with_velocity), with the number of degrees of freedom known at run time.
     ///
     /// # Errors

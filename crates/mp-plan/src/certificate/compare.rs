@@ -3,7 +3,7 @@
 use super::{VERSION, columns};
 use crate::check::end_faults;
 use crate::path::states;
-use crate::{Error, ModelBody, ModelFrame, ModelPart, MotionModel, PathRows, RobotKind, plain};
+use crate::{Error, ModelBody, ModelFrame, ModelPart, MotionModel, PathRows, Robot, plain};
 use mp_cspace::Space;
 use serde::Deserialize;
 use std::collections::HashSet;
@@ -26,7 +26,7 @@ struct Version {
 ///
 /// # Errors
 /// When the text is no certificate, or the kind of robot has no model.
-pub(crate) fn differences<K: RobotKind + ?Sized>(kind: &K, text: &str) -> Result<Vec<String>, Error> {
+pub(crate) fn differences(kind: &dyn Robot, text: &str) -> Result<Vec<String>, Error> {
     let unread = |e: serde_json::Error| Error::new(format!("the certificate cannot be read: {e}"));
     let Version { certificate } = serde_json::from_str(text).map_err(unread)?;
     if certificate != VERSION {

@@ -1,7 +1,7 @@
 //! A lane: runs of one round that are advanced by turns in one thread.
 
 use super::{Clocks, Dealt, RunOutcome, rounds::Rounds};
-use crate::run::AnyRun;
+use crate::run::RobotRun;
 use crate::{Control, Error, Request, Scene, StoppedBy};
 use mp_cspace::{Iterations, Rng};
 use mp_ranks::{Hand, Link, Pace};
@@ -99,7 +99,7 @@ pub(super) struct Lane<'a> {
 struct Racer<'p> {
     number: u64,
     cap: u64,
-    run: Option<Box<dyn AnyRun + 'p>>,
+    run: Option<RobotRun<'p, 'p>>,
     iterations: u64,
     /// The time that it took.
     time: Duration,
@@ -121,7 +121,7 @@ impl Lane<'_> {
         for ((number, cap), prepared) in runs.into_iter().zip(&prepared) {
             let began = self.clocks.clock.now();
             let rng = Rng::stream(self.dealt.seed, number);
-            let run = Some(prepared.begin(rng, &mut self.control(hand, Duration::ZERO))?);
+            let run = Some(RobotRun::begin(prepared, rng, &mut self.control(hand, Duration::ZERO))?);
             let time = self.clocks.clock.now().saturating_sub(began);
             racers.push(Racer { number, cap: cap.unwrap_or(u64::MAX), run, iterations: 0, time });
         }

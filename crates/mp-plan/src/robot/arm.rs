@@ -5,31 +5,28 @@ mod read;
 
 use super::model::{ModelBody, ModelFrame, ModelPair, MotionModel, Step, seven};
 use super::{
-    Body, BodyShape, Column, Counted, DrivenScene, End, Measured, Queries, RobotKind, SpeedBound, Touch,
-    hints_and_gradient, no_metric,
+    Appearance, Body, BodyShape, Column, Counted, Description, DrivenScene, End, Measured, Motion, Queries,
+    SpeedBound, Touch, hints_and_gradient, no_metric,
 };
 use crate::goals::{GoalPart, examples, rows, turning};
-use crate::motion::{Configured, TypedMotion};
+use crate::motion::TypedMotion;
 use crate::numbers::plain_row;
 use crate::path::continued;
 use crate::{Error, MetricName, brief, plain};
 use mp_cspace::{
-    Euclidean, Factored, FloatingJoints, Interrupt, Interrupted, JointRange, Joints, Manhattan,
-    MotionClearance, ObstacleKnowledge, Path, ScaledEuclidean, Space, TrueMetric, WithMetric,
+    Configuration, Euclidean, Factored, FloatingJoints, Interrupt, Interrupted, JointRange, Joints,
+    Manhattan, MotionClearance, ObstacleKnowledge, Path, ScaledEuclidean, Space, TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, continued_six, pose_from_six, six_from_pose};
 use mp_io::{Disk, Files, PlacedBody, RobotPart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, JointKind};
-use nalgebra::{DVector, Isometry3};
+use nalgebra::Isometry3;
 use read::{srdf_help, what};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 
 /// Where the angle β of a base that floats is among the numbers of a configuration.
 const BETA: usize = 4;
-
-/// The joint values of an arm; the pose of the base comes first if it floats.
-type Configuration = DVector<f64>;
 
 /// The space of a robot made of links and joints: [`Joints`] if its base stands still, [`FloatingJoints`] if it floats.
 pub trait LinkedSpace: Factored<State = Configuration> + TrueMetric + Clone + Debug + Send + 'static {
@@ -44,7 +41,7 @@ pub trait LinkedSpace: Factored<State = Configuration> + TrueMetric + Clone + De
     /// When its base is of the other kind.
     fn of(arm: &Arm) -> Result<Self, Error>;
     /// The space under its own metric.
-    fn measured(&self) -> Measured<'_, Configuration>;
+    fn measured(&self) -> Measured<'_>;
     /// The configuration of a row.
     fn state(&self, row: &[f64]) -> Configuration;
     /// The row of a configuration.
@@ -60,11 +57,11 @@ impl LinkedSpace for Joints<Configuration> {
     fn of(arm: &Arm) -> Result<Self, Error> {
         Ok(arm.space()?)
     }
-    fn measured(&self) -> Measured<'_, Configuration> {
+    fn measured(&self) -> Measured<'_> {
         Measured::compiled(self)
     }
     fn state(&self, row: &[f64]) -> Configuration {
-        self.wrapped(&DVector::from_vec(within(self.ranges(), row)))
+        self.wrapped(&within(self.ranges(), row).into())
     }
     fn row(q: &Configuration) -> Vec<f64> {
         q.as_slice().to_vec()
@@ -82,7 +79,7 @@ impl LinkedSpace for FloatingJoints {
     fn of(arm: &Arm) -> Result<Self, Error> {
         Ok(arm.floating_space()?)
     }
-    fn measured(&self) -> Measured<'_, Configuration> {
+    fn measured(&self) -> Measured<'_> {
         Measured::by_coordinates(self)
     }
     fn state(&self, row: &[f64]) -> Configuration {
@@ -393,7 +390,7 @@ impl SpeedBound for ArmScene {
         }
         // Small enough for no joint to come round.
         let little = 1e-3 / fastest;
-        let to = &from + DVector::from_iterator(rates.len(), rates.iter().map(|rate| rate.abs() * little));
+        let to = from.iter().zip(rates).map(|(x, rate)| x + rate.abs() * little).collect();
         self.arm.motion_bound(&from, &to) / little * (1.0 + 1e-9)
     }
 }
@@ -402,10 +399,6 @@ impl Queries for Arm {
     fn queries(&self) -> u64 {
         self.counters().queries()
     }
-}
-
-impl<C: LinkedSpace> Configured for LinkedScene<C> {
-    type State = Configuration;
 }
 
 impl<C: LinkedSpace> TypedMotion for LinkedScene<C> {
@@ -443,17 +436,7 @@ impl<C: LinkedSpace> TypedMotion for LinkedScene<C> {
     }
 }
 
-impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn space_name(&self) -> String {
-        let joints = self.arm.coordinates().len();
-        match self.arm.kinematics().floats() {
-            true => format!("SE3 × {}", crate::count(joints, "joint")),
-            false => format!("{joints} joints"),
-        }
-    }
+impl<C: LinkedSpace> Motion for LinkedScene<C> {
     fn start(&self) -> &Configuration {
         &self.start
     }
@@ -463,7 +446,6 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
         self.goal_parts.as_deref()
     }
-
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         self.arm.make_ready(interrupt)
     }
@@ -473,7 +455,7 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     fn kept(&self) -> f64 {
         self.arm.kept()
     }
-    fn measured(&self, metric: MetricName) -> Result<Measured<'_, Configuration>, Error> {
+    fn measured(&self, metric: MetricName) -> Result<Measured<'_>, Error> {
         match metric {
             MetricName::Default => Ok(self.space.measured()),
             // That of the joints alone is their Euclidean metric already.
@@ -495,7 +477,22 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
             )),
         }
     }
+    fn nearest_free(&self, q: &Configuration) -> Option<Configuration> {
+        self.arm.clone().nearest_free(q, &self.space, 2.0 * self.tolerance())
+    }
+}
 
+impl<C: LinkedSpace> Description for LinkedScene<C> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn space_name(&self) -> String {
+        let joints = self.arm.coordinates().len();
+        match self.arm.kinematics().floats() {
+            true => format!("SE3 × {}", crate::count(joints, "joint")),
+            false => format!("{joints} joints"),
+        }
+    }
     fn touching(&self, q: &Configuration) -> Vec<Touch> {
         let contacts = self.arm.clone().explain(q.as_slice());
         let touch = |c: mp_robot::ArmContact| Touch {
@@ -516,9 +513,6 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     }
     fn enclosures(&self, q: &Configuration) -> Vec<[String; 2]> {
         self.arm.clone().enclosures(q.as_slice())
-    }
-    fn nearest_free(&self, q: &Configuration) -> Option<Configuration> {
-        self.arm.clone().nearest_free(q, &self.space, 2.0 * self.tolerance())
     }
     fn out_of_bounds(&self, q: &Configuration) -> String {
         match self.beyond(q) {
@@ -562,7 +556,6 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
         }
         found
     }
-
     fn columns(&self) -> Vec<Column> {
         let slides = |name: &str| slides(&self.arm, name);
         let names = self.arm.coordinates().iter().map(|c| c.name.as_str());
@@ -624,7 +617,6 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
         }
         rows
     }
-
     fn motion_model(&self) -> Result<MotionModel, Error> {
         let kinematics = self.arm.kinematics();
         let base = C::BASE.len();
@@ -674,7 +666,9 @@ impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
         model.add_obstacles(obstacles, moved);
         Ok(model)
     }
+}
 
+impl<C: LinkedSpace> Appearance for LinkedScene<C> {
     fn bodies(&self) -> Vec<Body> {
         let name = |i: usize| self.arm.model().links[i].name.clone();
         let links = self.solid_links();

@@ -6,19 +6,19 @@ mod steer;
 mod system;
 
 use super::model::{self, DriveModel, MotionModel};
-use super::{Body, Column, End, Measured, RobotKind, Touch, no_metric};
+use super::{Appearance, Body, Column, Description, End, Measured, Motion, Touch, no_metric};
 use crate::goals::{GoalPart, examples};
-use crate::motion::{Configured, TypedMotion};
+use crate::motion::TypedMotion;
 use crate::{Error, MetricName};
 use check::{DrivenChecker, DrivenVerifier};
 use mp_cspace::shorten::Effort;
 use mp_cspace::{
-    AnyFlow, Demand, Embed, InputSystem, Interrupt, Interrupted, MotionCheck, MotionValidity, Path, Rng,
-    Space, StateVector,
+    AnyFlow, Configuration, Demand, Embed, InputSystem, Interrupt, Interrupted, MotionCheck, MotionValidity,
+    Path, Rng, Space,
 };
 use mp_geom::Aabb;
 use mp_io::{Drive, Driven};
-use nalgebra::{DVector, Isometry3, Point3};
+use nalgebra::{Isometry3, Point3};
 use space::DrivenSpace;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -31,7 +31,15 @@ const ROUND_UP: f64 = 1.0 + 1e-9;
 
 /// A kind of robot that can be moved by inputs.
 pub trait SpeedBound:
-    RobotKind + TypedMotion<Space: Embed + 'static, State: StateVector, Checker: Debug> + Clone
+    Motion
+    + Description
+    + Appearance
+    + TypedMotion<Space: Embed + 'static, Checker: Debug>
+    + Clone
+    + Debug
+    + Send
+    + Sync
+    + 'static
 {
     /// Whether the last number of a configuration is the time (s).
     const TIMED: bool = false;
@@ -43,7 +51,7 @@ pub trait SpeedBound:
     /// What the verifier says of a single configuration: free with its clearance (m), which need not be known farther than
     /// `enough`. By default it is asked about the motion from the configuration to itself; to be overridden where the clearance of
     /// that is only a lower bound.
-    fn check_state<'c>(verifier: &mut Self::Verifier<'c>, q: &Self::State, _enough: f64) -> MotionCheck
+    fn check_state<'c>(verifier: &mut Self::Verifier<'c>, q: &Configuration, _enough: f64) -> MotionCheck
     where
         Self: 'c,
     {
@@ -73,8 +81,8 @@ pub struct DrivenScene<K: SpeedBound> {
     robot: Arc<K>,
     space: DrivenSpace<K::Space>,
     checker: DrivenChecker<K>,
-    start: DVector<f64>,
-    goals: Vec<DVector<f64>>,
+    start: Configuration,
+    goals: Vec<Configuration>,
     goal_parts: Vec<Vec<GoalPart>>,
     columns: Vec<Column>,
 }
@@ -93,8 +101,6 @@ impl<K: SpeedBound> DrivenScene<K> {
         mut goals: Vec<Vec<GoalPart>>,
     ) -> Result<Self, Error> {
         let own = robot.columns();
-        let mut numbers = Vec::new();
-        robot.start().write(&mut numbers);
         let degrees = robot.degrees_of_freedom();
         let names: Vec<(String, String)> = degrees.iter().map(|c| (c.name.clone(), c.unit.clone())).collect();
         let inputs = driven.input_names(&names);
@@ -116,7 +122,7 @@ impl<K: SpeedBound> DrivenScene<K> {
         let system = System {
             drive: driven.drive.clone(),
             duration: driven.duration,
-            numbers: numbers.len(),
+            numbers: robot.start().len(),
             velocities,
             inputs: inputs.len(),
             timed: K::TIMED,
@@ -134,18 +140,14 @@ impl<K: SpeedBound> DrivenScene<K> {
     }
 
     /// A configuration for each goal, which no input led to.
-    fn examples(&self) -> Vec<DVector<f64>> {
+    fn examples(&self) -> Vec<Configuration> {
         examples(self, &self.goal_parts)
     }
 
     /// The parts of a state; the start for a vector that is none.
-    fn parts(&self, q: &DVector<f64>) -> Parts<K::State> {
+    fn parts(&self, q: &Configuration) -> Parts {
         self.space.parts(q).unwrap_or_else(|| self.space.at_rest(self.robot.start().clone()))
     }
-}
-
-impl<K: SpeedBound> Configured for DrivenScene<K> {
-    type State = DVector<f64>;
 }
 
 impl<K: SpeedBound> TypedMotion for DrivenScene<K> {
@@ -159,9 +161,9 @@ impl<K: SpeedBound> TypedMotion for DrivenScene<K> {
         &self.space
     }
     /// Goals keep the widths of the intervals of the first goal of the scene.
-    fn with_ends(&self, start: DVector<f64>, goals: Vec<DVector<f64>>) -> Result<Self, Error> {
+    fn with_ends(&self, start: Configuration, goals: Vec<Configuration>) -> Result<Self, Error> {
         let first = self.goal_parts.first().cloned().unwrap_or_default();
-        let around = |q: &DVector<f64>| {
+        let around = |q: &Configuration| {
             let part = |(part, x): (&GoalPart, f64)| match *part {
                 GoalPart::Between([low, high]) => {
                     let half = 0.5 * (high - low);
@@ -202,30 +204,17 @@ impl<K: SpeedBound> TypedMotion for DrivenScene<K> {
     }
 }
 
-impl<K: SpeedBound> RobotKind for DrivenScene<K> {
-    fn name(&self) -> &str {
-        self.robot.name()
-    }
-    fn space_name(&self) -> String {
-        let by = match self.space.system.drive {
-            Drive::Car { .. } => "a car",
-            Drive::Unicycle { .. } => "a unicycle",
-            Drive::Velocities { .. } => "by velocities",
-            Drive::Accelerations { .. } => "by accelerations",
-        };
-        format!("{}, {by}", self.robot.space_name())
-    }
-    fn start(&self) -> &DVector<f64> {
+impl<K: SpeedBound> Motion for DrivenScene<K> {
+    fn start(&self) -> &Configuration {
         &self.start
     }
-    fn goals(&self) -> &[DVector<f64>] {
+    fn goals(&self) -> &[Configuration] {
         &self.goals
     }
     fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
         Some(&self.goal_parts)
     }
-
-    fn can_move(&self, from: &DVector<f64>, to: &DVector<f64>) -> bool {
+    fn can_move(&self, from: &Configuration, to: &Configuration) -> bool {
         match [from, to].map(|q| self.space.parts(q)) {
             [Some(a), Some(b)] => from == to || self.space.follows(&a, &b),
             _ => false,
@@ -234,10 +223,10 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     fn demands(&self) -> &'static [Demand] {
         &[Demand::OneWay, Demand::Inputs]
     }
-    fn input_system(&self) -> Option<InputSystem<'_, DVector<f64>>> {
+    fn input_system(&self) -> Option<InputSystem<'_, Configuration>> {
         let space = &self.space;
-        let flow: AnyFlow<'_, DVector<f64>> =
-            Arc::new(move |from: &DVector<f64>, input: &[f64], time| match space.parts(from) {
+        let flow: AnyFlow<'_, Configuration> =
+            Arc::new(move |from: &Configuration, input: &[f64], time| match space.parts(from) {
                 Some(parts) => space.system.vector(&space.system.flow(&space.positions, &parts, input, time)),
                 None => from.clone(),
             });
@@ -250,14 +239,13 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     }
     fn shortened(
         &self,
-        path: &Path<DVector<f64>>,
-        check: &mut dyn MotionValidity<DVector<f64>>,
+        path: &Path<Configuration>,
+        check: &mut dyn MotionValidity<Configuration>,
         effort: Effort,
         rng: &mut Rng,
-    ) -> Option<Path<DVector<f64>>> {
+    ) -> Option<Path<Configuration>> {
         Some(self.shortened_path(path, check, effort, rng))
     }
-
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         self.robot.make_ready(interrupt)
     }
@@ -270,29 +258,43 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     fn accuracy(&self) -> f64 {
         self.robot.accuracy()
     }
-    fn measured(&self, metric: MetricName) -> Result<Measured<'_, DVector<f64>>, Error> {
+    fn measured(&self, metric: MetricName) -> Result<Measured<'_>, Error> {
         match metric {
             MetricName::Default => Ok(Measured::by_coordinates(&self.space)),
             _ => Err(no_metric(metric, "a robot that moves by inputs", &[MetricName::Default])),
         }
     }
+    fn nearest_free(&self, q: &Configuration) -> Option<Configuration> {
+        let mut parts = self.parts(q);
+        parts.q = self.robot.nearest_free(&parts.q)?;
+        Some(self.space.system.vector(&parts))
+    }
+}
 
-    fn touching(&self, q: &DVector<f64>) -> Vec<Touch> {
+impl<K: SpeedBound> Description for DrivenScene<K> {
+    fn name(&self) -> &str {
+        self.robot.name()
+    }
+    fn space_name(&self) -> String {
+        let by = match self.space.system.drive {
+            Drive::Car { .. } => "a car",
+            Drive::Unicycle { .. } => "a unicycle",
+            Drive::Velocities { .. } => "by velocities",
+            Drive::Accelerations { .. } => "by accelerations",
+        };
+        format!("{}, {by}", self.robot.space_name())
+    }
+    fn touching(&self, q: &Configuration) -> Vec<Touch> {
         self.robot.touching(&self.parts(q).q)
     }
-    fn closest(&self, q: &DVector<f64>) -> Option<(String, f64)> {
+    fn closest(&self, q: &Configuration) -> Option<(String, f64)> {
         self.robot.closest(&self.parts(q).q)
     }
     fn remedy(&self, touching: &[Touch]) -> Option<String> {
         self.robot.remedy(touching)
     }
-    fn enclosures(&self, q: &DVector<f64>) -> Vec<[String; 2]> {
+    fn enclosures(&self, q: &Configuration) -> Vec<[String; 2]> {
         self.robot.enclosures(&self.parts(q).q)
-    }
-    fn nearest_free(&self, q: &DVector<f64>) -> Option<DVector<f64>> {
-        let mut parts = self.parts(q);
-        parts.q = self.robot.nearest_free(&parts.q)?;
-        Some(self.space.system.vector(&parts))
     }
     fn lint(&self) -> Vec<String> {
         self.robot.lint()
@@ -300,7 +302,6 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     fn fault(&self, end: End, message: String, help: String) -> Error {
         self.robot.fault(end, message, help)
     }
-
     fn columns(&self) -> Vec<Column> {
         self.columns.clone()
     }
@@ -344,7 +345,7 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
         details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
         details
     }
-    fn row(&self, q: &DVector<f64>) -> Vec<f64> {
+    fn row(&self, q: &Configuration) -> Vec<f64> {
         let parts = self.parts(q);
         let mut row = self.robot.row(&parts.q);
         row.extend(parts.velocity);
@@ -352,7 +353,7 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
         row.push(parts.duration);
         row
     }
-    fn state(&self, row: &[f64]) -> DVector<f64> {
+    fn state(&self, row: &[f64]) -> Configuration {
         let system = &self.space.system;
         let own = row.len().saturating_sub(system.velocities + system.inputs + 1);
         let (q, rest) = row.split_at(own);
@@ -388,7 +389,6 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
             }
         })
     }
-
     fn motion_model(&self) -> Result<MotionModel, Error> {
         let (system, own) = (&self.space.system, self.robot.columns().len());
         let by = match system.drive {
@@ -401,20 +401,22 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
         let drive = model::Drive { by, velocities: own, inputs, duration: inputs + system.inputs };
         Ok(MotionModel { drive: Some(drive), ..self.robot.motion_model()? })
     }
+}
 
+impl<K: SpeedBound> Appearance for DrivenScene<K> {
     fn bodies(&self) -> Vec<Body> {
         self.robot.bodies()
     }
     fn moving_obstacles(&self) -> usize {
         self.robot.moving_obstacles()
     }
-    fn poses(&self, q: &DVector<f64>) -> Vec<Isometry3<f64>> {
+    fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
         self.robot.poses(&self.parts(q).q)
     }
-    fn traced(&self, q: &DVector<f64>) -> Point3<f64> {
+    fn traced(&self, q: &Configuration) -> Point3<f64> {
         self.robot.traced(&self.parts(q).q)
     }
-    fn seconds(&self, _: &DVector<f64>, to: &DVector<f64>) -> Option<f64> {
+    fn seconds(&self, _: &Configuration, to: &Configuration) -> Option<f64> {
         Some(self.parts(to).duration.max(0.0))
     }
     fn picture_spacing(&self) -> f64 {

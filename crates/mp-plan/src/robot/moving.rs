@@ -1,51 +1,58 @@
 //! Robots among obstacles that move: time is a dimension of planning.
 
 use super::model::{ModelBody, MotionModel};
-use super::vectors::OnVectors;
 use super::{
-    Body, BodyShape, Checker, Column, DrivenScene, End, Measured, Mismatch, RobotKind, SpeedBound, Touch,
-    no_metric,
+    Appearance, Body, BodyShape, Checker, Column, Description, DrivenScene, End, Measured, Mismatch, Motion,
+    SpeedBound, Touch, no_metric,
 };
 use crate::goals::{GoalPart, examples};
-use crate::motion::{Configured, TypedMotion};
+use crate::motion::TypedMotion;
 use crate::numbers::told_apart;
 use crate::{Error, MetricName, brief, plain};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
-    AsVectors, Clearance, Demand, Embed, Interrupt, Interrupted, MotionCheck, MotionValidity, Space,
-    StateVector,
+    AsVectors, Clearance, Configuration, Demand, Embed, Factored, Interrupt, Interrupted, MotionCheck,
+    MotionValidity, OnVectors, Space, StateVector,
 };
 use mp_geom::Aabb;
 use mp_io::{Driven, Timing};
 use mp_robot::Trajectory;
-use nalgebra::{DVector, Isometry3, Point3};
+use nalgebra::{Isometry3, Point3};
 use std::fmt::Debug;
 
 /// The ends of a path match start and goal if their times differ by no more, seconds.
 const TIME_TOLERANCE: f64 = 1e-3;
 
 /// A kind of robot that can be among obstacles that move.
-pub trait WithMoving: RobotKind + TypedMotion<Space: Embed + 'static, State: StateVector> + Clone {
-    /// The robot among all of them: what planners check positions at times with.
-    type Among: Checker<(Self::State, f64)> + Debug + 'static;
+pub trait WithMoving:
+    Motion + Description + Appearance + TypedMotion + Clone + Debug + Send + Sync + 'static
+{
+    /// Where it is: what the numbers of a configuration say.
+    type Place: StateVector + Clone + Debug + PartialEq + Send + Sync;
+    /// The space of its places.
+    type Places: Factored + Space<State = Self::Place> + Embed + Clone + Send + Debug + 'static;
+    /// The robot among all of them: what planners check places at times with.
+    type Among: Checker<(Self::Place, f64)> + Debug + 'static;
     /// The independent check of finished paths.
-    type AmongVerifier<'c>: MotionValidity<(Self::State, f64)> + Clone + Send + Sync
+    type AmongVerifier<'c>: MotionValidity<(Self::Place, f64)> + Clone + Send + Sync
     where
         Self: 'c;
 
+    /// The space of its places.
+    fn places(&self) -> &Self::Places;
     /// A verifier in a space of positions and times.
     ///
     /// # Errors
     /// When the robot cannot be verified.
     fn among_verifier<'c>(
         &'c self,
-        space: &'c SpaceTime<Self::Space>,
+        space: &'c SpaceTime<Self::Places>,
         among: &Self::Among,
     ) -> Result<Self::AmongVerifier<'c>, Error>;
     /// What the verifier says of a single moment, as [`SpeedBound::check_state`].
     fn check_moment<'c>(
         verifier: &mut Self::AmongVerifier<'c>,
-        q: &(Self::State, f64),
+        q: &(Self::Place, f64),
         _enough: f64,
     ) -> MotionCheck
     where
@@ -62,24 +69,24 @@ pub trait WithMoving: RobotKind + TypedMotion<Space: Embed + 'static, State: Sta
     /// The poses of the moving obstacles at a time.
     fn obstacle_poses(among: &Self::Among, time: f64) -> Vec<Isometry3<f64>>;
     /// The indices of the moving obstacles that the robot touches.
-    fn touched(among: &mut Self::Among, q: &(Self::State, f64)) -> Vec<usize>;
+    fn touched(among: &mut Self::Among, q: &(Self::Place, f64)) -> Vec<usize>;
 }
 
 /// A robot among obstacles of which some move on known trajectories. A configuration is that of the robot, and a time.
 #[derive(Clone, Debug)]
 pub struct MovingScene<K: WithMoving> {
     still: K,
-    among: OnVectors<K::Among, (K::State, f64)>,
+    among: OnVectors<K::Among, (K::Place, f64)>,
     obstacles: Vec<Body>,
-    space: AsVectors<SpaceTime<K::Space>>,
-    start: DVector<f64>,
-    goals: Vec<DVector<f64>>,
+    space: AsVectors<SpaceTime<K::Places>>,
+    start: Configuration,
+    goals: Vec<Configuration>,
     /// What the goals ask of each number, the time last.
     goal_parts: Vec<Vec<GoalPart>>,
 }
 
 /// The state of a robot at a time.
-type Moment<K> = (<K as Configured>::State, f64);
+type Moment<K> = (<K as WithMoving>::Place, f64);
 
 impl<K: WithMoving> MovingScene<K> {
     /// The robot of `still` among its obstacles, and also among `obstacles`, each with the name and shape of a body, which move
@@ -98,10 +105,11 @@ impl<K: WithMoving> MovingScene<K> {
             return Err(Error::new("obstacles move, and the robot has no speed").help("say how fast it is"));
         };
         // Time to wait until nothing moves, and then to go around everything.
-        let horizon = timing.horizon.unwrap_or(last.max(timing.start) + 2.0 * still.space().extent() / speed);
-        let space = AsVectors(SpaceTime::new(still.space().clone(), horizon, speed)?);
-        let start = vector::<K>((still.start().clone(), timing.start));
-        let exactly = |q: &K::State| still.row(q).into_iter().map(GoalPart::Exactly).collect();
+        let horizon =
+            timing.horizon.unwrap_or(last.max(timing.start) + 2.0 * still.places().extent() / speed);
+        let space = AsVectors(SpaceTime::new(still.places().clone(), horizon, speed)?);
+        let start = timed(still.start(), timing.start);
+        let exactly = |q: &Configuration| still.row(q).into_iter().map(GoalPart::Exactly).collect();
         let parts =
             still.goal_parts().map_or_else(|| still.goals().iter().map(exactly).collect(), <[_]>::to_vec);
         let arrival =
@@ -120,15 +128,23 @@ impl<K: WithMoving> MovingScene<K> {
         &self.still
     }
 
-    /// The configuration and the time of a vector; the start for one that is none.
-    fn moment(&self, q: &DVector<f64>) -> Moment<K> {
-        StateVector::read(q.as_slice()).unwrap_or_else(|| (self.still.start().clone(), 0.0))
+    /// The configuration of the robot alone.
+    fn alone(&self, q: &Configuration) -> Configuration {
+        match q.split_last() {
+            Some((_, numbers)) => numbers.into(),
+            None => self.still.start().clone(),
+        }
     }
 }
 
-/// The numbers of a configuration and a time.
-fn vector<K: WithMoving>(moment: Moment<K>) -> DVector<f64> {
-    AsVectors::<SpaceTime<K::Space>>::vector(&moment)
+/// The time of a configuration.
+fn time(q: &Configuration) -> f64 {
+    q.last().copied().unwrap_or(0.0)
+}
+
+/// A configuration at a time.
+fn timed(q: &Configuration, time: f64) -> Configuration {
+    q.iter().copied().chain([time]).collect()
 }
 
 /// Goals at a time.
@@ -163,11 +179,11 @@ impl<K: WithMoving<Checker: Debug> + SpeedBound> SpeedBound for MovingScene<K> {
     fn speed_bound(&self, rates: &[f64]) -> f64 {
         self.still.speed_bound(rates) + K::obstacle_speed(self.among.inner())
     }
-    fn check_state<'c>(verifier: &mut Self::Verifier<'c>, q: &DVector<f64>, enough: f64) -> MotionCheck
+    fn check_state<'c>(verifier: &mut Self::Verifier<'c>, q: &Configuration, enough: f64) -> MotionCheck
     where
         Self: 'c,
     {
-        match StateVector::read(q.as_slice()) {
+        match q.to() {
             Some(moment) => K::check_moment(verifier.inner_mut(), &moment, enough),
             None => MotionCheck::Unproven { at: 0.0 },
         }
@@ -177,12 +193,8 @@ impl<K: WithMoving<Checker: Debug> + SpeedBound> SpeedBound for MovingScene<K> {
     }
 }
 
-impl<K: WithMoving> Configured for MovingScene<K> {
-    type State = DVector<f64>;
-}
-
 impl<K: WithMoving> TypedMotion for MovingScene<K> {
-    type Space = AsVectors<SpaceTime<K::Space>>;
+    type Space = AsVectors<SpaceTime<K::Places>>;
     type Checker = OnVectors<K::Among, Moment<K>>;
     type Verifier<'c>
         = OnVectors<K::AmongVerifier<'c>, Moment<K>>
@@ -192,10 +204,10 @@ impl<K: WithMoving> TypedMotion for MovingScene<K> {
         &self.space
     }
     /// The times of the goals are of no account: the robot may arrive whenever the scene says.
-    fn with_ends(&self, start: DVector<f64>, goals: Vec<DVector<f64>>) -> Result<Self, Error> {
-        let (first, _) = self.moment(&start);
-        let positions: Vec<K::State> = goals.iter().map(|q| self.moment(q).0).collect();
-        let exactly = |q: &K::State| self.still.row(q).into_iter().map(GoalPart::Exactly).collect();
+    fn with_ends(&self, start: Configuration, goals: Vec<Configuration>) -> Result<Self, Error> {
+        let first = self.alone(&start);
+        let positions: Vec<Configuration> = goals.iter().map(|q| self.alone(q)).collect();
+        let exactly = |q: &Configuration| self.still.row(q).into_iter().map(GoalPart::Exactly).collect();
         let parts = positions.iter().map(exactly).collect();
         let time = self.goal_parts.first().and_then(|goal| goal.last()).copied().unwrap_or(GoalPart::Free);
         let still = self.still.with_ends(first, positions)?;
@@ -223,25 +235,21 @@ impl<K: WithMoving> TypedMotion for MovingScene<K> {
     }
 }
 
-impl<K: WithMoving> RobotKind for MovingScene<K> {
-    fn name(&self) -> &str {
-        self.still.name()
-    }
-    fn space_name(&self) -> String {
-        format!("{} and time", self.still.space_name())
-    }
-    fn start(&self) -> &DVector<f64> {
+impl<K: WithMoving> Motion for MovingScene<K> {
+    fn start(&self) -> &Configuration {
         &self.start
     }
-    fn goals(&self) -> &[DVector<f64>] {
+    fn goals(&self) -> &[Configuration] {
         &self.goals
     }
     fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
         Some(&self.goal_parts)
     }
-
-    fn can_move(&self, from: &DVector<f64>, to: &DVector<f64>) -> bool {
-        self.space.0.can_move(&self.moment(from), &self.moment(to))
+    fn can_move(&self, from: &Configuration, to: &Configuration) -> bool {
+        match (from.to(), to.to()) {
+            (Some(from), Some(to)) => self.space.0.can_move(&from, &to),
+            _ => false,
+        }
     }
     fn demands(&self) -> &'static [Demand] {
         &[Demand::OneWay]
@@ -249,7 +257,6 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
     fn default_planner(&self) -> &'static str {
         "rrt"
     }
-
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         self.still.make_ready(interrupt)
     }
@@ -265,19 +272,32 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
     fn shortcut_clearance(&self) -> f64 {
         self.still.shortcut_clearance()
     }
-    fn measured(&self, metric: MetricName) -> Result<Measured<'_, DVector<f64>>, Error> {
+    fn measured(&self, metric: MetricName) -> Result<Measured<'_>, Error> {
         match metric {
             MetricName::Default => Ok(Measured::by_coordinates(&self.space)),
             _ => Err(no_metric(metric, "a robot among obstacles that move", &[MetricName::Default])),
         }
     }
+    fn nearest_free(&self, q: &Configuration) -> Option<Configuration> {
+        let free = timed(&self.still.nearest_free(&self.alone(q))?, time(q));
+        let enough = 2.0 * self.tolerance();
+        (self.among.clone().clearance(&free, enough) >= enough).then_some(free)
+    }
+}
 
-    fn touching(&self, q: &DVector<f64>) -> Vec<Touch> {
-        let moment = self.moment(q);
-        let mut touches = self.still.touching(&moment.0);
+impl<K: WithMoving> Description for MovingScene<K> {
+    fn name(&self) -> &str {
+        self.still.name()
+    }
+    fn space_name(&self) -> String {
+        format!("{} and time", self.still.space_name())
+    }
+    fn touching(&self, q: &Configuration) -> Vec<Touch> {
+        let mut touches = self.still.touching(&self.alone(q));
         let name = |i: usize| self.obstacles.get(i).map_or("?", |body| body.name.as_str()).to_owned();
-        let touched = K::touched(&mut self.among.inner().clone(), &moment).into_iter();
-        touches.extend(touched.map(|i| Touch {
+        let touched = |moment: Moment<K>| K::touched(&mut self.among.inner().clone(), &moment);
+        let touched = q.to().map(touched).unwrap_or_default();
+        touches.extend(touched.into_iter().map(|i| Touch {
             part: None,
             other: name(i),
             with_itself: false,
@@ -285,14 +305,8 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         }));
         touches
     }
-    fn enclosures(&self, q: &DVector<f64>) -> Vec<[String; 2]> {
-        self.still.enclosures(&self.moment(q).0)
-    }
-    fn nearest_free(&self, q: &DVector<f64>) -> Option<DVector<f64>> {
-        let (position, time) = self.moment(q);
-        let free = vector::<K>((self.still.nearest_free(&position)?, time));
-        let enough = 2.0 * self.tolerance();
-        (self.among.clone().clearance(&free, enough) >= enough).then_some(free)
+    fn enclosures(&self, q: &Configuration) -> Vec<[String; 2]> {
+        self.still.enclosures(&self.alone(q))
     }
     fn lint(&self) -> Vec<String> {
         self.still.lint()
@@ -300,7 +314,6 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
     fn fault(&self, end: End, message: String, help: String) -> Error {
         self.still.fault(end, message, help)
     }
-
     fn motion_model(&self) -> Result<MotionModel, Error> {
         let mut model = self.still.motion_model()?;
         let (time, robot) = (self.still.columns().len(), model.of_robot());
@@ -316,7 +329,6 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         }
         Ok(model)
     }
-
     fn columns(&self) -> Vec<Column> {
         let mut columns = self.still.columns();
         columns.push(Column::new("time", "s"));
@@ -337,15 +349,14 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
         details
     }
-    fn row(&self, q: &DVector<f64>) -> Vec<f64> {
-        let (position, time) = self.moment(q);
-        let mut row = self.still.row(&position);
-        row.push(time);
+    fn row(&self, q: &Configuration) -> Vec<f64> {
+        let mut row = self.still.row(&self.alone(q));
+        row.push(time(q));
         row
     }
-    fn state(&self, row: &[f64]) -> DVector<f64> {
+    fn state(&self, row: &[f64]) -> Configuration {
         let (time, position) = row.split_last().unwrap_or((&0.0, &[]));
-        vector::<K>((self.still.state(position), *time))
+        timed(&self.still.state(position), *time)
     }
     fn given_start(&self) -> Vec<f64> {
         let mut row = self.row(self.start());
@@ -357,11 +368,12 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         if let Some(odd) = self.still.odd_rows(&positions) {
             return Some(odd);
         }
-        let moments: Vec<_> = rows.iter().map(|row| self.moment(&self.state(row))).collect();
+        let moments: Option<Vec<Moment<K>>> = rows.iter().map(|row| self.state(row).to()).collect();
+        let moments = moments?;
         let space = &self.space.0;
         let i = moments.windows(2).position(|pair| !space.can_move(&pair[0], &pair[1]))?;
         let [(a, begin), (b, end)] = [&moments[i], &moments[i + 1]];
-        let way = self.still.space().distance(a, b);
+        let way = self.still.places().distance(a, b);
         Some(match end > begin {
             true => {
                 let [needed, speed] = told_apart(way / (end - begin), space.speed());
@@ -380,15 +392,16 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
             }
         })
     }
-    fn mismatch(&self, q: &DVector<f64>, wanted: &DVector<f64>) -> Mismatch {
-        let [(q, time), (wanted, when)] = [q, wanted].map(|q| self.moment(q));
-        let late = (time - when).abs();
+    fn mismatch(&self, q: &Configuration, wanted: &Configuration) -> Mismatch {
+        let late = (time(q) - time(wanted)).abs();
         if late > TIME_TOLERANCE {
             return Mismatch { off: late, allowed: TIME_TOLERANCE, unit: " s" };
         }
-        self.still.mismatch(&q, &wanted)
+        self.still.mismatch(&self.alone(q), &self.alone(wanted))
     }
+}
 
+impl<K: WithMoving> Appearance for MovingScene<K> {
     fn bodies(&self) -> Vec<Body> {
         let (robot, still): (Vec<_>, Vec<_>) =
             self.still.bodies().into_iter().partition(|b| b.pose.is_none());
@@ -397,17 +410,16 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
     fn moving_obstacles(&self) -> usize {
         self.obstacles.len()
     }
-    fn poses(&self, q: &DVector<f64>) -> Vec<Isometry3<f64>> {
-        let (position, time) = self.moment(q);
-        let mut poses = self.still.poses(&position);
-        poses.extend(K::obstacle_poses(self.among.inner(), time));
+    fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
+        let mut poses = self.still.poses(&self.alone(q));
+        poses.extend(K::obstacle_poses(self.among.inner(), time(q)));
         poses
     }
-    fn traced(&self, q: &DVector<f64>) -> Point3<f64> {
-        self.still.traced(&self.moment(q).0)
+    fn traced(&self, q: &Configuration) -> Point3<f64> {
+        self.still.traced(&self.alone(q))
     }
-    fn seconds(&self, from: &DVector<f64>, to: &DVector<f64>) -> Option<f64> {
-        Some((self.moment(to).1 - self.moment(from).1).max(0.0))
+    fn seconds(&self, from: &Configuration, to: &Configuration) -> Option<f64> {
+        Some((time(to) - time(from)).max(0.0))
     }
     fn picture_spacing(&self) -> f64 {
         self.still.picture_spacing()

@@ -2,17 +2,16 @@
 
 use super::model::{ModelBody, ModelFrame, MotionModel, Step};
 use super::{
-    Body, BodyShape, Checker, Column, Counted, DrivenScene, End, Measured, MovingScene, Queries, RobotKind,
-    SpeedBound, Touch, WithMoving, greatest_speed, hints_and_gradient, no_metric,
+    Appearance, Body, BodyShape, Checker, Column, Counted, Description, DrivenScene, End, Measured, Motion,
+    MovingScene, Queries, SpeedBound, Touch, WithMoving, greatest_speed, hints_and_gradient, no_metric,
 };
 use crate::goals::{GoalPart, examples, rows};
-use crate::motion::{Configured, TypedMotion};
-use crate::roadmaps::RoadmapState;
+use crate::motion::TypedMotion;
 use crate::{Error, MetricName};
-use mp_cspace::erased::CompiledIndex;
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
-    Embed, Factored, Interrupt, MotionValidity, ObstacleKnowledge, Rn, Se2, Se2State, Space, StateVector,
+    AsVectors, Configuration, Embed, Factored, Interrupt, MotionValidity, ObstacleKnowledge, OnVectors, Rn,
+    Se2, Se2State, Space, StateVector,
     obstacles::{ClearanceGradient, ObstacleHints},
 };
 use mp_geom::Aabb;
@@ -22,7 +21,6 @@ use mp_robot::{
     AmongMovingAreas, DiscRobot, DiscVerifier, MovingAreasVerifier, PlanarConfiguration, PlanarRobot,
     PolygonRobot, PolygonVerifier, Trajectory,
 };
-use mp_tree::TreeState;
 use nalgebra::{Isometry2, Isometry3, Point2, Point3, Translation3, UnitQuaternion, Vector2, Vector3};
 use std::f64::consts::TAU;
 use std::fmt::Debug;
@@ -45,9 +43,9 @@ pub trait PlanarBody:
     + 'static
 {
     /// A configuration.
-    type State: TreeState + RoadmapState + StateVector + PlanarConfiguration + 'static;
+    type State: StateVector + Clone + Debug + PartialEq + Send + Sync + PlanarConfiguration + 'static;
     /// The space of configurations.
-    type Space: Factored + CompiledIndex + Embed + Space<State = Self::State> + Debug;
+    type Space: Factored + Space<State = <Self as PlanarBody>::State> + Embed + Clone + Send + Debug + 'static;
     /// The independent check of finished paths.
     type Verifier<'c>: MotionValidity<Self::State> + Clone + Send + Sync
     where
@@ -67,6 +65,8 @@ pub trait PlanarBody:
     /// # Errors
     /// When the box is empty.
     fn space(bounds: [[f64; 2]; 2]) -> Result<Self::Space, Error>;
+    /// The space under its own metric.
+    fn measured(space: &AsVectors<Self::Space>) -> Measured<'static>;
     /// A verifier.
     fn verifier<'c>(&self, space: &'c Self::Space) -> Self::Verifier<'c>;
     /// A verifier among areas that move.
@@ -80,14 +80,12 @@ pub trait PlanarBody:
     fn tolerance(&self) -> f64;
     /// The largest distance of a point of the robot from its origin, metres.
     fn radius(&self) -> f64;
-    /// The configuration of a row.
-    fn state(row: &[f64]) -> Self::State;
-    /// The row of a configuration.
-    fn row(q: &Self::State) -> Vec<f64>;
     /// The rings around it, in its own frame, metres.
     fn rings(&self) -> Vec<Vec<Point2<f64>>>;
     /// The pose of a configuration.
     fn pose(q: &Self::State) -> Isometry2<f64>;
+    /// The configuration at the origin, not turned.
+    fn origin() -> <Self as PlanarBody>::State;
     /// `q` moved by the vector `by`, with the same rotation.
     fn moved(q: &Self::State, by: Vector2<f64>) -> Self::State;
 }
@@ -95,14 +93,19 @@ pub trait PlanarBody:
 impl<B: PlanarBody> SpeedBound for PlanarScene<B> {
     fn speed_bound(&self, rates: &[f64]) -> f64 {
         let rate = |i: usize| rates.get(i).copied().unwrap_or(0.0);
-        mp_math::hypot(rate(0), rate(1)) + PlanarBody::radius(&self.robot) * rate(2)
+        mp_math::hypot(rate(0), rate(1)) + PlanarBody::radius(self.robot()) * rate(2)
     }
 }
 
 impl<B: PlanarBody> WithMoving for PlanarScene<B> {
+    type Place = <B as PlanarBody>::State;
+    type Places = B::Space;
     type Among = AmongMovingAreas<B>;
     type AmongVerifier<'c> = MovingAreasVerifier<'c, B::Space, B::Verifier<'c>>;
 
+    fn places(&self) -> &B::Space {
+        &self.space.0
+    }
     fn among_verifier<'c>(
         &'c self,
         space: &'c SpaceTime<B::Space>,
@@ -161,6 +164,9 @@ impl PlanarBody for DiscRobot {
     fn space([low, high]: [[f64; 2]; 2]) -> Result<Rn<2>, Error> {
         Ok(Rn::new(low, high)?)
     }
+    fn measured(space: &AsVectors<Rn<2>>) -> Measured<'static> {
+        Measured::compiled(space)
+    }
     fn verifier(&self, _: &Rn<2>) -> DiscVerifier {
         DiscVerifier::new(self)
     }
@@ -179,12 +185,6 @@ impl PlanarBody for DiscRobot {
     fn radius(&self) -> f64 {
         self.radius()
     }
-    fn state(row: &[f64]) -> Vector2<f64> {
-        Vector2::new(row[0], row[1])
-    }
-    fn row(q: &Vector2<f64>) -> Vec<f64> {
-        vec![q.x, q.y]
-    }
     fn rings(&self) -> Vec<Vec<Point2<f64>>> {
         let corner = |i: u32| {
             let (s, c) = mp_math::sin_cos(f64::from(i) * TAU / f64::from(CORNERS));
@@ -194,6 +194,9 @@ impl PlanarBody for DiscRobot {
     }
     fn pose(q: &Vector2<f64>) -> Isometry2<f64> {
         Isometry2::new(*q, 0.0)
+    }
+    fn origin() -> Vector2<f64> {
+        Vector2::zeros()
     }
     fn moved(q: &Vector2<f64>, by: Vector2<f64>) -> Vector2<f64> {
         q + by
@@ -216,6 +219,9 @@ impl PlanarBody for PolygonRobot {
     fn space([low, high]: [[f64; 2]; 2]) -> Result<Se2, Error> {
         Ok(Se2::new(low, high)?)
     }
+    fn measured(space: &AsVectors<Se2>) -> Measured<'static> {
+        Measured::compiled(space)
+    }
     fn verifier<'c>(&self, space: &'c Se2) -> PolygonVerifier<'c, Se2> {
         PolygonVerifier::new(space, self)
     }
@@ -234,17 +240,14 @@ impl PlanarBody for PolygonRobot {
     fn radius(&self) -> f64 {
         self.radius()
     }
-    fn state(row: &[f64]) -> Se2State {
-        Se2State::new(row[0], row[1], row[2])
-    }
-    fn row(q: &Se2State) -> Vec<f64> {
-        vec![q.translation.x, q.translation.y, q.angle]
-    }
     fn rings(&self) -> Vec<Vec<Point2<f64>>> {
         self.body().rings().to_vec()
     }
     fn pose(q: &Se2State) -> Isometry2<f64> {
         Isometry2::new(q.translation, q.angle)
+    }
+    fn origin() -> Se2State {
+        Se2State::new(0.0, 0.0, 0.0)
     }
     fn moved(q: &Se2State, by: Vector2<f64>) -> Se2State {
         Se2State { translation: q.translation + by, ..*q }
@@ -255,10 +258,10 @@ impl PlanarBody for PolygonRobot {
 #[derive(Clone, Debug)]
 pub struct PlanarScene<B: PlanarBody> {
     problem: PlanarProblem,
-    robot: B,
-    space: B::Space,
-    start: B::State,
-    goals: Vec<B::State>,
+    robot: OnVectors<B, <B as PlanarBody>::State>,
+    space: AsVectors<B::Space>,
+    start: Configuration,
+    goals: Vec<Configuration>,
     /// What the goals ask of each number, if they are not configurations.
     goal_parts: Option<Vec<Vec<GoalPart>>>,
 }
@@ -280,16 +283,16 @@ impl<B: PlanarBody> PlanarScene<B> {
         let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
         let world = PlanarWorld::new_until(polygons, problem.walls, interrupt)
             .map_err(|e| Error::new(e.to_string()))?;
-        let robot = B::among(Arc::new(world), &problem.file.robot)?;
-        let space = B::space(problem.bounds)?;
+        let robot = OnVectors::new(B::among(Arc::new(world), &problem.file.robot)?);
+        let space = AsVectors(B::space(problem.bounds)?);
         let numbers = B::COLUMNS.len();
-        let start = B::state(&problem.file.start[..numbers]);
+        let start = Configuration::from(&problem.file.start[..numbers]);
         // A robot with accelerations may have goals of its velocities too, which are not those of this scene.
         let parts = problem.file.goals.iter().map(|goal| goal[..numbers.min(goal.len())].to_vec());
         let parts: Vec<Vec<GoalPart>> = parts.collect();
         let (mut goals, mut goal_parts) = (vec![start.clone()], None);
         match rows(&parts) {
-            Some(rows) => goals = rows.iter().map(|row| B::state(row)).collect(),
+            Some(rows) => goals = rows.into_iter().map(Configuration::from).collect(),
             None => goal_parts = Some(parts),
         }
         let mut scene = Self { problem, robot, space, start, goals, goal_parts };
@@ -308,7 +311,7 @@ impl<B: PlanarBody> PlanarScene<B> {
             return Err(Error::new("obstacles move, and the robot has no speed").help("say how fast it is"));
         };
         if let Some(driven) = &self.problem.file.driven {
-            timing.speed = Some(greatest_speed(&self.space, driven));
+            timing.speed = Some(greatest_speed(&self.space.0, driven));
         }
         let moving = self.problem.file.moving.clone();
         let pose = |[x, y, angle]: [f64; 3]| {
@@ -323,7 +326,7 @@ impl<B: PlanarBody> PlanarScene<B> {
         });
         let areas: Vec<_> = areas.collect::<Result<_, Error>>()?;
         let last = moving.iter().filter_map(|m| m.path.last()).map(|row| row[0]).fold(0.0, f64::max);
-        let among = AmongMovingAreas::new(self.robot.clone(), areas)?;
+        let among = AmongMovingAreas::new(self.robot().clone(), areas)?;
         let body = |m: &mp_io::PlanarMoving| Body {
             name: m.name.clone(),
             shape: BodyShape::Area(m.polygon.rings().to_vec()),
@@ -341,7 +344,7 @@ impl<B: PlanarBody> PlanarScene<B> {
     /// The robot in its world.
     #[must_use]
     pub fn robot(&self) -> &B {
-        &self.robot
+        self.robot.inner()
     }
 
     /// The same robot, moved by inputs.
@@ -369,38 +372,42 @@ impl<B: PlanarBody> PlanarScene<B> {
     }
 
     /// The rings around the robot at `q`, in the world, metres.
-    fn rings_at(&self, q: &B::State) -> Vec<Vec<Point2<f64>>> {
-        let pose = B::pose(q);
-        self.robot.rings().into_iter().map(|ring| ring.iter().map(|p| pose * p).collect()).collect()
+    fn rings_at(&self, q: &Configuration) -> Vec<Vec<Point2<f64>>> {
+        let pose = B::pose(&placed::<B>(q));
+        self.robot().rings().into_iter().map(|ring| ring.iter().map(|p| pose * p).collect()).collect()
     }
 }
 
-impl<B: PlanarBody> Configured for PlanarScene<B> {
-    type State = B::State;
+/// The placement of a configuration; the origin for a row that is none.
+fn placed<B: PlanarBody>(q: &Configuration) -> <B as PlanarBody>::State {
+    q.to().unwrap_or_else(|| B::origin())
 }
 
 impl<B: PlanarBody> TypedMotion for PlanarScene<B> {
-    type Space = B::Space;
-    type Checker = B;
-    type Verifier<'c> = B::Verifier<'c>;
-    fn space(&self) -> &B::Space {
+    type Space = AsVectors<B::Space>;
+    type Checker = OnVectors<B, <B as PlanarBody>::State>;
+    type Verifier<'c> = OnVectors<B::Verifier<'c>, <B as PlanarBody>::State>;
+    fn space(&self) -> &Self::Space {
         &self.space
     }
-    fn with_ends(&self, start: B::State, goals: Vec<B::State>) -> Result<Self, Error> {
+    fn with_ends(&self, start: Configuration, goals: Vec<Configuration>) -> Result<Self, Error> {
         let mut scene = self.clone();
-        scene.problem.file.start = B::row(&start);
-        let exactly = |q: &B::State| B::row(q).into_iter().map(GoalPart::Exactly).collect();
+        scene.problem.file.start = start.to_vec();
+        let exactly = |q: &Configuration| q.iter().copied().map(GoalPart::Exactly).collect();
         scene.problem.file.goals = goals.iter().map(exactly).collect();
         (scene.start, scene.goals, scene.goal_parts) = (start, goals, None);
         Ok(scene)
     }
-    fn checker(&self) -> &B {
+    fn checker(&self) -> &Self::Checker {
         &self.robot
     }
-    fn verifier(&self) -> Result<B::Verifier<'_>, Error> {
-        Ok(self.robot.verifier(&self.space))
+    fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
+        Ok(OnVectors::new(self.robot().verifier(&self.space.0)))
     }
-    fn obstacles<'c>(&'c self, counted: &dyn Fn() -> Counted<'c, B>) -> ObstacleKnowledge<'c, B::State> {
+    fn obstacles<'c>(
+        &'c self,
+        counted: &dyn Fn() -> Counted<'c, Self::Checker>,
+    ) -> ObstacleKnowledge<'c, Configuration> {
         hints_and_gradient(counted)
     }
     fn starting_as(mut self, row: &[f64]) -> Self {
@@ -408,51 +415,70 @@ impl<B: PlanarBody> TypedMotion for PlanarScene<B> {
         self
     }
     fn keeping(&self, kept: f64) -> Result<Self, Error> {
-        Ok(Self { robot: self.robot.clone().keeping_clearance(kept), ..self.clone() })
+        Ok(Self { robot: OnVectors::new(self.robot().clone().keeping_clearance(kept)), ..self.clone() })
     }
-    fn checker_keeping(&self, kept: f64) -> Option<B> {
-        Some(self.robot.clone().keeping_clearance(kept))
+    fn checker_keeping(&self, kept: f64) -> Option<Self::Checker> {
+        Some(OnVectors::new(self.robot().clone().keeping_clearance(kept)))
     }
 }
 
-impl<B: PlanarBody> RobotKind for PlanarScene<B> {
+impl<B: PlanarBody> Motion for PlanarScene<B> {
+    fn start(&self) -> &Configuration {
+        &self.start
+    }
+    fn goals(&self) -> &[Configuration] {
+        &self.goals
+    }
+    fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
+        self.goal_parts.as_deref()
+    }
+    fn tolerance(&self) -> f64 {
+        self.robot().tolerance()
+    }
+    fn kept(&self) -> f64 {
+        self.robot().clearance_kept()
+    }
+    fn accuracy(&self) -> f64 {
+        self.tolerance().max(1e-4 * self.robot().radius())
+    }
+    fn shortcut_clearance(&self) -> f64 {
+        (SHORTCUT_CLEARANCE * self.robot().radius()).max(self.tolerance())
+    }
+    fn measured(&self, metric: MetricName) -> Result<Measured<'_>, Error> {
+        match metric {
+            MetricName::Default => Ok(B::measured(&self.space)),
+            _ => Err(no_metric(metric, "a robot of the plane", &[MetricName::Default])),
+        }
+    }
+    /// A free configuration with the same rotation, on the smallest of growing circles around `q` that has one.
+    fn nearest_free(&self, q: &Configuration) -> Option<Configuration> {
+        let (mut robot, q) = (self.robot().clone(), placed::<B>(q));
+        let mut reach = 0.01 * self.robot().radius().max(1e-3 * self.space.extent());
+        while reach < self.space.extent() {
+            let around = (0..64).map(|i| {
+                let (s, c) = mp_math::sin_cos(TAU * f64::from(i) / 64.0);
+                B::moved(&q, Vector2::new(c, s) * reach)
+            });
+            let mut free = around.filter(|p| {
+                self.space.0.contains(p) && robot.clearance(p, f64::INFINITY) > 2.0 * self.tolerance()
+            });
+            if let Some(found) = free.next() {
+                return Some(Configuration::of(&found));
+            }
+            reach *= 1.2;
+        }
+        None
+    }
+}
+
+impl<B: PlanarBody> Description for PlanarScene<B> {
     fn name(&self) -> &str {
         &self.problem.name
     }
     fn space_name(&self) -> String {
         B::SPACE.to_owned()
     }
-    fn start(&self) -> &B::State {
-        &self.start
-    }
-    fn goals(&self) -> &[B::State] {
-        &self.goals
-    }
-
-    fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
-        self.goal_parts.as_deref()
-    }
-
-    fn tolerance(&self) -> f64 {
-        self.robot.tolerance()
-    }
-    fn kept(&self) -> f64 {
-        self.robot.clearance_kept()
-    }
-    fn accuracy(&self) -> f64 {
-        self.tolerance().max(1e-4 * self.robot.radius())
-    }
-    fn shortcut_clearance(&self) -> f64 {
-        (SHORTCUT_CLEARANCE * self.robot.radius()).max(self.tolerance())
-    }
-    fn measured(&self, metric: MetricName) -> Result<Measured<'_, B::State>, Error> {
-        match metric {
-            MetricName::Default => Ok(Measured::compiled(&self.space)),
-            _ => Err(no_metric(metric, "a robot of the plane", &[MetricName::Default])),
-        }
-    }
-
-    fn touching(&self, q: &B::State) -> Vec<Touch> {
+    fn touching(&self, q: &Configuration) -> Vec<Touch> {
         let rings = self.rings_at(q);
         let mut touches: Vec<Touch> = Vec::new();
         let mut note = |obstacle: Option<usize>| {
@@ -465,12 +491,12 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
                 touches.push(Touch { part: None, other: other.to_owned(), with_itself: false, depth: None });
             }
         };
-        if self.robot.clone().keeping_clearance(0.0).clearance(q, f64::MIN_POSITIVE) > 0.0 {
+        if self.robot().clone().keeping_clearance(0.0).clearance(&placed::<B>(q), f64::MIN_POSITIVE) > 0.0 {
             return Vec::new();
         }
         for ring in &rings {
             for (a, b) in ring.iter().zip(ring.iter().skip(1).chain(ring.first())) {
-                if let Some(near) = self.robot.world().nearest_to_segment(a, b, self.tolerance()) {
+                if let Some(near) = self.robot().world().nearest_to_segment(a, b, self.tolerance()) {
                     note(near.obstacle);
                 }
             }
@@ -481,25 +507,6 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         }
         touches
     }
-    /// A free configuration with the same rotation, on the smallest of growing circles around `q` that has one.
-    fn nearest_free(&self, q: &B::State) -> Option<B::State> {
-        let mut robot = self.robot.clone();
-        let mut reach = 0.01 * self.robot.radius().max(1e-3 * self.space.extent());
-        while reach < self.space.extent() {
-            let around = (0..64).map(|i| {
-                let (s, c) = mp_math::sin_cos(TAU * f64::from(i) / 64.0);
-                B::moved(q, Vector2::new(c, s) * reach)
-            });
-            let mut free = around.filter(|p| {
-                self.space.contains(p) && robot.clearance(p, f64::INFINITY) > 2.0 * self.tolerance()
-            });
-            if let Some(found) = free.next() {
-                return Some(found);
-            }
-            reach *= 1.2;
-        }
-        None
-    }
     fn fault(&self, end: End, message: String, help: String) -> Error {
         let part = match end {
             End::Start => PlanarPart::Start,
@@ -508,7 +515,6 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         Error::from(self.problem.file.fault(part, &message, &help))
             .context(format!("cannot plan in {}", self.problem.name))
     }
-
     fn motion_model(&self) -> Result<MotionModel, Error> {
         let yaw = (B::COLUMNS.len() > 2).then_some(2);
         let robot = match &self.problem.file.robot {
@@ -523,14 +529,13 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         };
         let world = model.still_frame(&Isometry3::identity());
         let area = |o: &mp_io::PlanarObstacle| ModelBody::rings(&o.name, world, true, o.polygon.rings());
-        let walls = self.robot.world().walls().map(|[l, h]| {
+        let walls = self.robot().world().walls().map(|[l, h]| {
             let ring = vec![l, Point2::new(h.x, l.y), h, Point2::new(l.x, h.y)];
             ModelBody::rings("the walls", world, false, [&ring])
         });
         model.add_obstacles(self.problem.obstacles.iter().map(area).chain(walls).collect(), [0]);
         Ok(model)
     }
-
     fn columns(&self) -> Vec<Column> {
         B::COLUMNS.iter().map(|(name, unit)| Column::new(*name, *unit)).collect()
     }
@@ -542,38 +547,41 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
         goals.map(|goal| ("goal is".to_owned(), goal)).collect()
     }
-    fn row(&self, q: &B::State) -> Vec<f64> {
-        B::row(q)
+    fn row(&self, q: &Configuration) -> Vec<f64> {
+        q.to_vec()
     }
-    fn state(&self, row: &[f64]) -> B::State {
-        B::state(row)
+    fn state(&self, row: &[f64]) -> Configuration {
+        row.into()
     }
     fn given_start(&self) -> Vec<f64> {
         self.problem.file.start[..B::COLUMNS.len()].to_vec()
     }
+}
 
+impl<B: PlanarBody> Appearance for PlanarScene<B> {
     fn bodies(&self) -> Vec<Body> {
-        let robot = Body { name: "robot".to_owned(), shape: BodyShape::Area(self.robot.rings()), pose: None };
+        let robot =
+            Body { name: "robot".to_owned(), shape: BodyShape::Area(self.robot().rings()), pose: None };
         let still = self.problem.obstacles.iter().map(|o| Body {
             name: o.name.clone(),
             shape: BodyShape::Area(o.polygon.rings().to_vec()),
             pose: Some(Isometry3::identity()),
         });
-        let walls = self.robot.world().walls().map(|[l, h]| Body {
+        let walls = self.robot().world().walls().map(|[l, h]| Body {
             name: "the walls".to_owned(),
             shape: BodyShape::Lines(vec![vec![l, Point2::new(h.x, l.y), h, Point2::new(l.x, h.y), l]]),
             pose: Some(Isometry3::identity()),
         });
         std::iter::once(robot).chain(still).chain(walls).collect()
     }
-    fn poses(&self, q: &B::State) -> Vec<Isometry3<f64>> {
-        let pose = B::pose(q);
+    fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
+        let pose = B::pose(&placed::<B>(q));
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), pose.rotation.angle());
         let place = pose.translation.vector;
         vec![Isometry3::from_parts(Translation3::new(place.x, place.y, 0.0), turn)]
     }
     fn picture_spacing(&self) -> f64 {
-        PICTURE_SPACING * self.robot.radius().max(1e-3 * self.space.extent())
+        PICTURE_SPACING * self.robot().radius().max(1e-3 * self.space.extent())
     }
     fn picture_bounds(&self) -> Option<Aabb> {
         let corner = |[x, y]: [f64; 2]| Point3::new(x, y, 0.0);

@@ -2,28 +2,26 @@
 
 use super::model::{ModelBody, ModelFrame, MotionModel, Step};
 use super::{
-    Body, BodyShape, Column, Counted, End, Measured, Mismatch, MovingScene, PathFormat, Queries, RobotKind,
-    SpeedBound, Touch, WithMoving, hints_and_gradient,
+    Appearance, Body, BodyShape, Column, Counted, Description, End, Measured, Mismatch, Motion, MovingScene,
+    PathFormat, Queries, SpeedBound, Touch, WithMoving, hints_and_gradient,
 };
 use crate::goals::{GoalPart, examples, rows};
-use crate::motion::{Configured, TypedMotion};
+use crate::motion::TypedMotion;
 use crate::numbers::{fingerprint, plain};
-use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};
 use mp_collide::Query;
-use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
+use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
-    DefaultNn, Embed, Euclidean, Factored, Interrupt, Interrupted, Linear, Manhattan, MaxDisplacement,
-    Metric, MotionCheck, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume,
-    TrueMetric, WithMetric,
+    AsVectors, Configuration, Embed, Euclidean, Factored, Interrupt, Interrupted, Linear, Manhattan,
+    MaxDisplacement, Metric, MotionCheck, ObstacleKnowledge, OnVectors, Path, ScaledEuclidean, Se2, Se3,
+    Space, StateVector, SweptVolume, TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, displacement_bound, pose_from_six, six_from_pose, six_tuples};
 use mp_io::{RigidMoving, RigidProblem, SpaceKind, Timing};
 use mp_robot::{
     AmongMoving, MovingVerifier, Placement, Planar, RigidBody, Spatial, Trajectory, Verifier, is_solid,
 };
-use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use std::fmt::Debug;
 
@@ -35,9 +33,11 @@ const PLANE_TOLERANCE: f64 = 1e-9;
 const PICTURE_SPACING: f64 = 0.55;
 
 /// How a rigid body moves: [`Spatial`], in SE(3), or [`Planar`], in SE(2).
-pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateState + StateVector> {
+pub trait RigidSpace:
+    Placement<State: StateVector + Clone + Debug + PartialEq + Send + Sync> + 'static
+{
     /// The space of its configurations.
-    type Space: Factored + CompiledIndex + Embed + DefaultNn<State = Self::State, Nn: 'static> + Debug;
+    type Space: Factored + Space<State = Self::State> + Embed + TrueMetric + Clone + Send + Debug + 'static;
     /// The metric of the point that moves farthest.
     type Displacement: Metric<Self::Space, Nn: 'static> + TrueMetric<Self::Space> + Clone + Send + 'static;
     /// The metric of the swept volume.
@@ -53,6 +53,8 @@ pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateStat
     /// # Errors
     /// When the bounds are empty.
     fn space(bounds: &Aabb) -> Result<Self::Space, Error>;
+    /// The space under its own metric.
+    fn measured(space: &AsVectors<Self::Space>) -> Measured<'static>;
     /// The Euclidean metric in which radians count times `radius`.
     ///
     /// # Errors
@@ -81,6 +83,9 @@ impl RigidSpace for Spatial {
     fn space(bounds: &Aabb) -> Result<Se3, Error> {
         Ok(Se3::new(bounds.min.coords, bounds.max.coords)?)
     }
+    fn measured(space: &AsVectors<Se3>) -> Measured<'static> {
+        Measured::compiled(space)
+    }
     fn scaled(space: &Se3, radius: f64) -> Result<ScaledEuclidean, Error> {
         Ok(ScaledEuclidean::new(space, [1.0, 1.0, 1.0, radius])?)
     }
@@ -102,6 +107,9 @@ impl RigidSpace for Planar {
     fn space(bounds: &Aabb) -> Result<Se2, Error> {
         Ok(Se2::new(bounds.min.coords.xy(), bounds.max.coords.xy())?)
     }
+    fn measured(space: &AsVectors<Se2>) -> Measured<'static> {
+        Measured::compiled(space)
+    }
     fn scaled(space: &Se2, radius: f64) -> Result<ScaledEuclidean, Error> {
         Ok(ScaledEuclidean::new(space, [1.0, 1.0, radius])?)
     }
@@ -122,10 +130,10 @@ fn swept(robot: &TriMesh) -> Result<SweptVolume, Error> {
 #[derive(Clone, Debug)]
 pub struct RigidScene<M: RigidSpace> {
     problem: RigidProblem,
-    space: M::Space,
-    robot: RigidBody<M>,
-    start: M::State,
-    goals: Vec<M::State>,
+    space: AsVectors<M::Space>,
+    robot: OnVectors<RigidBody<M>, M::State>,
+    start: Configuration,
+    goals: Vec<Configuration>,
     /// What the goals ask of each number, if they are not configurations.
     goal_parts: Option<Vec<Vec<GoalPart>>>,
     radius: f64,
@@ -158,12 +166,13 @@ impl<M: RigidSpace> RigidScene<M> {
         problem: RigidProblem,
         interrupt: &Interrupt,
     ) -> Result<Self, Error> {
-        let space = M::space(&problem.position_bounds())?;
+        let space = AsVectors(M::space(&problem.position_bounds())?);
         let obstacles = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
-        let before = before.map(|before| &before.robot);
+        let before = before.map(|before| before.robot.inner());
         let robot = RigidBody::among_until(before, &problem.robot.mesh, obstacles, interrupt)?;
-        let (start, goal) = (M::configuration(&problem.start), M::configuration(&problem.goal));
+        let (start, goal) = (at::<M>(&problem.start), at::<M>(&problem.goal));
         let radius = if robot.radius() > 0.0 { robot.radius() } else { 1e-3 * space.extent() };
+        let robot = OnVectors::new(robot);
         Ok(Self { problem, space, robot, start, goals: vec![goal], goal_parts: None, radius })
     }
 
@@ -209,7 +218,7 @@ impl<M: RigidSpace> RigidScene<M> {
         });
         let meshes: Vec<_> = meshes.collect::<Result<_, Error>>()?;
         let last = moving.iter().filter_map(|m| m.path.last()).map(|row| row[0]).fold(0.0, f64::max);
-        let among = AmongMoving::new_until(self.robot.clone(), meshes, interrupt)?;
+        let among = AmongMoving::new_until(self.robot().clone(), meshes, interrupt)?;
         let body = |m: &RigidMoving| Body {
             name: m.name.clone(),
             shape: BodyShape::Mesh(m.mesh.clone()),
@@ -227,7 +236,7 @@ impl<M: RigidSpace> RigidScene<M> {
     /// The robot among its obstacles.
     #[must_use]
     pub fn robot(&self) -> &RigidBody<M> {
-        &self.robot
+        self.robot.inner()
     }
 
     /// The distance (m) of the robot's farthest point from its origin; for a point robot, 1e-3 of the extent of the space.
@@ -243,10 +252,30 @@ impl<P: Placement> Queries for RigidBody<P> {
     }
 }
 
+/// The placement of a configuration; that without shift and rotation for a row that is none.
+fn placed<M: RigidSpace>(q: &Configuration) -> M::State {
+    q.to().unwrap_or_else(|| M::configuration(&Isometry3::identity()))
+}
+
+/// The pose of a configuration.
+fn pose<M: RigidSpace>(q: &Configuration) -> Isometry3<f64> {
+    M::pose(&placed::<M>(q))
+}
+
+/// The configuration of a pose.
+fn at<M: RigidSpace>(pose: &Isometry3<f64>) -> Configuration {
+    Configuration::of(&M::configuration(pose))
+}
+
 impl<M: RigidSpace> WithMoving for RigidScene<M> {
+    type Place = M::State;
+    type Places = M::Space;
     type Among = AmongMoving<M>;
     type AmongVerifier<'c> = MovingVerifier<'c, M::Space, M>;
 
+    fn places(&self) -> &M::Space {
+        &self.space.0
+    }
     fn among_verifier<'c>(
         &'c self,
         space: &'c SpaceTime<M::Space>,
@@ -285,13 +314,13 @@ impl<M: RigidSpace> SpeedBound for RigidScene<M> {
     fn speed_bound(&self, rates: &[f64]) -> f64 {
         let (shift, turn) = rates.split_at(M::AXES.min(rates.len()));
         let norm = |rates: &[f64]| rates.iter().map(|r| r * r).sum::<f64>().sqrt();
-        norm(shift) + self.robot.radius() * norm(turn)
+        norm(shift) + self.robot().radius() * norm(turn)
     }
-    fn check_state<'c>(verifier: &mut Verifier<'c, M::Space, M>, q: &M::State, enough: f64) -> MotionCheck
+    fn check_state<'c>(verifier: &mut Self::Verifier<'c>, q: &Configuration, enough: f64) -> MotionCheck
     where
         Self: 'c,
     {
-        verifier.check_state(q, enough)
+        verifier.inner_mut().check_state(&placed::<M>(q), enough)
     }
     fn degrees_of_freedom(&self) -> Vec<Column> {
         M::DEGREES.iter().map(|(name, unit)| Column::new(*name, *unit)).collect()
@@ -304,241 +333,86 @@ impl<P: Placement> Queries for AmongMoving<P> {
     }
 }
 
-impl<M: RigidSpace> Configured for RigidScene<M> {
-    type State = M::State;
-}
-
 impl<M: RigidSpace> TypedMotion for RigidScene<M> {
-    type Space = M::Space;
-    type Checker = RigidBody<M>;
-    type Verifier<'c> = Verifier<'c, M::Space, M>;
-    fn space(&self) -> &M::Space {
+    type Space = AsVectors<M::Space>;
+    type Checker = OnVectors<RigidBody<M>, M::State>;
+    type Verifier<'c> = OnVectors<Verifier<'c, M::Space, M>, M::State>;
+    fn space(&self) -> &Self::Space {
         &self.space
     }
-    fn with_ends(&self, start: M::State, goals: Vec<M::State>) -> Result<Self, Error> {
+    fn with_ends(&self, start: Configuration, goals: Vec<Configuration>) -> Result<Self, Error> {
         let mut problem = self.problem.clone();
-        problem.start = M::pose(&start);
-        problem.goal = goals.first().map_or(problem.goal, M::pose);
-        let space = M::space(&problem.position_bounds())?;
+        problem.start = pose::<M>(&start);
+        problem.goal = goals.first().map_or(problem.goal, pose::<M>);
+        let space = AsVectors(M::space(&problem.position_bounds())?);
         let (robot, radius) = (self.robot.clone(), self.radius);
         Ok(Self { problem, space, robot, start, goals, goal_parts: None, radius })
     }
     fn keeping(&self, kept: f64) -> Result<Self, Error> {
-        Ok(Self { robot: self.robot.clone().keeping(kept), ..self.clone() })
+        Ok(Self { robot: OnVectors::new(self.robot().clone().keeping(kept)), ..self.clone() })
     }
-    fn checker_keeping(&self, kept: f64) -> Option<RigidBody<M>> {
-        Some(self.robot.clone().keeping(kept))
+    fn checker_keeping(&self, kept: f64) -> Option<Self::Checker> {
+        Some(OnVectors::new(self.robot().clone().keeping(kept)))
     }
-    fn checker(&self) -> &RigidBody<M> {
+    fn checker(&self) -> &Self::Checker {
         &self.robot
     }
     fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
-        Ok(Verifier::new(&self.space, &self.robot)?)
+        Ok(OnVectors::new(Verifier::new(&self.space.0, self.robot())?))
     }
     fn obstacles<'c>(
         &'c self,
-        counted: &dyn Fn() -> Counted<'c, RigidBody<M>>,
-    ) -> ObstacleKnowledge<'c, M::State> {
+        counted: &dyn Fn() -> Counted<'c, Self::Checker>,
+    ) -> ObstacleKnowledge<'c, Configuration> {
         ObstacleKnowledge { geometry: Some(AnyGeometry::new(counted())), ..hints_and_gradient(counted) }
     }
 }
 
-impl<M: RigidSpace> RobotKind for RigidScene<M> {
-    fn name(&self) -> &str {
-        &self.problem.name
-    }
-    fn space_name(&self) -> String {
-        self.problem.space.to_string()
-    }
-    fn start(&self) -> &M::State {
+impl<M: RigidSpace> Motion for RigidScene<M> {
+    fn start(&self) -> &Configuration {
         &self.start
     }
-    fn goals(&self) -> &[M::State] {
+    fn goals(&self) -> &[Configuration] {
         &self.goals
     }
-
     fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
         self.goal_parts.as_deref()
     }
-
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
-        self.robot.make_ready(interrupt)
+        self.robot().make_ready(interrupt)
     }
     fn tolerance(&self) -> f64 {
-        self.robot.tolerance()
+        self.robot().tolerance()
     }
     fn kept(&self) -> f64 {
-        self.robot.kept()
+        self.robot().kept()
     }
-    fn measured(&self, metric: MetricName) -> Result<Measured<'_, M::State>, Error> {
-        let space = self.space.clone();
+    fn measured(&self, metric: MetricName) -> Result<Measured<'_>, Error> {
+        let space = self.space.0.clone();
         let robot = &self.problem.robot.mesh;
         Ok(match metric {
-            MetricName::Default => Measured::compiled(&space),
-            MetricName::Euclidean => Measured::by_coordinates(&WithMetric::new(space, Euclidean)),
-            MetricName::Manhattan => Measured::by_coordinates(&WithMetric::new(space, Manhattan)),
+            MetricName::Default => M::measured(&self.space),
+            MetricName::Euclidean => Measured::by_coordinates(&AsVectors(WithMetric::new(space, Euclidean))),
+            MetricName::Manhattan => Measured::by_coordinates(&AsVectors(WithMetric::new(space, Manhattan))),
             MetricName::Scaled => {
                 let metric = M::scaled(&space, self.radius)?;
-                Measured::by_coordinates(&WithMetric::new(space, metric))
+                Measured::by_coordinates(&AsVectors(WithMetric::new(space, metric)))
             }
             MetricName::MaxDisplacement => {
-                let space = WithMetric::new(space, M::displacement(robot)?);
+                let space = AsVectors(WithMetric::new(space, M::displacement(robot)?));
                 Measured { index: AnyIndex::by_metric(&space), space: AnySpace::new(&space) }
             }
             // Not a true metric: the index compares every state.
             MetricName::SweptVolume => {
-                let space = WithMetric::new(space, M::swept(robot)?);
+                let space = AsVectors(WithMetric::new(space, M::swept(robot)?));
                 Measured { index: AnyIndex::new(&space, Linear::default()), space: AnySpace::new(&space) }
             }
         })
     }
-
-    fn touching(&self, q: &M::State) -> Vec<Touch> {
-        let contacts = self.robot.clone().explain(q);
-        let touch = |c: mp_collide::Contact| Touch {
-            part: None,
-            other: c.name,
-            with_itself: false,
-            depth: Some(c.depth),
-        };
-        contacts.into_iter().map(touch).collect()
-    }
-    fn closest(&self, q: &M::State) -> Option<(String, f64)> {
-        let (obstacle, distance) = self.robot.clone().closest(q)?;
-        Some((format!("{} and {obstacle}", self.problem.robot.name), distance))
-    }
-    fn enclosures(&self, q: &M::State) -> Vec<[String; 2]> {
-        let robot = &self.problem.robot.name;
-        let found = self.robot.clone().enclosures(q).into_iter();
-        found
-            .map(|(other, around)| if around { [robot.clone(), other] } else { [other, robot.clone()] })
-            .collect()
-    }
-    fn nearest_free(&self, q: &M::State) -> Option<M::State> {
-        self.robot.clone().nearest_free(q, &self.space, 2.0 * self.tolerance())
-    }
-    fn lint(&self) -> Vec<String> {
-        let mut found = Vec::new();
-        let scene = self.robot.scene();
-        let name = |id| scene.body(id).map_or("?", |body| body.name());
-        let pairs = scene.colliding_pairs(&mut Query::default());
-        let named: Vec<String> =
-            pairs.iter().take(5).map(|(a, b)| format!("{} and {}", name(*a), name(*b))).collect();
-        if !named.is_empty() {
-            let more = match pairs.len() {
-                n if n > 5 => format!(" and {} more pairs", n - 5),
-                _ => String::new(),
-            };
-            found.push(format!("obstacles touch each other: {}{more}", named.join(", ")));
-        }
-        found
-    }
-    fn odd_ends(&self) -> Option<String> {
-        let inside = [&self.start, &self.goals[0]].map(|q| self.robot.enclosing(q));
-        if inside[0] == inside[1] {
-            return None;
-        }
-        let [start, goal] = inside.map(|names| match names.is_empty() {
-            true => "outside of all solids".to_owned(),
-            false => format!("inside of {}", names.join(", ")),
-        });
-        Some(format!("the start is {start}, the goal {goal}: there may be no way"))
-    }
-    fn fault(&self, _: End, message: String, help: String) -> Error {
-        Error::new(message).help(help).context(format!("cannot plan in {}", self.problem.name))
-    }
-
-    fn columns(&self) -> Vec<Column> {
-        Column::of_pose()
-    }
-    fn limits(&self) -> Vec<Option<[f64; 2]>> {
-        let b = self.problem.position_bounds();
-        let planar = self.problem.space == SpaceKind::Se2;
-        let still = |free: Option<[f64; 2]>| if planar { Some([0.0, 0.0]) } else { free };
-        let side = |i: usize| Some([b.min[i], b.max[i]]);
-        vec![side(0), side(1), still(side(2)), None, still(None), still(None)]
-    }
-    fn path_format(&self) -> PathFormat {
-        PathFormat::Poses
-    }
-    fn row(&self, q: &M::State) -> Vec<f64> {
-        six_from_pose(&M::pose(q)).map(|v| v + 0.0).to_vec()
-    }
-    fn state(&self, row: &[f64]) -> M::State {
-        M::configuration(&pose_from_six(std::array::from_fn(|i| row[i])))
-    }
-    fn rows(&self, path: &Path<M::State>) -> Vec<Vec<f64>> {
-        let states = &path.states;
-        if states.is_empty() {
-            return Vec::new();
-        }
-        let at = |i: usize, t: f64| match states.get(i + 1) {
-            Some(next) => M::pose(&self.space.interpolate(&states[i], next, t)),
-            None => M::pose(&states[i]),
-        };
-        six_tuples(states.len() - 1, self.radius, at).iter().map(|six| six.to_vec()).collect()
-    }
-    fn details(&self) -> Vec<(String, String)> {
-        let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
-        goals.map(|goal| ("goal is".to_owned(), goal)).collect()
-    }
-    /// The editor knows one goal, all of whose numbers are given.
-    fn rigid_problem(&self) -> Option<&RigidProblem> {
-        (self.goal_parts.is_none() && self.goals.len() == 1).then_some(&self.problem)
-    }
-    fn export(&self, folder: &std::path::Path) -> Result<std::path::PathBuf, Error> {
-        Ok(mp_io::export_ompl(&self.problem, folder, &self.problem.name, &mp_io::OmplExport::default())?)
-    }
-    fn motion_model(&self) -> Result<MotionModel, Error> {
-        let robot = &self.problem.robot;
-        let mut model = MotionModel {
-            steps: vec![Step::Pose(0)],
-            frames: vec![ModelFrame::Pose { first: 0 }],
-            bodies: vec![ModelBody::mesh(&robot.name, 0, &robot.mesh).robot()],
-            ..MotionModel::default()
-        };
-        let is_point = self.robot.radius() == 0.0;
-        let obstacles = self.problem.obstacles.iter().map(|o| {
-            let frame = model.still_frame(&o.pose);
-            ModelBody::mesh(&o.name, frame, &o.mesh).solid(is_point && is_solid(&o.mesh))
-        });
-        let obstacles = obstacles.collect();
-        model.add_obstacles(obstacles, [0]);
-        Ok(model)
-    }
-    fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
-        if self.problem.space != SpaceKind::Se2 {
-            return None;
-        }
-        let off = |row: &Vec<f64>| [row[2], row[4], row[5]].iter().any(|v| v.abs() > PLANE_TOLERANCE);
-        let i = rows.iter().position(off)?;
-        Some(format!("configuration {} leaves the plane: z, β and γ must be 0", i + 1))
-    }
-    fn mismatch(&self, q: &M::State, wanted: &M::State) -> Mismatch {
-        let off = displacement_bound(&M::pose(q), &M::pose(wanted), self.radius);
-        Mismatch { off, allowed: END_TOLERANCE * self.radius, unit: " m" }
-    }
-    fn written(&self, q: &M::State) -> String {
-        self.row(q).into_iter().map(plain).collect::<Vec<_>>().join(" ")
-    }
-
-    fn bodies(&self) -> Vec<Body> {
-        let robot = &self.problem.robot;
-        let shape = BodyShape::Mesh(robot.mesh.clone());
-        let moving = Body { name: robot.name.clone(), shape, pose: None };
-        std::iter::once(moving).chain(self.problem.obstacles.iter().map(Body::obstacle)).collect()
-    }
-    fn poses(&self, q: &M::State) -> Vec<Isometry3<f64>> {
-        vec![M::pose(q)]
-    }
-    fn picture_spacing(&self) -> f64 {
-        PICTURE_SPACING * self.radius
-    }
-    fn picture_bounds(&self) -> Option<Aabb> {
-        self.problem.bounds
-    }
-    fn is_planar(&self) -> bool {
-        self.problem.space == SpaceKind::Se2
+    fn nearest_free(&self, q: &Configuration) -> Option<Configuration> {
+        let free =
+            self.robot().clone().nearest_free(&placed::<M>(q), &self.space.0, 2.0 * self.tolerance())?;
+        Some(Configuration::of(&free))
     }
     fn fingerprint(&self, metric: MetricName) -> Option<u64> {
         let problem = &self.problem;
@@ -556,5 +430,159 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
         mesh(&problem.robot.mesh, &Isometry3::identity());
         problem.obstacles.iter().for_each(|o| mesh(&o.mesh, &o.pose));
         Some(fingerprint(numbers))
+    }
+}
+
+impl<M: RigidSpace> Description for RigidScene<M> {
+    fn name(&self) -> &str {
+        &self.problem.name
+    }
+    fn space_name(&self) -> String {
+        self.problem.space.to_string()
+    }
+    fn touching(&self, q: &Configuration) -> Vec<Touch> {
+        let contacts = self.robot().clone().explain(&placed::<M>(q));
+        let touch = |c: mp_collide::Contact| Touch {
+            part: None,
+            other: c.name,
+            with_itself: false,
+            depth: Some(c.depth),
+        };
+        contacts.into_iter().map(touch).collect()
+    }
+    fn closest(&self, q: &Configuration) -> Option<(String, f64)> {
+        let (obstacle, distance) = self.robot().clone().closest(&placed::<M>(q))?;
+        Some((format!("{} and {obstacle}", self.problem.robot.name), distance))
+    }
+    fn enclosures(&self, q: &Configuration) -> Vec<[String; 2]> {
+        let robot = &self.problem.robot.name;
+        let found = self.robot().clone().enclosures(&placed::<M>(q)).into_iter();
+        found
+            .map(|(other, around)| if around { [robot.clone(), other] } else { [other, robot.clone()] })
+            .collect()
+    }
+    fn lint(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        let scene = self.robot().scene();
+        let name = |id| scene.body(id).map_or("?", |body| body.name());
+        let pairs = scene.colliding_pairs(&mut Query::default());
+        let named: Vec<String> =
+            pairs.iter().take(5).map(|(a, b)| format!("{} and {}", name(*a), name(*b))).collect();
+        if !named.is_empty() {
+            let more = match pairs.len() {
+                n if n > 5 => format!(" and {} more pairs", n - 5),
+                _ => String::new(),
+            };
+            found.push(format!("obstacles touch each other: {}{more}", named.join(", ")));
+        }
+        found
+    }
+    fn odd_ends(&self) -> Option<String> {
+        let inside = [&self.start, &self.goals[0]].map(|q| self.robot().enclosing(&placed::<M>(q)));
+        if inside[0] == inside[1] {
+            return None;
+        }
+        let [start, goal] = inside.map(|names| match names.is_empty() {
+            true => "outside of all solids".to_owned(),
+            false => format!("inside of {}", names.join(", ")),
+        });
+        Some(format!("the start is {start}, the goal {goal}: there may be no way"))
+    }
+    fn fault(&self, _: End, message: String, help: String) -> Error {
+        Error::new(message).help(help).context(format!("cannot plan in {}", self.problem.name))
+    }
+    fn columns(&self) -> Vec<Column> {
+        Column::of_pose()
+    }
+    fn limits(&self) -> Vec<Option<[f64; 2]>> {
+        let b = self.problem.position_bounds();
+        let planar = self.problem.space == SpaceKind::Se2;
+        let still = |free: Option<[f64; 2]>| if planar { Some([0.0, 0.0]) } else { free };
+        let side = |i: usize| Some([b.min[i], b.max[i]]);
+        vec![side(0), side(1), still(side(2)), None, still(None), still(None)]
+    }
+    fn path_format(&self) -> PathFormat {
+        PathFormat::Poses
+    }
+    fn row(&self, q: &Configuration) -> Vec<f64> {
+        six_from_pose(&pose::<M>(q)).map(|v| v + 0.0).to_vec()
+    }
+    fn state(&self, row: &[f64]) -> Configuration {
+        at::<M>(&pose_from_six(std::array::from_fn(|i| row[i])))
+    }
+    fn rows(&self, path: &Path<Configuration>) -> Vec<Vec<f64>> {
+        let states = &path.states;
+        if states.is_empty() {
+            return Vec::new();
+        }
+        let at = |i: usize, t: f64| match states.get(i + 1) {
+            Some(next) => pose::<M>(&self.space.interpolate(&states[i], next, t)),
+            None => pose::<M>(&states[i]),
+        };
+        six_tuples(states.len() - 1, self.radius, at).iter().map(|six| six.to_vec()).collect()
+    }
+    fn details(&self) -> Vec<(String, String)> {
+        let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
+        goals.map(|goal| ("goal is".to_owned(), goal)).collect()
+    }
+    fn export(&self, folder: &std::path::Path) -> Result<std::path::PathBuf, Error> {
+        Ok(mp_io::export_ompl(&self.problem, folder, &self.problem.name, &mp_io::OmplExport::default())?)
+    }
+    fn motion_model(&self) -> Result<MotionModel, Error> {
+        let robot = &self.problem.robot;
+        let mut model = MotionModel {
+            steps: vec![Step::Pose(0)],
+            frames: vec![ModelFrame::Pose { first: 0 }],
+            bodies: vec![ModelBody::mesh(&robot.name, 0, &robot.mesh).robot()],
+            ..MotionModel::default()
+        };
+        let is_point = self.robot().radius() == 0.0;
+        let obstacles = self.problem.obstacles.iter().map(|o| {
+            let frame = model.still_frame(&o.pose);
+            ModelBody::mesh(&o.name, frame, &o.mesh).solid(is_point && is_solid(&o.mesh))
+        });
+        let obstacles = obstacles.collect();
+        model.add_obstacles(obstacles, [0]);
+        Ok(model)
+    }
+    fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
+        if self.problem.space != SpaceKind::Se2 {
+            return None;
+        }
+        let off = |row: &Vec<f64>| [row[2], row[4], row[5]].iter().any(|v| v.abs() > PLANE_TOLERANCE);
+        let i = rows.iter().position(off)?;
+        Some(format!("configuration {} leaves the plane: z, β and γ must be 0", i + 1))
+    }
+    fn mismatch(&self, q: &Configuration, wanted: &Configuration) -> Mismatch {
+        let off = displacement_bound(&pose::<M>(q), &pose::<M>(wanted), self.radius);
+        Mismatch { off, allowed: END_TOLERANCE * self.radius, unit: " m" }
+    }
+    fn written(&self, q: &Configuration) -> String {
+        self.row(q).into_iter().map(plain).collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl<M: RigidSpace> Appearance for RigidScene<M> {
+    /// The editor knows one goal, all of whose numbers are given.
+    fn rigid_problem(&self) -> Option<&RigidProblem> {
+        (self.goal_parts.is_none() && self.goals.len() == 1).then_some(&self.problem)
+    }
+    fn bodies(&self) -> Vec<Body> {
+        let robot = &self.problem.robot;
+        let shape = BodyShape::Mesh(robot.mesh.clone());
+        let moving = Body { name: robot.name.clone(), shape, pose: None };
+        std::iter::once(moving).chain(self.problem.obstacles.iter().map(Body::obstacle)).collect()
+    }
+    fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
+        vec![pose::<M>(q)]
+    }
+    fn picture_spacing(&self) -> f64 {
+        PICTURE_SPACING * self.radius
+    }
+    fn picture_bounds(&self) -> Option<Aabb> {
+        self.problem.bounds
+    }
+    fn is_planar(&self) -> bool {
+        self.problem.space == SpaceKind::Se2
     }
 }

@@ -2,13 +2,14 @@
 
 use mp_cspace::nn::Linear;
 use mp_cspace::{
-    Clearance, DefaultNn, Factored, Interrupt, JointRange, Joints, MotionCheck, MotionClearance,
-    MotionValidity, Rng, Space, Validity, nn::Layout,
+    Clearance, Configuration, DefaultNn, Factored, Interrupt, JointRange, Joints, MotionCheck,
+    MotionClearance, MotionValidity, Rng, Space, Validity, nn::Layout,
 };
 use mp_plan::{
-    Body, BodyShape, Column, Configured, Error, Measured, MetricName, Queries, RobotKind, Touch, TypedMotion,
+    Appearance, Body, BodyShape, Column, Description, Error, Measured, MetricName, Motion, Queries, Touch,
+    TypedMotion,
 };
-use nalgebra::{DVector, Isometry3, Point2};
+use nalgebra::{Isometry3, Point2};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Distances, samples, interpolations, checks and verified pieces so far.
@@ -18,15 +19,13 @@ fn count() {
     WORK.fetch_add(1, Ordering::SeqCst);
 }
 
-type State = DVector<f64>;
-
 /// The unit square, which counts.
 #[derive(Clone, Debug)]
-pub(crate) struct Square(Joints<State>);
+pub(crate) struct Square(Joints<Configuration>);
 
 impl Space for Square {
-    type State = State;
-    fn distance(&self, from: &State, to: &State) -> f64 {
+    type State = Configuration;
+    fn distance(&self, from: &Configuration, to: &Configuration) -> f64 {
         count();
         self.0.distance(from, to)
     }
@@ -36,25 +35,25 @@ impl Space for Square {
     fn extent(&self) -> f64 {
         self.0.extent()
     }
-    fn interpolate_into(&self, from: &State, to: &State, t: f64, out: &mut State) {
+    fn interpolate_into(&self, from: &Configuration, to: &Configuration, t: f64, out: &mut Configuration) {
         count();
         self.0.interpolate_into(from, to, t, out);
     }
-    fn unit_cube_to_state(&self, u: &[f64]) -> State {
+    fn unit_cube_to_state(&self, u: &[f64]) -> Configuration {
         self.0.unit_cube_to_state(u)
     }
-    fn sample_uniform(&self, rng: &mut Rng) -> State {
+    fn sample_uniform(&self, rng: &mut Rng) -> Configuration {
         count();
         self.0.sample_uniform(rng)
     }
-    fn contains(&self, q: &State) -> bool {
+    fn contains(&self, q: &Configuration) -> bool {
         self.0.contains(q)
     }
-    fn moved(&self, from: &State, velocity: &[f64], time: f64) -> Option<State> {
+    fn moved(&self, from: &Configuration, velocity: &[f64], time: f64) -> Option<Configuration> {
         count();
         self.0.moved(from, velocity, time)
     }
-    fn velocity_into(&self, from: &State, to: &State, out: &mut [f64]) -> bool {
+    fn velocity_into(&self, from: &Configuration, to: &Configuration, out: &mut [f64]) -> bool {
         self.0.velocity_into(from, to, out)
     }
 }
@@ -63,20 +62,27 @@ impl Factored for Square {
     fn factors(&self) -> usize {
         self.0.factors()
     }
-    fn each_factor(&self, from: &State, to: &State, f: &mut impl FnMut(usize, f64)) {
+    fn each_factor(&self, from: &Configuration, to: &Configuration, f: &mut impl FnMut(usize, f64)) {
         self.0.each_factor(from, to, f);
     }
     fn factor_extent(&self, factor: usize) -> f64 {
         self.0.factor_extent(factor)
     }
-    fn interpolate_factor(&self, factor: usize, from: &State, to: &State, t: f64, out: &mut State) {
+    fn interpolate_factor(
+        &self,
+        factor: usize,
+        from: &Configuration,
+        to: &Configuration,
+        t: f64,
+        out: &mut Configuration,
+    ) {
         count();
         self.0.interpolate_factor(factor, from, to, t, out);
     }
     fn factor_layouts(&self) -> Vec<Layout> {
         self.0.factor_layouts()
     }
-    fn embed_factors(&self, state: &State, put: &mut impl FnMut(usize, f64)) {
+    fn embed_factors(&self, state: &Configuration, put: &mut impl FnMut(usize, f64)) {
         self.0.embed_factors(state, put);
     }
 }
@@ -92,21 +98,21 @@ pub(crate) struct Discs {
     queries: u64,
 }
 
-impl Validity<State> for Discs {
-    fn is_valid(&mut self, q: &State) -> bool {
+impl Validity<Configuration> for Discs {
+    fn is_valid(&mut self, q: &Configuration) -> bool {
         self.clearance(q, f64::MIN_POSITIVE) > 0.0
     }
 }
-impl Clearance<State> for Discs {
-    fn clearance(&mut self, q: &State, _: f64) -> f64 {
+impl Clearance<Configuration> for Discs {
+    fn clearance(&mut self, q: &Configuration, _: f64) -> f64 {
         count();
         self.queries += 1;
         clearance(&self.discs, q)
     }
 }
-impl MotionClearance<State> for Discs {
-    fn motion_bound(&self, from: &State, to: &State) -> f64 {
-        (to - from).norm()
+impl MotionClearance<Configuration> for Discs {
+    fn motion_bound(&self, from: &Configuration, to: &Configuration) -> f64 {
+        mp_math::hypot(to[0] - from[0], to[1] - from[1])
     }
 }
 impl Queries for Discs {
@@ -115,7 +121,7 @@ impl Queries for Discs {
     }
 }
 
-fn clearance(discs: &[([f64; 2], f64)], q: &State) -> f64 {
+fn clearance(discs: &[([f64; 2], f64)], q: &Configuration) -> f64 {
     discs.iter().map(|([x, y], r)| mp_math::hypot(q[0] - x, q[1] - y) - r).fold(f64::INFINITY, f64::min)
 }
 
@@ -123,8 +129,8 @@ fn clearance(discs: &[([f64; 2], f64)], q: &State) -> f64 {
 #[derive(Clone)]
 pub(crate) struct Steps<'c>(&'c Counting, Interrupt);
 
-impl MotionValidity<State> for Steps<'_> {
-    fn check_motion(&mut self, a: &State, b: &State) -> MotionCheck {
+impl MotionValidity<Configuration> for Steps<'_> {
+    fn check_motion(&mut self, a: &Configuration, b: &Configuration) -> MotionCheck {
         let mut least = f64::INFINITY;
         let parts = if a == b { 1 } else { 200 };
         for i in 0..=parts {
@@ -133,7 +139,7 @@ impl MotionValidity<State> for Steps<'_> {
                 return MotionCheck::Unproven { at };
             }
             count();
-            let clear = clearance(&self.0.check.discs, &a.lerp(b, at));
+            let clear = clearance(&self.0.check.discs, &self.0.space.0.interpolate(a, b, at));
             least = least.min(clear);
             if clear <= 0.0 {
                 return MotionCheck::Collision { at };
@@ -153,7 +159,7 @@ impl MotionValidity<State> for Steps<'_> {
 #[derive(Clone, Debug)]
 pub(crate) struct Counting {
     space: Square,
-    ends: [State; 2],
+    ends: [Configuration; 2],
     check: Discs,
 }
 
@@ -163,15 +169,11 @@ impl Counting {
         let wall = (0..9).map(|i| ([0.5, 0.125 * f64::from(i)], 0.07));
         Self {
             space: Square(Joints::new([side(), side()]).unwrap()),
-            ends: [[0.1, 0.5], [0.9, 0.5]].map(|q| DVector::from_vec(q.to_vec())),
+            ends: [[0.1, 0.5], [0.9, 0.5]].map(|q| Configuration::from(q.to_vec())),
             // A wall without a gap: no planner comes to an end by itself.
             check: Discs { discs: wall.collect(), queries: 0 },
         }
     }
-}
-
-impl Configured for Counting {
-    type State = State;
 }
 
 impl TypedMotion for Counting {
@@ -189,30 +191,33 @@ impl TypedMotion for Counting {
     }
 }
 
-impl RobotKind for Counting {
+impl Motion for Counting {
+    fn start(&self) -> &Configuration {
+        &self.ends[0]
+    }
+    fn goals(&self) -> &[Configuration] {
+        &self.ends[1..]
+    }
+    fn tolerance(&self) -> f64 {
+        1e-3
+    }
+    fn measured(&self, _: MetricName) -> Result<Measured<'_>, Error> {
+        Ok(Measured::new(&self.space))
+    }
+    fn nearest_free(&self, _: &Configuration) -> Option<Configuration> {
+        None
+    }
+}
+
+impl Description for Counting {
     fn name(&self) -> &str {
         "counting"
     }
     fn space_name(&self) -> String {
         "square".to_owned()
     }
-    fn start(&self) -> &State {
-        &self.ends[0]
-    }
-    fn goals(&self) -> &[State] {
-        &self.ends[1..]
-    }
-    fn tolerance(&self) -> f64 {
-        1e-3
-    }
-    fn measured(&self, _: MetricName) -> Result<Measured<'_, State>, Error> {
-        Ok(Measured::new(&self.space))
-    }
-    fn touching(&self, _: &State) -> Vec<Touch> {
+    fn touching(&self, _: &Configuration) -> Vec<Touch> {
         Vec::new()
-    }
-    fn nearest_free(&self, _: &State) -> Option<State> {
-        None
     }
     fn columns(&self) -> Vec<Column> {
         vec![Column::new("x", "m"), Column::new("y", "m")]
@@ -220,17 +225,20 @@ impl RobotKind for Counting {
     fn limits(&self) -> Vec<Option<[f64; 2]>> {
         vec![Some([0.0, 1.0]); 2]
     }
-    fn row(&self, q: &State) -> Vec<f64> {
+    fn row(&self, q: &Configuration) -> Vec<f64> {
         q.as_slice().to_vec()
     }
-    fn state(&self, row: &[f64]) -> State {
-        DVector::from_column_slice(row)
+    fn state(&self, row: &[f64]) -> Configuration {
+        Configuration::from(row)
     }
+}
+
+impl Appearance for Counting {
     fn bodies(&self) -> Vec<Body> {
         let corners = [(0.0, 0.0), (0.01, 0.0), (0.0, 0.01)].map(|(x, y)| Point2::new(x, y)).to_vec();
         vec![Body { name: "point".into(), shape: BodyShape::Area(vec![corners]), pose: None }]
     }
-    fn poses(&self, q: &State) -> Vec<Isometry3<f64>> {
+    fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
         vec![Isometry3::translation(q[0], q[1], 0.0)]
     }
     fn picture_spacing(&self) -> f64 {

@@ -148,17 +148,20 @@ fn a_bar_goes_through_a_window() {
     let space = Se3::new([-1.5; 3], [1.5; 3]).unwrap();
     let (start, goal) =
         (pose_from_six([-1.0, 0.0, 0.0, 1.5, 0.0, 0.0]), pose_from_six([1.0, 0.2, 0.3, 1.0, 0.4, 0.0]));
-    let any = AnySpace::new(&space);
+    let (rows, placed) = (AsVectors(space.clone()), OnVectors::<_, Isometry3<f64>>::new(robot.clone()));
+    let any = AnySpace::new(&rows);
     for name in ["obprm", "obstacle-geometry-prm"] {
-        let check: AnyCheck<'_, Isometry3<f64>> =
-            Box::new(Certified::new(&space, robot.clone(), robot.tolerance()).unwrap());
-        let verifier = Verifier::new(&space, &robot).unwrap();
+        let check: AnyCheck<'_, Configuration> =
+            Box::new(Certified::new(&rows, placed.clone(), robot.tolerance()).unwrap());
+        let verifier = OnVectors::<_, Isometry3<f64>>::new(Verifier::new(&space, &robot).unwrap());
+        let [start, goal] = [start, goal].map(|q| Configuration::of(&q));
         let problem = Problem::new(&any, Straight::new(&any, check), verifier, start, goal).unwrap();
-        let parallel = AnyParallelProblem::from(knowing(problem, &robot));
-        let (index, settings) = (AnyIndex::of(&space), Settings::default());
-        let mut planner = Isometry3::roadmap_planner(name, parallel, index, &settings).unwrap();
+        let parallel = AnyParallelProblem::from(knowing(problem, &placed));
+        let (index, settings) = (AnyIndex::of(&rows), Settings::default());
+        let mut planner = mp_roadmap::erased::build(name, parallel, index, &settings).unwrap();
         let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(40_000), &mut ());
         let Outcome::Solved(path) = outcome else { panic!("{name}: {:?}", planner.progress()) };
+        let path = Path::straight(path.states.iter().map(|q| q.to().unwrap()).collect());
         assert!(verify_path(&space, &path, &mut Verifier::new(&space, &robot).unwrap()).is_free());
     }
 }
@@ -405,17 +408,19 @@ fn what_cannot_be_made_says_why() {
     assert_eq!(ByGeometry::read(&defaults(obstacle_geometry_prm::INFO)).unwrap(), ByGeometry::default());
 }
 
-/// Erased problems are planned as generic ones, to the bit: every planner, alone and by a team.
+/// Erased problems of rows are planned as generic ones of states, to the bit: every planner, alone and by a team.
 #[test]
 fn erased_problems_are_planned_the_same() {
     let (space, robot) = (plane(), corridor(0.3));
-    let any = AnySpace::new(&space);
+    let (rows, placed) = (AsVectors(space.clone()), OnVectors::<_, Se2State>::new(robot.clone()));
+    let any = AnySpace::new(&rows);
     let erased = || {
-        let check: AnyCheck<'_, Se2State> =
-            Box::new(Certified::new(&space, robot.clone(), TOLERANCE).unwrap());
+        let check: AnyCheck<'_, Configuration> =
+            Box::new(Certified::new(&rows, placed.clone(), TOLERANCE).unwrap());
         let verifier = Verifier::with_tolerance(&space, &robot, 0.2 * TOLERANCE).unwrap();
-        let [start, goal] = ends();
-        Ok(knowing(Problem::new(&any, Straight::new(&any, check), verifier, start, goal)?, &robot))
+        let verifier = OnVectors::<_, Se2State>::new(verifier);
+        let [start, goal] = ends().map(|q| Configuration::of(&q));
+        Ok(knowing(Problem::new(&any, Straight::new(&any, check), verifier, start, goal)?, &placed))
     };
     for info in planners() {
         for checkers in [1, 2] {
@@ -426,12 +431,20 @@ fn erased_problems_are_planned_the_same() {
                 build_with(info.name, parallel, <Se2 as DefaultNn>::Nn::default(), &settings).unwrap();
             let parallel = ParallelProblem::new(workers(), checkers, erased).unwrap();
             let mut other =
-                Se2State::roadmap_planner(info.name, parallel, AnyIndex::of(&space), &settings).unwrap();
-            let found = [&mut one, &mut other].map(|planner| {
-                let outcome = planner.solve(&mut Rng::seed(5), &mut Iterations(3_000), &mut ());
-                (outcome, planner.progress(), planner.map().states().to_vec(), planner.map().edges())
-            });
-            assert!(found[0] == found[1], "{} {checkers}", info.name);
+                mp_roadmap::erased::build(info.name, parallel, AnyIndex::of(&rows), &settings).unwrap();
+            assert!(found(&mut *one) == found(&mut *other), "{} {checkers}", info.name);
         }
     }
+}
+
+/// What a planner finds, in rows, and what it did for it.
+fn found<S: StateVector>(
+    planner: &mut dyn HasRoadmap<S, ()>,
+) -> (Result<Vec<Configuration>, StopReason>, Progress, Vec<Configuration>, usize) {
+    let rows = |states: &[S]| states.iter().map(Configuration::of).collect::<Vec<_>>();
+    let outcome = match planner.solve(&mut Rng::seed(5), &mut Iterations(3_000), &mut ()) {
+        Outcome::Solved(path) => Ok(rows(&path.states)),
+        Outcome::Stopped(reason) => Err(reason),
+    };
+    (outcome, planner.progress(), rows(planner.map().states()), planner.map().edges())
 }

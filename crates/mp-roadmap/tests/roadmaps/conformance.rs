@@ -4,7 +4,7 @@ use crate::common::*;
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::registry::Settings;
 use mp_cspace::*;
-use mp_roadmap::{AnyParallelProblem, AnyPlanner, RoadmapState};
+use mp_roadmap::{AnyParallelProblem, AnyPlanner};
 use std::f64::consts::FRAC_PI_2;
 
 const SEEDS: u64 = 20;
@@ -17,11 +17,11 @@ type Check<'c, S> = Box<dyn MotionValidity<S> + Send + 'c>;
 
 /// A problem: a space, a robot in it, where from and where to. Planners of erased problems are compiled in the library
 /// already, and are the same as those compiled for the space, to the bit: see `around`.
-struct World<'c, C: Space, V> {
-    space: &'c C,
-    erased: AnySpace<'c, C::State>,
-    robot: V,
-    ends: [C::State; 2],
+struct World<C: Space, V> {
+    space: AsVectors<C>,
+    erased: AnySpace<'static, Configuration>,
+    robot: OnVectors<V, C::State>,
+    ends: [Configuration; 2],
 }
 
 /// What a planner needs for narrow passages.
@@ -35,31 +35,35 @@ fn settings(name: &str) -> Settings {
     Settings::parse(set).unwrap()
 }
 
-impl<'c, C, V> World<'c, C, V>
+impl<C, V> World<C, V>
 where
-    C: DefaultNn<State: RoadmapState, Nn: Send + Sync + 'static> + Clone + Send + 'static,
-    V: Validity<C::State> + MotionClearance<C::State> + Clone + Send + 'c,
+    C: Space<State: StateVector> + Clone + Send + 'static,
+    AsVectors<C>: DefaultNn<State = Configuration, Nn: 'static>,
+    V: Validity<C::State> + MotionClearance<C::State> + Clone + Send,
 {
-    fn new(space: &'c C, robot: V, ends: [C::State; 2]) -> Self {
-        Self { space, erased: AnySpace::new(space), robot, ends }
+    fn new(space: &C, robot: V, ends: [C::State; 2]) -> Self {
+        let (space, ends) = (AsVectors(space.clone()), ends.each_ref().map(Configuration::of));
+        Self { erased: AnySpace::new(&space), space, robot: OnVectors::new(robot), ends }
     }
 
-    fn planner(&self, name: &str, certified: bool) -> AnyPlanner<'_, C::State, ()> {
-        let proof = |tolerance| Certified::new(self.space, self.robot.clone(), tolerance).unwrap();
+    fn planner(&self, name: &str, certified: bool) -> AnyPlanner<'_, Configuration, ()> {
+        let proof = |tolerance| Certified::new(&self.space, self.robot.clone(), tolerance).unwrap();
         // What is found by samples is verified by proof, so that no corner is cut.
-        let (check, verifier): (Check<'_, C::State>, Check<'_, C::State>) = if certified {
-            let fine = FineDiscrete::new(self.space, self.robot.clone(), Resolution::Fraction(5e-4)).unwrap();
+        let (check, verifier): (Check<'_, Configuration>, Check<'_, Configuration>) = if certified {
+            let fine =
+                FineDiscrete::new(&self.space, self.robot.clone(), Resolution::Fraction(5e-4)).unwrap();
             (Box::new(proof(1e-3)), Box::new(fine))
         } else {
             let resolution = Resolution::Fraction(2e-3);
-            let sampled = Discrete::new(self.space, self.robot.clone(), resolution).unwrap();
+            let sampled = Discrete::new(&self.space, self.robot.clone(), resolution).unwrap();
             (Box::new(sampled), Box::new(proof(1e-5)))
         };
         let [start, goal] = self.ends.clone();
         let local = Straight::new(&self.erased, check);
         let parallel =
             AnyParallelProblem::from(Problem::new(&self.erased, local, verifier, start, goal).unwrap());
-        C::State::roadmap_planner(name, parallel, AnyIndex::of(self.space), &settings(name)).unwrap()
+        let index = AnyIndex::of(&self.space);
+        mp_roadmap::erased::build(name, parallel, index, &settings(name)).unwrap()
     }
 
     /// Every planner finds a way, whatever the seed, and on some seeds with a discrete check as well.
@@ -74,8 +78,9 @@ where
                     panic!("{} seed {seed}: {outcome:?} {:?}", info.name, planner.progress())
                 };
                 let ([start, goal], mut robot) = (&self.ends, self.robot.clone());
-                assert_path(self.space, &path, start, |q| q == goal, |q| robot.is_valid(q));
-                assert!(path.states.windows(2).all(|pair| free(&pair[0], &pair[1])), "{}", info.name);
+                assert_path(&self.space, &path, start, |q| q == goal, |q| robot.is_valid(q));
+                let states: Vec<C::State> = path.states.iter().map(|q| q.to().unwrap()).collect();
+                assert!(states.windows(2).all(|pair| free(&pair[0], &pair[1])), "{}", info.name);
             }
         }
     }
@@ -106,7 +111,7 @@ fn empty_space_takes_one_motion() {
     for info in crate::blind() {
         let mut planner = world.planner(info.name, true);
         let path = planner.step(&mut Rng::seed(1), &mut ()).unwrap();
-        assert_eq!(path, Path { states: vec![start, goal], edges: vec![()] }, "{}", info.name);
+        assert_eq!(path, Path { states: world.ends.to_vec(), edges: vec![()] }, "{}", info.name);
         assert_eq!(planner.progress().motions, 1);
     }
 }

@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 
 type Point = Vector2<f64>;
 type Map = Roadmap<Point>;
-type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Point>>;
+type Local<'c> = Straight<'c, Rn<2>, mp_cspace::erased::AnyCheck<'c, Point>>;
 
 const PRINT: u64 = 0x1234;
 

@@ -5,7 +5,7 @@ use crate::engine::{ENDS, problem};
 use mp_cspace::erased::AnyCheck;
 use mp_cspace::*;
 use mp_roadmap::*;
-use nalgebra::{DVector, Vector2};
+use nalgebra::Vector2;
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
@@ -69,14 +69,14 @@ fn regions_tile_every_space() {
         tiles(&Se2::new([0.0, 2.0], [3.0, 5.0]).unwrap(), regions, cut);
         tiles(&Se3::new([-1.0; 3], [1.0, 2.0, 3.0]).unwrap(), regions, cut);
         let hinge = JointRange::Interval { low: -1.0, high: 2.0 };
-        let arm = Joints::<DVector<f64>>::new([hinge, JointRange::Circle, hinge]).unwrap();
+        let arm = Joints::<Configuration>::new([hinge, JointRange::Circle, hinge]).unwrap();
         tiles(&arm, regions, cut);
         let base = Se3::new([0.0; 3], [4.0; 3]).unwrap();
         tiles(&FloatingJoints::new(base, arm).unwrap(), regions, cut);
     }
     // Rotations alone are not cut, and a metric changes nothing.
     tiles(&So3, 16, 1);
-    tiles(&Joints::<DVector<f64>>::new([JointRange::Circle; 3]).unwrap(), 8, 1);
+    tiles(&Joints::<Configuration>::new([JointRange::Circle; 3]).unwrap(), 8, 1);
     let turns = WithMetric::new(Se2::new([0.0; 2], [1.0; 2]).unwrap(), Manhattan);
     tiles(&turns, 6, 6);
 }

@@ -4,8 +4,7 @@ use super::kinematics::Kinematics;
 use super::robot::{LinkBody, are_nested};
 use super::{ArmError, ArmModel};
 use mp_collide::Query;
-use mp_cspace::{Halton, Interrupt, Joints, Rng, Sampler};
-use nalgebra::DVector;
+use mp_cspace::{Configuration, Halton, Interrupt, Joints, Rng, Sampler};
 use std::collections::BTreeSet;
 
 /// Two bodies that must not touch. `steps` is how many joints of each chain are between them.
@@ -143,10 +142,10 @@ fn look_at(
     close: f64,
     interrupt: &mut Interrupt,
 ) -> Result<(), ArmError> {
-    let space: Joints<DVector<f64>> = kinematics.joints()?;
+    let space: Joints<Configuration> = kinematics.joints()?;
     let (mut halton, mut rng) = (Halton::new(&space), Rng::seed(0));
     let (mut query, mut frames) = (Query::default(), Vec::new());
-    let mut q = DVector::from(kinematics.neutral());
+    let mut q = Configuration::from(kinematics.neutral());
     for i in 0..SAMPLES {
         let mut left = false;
         kinematics.frames_from(&kinematics.base, q.as_slice(), &mut frames);

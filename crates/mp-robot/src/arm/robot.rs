@@ -233,7 +233,7 @@ impl Scratch {
 
 /// An arm, or any tree of links, among named obstacles that stand still.
 ///
-/// A configuration is a list of joint values (`SVector<f64, N>` or `DVector<f64>`), one for each
+/// A configuration is a list of joint values (`SVector<f64, N>` or `Configuration`), one for each
 /// [coordinate](Arm::coordinates); its space is [`space`](Arm::space). If the [root floats](ArmModel::floating), the pose
 /// of the root comes first, as seven numbers, and the space is [`floating_space`](Arm::floating_space). It is free when
 ///

@@ -149,8 +149,8 @@ pub(super) fn axes_into(
 mod tests {
     use super::*;
     use crate::{ArmModel, Joint, JointKind, Link};
-    use mp_cspace::{Joints, Rng, Space};
-    use nalgebra::{DVector, UnitQuaternion};
+    use mp_cspace::{Configuration, Joints, Rng, Space};
+    use nalgebra::UnitQuaternion;
     use rand::RngExt;
 
     /// A chain of joints of all kinds, with boxes away from their axes.
@@ -185,7 +185,7 @@ mod tests {
         for _ in 0..30 {
             let model = chain(&mut rng);
             let kinematics = Kinematics::new(&model).unwrap();
-            let space: Joints<DVector<f64>> = kinematics.space().unwrap();
+            let space: Joints<Configuration> = kinematics.space().unwrap();
             for size in [1.0, 0.1, 0.01] {
                 let a = space.sample_uniform(&mut rng);
                 let b = space.interpolate(&a, &space.sample_uniform(&mut rng), size);

@@ -1,10 +1,10 @@
 //! What is refused, and how it is said.
 
 use crate::common::six;
-use mp_cspace::{Certified, Clearance, MotionClearance, MotionValidity, Validity};
+use mp_cspace::{Certified, Clearance, Configuration, MotionClearance, MotionValidity, Validity};
 use mp_geom::primitives::cuboid;
 use mp_robot::{Arm, ArmError, ArmModel, Joint, JointKind, Link};
-use nalgebra::{DVector, Isometry3, SVector, Vector3};
+use nalgebra::{Isometry3, SVector, Vector3};
 
 /// The message for `six` after a change.
 fn refused(change: impl FnOnce(&mut ArmModel)) -> String {
@@ -135,7 +135,7 @@ fn obstacles_and_states_that_are_none() {
         assert_eq!(arm.motion_bound(&zero, &q), f64::INFINITY);
     }
     for dof in [0, 5, 7] {
-        let q = DVector::zeros(dof);
+        let q = Configuration::zeros(dof);
         assert!(!arm.is_valid(&q) && arm.clearance(&q, 1.0) == 0.0);
         assert_eq!(arm.motion_bound(&q, &q), f64::INFINITY);
         assert!(arm.meshes_at(q.as_slice()).is_empty());

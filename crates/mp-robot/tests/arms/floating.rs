@@ -4,7 +4,7 @@ use crate::common::{clutter, random_tree, six};
 use crate::motions::least_clearances_agree;
 use crate::verifier::agree;
 use mp_cspace::obstacles::{ClearanceGradient, ObstacleHints};
-use mp_cspace::{Clearance, FloatingJoints, MotionClearance, Rng, Space, Validity};
+use mp_cspace::{Clearance, Configuration, FloatingJoints, MotionClearance, Rng, Space, Validity};
 use mp_geom::{Aabb, primitives::cuboid};
 use mp_robot::{Arm, ArmError, ArmModel, Joint, JointKind, Link};
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -55,7 +55,7 @@ fn at_rest_it_is_the_arm_that_stands_there() {
         let (base, joints) = FloatingJoints::split(q.as_slice()).unwrap();
         let (_, joints_to) = FloatingJoints::split(to.as_slice()).unwrap();
         let mut standing = Arm::new(&ArmModel { base, ..six() }, clutter()).unwrap();
-        let still = nalgebra::DVector::from_column_slice(joints);
+        let still = Configuration::from(joints);
         let poses = standing.kinematics().link_poses(joints).unwrap();
         assert_eq!(flying.kinematics().link_poses(q.as_slice()).unwrap(), poses);
         let ground = cuboid(0.2, 0.2, 0.1).unwrap().transformed(&Isometry3::translation(0.0, 0.0, 0.05));
@@ -67,7 +67,7 @@ fn at_rest_it_is_the_arm_that_stands_there() {
         seen[usize::from(free)] += 1;
         // Only the joints move.
         let moved = space.state(&base, joints_to);
-        let same = nalgebra::DVector::from_column_slice(joints_to);
+        let same = Configuration::from(joints_to);
         assert!((flying.motion_bound(&q, &moved) - standing.motion_bound(&still, &same)).abs() < 1e-9);
         let contacts = flying.explain(q.as_slice());
         assert_eq!(contacts.is_empty(), free, "{contacts:?}");
@@ -119,7 +119,7 @@ fn what_cannot_be_is_an_error() {
         assert!(arm(&ArmModel { floating: Some(bounds), ..six() }).is_err(), "{bounds:?}");
     }
     let (flying, standing) = (Arm::new(&flying(), []).unwrap(), Arm::new(&six(), []).unwrap());
-    assert!(matches!(flying.space::<nalgebra::DVector<f64>>(), Err(ArmError::Floats)));
+    assert!(matches!(flying.space::<Configuration>(), Err(ArmError::Floats)));
     assert!(matches!(standing.floating_space(), Err(ArmError::StandsStill)));
     // Lists that are no configurations.
     let space = flying.floating_space().unwrap();

@@ -1,10 +1,10 @@
 //! Where links are, and what coordinates there are.
 
 use crate::common::{matrix, random_tree, six};
-use mp_cspace::{JointRange, Joints, Rng, Space};
+use mp_cspace::{Configuration, JointRange, Joints, Rng, Space};
 use mp_geom::primitives::cuboid;
 use mp_robot::{Arm, ArmModel, Joint, JointKind, Kinematics, Link};
-use nalgebra::{DVector, Isometry3, Point3, SVector, Vector3};
+use nalgebra::{Isometry3, Point3, SVector, Vector3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn bar(kind: JointKind) -> ArmModel {
@@ -57,7 +57,7 @@ fn poses_agree_with_matrices() {
     for count in (2..30).chain([60]) {
         let model = random_tree(&mut rng, count);
         let Ok(kinematics) = Kinematics::new(&model) else { continue };
-        let space: Joints<DVector<f64>> = kinematics.space().unwrap();
+        let space: Joints<Configuration> = kinematics.space().unwrap();
         for _ in 0..5 {
             let q = space.sample_uniform(&mut rng);
             let value = |name: &str| q[kinematics.coordinates().iter().position(|c| c.name == name).unwrap()];

@@ -3,15 +3,15 @@
 use crate::common::{Six, across, cases_of, clutter, obstacle, random_tree, six};
 use mp_collide::reference::RefMesh;
 use mp_cspace::{
-    Certified, Clearance, Coordinates, Joints, MotionCheck, MotionClearance, MotionValidity, Path, Rng,
-    Space, Validity, least_clearance,
+    Certified, Clearance, Configuration, Coordinates, Joints, MotionCheck, MotionClearance, MotionValidity,
+    Path, Rng, Space, Validity, least_clearance,
 };
 use mp_geom::{
     TriMesh,
     primitives::{cuboid, cylinder},
 };
 use mp_robot::{Arm, ArmModel, ArmVerifier, Joint, JointKind, Link};
-use nalgebra::{DVector, Isometry3, SVector, Vector3};
+use nalgebra::{Isometry3, SVector, Vector3};
 
 fn arm() -> (Arm, Joints<Six>) {
     let arm = Arm::new(&six(), clutter()).unwrap();
@@ -38,7 +38,7 @@ fn plain_distance(arm: &Arm, q: &[f64], still: &[&str]) -> f64 {
 }
 
 fn consistent(mut arm: Arm, still: &[&str], samples: usize) -> [usize; 2] {
-    let space: Joints<DVector<f64>> = arm.space().unwrap();
+    let space: Joints<Configuration> = arm.space().unwrap();
     let mut rng = Rng::seed(7);
     let mut counts = [0, 0];
     for _ in 0..samples {
@@ -316,7 +316,7 @@ fn no_vertex_moves_farther_than_the_bound() {
     for count in 3..20 {
         let model = random_tree(&mut rng, count);
         let Ok(arm) = Arm::new(&model, []) else { continue };
-        let space: Joints<DVector<f64>> = arm.space().unwrap();
+        let space: Joints<Configuration> = arm.space().unwrap();
         for size in [1.0, 0.1] {
             let a = space.sample_uniform(&mut rng);
             let b = space.interpolate(&a, &space.sample_uniform(&mut rng), size);
@@ -374,14 +374,14 @@ fn checks_do_not_allocate_and_are_counted() {
 #[test]
 fn static_and_dynamic_configurations_agree() {
     let (mut arm, space) = arm();
-    let dynamic: Joints<DVector<f64>> = arm.space().unwrap();
+    let dynamic: Joints<Configuration> = arm.space().unwrap();
     let mut rng = Rng::seed(2);
     let tolerance = arm.tolerance();
     let mut a_check = Certified::new(&space, arm.clone(), tolerance).unwrap();
     let mut b_check = Certified::new(&dynamic, arm.clone(), tolerance).unwrap();
     for _ in 0..100 {
         let [a, b] = [0, 1].map(|_| space.sample_uniform(&mut rng));
-        let [c, d] = [a, b].map(|q| DVector::from_column_slice(q.as_slice()));
+        let [c, d] = [a, b].map(|q| Configuration::from(q.as_slice()));
         assert_eq!(arm.clearance(&a, 1.0), arm.clearance(&c, 1.0));
         assert_eq!(a_check.check_motion(&a, &b), b_check.check_motion(&c, &d));
     }

@@ -1,9 +1,9 @@
 //! Which links are compared, and how near they may come.
 
-use mp_cspace::Clearance;
+use mp_cspace::{Clearance, Configuration};
 use mp_geom::primitives::cuboid;
 use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};
-use nalgebra::{DVector, Isometry3, Vector3};
+use nalgebra::{Isometry3, Vector3};
 
 const TURN: JointKind = JointKind::Revolute { low: -2.0, high: 2.0 };
 
@@ -77,7 +77,7 @@ fn walls_welded_to_the_root_are_compared() {
     };
     assert_eq!(compared(&make(2.0)), ["wall cart"]);
     let mut arm = Arm::new(&make(2.0), []).unwrap();
-    let at = |arm: &mut Arm, x: f64| arm.clearance(&DVector::from_vec(vec![x]), 10.0);
+    let at = |arm: &mut Arm, x: f64| arm.clearance(&Configuration::from(vec![x]), 10.0);
     assert_eq!(at(&mut arm, 1.9), 0.0);
     assert!((at(&mut arm, 1.0) - 0.6).abs() < 1e-9);
     let touching = Arm::new(&make(0.3), []).unwrap();
@@ -206,6 +206,6 @@ fn the_tolerance_does_not_grow_with_what_only_places_the_links() {
     // A free configuration near one that is not is found though joints slide far.
     let mut folded = make(1e5, None, 0.0);
     let space = folded.space().unwrap();
-    let free = folded.nearest_free(&DVector::from_vec(vec![0.0, 0.0, 0.0]), &space, 1e-3);
+    let free = folded.nearest_free(&Configuration::from(vec![0.0, 0.0, 0.0]), &space, 1e-3);
     assert!(free.is_some());
 }

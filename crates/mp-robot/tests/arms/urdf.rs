@@ -1,7 +1,7 @@
 //! Arms from URDF and SRDF.
 
 use crate::common::cases_of;
-use mp_cspace::JointRange;
+use mp_cspace::{Configuration, JointRange};
 use mp_geom::{TriMesh, primitives::cuboid};
 use mp_robot::{Arm, ArmModel, JointKind, UrdfError};
 use nalgebra::{Point3, Vector3};
@@ -168,7 +168,7 @@ fn shapes_without_volume_are_sheets_and_lines_and_points_are_left_out() {
             Arm::new(&model, [("post".to_owned(), post, nalgebra::Isometry3::translation(1.0, 0.0, 0.0))])
                 .unwrap();
         for (j, free) in [(1.0, false), (0.95, size[0] == 0.0), (0.0, true)] {
-            let q = nalgebra::DVector::from_vec(vec![j]);
+            let q = Configuration::from(vec![j]);
             assert_eq!(mp_cspace::Validity::is_valid(&mut arm, &q), free, "{thin} at {j}");
         }
     }

@@ -2,15 +2,16 @@
 
 use crate::common::{Six, across, clutter, obstacle, random_tree, six};
 use mp_cspace::{
-    Certified, Clearance, Joints, MotionCheck, MotionValidity, Rng, Space, TrueMetric, Validity,
+    Certified, Clearance, Configuration, Joints, MotionCheck, MotionValidity, Rng, Space, TrueMetric,
+    Validity,
 };
 use mp_geom::TriMesh;
 use mp_geom::primitives::{cuboid, cylinder, sphere};
 use mp_robot::{Arm, ArmModel, ArmVerifier, Joint, JointKind, Link};
-use nalgebra::{DVector, Isometry3, Vector3};
+use nalgebra::{Isometry3, Vector3};
 
 /// The verifier proves what is certified, finds what sampling finds, and claims no more clearance than there is.
-pub(crate) fn agree<C: Space<State = DVector<f64>> + TrueMetric>(
+pub(crate) fn agree<C: Space<State = Configuration> + TrueMetric>(
     arm: &Arm,
     space: &C,
     motions: usize,
@@ -97,13 +98,13 @@ fn it_sees_thin_walls_and_edges_whose_ends_are_free() {
 #[test]
 fn it_refuses_what_is_no_motion() {
     let arm = Arm::new(&six(), clutter()).unwrap();
-    let space: Joints<DVector<f64>> = arm.space().unwrap();
+    let space: Joints<Configuration> = arm.space().unwrap();
     let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
-    let zero = DVector::zeros(6);
+    let zero = Configuration::zeros(6);
     for x in [f64::NAN, f64::INFINITY, 1e300] {
-        assert!(!verifier.check_motion(&zero, &DVector::repeat(6, x)).is_free());
+        assert!(!verifier.check_motion(&zero, &[x; 6].into()).is_free());
     }
-    assert!(!verifier.check_motion(&DVector::zeros(5), &DVector::zeros(5)).is_free());
+    assert!(!verifier.check_motion(&Configuration::zeros(5), &Configuration::zeros(5)).is_free());
     for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(ArmVerifier::with_tolerance(&space, &arm, tolerance).is_err());
     }
@@ -200,9 +201,9 @@ fn slider(first: &TriMesh, last: &TriMesh) -> ArmModel {
 
 /// What checker and verifier say of the motion from `q` to `to`.
 fn judged(arm: &Arm, q: [f64; 2], to: [f64; 2]) -> bool {
-    let space: Joints<DVector<f64>> = arm.space().unwrap();
+    let space: Joints<Configuration> = arm.space().unwrap();
     let mut arm = arm.clone();
-    let [q, to] = [q, to].map(|q| DVector::from_column_slice(&q));
+    let [q, to] = [q, to].map(Configuration::from);
     let free = arm.is_valid(&q);
     assert_eq!((arm.clearance(&q, 1.0) > 0.0, arm.clearance(&q, 0.0) > 0.0), (free, free));
     let contacts = arm.explain(q.as_slice());

@@ -4,7 +4,7 @@ use super::{files_rs, generate, stale};
 use mp_cspace::{Clearance, MotionValidity, Rng, Se2, Se2State, Se3, Space, Validity};
 use mp_geom::six_from_pose;
 use mp_io::{PathFile, RigidProblem, RobotProblem, SpaceKind};
-use mp_plan::{ArmScene, FloatingScene, RobotKind, TypedMotion};
+use mp_plan::{ArmScene, Description, FloatingScene, Motion, TypedMotion};
 use mp_robot::{FreeFlyer, PlanarFlyer, Verifier};
 use nalgebra::Isometry3;
 use std::f64::consts::PI;

@@ -1,10 +1,11 @@
 //! Planners by name, for programs that choose at run time.
 
+// Unit tests need none of it, and would compile all planners again.
+#[cfg(not(test))]
+pub mod erased;
 mod meta;
-mod state;
 
 pub use meta::{MetaPlanner, PlannerSpec, build_from, meta_planners};
-pub use state::{ProblemFactory, TreeState};
 
 use crate::algo;
 use crate::by_name::{AnyPlanner, BuildArgs};

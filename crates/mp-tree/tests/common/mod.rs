@@ -4,7 +4,7 @@
 use mp_cspace::angle::wrap_angle;
 use mp_cspace::obstacles::ObstacleHints;
 use mp_cspace::*;
-use nalgebra::{DVector, SVector, Vector2};
+use nalgebra::{SVector, Vector2};
 use rand::RngExt;
 
 /// Closed boxes in R^n, and points among them.
@@ -280,51 +280,6 @@ impl<const N: usize> ObstacleHints<SVector<f64, N>> for Arm<N> {
     }
     fn moved_by(&self, q: &SVector<f64, N>, from: &SVector<f64, N>, to: &SVector<f64, N>) -> SVector<f64, N> {
         q + (to - from)
-    }
-}
-
-/// A robot of R^N, for states without a size at compile time.
-#[derive(Clone, Debug)]
-pub(crate) struct Sizeless<V, const N: usize>(pub(crate) V);
-
-pub(crate) fn fixed<const N: usize>(q: &DVector<f64>) -> SVector<f64, N> {
-    SVector::from_column_slice(q.as_slice())
-}
-
-fn sizeless<const N: usize>(q: SVector<f64, N>) -> DVector<f64> {
-    DVector::from_column_slice(q.as_slice())
-}
-
-impl<V: Validity<SVector<f64, N>>, const N: usize> Validity<DVector<f64>> for Sizeless<V, N> {
-    fn is_valid(&mut self, q: &DVector<f64>) -> bool {
-        self.0.is_valid(&fixed(q))
-    }
-}
-impl<V: Clearance<SVector<f64, N>>, const N: usize> Clearance<DVector<f64>> for Sizeless<V, N> {
-    fn clearance(&mut self, q: &DVector<f64>, enough: f64) -> f64 {
-        self.0.clearance(&fixed(q), enough)
-    }
-}
-impl<V: MotionClearance<SVector<f64, N>>, const N: usize> MotionClearance<DVector<f64>> for Sizeless<V, N> {
-    fn motion_bound(&self, from: &DVector<f64>, to: &DVector<f64>) -> f64 {
-        self.0.motion_bound(&fixed(from), &fixed(to))
-    }
-}
-impl<V: ObstacleHints<SVector<f64, N>>, const N: usize> ObstacleHints<DVector<f64>> for Sizeless<V, N> {
-    fn touches(&mut self, q: &DVector<f64>) -> bool {
-        self.0.touches(&fixed(q))
-    }
-    fn slide_along(
-        &mut self,
-        from: &DVector<f64>,
-        toward: &DVector<f64>,
-        hit: Option<&DVector<f64>>,
-        rng: &mut Rng,
-    ) -> Option<DVector<f64>> {
-        self.0.slide_along(&fixed(from), &fixed(toward), hit.map(fixed).as_ref(), rng).map(sizeless)
-    }
-    fn moved_by(&self, q: &DVector<f64>, from: &DVector<f64>, to: &DVector<f64>) -> DVector<f64> {
-        sizeless(self.0.moved_by(&fixed(q), &fixed(from), &fixed(to)))
     }
 }
 

@@ -7,7 +7,7 @@ use mp_tree::*;
 use nalgebra::Vector2;
 
 type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>>;
+type Local<'c> = Straight<'c, Rn<2>, mp_cspace::erased::AnyCheck<'c, Vector2<f64>>>;
 
 fn wall() -> Boxes<2> {
     Boxes(vec![([0.4, 0.0], [0.6, 0.5])])

@@ -4,8 +4,8 @@ use crate::common::*;
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::obstacles::ObstacleHints;
 use mp_cspace::*;
-use mp_tree::{AnyPlanner, Problem, Settings, Step, TreeState, Tuning, Workers, build, planners};
-use nalgebra::{DVector, SVector, Vector2};
+use mp_tree::{AnyPlanner, Problem, Settings, Step, Tuning, Workers, build, planners};
+use nalgebra::{SVector, Vector2};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
@@ -52,30 +52,31 @@ fn settings(step: f64) -> Settings {
 
 /// A problem: a space, a robot in it, where from and where to, and a step that suits. Planners of erased problems are
 /// compiled in the library already, and are the same as those compiled for the space, to the bit: see `erased`.
-struct World<'c, C: Space, V> {
-    space: &'c C,
-    erased: AnySpace<'c, C::State>,
-    robot: V,
-    ends: [C::State; 2],
+struct World<C: Space, V> {
+    space: AsVectors<C>,
+    erased: AnySpace<'static, Configuration>,
+    robot: OnVectors<V, C::State>,
+    ends: [Configuration; 2],
     step: f64,
 }
 
-impl<'c, C, V> World<'c, C, V>
+impl<C, V> World<C, V>
 where
-    C: DefaultNn<State: TreeState, Nn: Send + Sync + 'static> + Clone + Send + 'static,
-    V: Validity<C::State> + MotionClearance<C::State> + ObstacleHints<C::State>,
-    V: Clone + Send + Sync + 'c,
+    C: Space<State: StateVector> + Clone + Send + 'static,
+    AsVectors<C>: DefaultNn<State = Configuration, Nn: 'static>,
+    V: Validity<C::State> + MotionClearance<C::State> + ObstacleHints<C::State> + Clone + Send + Sync,
 {
-    fn new(space: &'c C, robot: V, ends: [C::State; 2], step: f64) -> Self {
-        Self { space, erased: AnySpace::new(space), robot, ends, step }
+    fn new(space: &C, robot: V, ends: [C::State; 2], step: f64) -> Self {
+        let (space, ends) = (AsVectors(space.clone()), ends.each_ref().map(Configuration::of));
+        Self { erased: AnySpace::new(&space), space, robot: OnVectors::new(robot), ends, step }
     }
 
-    fn planner(&self, (name, set): (&str, &str), certified: bool) -> AnyPlanner<'_, C::State, ()> {
-        let (space, robot, [start, goal]) = (self.space, &self.robot, &self.ends);
+    fn planner(&self, (name, set): (&str, &str), certified: bool) -> AnyPlanner<'_, Configuration, ()> {
+        let (space, robot, [start, goal]) = (&self.space, &self.robot, &self.ends);
         let problem = move || {
             let proof = |tolerance| Certified::new(space, robot.clone(), tolerance).unwrap();
             // What is found by samples is verified by proof, so that no corner is cut.
-            let (check, verifier): (Check<'_, C::State>, Check<'_, C::State>) = if certified {
+            let (check, verifier): (Check<'_, Configuration>, Check<'_, Configuration>) = if certified {
                 let fine = FineDiscrete::new(space, robot.clone(), Resolution::Fraction(5e-4)).unwrap();
                 (Box::new(proof(1e-3)), Box::new(fine))
             } else {
@@ -88,7 +89,7 @@ where
         };
         let settings = Settings::parse([&format!("step={}", self.step), set]).unwrap();
         let (index, workers) = (AnyIndex::of(space), Workers::new(2).unwrap());
-        C::State::tree_planner(name, Arc::new(problem), index, &settings, &workers).unwrap()
+        mp_tree::erased::build(name, Arc::new(problem), index, &settings, &workers).unwrap()
     }
 
     /// Every planner finds a way, whatever the seed, and on the first `discrete` seeds with a discrete check
@@ -104,8 +105,9 @@ where
                     panic!("{} seed {seed}: {:?}", named.0, planner.progress())
                 };
                 let ([start, goal], mut robot) = (&self.ends, self.robot.clone());
-                assert_path(self.space, &path, start, |q| q == goal, |q| robot.is_valid(q));
-                assert!(path.states.windows(2).all(|pair| free(&pair[0], &pair[1])), "{}", named.0);
+                assert_path(&self.space, &path, start, |q| q == goal, |q| robot.is_valid(q));
+                let states: Vec<C::State> = path.states.iter().map(|q| q.to().unwrap()).collect();
+                assert!(states.windows(2).all(|pair| free(&pair[0], &pair[1])), "{}", named.0);
             }
         }
     }
@@ -136,25 +138,18 @@ fn point_of_the_plane(boxes: Boxes<2>, ends: [[f64; 2]; 2], step: f64) {
 
 /// The same in space.
 fn point_of_space(boxes: Boxes<3>, ends: [[f64; 3]; 2], step: f64) {
-    let space = any_cube();
-    let world = World::new(&space, Sizeless::<_, 3>(boxes.clone()), ends.map(any), step);
-    world.is_solved(20_000, DISCRETE, |a, b| !boxes.hit(&fixed(a), &fixed(b)));
+    let world = World::new(&cube(), boxes.clone(), ends.map(SVector::from), step);
+    world.is_solved(20_000, DISCRETE, |a, b| !boxes.hit(a, b));
 }
 
-/// The unit cube, of states without a size at compile time.
-fn any_cube() -> Joints<DVector<f64>> {
-    Joints::<DVector<f64>>::intervals(&[0.0; 3], &[1.0; 3]).unwrap()
-}
-
-fn any<const N: usize>(q: [f64; N]) -> DVector<f64> {
-    DVector::from_column_slice(&q)
+/// The unit cube.
+fn cube() -> Rn<3> {
+    Rn::new([0.0; 3], [1.0; 3]).unwrap()
 }
 
 #[test]
 fn empty_space_takes_one_motion() {
-    let space = any_cube();
-    let robot = Sizeless::<_, 3>(Boxes::default());
-    let world = World::new(&space, robot, [any([0.1; 3]), any([0.9; 3])], 0.3);
+    let world = World::new(&cube(), Boxes::default(), [[0.1; 3].into(), [0.9; 3].into()], 0.3);
     // T-RRT makes no motion longer than a step.
     for info in planners().iter().filter(|info| info.name != "t-rrt") {
         let mut planner = world.planner((info.name, "patience=10"), true);
@@ -194,8 +189,8 @@ fn a_closed_box_around_the_goal_is_never_solved_in_the_plane() {
 /// not.
 #[test]
 fn a_closed_box_around_the_goal_is_never_solved_in_space() {
-    let (space, robot) = (any_cube(), Sizeless::<_, 3>(hollow([0.7, 0.5, 0.5], 0.1, 1e-3, 0.0)));
-    World::new(&space, robot, [any([0.1; 3]), any([0.7, 0.5, 0.5])], 0.2).is_never_solved();
+    let ends = [[0.1; 3].into(), [0.7, 0.5, 0.5].into()];
+    World::new(&cube(), hollow([0.7, 0.5, 0.5], 0.1, 1e-3, 0.0), ends, 0.2).is_never_solved();
 }
 
 /// The plane with a rod that must turn to pass.
@@ -231,9 +226,9 @@ fn an_arm_of_two_joints_folds() {
 fn an_arm_of_six_joints_finds_its_way() {
     let places = [(1.06, 0.51), (-0.2, 0.9), (0.0, -0.9)];
     let discs = places.map(|(x, y)| (Vector2::new(x, y), 0.1)).to_vec();
-    let space = Joints::<DVector<f64>>::intervals(&[-1.5; 6], &[1.5; 6]).unwrap();
-    let robot = Sizeless::<_, 6>(Arm { link: 0.2, radius: 0.02, discs });
-    let ends = [any([0.0; 6]), any([0.9, 0.1, 0.0, 0.0, 0.0, 0.0])];
+    let space = Rn::<6>::new([-1.5; 6], [1.5; 6]).unwrap();
+    let robot = Arm { link: 0.2, radius: 0.02, discs };
+    let ends = [[0.0; 6].into(), [0.9, 0.1, 0.0, 0.0, 0.0, 0.0].into()];
     World::new(&space, robot, ends, 1.0).is_solved(200_000, 0, |_, _| true);
 }
 
@@ -244,9 +239,10 @@ fn an_arm_never_passes_what_it_cannot() {
     let two = Arm { link: 0.5, radius: 0.02, discs: discs.clone() };
     let ends = [[0.0, 0.0].into(), [3.0, 0.0].into()];
     World::new(&joints::<2>(), two, ends, 0.5).is_never_solved();
-    let space = Joints::<DVector<f64>>::intervals(&[-PI; 6], &[PI; 6]).unwrap();
-    let six = Sizeless::<_, 6>(Arm { link: 0.5, radius: 0.02, discs });
-    World::new(&space, six, [any([0.0; 6]), any([3.0, 0.0, 0.0, 0.0, 0.0, 0.0])], 2.0).is_never_solved();
+    let space = Rn::<6>::new([-PI; 6], [PI; 6]).unwrap();
+    let six = Arm { link: 0.5, radius: 0.02, discs };
+    let ends = [[0.0; 6].into(), [3.0, 0.0, 0.0, 0.0, 0.0, 0.0].into()];
+    World::new(&space, six, ends, 2.0).is_never_solved();
 }
 
 /// A wall 1e-4 thick, with a way around at the top.

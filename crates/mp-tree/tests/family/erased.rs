@@ -1,4 +1,4 @@
-//! Erased problems are planned as generic ones, to the bit.
+//! Erased problems of rows are planned as generic ones of states, to the bit.
 
 use crate::common::*;
 use mp_cspace::erased::AnySpace;
@@ -6,15 +6,14 @@ use mp_cspace::obstacles::ObstacleHints;
 use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_tree::*;
-use nalgebra::{DVector, SVector};
-use std::fmt::Debug;
+use nalgebra::SVector;
 use std::sync::Arc;
 
 /// A robot as planners by name may want one.
 trait Robot<S>: MotionClearance<S> + Validity<S> + ObstacleHints<S> + Clone + Send + Sync {}
 impl<S, V: MotionClearance<S> + Validity<S> + ObstacleHints<S> + Clone + Send + Sync> Robot<S> for V {}
 
-type Made<'c, P, S> = Problem<'c, P, Straight<'c, P, erased::AnyCheck<'c, S>>>;
+type Made<'c, P, S> = Problem<'c, P, Straight<'c, P, mp_cspace::erased::AnyCheck<'c, S>>>;
 
 /// A problem in `planned`, which is `space` or its erasure.
 fn problem<'c, C: Space, P: Space<State = C::State>, V: Robot<C::State> + 'c>(
@@ -25,42 +24,53 @@ fn problem<'c, C: Space, P: Space<State = C::State>, V: Robot<C::State> + 'c>(
 ) -> Result<Made<'c, P, C::State>, BuildError> {
     let check = Certified::new(space, robot.clone(), 1e-3).unwrap();
     let fine = FineDiscrete::new(space, robot.clone(), Resolution::Fraction(1e-3)).unwrap();
-    let local = Straight::new(planned, Box::new(check) as erased::AnyCheck<'c, C::State>);
+    let local = Straight::new(planned, Box::new(check) as mp_cspace::erased::AnyCheck<'c, C::State>);
     let problem = Problem::new(planned, local, fine, start.clone(), goal.clone())?;
     Ok(problem.with_obstacles(knowledge(space, robot)))
 }
 
 fn same<C, V>(space: &C, robot: V, ends: [C::State; 2], names: &[String])
 where
-    C: DefaultNn<State: TreeState + Debug, Nn: Send + Sync + 'static> + Clone + Send + 'static,
+    C: DefaultNn<State: StateVector, Nn: Send + Sync + 'static> + Clone + Send + 'static,
+    AsVectors<C>: DefaultNn<State = Configuration, Nn: 'static>,
     V: Robot<C::State>,
 {
-    let erased = AnySpace::new(space);
+    let (rows, robot_of_rows) = (AsVectors(space.clone()), OnVectors::<_, C::State>::new(robot.clone()));
+    let (erased, ends_of_rows) = (AnySpace::new(&rows), ends.each_ref().map(Configuration::of));
     let (settings, workers) = (Settings::parse(["step=10%"]).unwrap(), Workers::single());
     for name in names {
         let make = || problem(space, space, &robot, &ends);
         let generic = build_from(name, make, C::Nn::default(), &settings, &workers).unwrap();
-        let make: ProblemFactory<'_, C::State> = Arc::new(|| problem(space, &erased, &robot, &ends));
-        let any = C::State::tree_planner(name, make, AnyIndex::of(space), &settings, &workers).unwrap();
+        let make = || problem(&rows, &erased, &robot_of_rows, &ends_of_rows);
+        let any = mp_tree::erased::build(name, Arc::new(make), AnyIndex::of(&rows), &settings, &workers);
+        let any = any.unwrap();
         assert_same(name, generic, any);
     }
 }
 
 /// Both find the same, and do the same for it.
-fn assert_same<'c, S: Debug + PartialEq>(
+fn assert_same<S: StateVector>(
     name: &str,
-    generic: AnyPlanner<'c, S, ()>,
-    any: AnyPlanner<'c, S, ()>,
+    mut generic: AnyPlanner<'_, S, ()>,
+    mut any: AnyPlanner<'_, Configuration, ()>,
 ) {
-    let mut planners = [generic, any];
     for seed in 1..3 {
-        let found = planners.each_mut().map(|planner| {
-            let stop = &mut Iterations(planner.progress().iterations + 1_500);
-            let outcome = planner.solve(&mut Rng::seed(seed), stop, &mut ());
-            (outcome, planner.progress())
-        });
+        let found = [solved(&mut *generic, seed), solved(&mut *any, seed)];
         assert_eq!(found[0], found[1], "{name} seed {seed}");
     }
+}
+
+/// What a planner finds, in rows, and what it did for it.
+fn solved<S: StateVector>(
+    planner: &mut dyn Planner<S, Edge = ()>,
+    seed: u64,
+) -> (Result<Vec<Configuration>, StopReason>, Progress) {
+    let stop = &mut Iterations(planner.progress().iterations + 1_500);
+    let outcome = match planner.solve(&mut Rng::seed(seed), stop, &mut ()) {
+        Outcome::Solved(path) => Ok(path.states.iter().map(Configuration::of).collect()),
+        Outcome::Stopped(reason) => Err(reason),
+    };
+    (outcome, planner.progress())
 }
 
 /// The planners, and each wrapper once.
@@ -85,12 +95,12 @@ fn a_rod_is_planned_the_same() {
 /// States without a size at compile time: by the types of three planners, as compiling all of them takes its time.
 #[test]
 fn joints_are_planned_the_same() {
-    let space = Joints::<DVector<f64>>::intervals(&[0.0; 2], &[1.0; 2]).unwrap();
-    let (erased, robot) = (AnySpace::new(&space), Sizeless::<_, 2>(slit(0.1, 0.8, 0.1)));
-    let ends = [DVector::from_vec(vec![0.1, 0.2]), DVector::from_vec(vec![0.9, 0.2])];
+    let space = Joints::<Configuration>::intervals(&[0.0; 2], &[1.0; 2]).unwrap();
+    let robot = OnVectors::<_, SVector<f64, 2>>::new(slit(0.1, 0.8, 0.1));
+    let (erased, ends) = (AnySpace::new(&space), [[0.1, 0.2].into(), [0.9, 0.2].into()]);
     let (settings, tuning) = (Settings::parse(["step=10%"]).unwrap(), Tuning::default());
     let tuning = Tuning { step: Step::Fraction(0.1), ..tuning };
-    let generic = |name: &str| -> AnyPlanner<'_, DVector<f64>, ()> {
+    let generic = |name: &str| -> AnyPlanner<'_, Configuration, ()> {
         let problem = problem(&space, &space, &robot, &ends).unwrap();
         match name {
             "rrt" => Box::new(Rrt::new(problem, tuning).unwrap()),
@@ -99,9 +109,8 @@ fn joints_are_planned_the_same() {
         }
     };
     for name in ["rrt", "rrt-connect", "rrt-star"] {
-        let make: ProblemFactory<'_, _> = Arc::new(|| problem(&space, &erased, &robot, &ends));
-        let workers = Workers::single();
-        let any = TreeState::tree_planner(name, make, AnyIndex::of(&space), &settings, &workers).unwrap();
-        assert_same(name, generic(name), any);
+        let make = Arc::new(|| problem(&space, &erased, &robot, &ends));
+        let any = mp_tree::erased::build(name, make, AnyIndex::of(&space), &settings, &Workers::single());
+        assert_same(name, generic(name), any.unwrap());
     }
 }

@@ -8,7 +8,7 @@ use mp_tree::*;
 use nalgebra::Vector2;
 
 type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>>;
+type Local<'c> = Straight<'c, Rn<2>, mp_cspace::erased::AnyCheck<'c, Vector2<f64>>>;
 
 const START: [f64; 2] = [0.1, 0.2];
 const GOAL: [f64; 2] = [0.9, 0.2];

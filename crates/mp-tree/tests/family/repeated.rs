@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>>;
+type Local<'c> = Straight<'c, Rn<2>, mp_cspace::erased::AnyCheck<'c, Vector2<f64>>>;
 type Made<'c> = Result<Problem<'c, Rn<2>, Local<'c>>, BuildError>;
 
 fn problem<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Made<'c> {

@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>>;
+type Local<'c> = Straight<'c, Rn<2>, mp_cspace::erased::AnyCheck<'c, Vector2<f64>>>;
 type Shared<'c, L> = SharedTree<'c, Rn<2>, L, KdTree<2>>;
 
 const START: Point = Point::new(0.1, 0.2);

@@ -6,7 +6,7 @@ use mp_tree::*;
 use nalgebra::Vector2;
 
 type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>>;
+type Local<'c> = Straight<'c, Rn<2>, mp_cspace::erased::AnyCheck<'c, Vector2<f64>>>;
 
 fn problem<'c>(
     space: &'c Rn<2>,

@@ -7,7 +7,6 @@ use crate::{Error, brief};
 use mp_cspace::{Certified, Clearance, Halton, JointRange, Joints, MotionValidity, Rng, Sampler, Space};
 use mp_io::{Files, GoalEntry, RobotProblem};
 use mp_robot::{Arm, Coordinate};
-use nalgebra::DVector;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -26,7 +25,7 @@ impl ArmScene {
     ) -> Result<(Self, Vec<String>), Error> {
         let (arm, said) = Self::arm_of(files, &problem)?;
         let space = arm.space()?;
-        let wanted = DVector::from(arm.kinematics().neutral());
+        let wanted = Configuration::from(arm.kinematics().neutral());
         let none = || {
             let message = format!(
                 "no configuration was found in which the links do not touch: {}",
@@ -46,7 +45,7 @@ impl ArmScene {
             JointRange::Circle => at + FRAC_PI_2,
         };
         let far: Vec<f64> = arm.coordinates().iter().zip(start.iter()).zip(&most).map(half_way).collect();
-        let far = space.wrapped(&DVector::from(far));
+        let far = space.wrapped(&Configuration::from(far));
         let goal = seen_near(&search, &space, [&start, &far], &most).ok_or_else(none)?;
         if interrupt.raised().is_some() {
             return Err(Error::new("the search for free configurations was ended").context(what(&problem)));

@@ -3,8 +3,9 @@
 use super::space::DrivenSpace;
 use super::{DrivenScene, ROUND_UP, ROUNDING, SpeedBound};
 use crate::robot::Queries;
-use mp_cspace::{Clearance, Interrupt, MotionCheck, MotionClearance, MotionValidity, Space, Validity};
-use nalgebra::DVector;
+use mp_cspace::{
+    Clearance, Configuration, Interrupt, MotionCheck, MotionClearance, MotionValidity, Space, Validity,
+};
 use std::sync::Arc;
 
 /// Parts of a motion shorter than this are not tested by the verifier. What is not shown free by then is not free.
@@ -31,15 +32,15 @@ impl<K: SpeedBound> Queries for DrivenChecker<K> {
     }
 }
 
-impl<K: SpeedBound> Validity<DVector<f64>> for DrivenChecker<K> {
-    fn is_valid(&mut self, q: &DVector<f64>) -> bool {
+impl<K: SpeedBound> Validity<Configuration> for DrivenChecker<K> {
+    fn is_valid(&mut self, q: &Configuration) -> bool {
         self.space.parts(q).is_some_and(|parts| self.checker.is_valid(&parts.q))
     }
 }
 
-impl<K: SpeedBound> Clearance<DVector<f64>> for DrivenChecker<K> {
+impl<K: SpeedBound> Clearance<Configuration> for DrivenChecker<K> {
     /// None outside of the bounds, which curved motions may leave.
-    fn clearance(&mut self, q: &DVector<f64>, enough: f64) -> f64 {
+    fn clearance(&mut self, q: &Configuration, enough: f64) -> f64 {
         match self.space.parts(q) {
             Some(parts) if self.space.positions.contains(&parts.q) => {
                 self.checker.clearance(&parts.q, enough)
@@ -47,13 +48,13 @@ impl<K: SpeedBound> Clearance<DVector<f64>> for DrivenChecker<K> {
             _ => 0.0,
         }
     }
-    fn in_contact(&mut self, q: &DVector<f64>) -> bool {
+    fn in_contact(&mut self, q: &Configuration) -> bool {
         self.space.parts(q).is_none_or(|parts| self.checker.in_contact(&parts.q))
     }
 }
 
-impl<K: SpeedBound> MotionClearance<DVector<f64>> for DrivenChecker<K> {
-    fn motion_bound(&self, from: &DVector<f64>, to: &DVector<f64>) -> f64 {
+impl<K: SpeedBound> MotionClearance<Configuration> for DrivenChecker<K> {
+    fn motion_bound(&self, from: &Configuration, to: &Configuration) -> f64 {
         if from == to {
             return 0.0;
         }
@@ -82,8 +83,8 @@ pub struct DrivenVerifier<'c, K: SpeedBound> {
     pub(super) verifier: K::Verifier<'c>,
 }
 
-impl<K: SpeedBound> MotionValidity<DVector<f64>> for DrivenVerifier<'_, K> {
-    fn check_motion(&mut self, from: &DVector<f64>, to: &DVector<f64>) -> MotionCheck {
+impl<K: SpeedBound> MotionValidity<Configuration> for DrivenVerifier<'_, K> {
+    fn check_motion(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
         let space = &self.scene.space;
         let [Some(a), Some(b)] = [from, to].map(|q| space.contains(q).then(|| space.parts(q)).flatten())
         else {

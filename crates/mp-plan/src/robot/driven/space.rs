@@ -3,8 +3,7 @@
 use super::system::{Parts, System};
 use super::{ROUND_UP, ROUNDING};
 use mp_cspace::nn::Layout;
-use mp_cspace::{Embed, Factored, Rng, Space, StateVector};
-use nalgebra::DVector;
+use mp_cspace::{Configuration, Embed, Factored, Rng, Space};
 use rand::RngExt;
 use std::sync::Arc;
 
@@ -20,19 +19,19 @@ pub struct DrivenSpace<C> {
     pub(super) weight: f64,
 }
 
-impl<C: Space<State: StateVector>> DrivenSpace<C> {
+impl<C: Space<State = Configuration>> DrivenSpace<C> {
     pub(super) fn new(positions: C, system: System) -> Self {
         let across = 2.0 * system.velocity_limits().iter().map(|v| v * v).sum::<f64>().sqrt();
         let weight = if across > 0.0 { positions.extent() / across } else { 0.0 };
         Self { positions, system: Arc::new(system), weight }
     }
 
-    pub(super) fn parts(&self, q: &DVector<f64>) -> Option<Parts<C::State>> {
+    pub(super) fn parts(&self, q: &Configuration) -> Option<Parts> {
         self.system.parts(q)
     }
 
     /// How far the state `to` is from where its input leads from `from`; infinite when it has no input, or one beyond its limits.
-    pub(super) fn off_course(&self, from: &Parts<C::State>, to: &Parts<C::State>) -> f64 {
+    pub(super) fn off_course(&self, from: &Parts, to: &Parts) -> f64 {
         let held = to.duration > 0.0 && to.duration <= self.system.duration * ROUND_UP;
         if !(held && self.system.allows(&to.input)) {
             return f64::INFINITY;
@@ -40,7 +39,7 @@ impl<C: Space<State: StateVector>> DrivenSpace<C> {
         self.apart(&self.system.flow(&self.positions, from, &to.input, to.duration), to)
     }
 
-    pub(super) fn apart(&self, from: &Parts<C::State>, to: &Parts<C::State>) -> f64 {
+    pub(super) fn apart(&self, from: &Parts, to: &Parts) -> f64 {
         let of_velocity = from.velocity.iter().zip(&to.velocity).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
         let of_position = self.positions.distance(&from.q, &to.q);
         if from.velocity.is_empty() {
@@ -51,20 +50,20 @@ impl<C: Space<State: StateVector>> DrivenSpace<C> {
     }
 
     /// Whether the input of `to` leads there from `from`.
-    pub(super) fn follows(&self, from: &Parts<C::State>, to: &Parts<C::State>) -> bool {
+    pub(super) fn follows(&self, from: &Parts, to: &Parts) -> bool {
         self.off_course(from, to) <= ROUNDING * self.extent()
     }
 
-    pub(super) fn at_rest(&self, q: C::State) -> Parts<C::State> {
+    pub(super) fn at_rest(&self, q: Configuration) -> Parts {
         let system = &self.system;
         Parts { q, velocity: vec![0.0; system.velocities], input: vec![0.0; system.inputs], duration: 0.0 }
     }
 }
 
-impl<C: Space<State: StateVector>> Space for DrivenSpace<C> {
-    type State = DVector<f64>;
+impl<C: Space<State = Configuration>> Space for DrivenSpace<C> {
+    type State = Configuration;
 
-    fn distance(&self, from: &DVector<f64>, to: &DVector<f64>) -> f64 {
+    fn distance(&self, from: &Configuration, to: &Configuration) -> f64 {
         match [from, to].map(|q| self.parts(q)) {
             [Some(from), Some(to)] => self.apart(&from, &to),
             _ => f64::INFINITY,
@@ -77,7 +76,7 @@ impl<C: Space<State: StateVector>> Space for DrivenSpace<C> {
         let extent = self.positions.extent();
         if self.system.velocities == 0 { extent } else { mp_math::hypot(extent, extent) }
     }
-    fn interpolate_into(&self, from: &DVector<f64>, to: &DVector<f64>, t: f64, out: &mut DVector<f64>) {
+    fn interpolate_into(&self, from: &Configuration, to: &Configuration, t: f64, out: &mut Configuration) {
         let ends = [from, to].map(|q| self.parts(q));
         *out = match ends {
             _ if t <= 0.0 || from == to => from.clone(),
@@ -100,20 +99,20 @@ impl<C: Space<State: StateVector>> Space for DrivenSpace<C> {
             }
         };
     }
-    fn unit_cube_to_state(&self, u: &[f64]) -> DVector<f64> {
+    fn unit_cube_to_state(&self, u: &[f64]) -> Configuration {
         let n = self.positions.dim();
         let mut state = self.at_rest(self.positions.unit_cube_to_state(&u[..n]));
         let limits = self.system.velocity_limits();
         state.velocity = limits.iter().zip(&u[n..]).map(|(limit, u)| limit * (2.0 * u - 1.0)).collect();
         self.system.vector(&state)
     }
-    fn sample_uniform(&self, rng: &mut Rng) -> DVector<f64> {
+    fn sample_uniform(&self, rng: &mut Rng) -> Configuration {
         let mut state = self.at_rest(self.positions.sample_uniform(rng));
         let limits = self.system.velocity_limits();
         state.velocity = limits.iter().map(|limit| limit * (2.0 * rng.random::<f64>() - 1.0)).collect();
         self.system.vector(&state)
     }
-    fn contains(&self, q: &DVector<f64>) -> bool {
+    fn contains(&self, q: &Configuration) -> bool {
         let Some(parts) = self.parts(q) else { return false };
         let slow = |(v, limit): (&f64, &f64)| v.abs() <= limit * ROUND_UP;
         self.positions.contains(&parts.q)
@@ -123,11 +122,11 @@ impl<C: Space<State: StateVector>> Space for DrivenSpace<C> {
 }
 
 /// Factors: those of the configurations, then the velocities.
-impl<C: Factored<State: StateVector>> Factored for DrivenSpace<C> {
+impl<C: Factored<State = Configuration>> Factored for DrivenSpace<C> {
     fn factors(&self) -> usize {
         self.positions.factors() + self.system.velocities
     }
-    fn each_factor(&self, from: &DVector<f64>, to: &DVector<f64>, f: &mut impl FnMut(usize, f64)) {
+    fn each_factor(&self, from: &Configuration, to: &Configuration, f: &mut impl FnMut(usize, f64)) {
         let [Some(from), Some(to)] = [from, to].map(|q| self.parts(q)) else { return };
         self.positions.each_factor(&from.q, &to.q, f);
         let first = self.positions.factors();
@@ -144,10 +143,10 @@ impl<C: Factored<State: StateVector>> Factored for DrivenSpace<C> {
     fn interpolate_factor(
         &self,
         factor: usize,
-        from: &DVector<f64>,
-        to: &DVector<f64>,
+        from: &Configuration,
+        to: &Configuration,
         t: f64,
-        out: &mut DVector<f64>,
+        out: &mut Configuration,
     ) {
         let [Some(from), Some(to), Some(mut q)] = [from, to, &*out].map(|q| self.parts(q)) else { return };
         match factor.checked_sub(self.positions.factors()) {
@@ -166,7 +165,7 @@ impl<C: Factored<State: StateVector>> Factored for DrivenSpace<C> {
         let velocities = std::iter::repeat_n(Layout::euclidean(1), self.system.velocities);
         self.positions.factor_layouts().into_iter().chain(velocities).collect()
     }
-    fn embed_factors(&self, state: &DVector<f64>, put: &mut impl FnMut(usize, f64)) {
+    fn embed_factors(&self, state: &Configuration, put: &mut impl FnMut(usize, f64)) {
         let Some(parts) = self.parts(state) else { return };
         self.positions.embed_factors(&parts.q, put);
         let first = self.positions.factors();
@@ -174,14 +173,14 @@ impl<C: Factored<State: StateVector>> Factored for DrivenSpace<C> {
     }
 }
 
-impl<C: Embed<State: StateVector>> Embed for DrivenSpace<C> {
+impl<C: Embed<State = Configuration>> Embed for DrivenSpace<C> {
     fn layout(&self) -> Layout {
         match self.system.velocities {
             0 => self.positions.layout(),
             n => self.positions.layout().beside(Layout::euclidean(n)),
         }
     }
-    fn embed(&self, state: &DVector<f64>, out: &mut [f64]) -> usize {
+    fn embed(&self, state: &Configuration, out: &mut [f64]) -> usize {
         let Some(parts) = self.parts(state) else { return self.layout().dim() };
         let n = self.positions.embed(&parts.q, out);
         parts.velocity.iter().zip(&mut out[n..]).for_each(|(v, x)| *x = self.weight * v);

@@ -5,8 +5,7 @@ use super::{DrivenScene, ROUNDING, SpeedBound};
 use mp_control::{dubins, reeds_shepp};
 use mp_cspace::angle::{angle_difference, wrap_angle};
 use mp_cspace::shorten::Effort;
-use mp_cspace::{MotionValidity, Path, Rng, Space, StateVector};
-use nalgebra::DVector;
+use mp_cspace::{Configuration, MotionValidity, Path, Rng, Space};
 use rand::RngExt;
 
 /// An input, and for how long it is held (s).
@@ -26,11 +25,11 @@ const CORRECTIONS: u32 = 20;
 impl System {
     /// Inputs that lead from one state to another in less than `most` seconds, obstacles aside: the shortest curve of a car, a turn,
     /// a drive and a turn of a unicycle, a straight motion by velocities, and two accelerations. Times of the states do not count.
-    fn steer<C: Space<State: StateVector>>(
+    fn steer<C: Space<State = Configuration>>(
         &self,
         positions: &C,
-        from: &Parts<C::State>,
-        to: &Parts<C::State>,
+        from: &Parts,
+        to: &Parts,
         most: f64,
     ) -> Option<Vec<Held>> {
         let held = match &self.drive {
@@ -74,10 +73,10 @@ impl System {
     }
 
     /// Two accelerations, each held for half of the time, about the shortest that is possible within the limits.
-    fn accelerated<C: Space<State: StateVector>>(
+    fn accelerated<C: Space<State = Configuration>>(
         &self,
         positions: &C,
-        (from, to): (&Parts<C::State>, &Parts<C::State>),
+        (from, to): (&Parts, &Parts),
         (speeds, limits): (&[f64], &[f64]),
         most: f64,
     ) -> Option<Vec<Held>> {
@@ -130,12 +129,7 @@ impl System {
     }
 
     /// The states that inputs lead to, each held for no longer than the system says, in equal parts.
-    fn run<C: Space<State: StateVector>>(
-        &self,
-        positions: &C,
-        from: &Parts<C::State>,
-        held: &[Held],
-    ) -> Vec<Parts<C::State>> {
+    fn run<C: Space<State = Configuration>>(&self, positions: &C, from: &Parts, held: &[Held]) -> Vec<Parts> {
         let (mut now, mut states) = (from.clone(), Vec::new());
         for (input, time) in held {
             let parts = (time / self.duration).ceil().max(1.0);
@@ -149,11 +143,11 @@ impl System {
 
     /// The velocity that leads from one position to another in a second, one number for each degree of freedom. The times of both
     /// do not count.
-    fn way<C: Space<State: StateVector>>(
+    fn way<C: Space<State = Configuration>>(
         &self,
         positions: &C,
-        from: &Parts<C::State>,
-        to: &Parts<C::State>,
+        from: &Parts,
+        to: &Parts,
     ) -> Option<Vec<f64>> {
         let mut way = vec![0.0; positions.dim()];
         let known = positions.velocity_into(&from.q, &to.q, &mut way);
@@ -175,18 +169,16 @@ impl<K: SpeedBound> DrivenScene<K> {
     /// it differs by rounding. The path still ends at a goal.
     pub(super) fn shortened_path(
         &self,
-        path: &Path<DVector<f64>>,
-        check: &mut dyn MotionValidity<DVector<f64>>,
+        path: &Path<Configuration>,
+        check: &mut dyn MotionValidity<Configuration>,
         effort: Effort,
         rng: &mut Rng,
-    ) -> Path<DVector<f64>> {
+    ) -> Path<Configuration> {
         let (system, positions) = (&self.space.system, &self.space.positions);
         let mut states: Vec<_> = path.states.iter().map(|q| self.parts(q)).collect();
-        let after =
-            |from: &Parts<K::State>, input: &[f64], time: f64| system.flow(positions, from, input, time);
-        let length = |states: &[Parts<K::State>]| -> f64 {
-            states.windows(2).map(|w| self.space.apart(&w[0], &w[1])).sum()
-        };
+        let after = |from: &Parts, input: &[f64], time: f64| system.flow(positions, from, input, time);
+        let length =
+            |states: &[Parts]| -> f64 { states.windows(2).map(|w| self.space.apart(&w[0], &w[1])).sum() };
         let mut failures = 0;
         for attempt in 0..effort.attempts {
             if failures >= effort.patience || states.len() < 3 || check.is_interrupted() {
@@ -238,7 +230,7 @@ impl<K: SpeedBound> DrivenScene<K> {
             new.extend(system.run(positions, &from, &held));
             let mut now = new[new.len() - 1].clone();
             let rounding = ROUNDING * positions.extent();
-            let is_at = |now: &Parts<K::State>, to: &Parts<K::State>| {
+            let is_at = |now: &Parts, to: &Parts| {
                 system.way(positions, now, to).is_some_and(|off| off.iter().all(|x| x.abs() <= rounding))
             };
             if !is_at(&now, &to) {
@@ -268,7 +260,7 @@ impl<K: SpeedBound> DrivenScene<K> {
     }
 
     /// Whether a state is at a goal.
-    fn is_at_goal(&self, state: &Parts<K::State>) -> bool {
+    fn is_at_goal(&self, state: &Parts) -> bool {
         let q = self.space.system.vector(state);
         let rounding = ROUNDING * self.space.extent().max(1.0);
         self.goal_parts.iter().any(|goal| {

@@ -2,9 +2,8 @@
 
 use super::ROUNDING;
 use mp_control::{Car, Flow, InputSet, Unicycle};
-use mp_cspace::{Se2State, Space, StateVector};
+use mp_cspace::{Configuration, Se2State, Space, StateVector};
 use mp_io::Drive;
-use nalgebra::DVector;
 use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_2;
 
@@ -33,8 +32,8 @@ pub(super) struct System {
 
 /// The parts of a state.
 #[derive(Clone, Debug)]
-pub(super) struct Parts<S> {
-    pub(super) q: S,
+pub(super) struct Parts {
+    pub(super) q: Configuration,
     pub(super) velocity: Vec<f64>,
     pub(super) input: Vec<f64>,
     pub(super) duration: f64,
@@ -47,7 +46,7 @@ impl System {
     }
 
     /// The parts of a vector, if it is a state.
-    pub(super) fn parts<S: StateVector>(&self, state: &DVector<f64>) -> Option<Parts<S>> {
+    pub(super) fn parts(&self, state: &Configuration) -> Option<Parts> {
         let all = state.as_slice();
         if all.len() != self.len() {
             return None;
@@ -55,34 +54,28 @@ impl System {
         let (q, rest) = all.split_at(self.numbers);
         let (velocity, rest) = rest.split_at(self.velocities);
         let (input, duration) = rest.split_at(self.inputs);
-        let q = S::read(q)?;
+        let q = Configuration::from(q);
         Some(Parts { q, velocity: velocity.to_vec(), input: input.to_vec(), duration: duration[0] })
     }
 
     /// The vector of a state.
-    pub(super) fn vector<S: StateVector>(&self, parts: &Parts<S>) -> DVector<f64> {
-        let mut all = Vec::with_capacity(self.len());
-        parts.q.write(&mut all);
-        all.extend(&parts.velocity);
-        all.extend(&parts.input);
-        all.push(parts.duration);
-        DVector::from_vec(all)
+    pub(super) fn vector(&self, parts: &Parts) -> Configuration {
+        let all = parts.q.iter().chain(&parts.velocity).chain(&parts.input).chain([&parts.duration]);
+        all.copied().collect()
     }
 
     /// The state that `input` leads to in `time` seconds.
-    pub(super) fn flow<C: Space<State: StateVector>>(
+    pub(super) fn flow<C: Space<State = Configuration>>(
         &self,
         positions: &C,
-        from: &Parts<C::State>,
+        from: &Parts,
         input: &[f64],
         time: f64,
-    ) -> Parts<C::State> {
+    ) -> Parts {
         let wheels = |flow: &dyn Fn(&Se2State) -> Se2State| {
             let (pose, now) = self.pose(&from.q)?;
-            let mut moved = Vec::new();
-            flow(&pose).write(&mut moved);
-            moved.extend(now.map(|now| now + time));
-            C::State::read(&moved)
+            let moved = Configuration::of(&flow(&pose));
+            Some(moved.iter().copied().chain(now.map(|now| now + time)).collect())
         };
         let pair = || [input.first().copied().unwrap_or(0.0), input.get(1).copied().unwrap_or(0.0)];
         let mut velocity = from.velocity.clone();
@@ -103,11 +96,12 @@ impl System {
     }
 
     /// The pose of a robot on wheels, and the time, if that is a part of its configuration.
-    pub(super) fn pose<S: StateVector>(&self, q: &S) -> Option<(Se2State, Option<f64>)> {
-        let mut numbers = Vec::with_capacity(self.numbers);
-        q.write(&mut numbers);
-        let now = if self.timed { numbers.pop() } else { None };
-        Some((Se2State::read(&numbers)?, now))
+    pub(super) fn pose(&self, q: &Configuration) -> Option<(Se2State, Option<f64>)> {
+        let (now, numbers) = match q.split_last() {
+            Some((now, numbers)) if self.timed => (Some(*now), numbers),
+            _ => (None, q.as_slice()),
+        };
+        Some((Se2State::read(numbers)?, now))
     }
 
     /// A velocity of the configuration: with that of time, if time is a part of the configuration.
@@ -120,7 +114,7 @@ impl System {
 
     /// The times (s) on the way from `from` by the input of `to` at which a number of the position has its least or greatest value,
     /// apart from the ends.
-    pub(super) fn turning_times<S: StateVector>(&self, from: &Parts<S>, to: &Parts<S>) -> Vec<f64> {
+    pub(super) fn turning_times(&self, from: &Parts, to: &Parts) -> Vec<f64> {
         let input = &to.input;
         let rate = match &self.drive {
             Drive::Velocities { .. } => return Vec::new(),
@@ -155,7 +149,7 @@ impl System {
 
     /// Upper bounds on the rate of each degree of freedom on the way from `from` by the input of `to`. The rates of a robot on
     /// wheels are those along its own axes.
-    pub(super) fn rates<S>(&self, from: &Parts<S>, to: &Parts<S>) -> Vec<f64> {
+    pub(super) fn rates(&self, from: &Parts, to: &Parts) -> Vec<f64> {
         let input = &to.input;
         match &self.drive {
             Drive::Car { wheelbase, .. } => {
