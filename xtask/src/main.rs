@@ -22,7 +22,7 @@ Builds and starts the programs of the workspace:
   cargo xtask bench SUITE …     measurements, the program `mp-bench`: see `cargo xtask bench --help`
   cargo xtask verify-certificate FILE   replays a certificate, with the program `mp-verify-certificate`
   cargo xtask soak --out DIR …  random problems for every planner under an oracle: see `cargo xtask soak --help`
-  cargo xtask wasm [KIND…]      builds the planners inside pages, for `render … --with-planner`
+  cargo xtask wasm              builds the planner inside pages, for `render … --with-planner`
   cargo xtask assets [--check]  generates the shipped scenes, or checks that they are up to date
   cargo xtask golden [--required] [--built] [WAY…]   the same bits on other processors: native, no-fma, nehalem, aarch64, wasm32
   cargo xtask fuzz [--seconds N] [TARGET…]   every reader under libFuzzer: see `cargo xtask fuzz --help`
@@ -40,7 +40,7 @@ fn main() -> ExitCode {
         "bench" => start("mp-bench", "mp-bench", &arguments[1..]),
         "verify-certificate" => start("mp-verify-certificate", "mp-verify-certificate", &arguments[1..]),
         "soak" => start("mp-soak", "mp-soak", &arguments[1..]),
-        "wasm" => wasm::run(&arguments[1..]),
+        "wasm" => wasm::run(),
         "golden" => golden::run(&arguments[1..]),
         "fuzz" => fuzz::run(&arguments[1..]),
         "memcheck" => memcheck::run(&arguments[1..]),

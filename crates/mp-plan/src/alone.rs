@@ -3,9 +3,6 @@
 //! A problem that names the file is made as text and read by the ordinary reader, so that a robot or a map means the same
 //! with and without a problem around it. Then its ends are chosen, and what was chosen is said in the notes of the scene.
 
-#[cfg(feature = "urdf")]
-use crate::kinds::of_kind;
-#[cfg(any(feature = "planar", feature = "urdf"))]
 use crate::load::OneText;
 use crate::{Error, Scene};
 use mp_io::Files;
@@ -44,7 +41,6 @@ fn beside(files: &dyn Files, file: &Path) -> Result<PathBuf, Error> {
 }
 
 /// The name of a file without folders, quoted as TOML quotes it. JSON quotes such names in the same way.
-#[cfg(any(feature = "planar", feature = "urdf"))]
 fn quoted(file: &Path) -> Result<String, Error> {
     Ok(serde_json::Value::from(name_of(file)?).to_string())
 }
@@ -57,12 +53,10 @@ fn name_of(file: &Path) -> Result<String, Error> {
 }
 
 /// The name that the problem around `file` has in errors, in the same folder.
-#[cfg(any(feature = "planar", feature = "urdf"))]
 fn around(file: &Path) -> PathBuf {
     file.with_extension("toml")
 }
 
-#[cfg(feature = "urdf")]
 fn robot(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     let place = around(file);
     let text = format!("[robot]\nurdf = {}\n[motion]\nstart = []\ngoal = []\n", quoted(file)?);
@@ -70,19 +64,12 @@ fn robot(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     mp_io::read_robot_text(files, file)?;
     let problem = mp_io::RobotProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?;
     let (scene, notes) = crate::ArmScene::from_robot_alone(files, problem)?;
-    Ok(of_kind!("arms", scene).with_notes(notes))
-}
-
-#[cfg(not(feature = "urdf"))]
-fn robot(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
-    Err(crate::kinds::left_out("urdf"))
+    Ok(Scene::new(scene).of_kind("arms").with_notes(notes))
 }
 
 /// The radius (m) of the disc that moves on a map alone: that of common mobile robots.
-#[cfg(feature = "planar")]
 const RADIUS: f64 = 0.2;
 
-#[cfg(feature = "planar")]
 fn map(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     use mp_io::{GoalPart, PlanarProblem, PlanarShape};
     let place = around(file);
@@ -120,17 +107,10 @@ fn map(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     Ok(Scene::from_world_until(problem, &files.interrupt())?.with_notes(notes))
 }
 
-#[cfg(not(feature = "planar"))]
-fn map(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
-    Err(crate::kinds::left_out("planar"))
-}
-
 /// How many points the longer side of a grid over a map has.
-#[cfg(feature = "planar")]
 const POINTS: usize = 240;
 
 /// Points of a map at equal distances, with their clearances.
-#[cfg(feature = "planar")]
 struct Grid {
     low: [f64; 2],
     spacing: f64,
@@ -139,7 +119,6 @@ struct Grid {
     clearances: Vec<f64>,
 }
 
-#[cfg(feature = "planar")]
 impl Grid {
     fn new(world: &mp_geom::planar::PlanarWorld, [low, high]: [[f64; 2]; 2]) -> Self {
         let size = [high[0] - low[0], high[1] - low[1]];

@@ -6,7 +6,6 @@ use mp_cspace::erased::AnyGradient;
 use mp_cspace::{Configuration, Path};
 use mp_snake::{Field, Grid, Repulsion, With};
 use nalgebra::Vector2;
-#[cfg(feature = "planar")]
 use {
     crate::PathRows,
     crate::path::{state, states},
@@ -72,7 +71,6 @@ pub(crate) fn check(kind: &dyn Robot, field: &RelaxField) -> Result<(), Error> {
         return Err(Error::new(format!("the field `{field}` is for {whom}, not for {}", kind.space_name()))
             .help("take the field `clearance`, which pushes all robots that can be relaxed"));
     }
-    #[cfg(feature = "planar")]
     if let RelaxField::Image(file) = field {
         read_image(file, bounds(kind)?)?;
     }
@@ -96,28 +94,15 @@ pub(crate) fn make<'k>(
     })
 }
 
-#[cfg(not(feature = "planar"))]
-fn image(_: &K, name: &RelaxField, _: f64, _: Option<&Path<Configuration>>) -> Result<Option<Grid>, Error> {
-    match name {
-        RelaxField::Clearance => Ok(None),
-        _ => Err(crate::kinds::left_out("planar")),
-    }
-}
-
 /// Cells of images of the plane in a range, and the most cells along a side.
-#[cfg(feature = "planar")]
 const CELLS: f64 = 7.5;
-#[cfg(feature = "planar")]
 const MOST_CELLS: usize = 2048;
 /// The standard deviation of the blur of images, as a part of the range.
-#[cfg(feature = "planar")]
 const BLUR: f64 = 1.0 / 3.0;
 /// The steps of a path in the landscape of risk, as a part of the range.
-#[cfg(feature = "planar")]
 const STRIDE: f64 = 5.0 / 3.0;
 
 /// The image of a field that has one.
-#[cfg(feature = "planar")]
 fn image(
     kind: &dyn Robot,
     name: &RelaxField,
@@ -161,7 +146,6 @@ fn image(
 }
 
 /// The bounds of x and y (m).
-#[cfg(feature = "planar")]
 fn bounds(kind: &dyn Robot) -> Result<[[f64; 2]; 2], Error> {
     match kind.limits()[..] {
         [Some(x), Some(y), ..] => Ok([x, y]),
@@ -170,7 +154,6 @@ fn bounds(kind: &dyn Robot) -> Result<[[f64; 2]; 2], Error> {
 }
 
 /// The energy of an image over `bounds` (m): 0 where it is white, 1 where it is black.
-#[cfg(feature = "planar")]
 fn read_image(file: &std::path::Path, bounds: [[f64; 2]; 2]) -> Result<Grid, Error> {
     let name = file.display().to_string();
     let map = GridMap::parse(&name, &mp_io::Files::read(&mp_io::Disk, file, mp_io::MAX_TEXT_BYTES)?)?;
@@ -197,13 +180,11 @@ fn read_image(file: &std::path::Path, bounds: [[f64; 2]; 2]) -> Result<Grid, Err
     Ok(Grid::new(bounds.map(|[low, _]| low), cell, width, energy)?)
 }
 
-#[cfg(feature = "planar")]
 fn not_drawn(kind: &dyn Robot) -> Error {
     Error::new(format!("the field of {} is not drawn", kind.name()))
 }
 
 /// The image of the field `name` with about so many `cells` along the longer side. Coordinates of `row` other than the place stay.
-#[cfg(feature = "planar")]
 pub(crate) fn field(
     kind: &dyn Robot,
     name: &RelaxField,
@@ -239,7 +220,7 @@ pub(crate) fn field(
     Ok(FieldImage { origin: [x[0], y[0]], cell, width, energy, range })
 }
 
-#[cfg(all(test, feature = "planar"))]
+#[cfg(test)]
 mod tests {
     use crate::{RelaxField, Scene};
 

@@ -1,41 +1,10 @@
-//! Scenes of the kinds of robots that this crate has. Planners are compiled for each kind, so each is a feature: a program with few kinds
-//! is much smaller.
+//! Scenes of the kinds of robots that this crate has.
 
 use crate::robot::{DrivenScene, PlanarBody, PlanarScene, RigidScene, RigidSpace, greatest_speed};
 use crate::{Error, Robot, Scene, TypedMotion};
 use mp_cspace::Interrupt;
 use mp_io::{PlanarProblem, PlanarShape, RigidProblem, RigidTask, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
-
-/// A scene of a robot of the kind that a feature names; an error in a program made without that feature, which then has no planners for it.
-macro_rules! of_kind {
-    ($feature:literal, $robot:expr) => {
-        if cfg!(feature = $feature) {
-            $crate::Scene::new($robot).of_feature($feature)
-        } else {
-            return Err($crate::kinds::left_out($feature));
-        }
-    };
-}
-#[cfg(feature = "urdf")]
-pub(crate) use of_kind;
-
-/// An error for scenes that a program cannot have without a feature.
-pub(crate) fn left_out(feature: &str) -> Error {
-    let what = match feature {
-        "arms" | "urdf" => "arms",
-        "discs" => "discs",
-        "driven" => "robots moved by inputs",
-        "driven-moving" => "robots moved by inputs among obstacles that move",
-        "floating" => "bodies with joints that fly freely",
-        "moving" => "obstacles that move",
-        "planar" => "worlds of the plane",
-        "plane" => "bodies that turn in the plane",
-        _ => "rigid bodies in space",
-    };
-    Error::new(format!("this program is made without {what}"))
-        .help(format!("take a program made with the feature `{feature}` of mp-plan"))
-}
 
 impl Scene {
     /// A scene of a rigid body among meshes.
@@ -117,15 +86,15 @@ impl Scene {
 }
 
 fn space(scene: RigidScene<Spatial>) -> Result<Scene, Error> {
-    Ok(of_kind!("space", scene))
+    Ok(Scene::new(scene).of_kind("space"))
 }
 
 fn plane<K: Robot + 'static>(scene: K) -> Result<Scene, Error> {
-    Ok(of_kind!("plane", scene))
+    Ok(Scene::new(scene).of_kind("plane"))
 }
 
 fn disc(scene: PlanarScene<DiscRobot>) -> Result<Scene, Error> {
-    Ok(of_kind!("discs", scene))
+    Ok(Scene::new(scene).of_kind("discs"))
 }
 
 /// The scene of a rigid body that can make any motion; `still` makes it where no obstacle moves.
@@ -136,7 +105,9 @@ fn body<M: RigidSpace>(
 ) -> Result<Scene, Error> {
     let scene = RigidScene::<M>::after_until(None, task.problem, interrupt)?.with_goals(task.goals);
     match &task.timing {
-        Some(timing) => Ok(of_kind!("moving", scene.among_moving_until(&task.moving, timing, interrupt)?)),
+        Some(timing) => {
+            Ok(Scene::new(scene.among_moving_until(&task.moving, timing, interrupt)?).of_kind("moving"))
+        }
         None => still(scene),
     }
 }
@@ -150,9 +121,9 @@ fn world<B: PlanarBody>(
     let (moves, driven) = (!problem.file.moving.is_empty(), problem.file.driven.clone());
     let scene = PlanarScene::<B>::new_until(problem, interrupt)?;
     Ok(match driven {
-        Some(driven) if moves => of_kind!("driven-moving", scene.driven_among_moving(&driven)?),
-        Some(driven) => of_kind!("driven", scene.driven(&driven)?),
-        None if moves => of_kind!("moving", scene.among_moving()?),
+        Some(driven) if moves => Scene::new(scene.driven_among_moving(&driven)?).of_kind("driven-moving"),
+        Some(driven) => Scene::new(scene.driven(&driven)?).of_kind("driven"),
+        None if moves => Scene::new(scene.among_moving()?).of_kind("moving"),
         None => still(scene)?,
     })
 }
@@ -166,9 +137,9 @@ fn driven_body(mut task: RigidTask, interrupt: &Interrupt) -> Result<Scene, Erro
     let scene = RigidScene::<Spatial>::after_until(None, task.problem, interrupt)?.with_goals(places);
     let Some(timing) = &mut task.timing else {
         let scene = DrivenScene::new(scene, &driven, &task.velocity, task.goals)?;
-        return Ok(of_kind!("driven", scene));
+        return Ok(Scene::new(scene).of_kind("driven"));
     };
     timing.speed = Some(greatest_speed(TypedMotion::space(&scene), &driven));
     let scene = scene.among_moving_until(&task.moving, timing, interrupt)?;
-    Ok(of_kind!("driven-moving", scene.driven(&driven, &task.velocity, task.goals)?))
+    Ok(Scene::new(scene.driven(&driven, &task.velocity, task.goals)?).of_kind("driven-moving"))
 }

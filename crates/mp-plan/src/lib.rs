@@ -69,7 +69,7 @@ mod field;
 mod film;
 mod find;
 mod finish;
-#[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
+#[cfg(all(feature = "pictures", feature = "roadmaps"))]
 pub mod fuzz;
 mod goals;
 mod in_order;

@@ -16,13 +16,13 @@ mod shard;
 
 pub use items::ListResults;
 pub use merge::merge_results;
-#[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
+#[cfg(all(feature = "pictures", feature = "roadmaps"))]
 pub(crate) use merge::merged;
 #[cfg(feature = "ranks")]
 pub use ranks::RanksOutcome;
-#[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
+#[cfg(all(feature = "pictures", feature = "roadmaps"))]
 pub(crate) use reader::{Next, ResultsReader};
-#[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
+#[cfg(all(feature = "pictures", feature = "roadmaps"))]
 pub(crate) use results::checksum;
 pub use results::{ItemError, ItemResult, RESULTS_VERSION, ResultsHeader, SceneFingerprint, Tally};
 pub use run::{ManyOptions, ManyOutcome};

@@ -1,8 +1,6 @@
 //! Reading scenes from files of any kind.
 
 use crate::inputs::Recording;
-#[cfg(feature = "urdf")]
-use crate::kinds::of_kind;
 use crate::{Error, Scene, alone};
 use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RigidTask, RobotProblem, SceneDocument};
 use std::path::Path;
@@ -105,38 +103,26 @@ impl Scene {
 }
 
 /// The scene of a world in the plane.
-#[cfg(feature = "planar")]
 fn planar(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     Scene::from_world_until(PlanarProblem::load_from(files, file)?, &files.interrupt())
 }
 
 /// The scene of an arm, whose base stands still or floats.
-#[cfg(feature = "urdf")]
 fn arm(files: &dyn Files, file: &Path, before: Option<&Scene>) -> Result<Scene, Error> {
     let problem = mp_io::RobotProblem::load_from(files, file)?;
     if problem.file.floating.is_some() {
         let before = before.and_then(Scene::robot);
         let scene = crate::FloatingScene::from_problem_after(files, problem, before)?;
         let notes = scene.said().to_vec();
-        return Ok(of_kind!("floating", scene).with_notes(notes));
+        return Ok(Scene::new(scene).of_kind("floating").with_notes(notes));
     }
     let scene = crate::ArmScene::from_problem_after(files, problem, before.and_then(Scene::robot))?;
     let notes = scene.said().to_vec();
     let scene = match scene.driven()? {
-        Some(driven) => of_kind!("driven", driven),
-        None => of_kind!("arms", scene),
+        Some(driven) => Scene::new(driven).of_kind("driven"),
+        None => Scene::new(scene).of_kind("arms"),
     };
     Ok(scene.with_notes(notes))
-}
-
-#[cfg(not(feature = "planar"))]
-fn planar(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
-    Err(crate::kinds::left_out("planar"))
-}
-
-#[cfg(not(feature = "urdf"))]
-fn arm(_: &dyn Files, _: &Path, _: Option<&Scene>) -> Result<Scene, Error> {
-    Err(crate::kinds::left_out("urdf"))
 }
 
 /// A text in place of one file, among other files.

@@ -55,7 +55,7 @@ pub struct Scene {
     notes: Arc<[String]>,
     /// What readers of its files remarked.
     pub(crate) remarks: Arc<[String]>,
-    feature: Option<&'static str>,
+    kind: Option<&'static str>,
 }
 
 /// Refuses a clearance that is no length.
@@ -95,7 +95,7 @@ impl Scene {
             document: None,
             notes: Arc::default(),
             remarks: Arc::default(),
-            feature: None,
+            kind: None,
         }
     }
 
@@ -164,8 +164,8 @@ impl Scene {
         (&*self.robot as &dyn Any).downcast_ref()
     }
 
-    pub(crate) fn of_feature(self, feature: &'static str) -> Self {
-        Self { feature: Some(feature), ..self }
+    pub(crate) fn of_kind(self, kind: &'static str) -> Self {
+        Self { kind: Some(kind), ..self }
     }
 
     /// Sets the file that reports name as the source of the scene.
@@ -174,7 +174,6 @@ impl Scene {
         Self { file: Some(file.into()), ..self }
     }
 
-    #[cfg(any(feature = "planar", feature = "urdf"))]
     pub(crate) fn with_notes(self, notes: Vec<String>) -> Self {
         Self { notes: notes.into(), ..self }
     }
@@ -186,11 +185,10 @@ impl Scene {
         &self.notes
     }
 
-    /// The feature of this crate that plans for the robot of the scene: `space`, `arms`, …; `None` for a
-    /// [`Robot`] of one's own.
+    /// The kind of robot: `space`, `arms`, …; `None` for a [`Robot`] of one's own.
     #[must_use]
-    pub fn feature(&self) -> Option<&'static str> {
-        self.feature
+    pub fn kind(&self) -> Option<&'static str> {
+        self.kind
     }
 
     /// The name of the scene.
@@ -685,10 +683,6 @@ impl Scene {
     /// # Errors
     /// When the scene is no world of the plane, the field does not suit its robot, the row is not one of its configurations, there
     /// is no path for the risk, or the range is no length.
-    #[cfg_attr(
-        not(feature = "planar"),
-        expect(unused_variables, reason = "there are no worlds of the plane")
-    )]
     pub fn field(
         &self,
         field: &RelaxField,
@@ -697,7 +691,6 @@ impl Scene {
         range: Option<&str>,
         cells: usize,
     ) -> Result<crate::FieldImage, Error> {
-        #[cfg(feature = "planar")]
         if self.is_planar_world() {
             return crate::field::field(&*self.robot, field, row, path, range, cells);
         }

@@ -221,7 +221,7 @@ fn all_is_as_it_was_on_every_machine() {
 
 /// Of each kind of robot there are all planners, a roadmap and a picture.
 #[test]
-#[cfg(all(feature = "kinds", feature = "roadmaps"))]
+#[cfg(feature = "roadmaps")]
 fn the_table_is_complete() {
     let cases = Case::all();
     for scene in Scene::shipped() {
@@ -230,7 +230,7 @@ fn the_table_is_complete() {
             assert!(TABLE.lines().any(|line| line.starts_with(&case)), "{case}is not in the table");
         }
     }
-    let kinds = SMALL.map(|name| Scene::find(name).unwrap().feature().unwrap());
+    let kinds = SMALL.map(|name| Scene::find(name).unwrap().kind().unwrap());
     let all = ["arms", "discs", "driven", "driven-moving", "floating", "moving", "plane", "space"];
     assert_eq!(BTreeSet::from(kinds), BTreeSet::from(all));
     for (scene, kind) in SMALL.into_iter().zip(kinds) {

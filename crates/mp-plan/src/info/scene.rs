@@ -16,7 +16,7 @@ pub struct SceneInfo {
     pub name: String,
     /// The configuration space: `SE3`, `SE2`, `R2`, `6 joints`.
     pub space: String,
-    /// The kind of robot, as the [feature](Scene::feature) for it is called: `space`, `arms`, ….
+    /// The kind of robot, as [`Scene::kind`] says: `space`, `arms`, ….
     pub robot: Option<&'static str>,
     /// The meaning of each number of a configuration.
     pub columns: Vec<ColumnInfo>,
@@ -81,7 +81,7 @@ impl SceneInfo {
             file: scene.file().map(|file| file.display().to_string()),
             name: scene.name().to_owned(),
             space: scene.space(),
-            robot: scene.feature(),
+            robot: scene.kind(),
             columns: columns
                 .map(|(i, c)| ColumnInfo {
                     name: c.name,

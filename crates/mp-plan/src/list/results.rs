@@ -260,7 +260,7 @@ pub(super) fn end_line(tally: Tally, hash: &Xxh3) -> Result<String, Error> {
 }
 
 /// The bytes of results whose last line has the right hash: for fuzzing.
-#[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
+#[cfg(all(feature = "pictures", feature = "roadmaps"))]
 pub(crate) fn checksum(bytes: &[u8]) -> Vec<u8> {
     let last =
         bytes[..bytes.len().saturating_sub(1)].iter().rposition(|b| *b == b'\n').map_or(0, |at| at + 1);

@@ -52,7 +52,7 @@ pub(super) enum Source {
     #[cfg(feature = "ranks")]
     Sent(Arc<super::parcel::Sent>),
     /// Nowhere: this is the only scene.
-    #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
+    #[cfg(all(feature = "pictures", feature = "roadmaps"))]
     Only(Scene),
 }
 
@@ -95,7 +95,7 @@ impl ProblemList {
     }
 
     /// The list with one scene for all of its problems: for fuzzing.
-    #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
+    #[cfg(all(feature = "pictures", feature = "roadmaps"))]
     pub(crate) fn with_scene(&self, scene: &Scene) -> ListedProblems {
         let scenes = vec![SceneFiles::default(); self.scenes.len()];
         ListedProblems::new(self.clone(), scenes, Vec::new(), Source::Only(scene.clone()), Known::new())
@@ -195,7 +195,7 @@ impl ListedProblems {
             Scene::load_after(&files, file, before)
         };
         let mut scene = match &self.source {
-            #[cfg(all(feature = "kinds", feature = "pictures", feature = "roadmaps"))]
+            #[cfg(all(feature = "pictures", feature = "roadmaps"))]
             Source::Only(scene) => return Ok(scene.clone()),
             #[cfg(feature = "scenes")]
             _ if *shipped => load(&shipped_files(), &Known::new())?,

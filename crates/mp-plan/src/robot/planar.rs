@@ -80,6 +80,8 @@ pub trait PlanarBody:
     fn tolerance(&self) -> f64;
     /// The largest distance of a point of the robot from its origin, metres.
     fn radius(&self) -> f64;
+    /// The configuration of a row.
+    fn state(row: &[f64]) -> <Self as PlanarBody>::State;
     /// The rings around it, in its own frame, metres.
     fn rings(&self) -> Vec<Vec<Point2<f64>>>;
     /// The pose of a configuration.
@@ -195,6 +197,9 @@ impl PlanarBody for DiscRobot {
     fn pose(q: &Vector2<f64>) -> Isometry2<f64> {
         Isometry2::new(*q, 0.0)
     }
+    fn state(row: &[f64]) -> Vector2<f64> {
+        Vector2::new(row[0], row[1])
+    }
     fn origin() -> Vector2<f64> {
         Vector2::zeros()
     }
@@ -246,6 +251,9 @@ impl PlanarBody for PolygonRobot {
     fn pose(q: &Se2State) -> Isometry2<f64> {
         Isometry2::new(q.translation, q.angle)
     }
+    fn state(row: &[f64]) -> Se2State {
+        Se2State::new(row[0], row[1], row[2])
+    }
     fn origin() -> Se2State {
         Se2State::new(0.0, 0.0, 0.0)
     }
@@ -286,13 +294,13 @@ impl<B: PlanarBody> PlanarScene<B> {
         let robot = OnVectors::new(B::among(Arc::new(world), &problem.file.robot)?);
         let space = AsVectors(B::space(problem.bounds)?);
         let numbers = B::COLUMNS.len();
-        let start = Configuration::from(&problem.file.start[..numbers]);
+        let start = at::<B>(&problem.file.start[..numbers]);
         // A robot with accelerations may have goals of its velocities too, which are not those of this scene.
         let parts = problem.file.goals.iter().map(|goal| goal[..numbers.min(goal.len())].to_vec());
         let parts: Vec<Vec<GoalPart>> = parts.collect();
         let (mut goals, mut goal_parts) = (vec![start.clone()], None);
         match rows(&parts) {
-            Some(rows) => goals = rows.into_iter().map(Configuration::from).collect(),
+            Some(rows) => goals = rows.iter().map(|row| at::<B>(row)).collect(),
             None => goal_parts = Some(parts),
         }
         let mut scene = Self { problem, robot, space, start, goals, goal_parts };
@@ -376,6 +384,11 @@ impl<B: PlanarBody> PlanarScene<B> {
         let pose = B::pose(&placed::<B>(q));
         self.robot().rings().into_iter().map(|ring| ring.iter().map(|p| pose * p).collect()).collect()
     }
+}
+
+/// The configuration of a row.
+fn at<B: PlanarBody>(row: &[f64]) -> Configuration {
+    Configuration::of(&B::state(row))
 }
 
 /// The placement of a configuration; the origin for a row that is none.
@@ -551,7 +564,7 @@ impl<B: PlanarBody> Description for PlanarScene<B> {
         q.to_vec()
     }
     fn state(&self, row: &[f64]) -> Configuration {
-        row.into()
+        at::<B>(row)
     }
     fn given_start(&self) -> Vec<f64> {
         self.problem.file.start[..B::COLUMNS.len()].to_vec()

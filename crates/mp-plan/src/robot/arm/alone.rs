@@ -18,7 +18,6 @@ impl ArmScene {
     ///
     /// # Errors
     /// As [`from_problem`](Self::from_problem), and when no free configuration is found.
-    #[cfg_attr(not(feature = "urdf"), expect(dead_code, reason = "there are no robots to read"))]
     pub(crate) fn from_robot_alone(
         files: &dyn Files,
         mut problem: RobotProblem,

@@ -91,7 +91,6 @@ pub(super) fn srdf_help(problem: &RobotProblem) -> String {
 }
 
 /// The model of a URDF. `mesh` finds its meshes.
-#[cfg(feature = "urdf")]
 fn from_urdf(
     problem: &RobotProblem,
     mesh: impl FnMut(&str) -> Result<TriMesh, String>,
@@ -121,14 +120,4 @@ fn line_of(urdf: &str, element: &str, name: &str) -> Option<usize> {
     };
     let at = urdf.match_indices(&start).map(|(at, _)| at).filter(is_it).last()?;
     Some(urdf[..at].matches('\n').count() + 1)
-}
-
-#[cfg(not(feature = "urdf"))]
-fn from_urdf(
-    _: &RobotProblem,
-    _: impl FnMut(&str) -> Result<TriMesh, String>,
-    _: &Interrupt,
-) -> Result<ArmModel, Error> {
-    Err(Error::new("this program was built without the feature `urdf`, which reads arms")
-        .help("build it with the feature, which is on by default"))
 }

@@ -48,14 +48,13 @@ export async function withFolder(use) {
   }
 }
 
-/** The planners for pages that the program finds. */
+/** The folder of the planner for pages that the program finds. */
 const PLANNERS = process.env.MP_PLANNERS ?? join(dirname(PROGRAM), "..", "planners");
 process.env.MP_PLANNERS = PLANNERS;
-/** Why pages cannot plan for robots of these kinds, or false. @param {...string} kinds */
-export function withoutPlanner(...kinds) {
-  const built = kinds.every((kind) => existsSync(join(PLANNERS, `${kind}.wasm`)));
-  return built ? false : `no planner for pages: “cargo xtask wasm ${kinds.join(" ")}” builds it`;
-}
+/** Why pages cannot plan, or false. */
+export const withoutPlanner = existsSync(join(PLANNERS, "planner.wasm"))
+  ? false
+  : "no planner for pages: “cargo xtask wasm” builds it";
 
 /** Runs the program to its end, and fails when it fails. @param {...string} args */
 export const mp = (...args) => execFileSync(PROGRAM, args, { stdio: ["ignore", "pipe", "pipe"], encoding: "utf8" });

@@ -51,4 +51,4 @@ browserTest("a page with a planner inside plans in a frame", () => withFolder(as
   await checked(frame);
   assert.deepEqual(faults, []);
   await context.close();
-}), withoutPlanner("plane"));
+}), withoutPlanner);
