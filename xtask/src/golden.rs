@@ -111,7 +111,7 @@ const WAYS: [Way; 5] = [
                 "fingerprints",
                 "--no-default-features",
                 "--features",
-                "kinds,roadmaps,scenes",
+                "roadmaps,scenes",
             ],
         ],
         variables: &[("MP_FINGERPRINTS", "short"), ("NODE_NO_WARNINGS", "1")],

@@ -47,6 +47,8 @@ pub(crate) struct RoadmapFile<'r> {
     path: &'r Path,
     /// A hash of scene, robot and metric, which the roadmap in the file must have.
     fingerprint: u64,
+    /// How many numbers a configuration has.
+    numbers: usize,
     _lock: Lock,
 }
 
@@ -61,7 +63,7 @@ impl<'r> RoadmapFile<'r> {
             return Err(Error::new("roadmaps are kept of rigid bodies only").help(help));
         };
         mp_store::make_folder(mp_store::folder_of(path))?;
-        Ok(Self { path, fingerprint, _lock: Lock::of_file(path)? })
+        Ok(Self { path, fingerprint, numbers: kind.start().len(), _lock: Lock::of_file(path)? })
     }
 }
 
@@ -72,10 +74,19 @@ impl RoadmapFile<'_> {
         if !self.path.exists() {
             return Ok(None);
         }
-        Roadmap::load(self.path, self.fingerprint).map(Some).map_err(|e| match e.error {
-            RoadmapError::File(file) => file.into(),
-            _ => Error::new(e.to_string()).help("name another file, or delete it to begin anew"),
-        })
+        let help = "name another file, or delete it to begin anew";
+        let map: Roadmap<Configuration> =
+            Roadmap::load(self.path, self.fingerprint).map_err(|e| match e.error {
+                RoadmapError::File(file) => file.into(),
+                _ => Error::new(e.to_string()).help(help),
+            })?;
+        match map.states().iter().all(|q| q.len() == self.numbers) {
+            true => Ok(Some(map)),
+            false => {
+                let path = self.path.display();
+                Err(Error::new(format!("{path} holds configurations of another kind of robot")).help(help))
+            }
+        }
     }
 
     /// Writes the roadmap to the file.
