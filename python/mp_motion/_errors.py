@@ -15,6 +15,8 @@ class Error(Exception):
     ----------
     message : str
         What is wrong.
+    kind : str
+        What it is about: ``"start-not-free"``, ``"goal-not-free"``, ``"planner"``, ``"request"``, ``"file"`` or ``"other"``.
     remedy : str or None
         What to do about it.
     file : str or None
@@ -29,6 +31,7 @@ class Error(Exception):
         self,
         message: str,
         *,
+        kind: str = "other",
         remedy: str | None = None,
         file: str | None = None,
         line: int | None = None,
@@ -36,6 +39,7 @@ class Error(Exception):
         report: str | None = None,
     ) -> None:
         self.message = message
+        self.kind = kind
         self.remedy = remedy
         self.file = file
         self.line = line
@@ -44,15 +48,17 @@ class Error(Exception):
         super().__init__(self.report.removeprefix("error: "))
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _error, (self.message, self.remedy, self.file, self.line, self.column, self.report)
+        return _error, (self.message, self.kind, self.remedy, self.file, self.line, self.column, self.report)
 
 
 def _report(message: str, remedy: str | None) -> str:
     return f"error: {message}" if remedy is None else f"error: {message}\n  help: {remedy}"
 
 
-def _error(message: str, remedy: str | None, file: str | None, line: int | None, column: int | None, report: str) -> Error:
-    return Error(message, remedy=remedy, file=file, line=line, column=column, report=report)
+def _error(
+    message: str, kind: str, remedy: str | None, file: str | None, line: int | None, column: int | None, report: str
+) -> Error:
+    return Error(message, kind=kind, remedy=remedy, file=file, line=line, column=column, report=report)
 
 
 class InternalError(RuntimeError):

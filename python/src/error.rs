@@ -13,7 +13,7 @@ fn class<'py>(py: Python<'py>, known: &PyOnceLock<Py<PyAny>>, name: &str) -> PyR
     Ok(class.bind(py).clone())
 }
 
-/// `mp_motion.Error` with message, remedy, and the place in a file if there is one.
+/// `mp_motion.Error` with message, kind, remedy, and the place in a file if there is one.
 pub(crate) fn to_python(error: &mp_plan::Error) -> PyErr {
     static CLASS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     Python::attach(|py| {
@@ -21,6 +21,7 @@ pub(crate) fn to_python(error: &mp_plan::Error) -> PyErr {
             let members = PyDict::new(py);
             let file = error.file();
             members.set_item("message", error.message())?;
+            members.set_item("kind", error.kind().name())?;
             members.set_item("remedy", error.remedy())?;
             members.set_item("file", file.map(mp_io::Error::file))?;
             members.set_item("line", file.and_then(mp_io::Error::line))?;

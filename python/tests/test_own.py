@@ -123,6 +123,7 @@ def test_what_is_not_free_is_said() -> None:
     scene = mp.Scene.own(ROBOTS["valid"], [1, 1], [2, 1])
     with pytest.raises(mp.Error, match="the goal is in collision") as raised:
         scene.plan()
+    assert raised.value.kind == "goal-not-free"
     assert raised.value.remedy is not None and "nearest free" in raised.value.remedy
     scene = scene_of(ROBOTS["clearance"])
     assert scene.explain([2, 1]).nearest_free is not None and not scene.is_free([9, 9])

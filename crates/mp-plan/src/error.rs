@@ -1,5 +1,7 @@
 //! The error type of this crate: what is wrong, where, and what to do about it.
 
+use crate::End;
+use mp_cspace::{BuildError, Endpoint};
 use std::fmt;
 
 /// A message has at most so many characters: it may cite what somebody gave.
@@ -9,11 +11,56 @@ const MAX_MESSAGE: usize = 400;
 ///
 /// [`Display`](fmt::Display) gives one line. [`report`](Self::report) gives a few lines for a person, with the line of the
 /// file, if there is one.
+///
+/// ```
+/// use mp_plan::{End, ErrorKind, Request, Scene};
+/// let scene = Scene::find("easy")?;
+/// let error = scene.plan(&Request::new("rrt-conect")).unwrap_err();
+/// assert_eq!(error.kind(), ErrorKind::Planner);
+/// let error = scene.plan(&Request::default().set("step", "far")).unwrap_err();
+/// assert_eq!(error.kind(), ErrorKind::Request);
+/// assert_eq!(Scene::load("nowhere.env").unwrap_err().kind(), ErrorKind::File);
+/// let below = scene.with_ends(&[0.0, 0.0, -99.0, 0.0, 0.0, 0.0], &scene.goals())?;
+/// assert_eq!(below.check_ends().unwrap_err().kind(), ErrorKind::NotFree(End::Start));
+/// # Ok::<(), mp_plan::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Error(Box<Inner>);
 
+/// What an error is about, for programs that decide by it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// An end of the problem is in collision, too near to an obstacle, or out of bounds.
+    NotFree(End),
+    /// There is no planner of this name, or it cannot plan for the robot.
+    Planner,
+    /// A setting, a budget or another part of a request is not valid.
+    Request,
+    /// A file cannot be read or written, or its content is not valid: [`Error::file`] says where.
+    File,
+    /// Anything else.
+    Other,
+}
+
+impl ErrorKind {
+    /// Its name: `start-not-free`, `goal-not-free`, `planner`, `request`, `file`, `other`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NotFree(End::Start) => "start-not-free",
+            Self::NotFree(End::Goal(_)) => "goal-not-free",
+            Self::Planner => "planner",
+            Self::Request => "request",
+            Self::File => "file",
+            Self::Other => "other",
+        }
+    }
+}
+
 #[derive(Debug)]
 struct Inner {
+    kind: ErrorKind,
     context: Vec<String>,
     message: String,
     help: Option<String>,
@@ -24,7 +71,7 @@ impl Error {
     /// An error with this message: lower case, no full stop.
     pub fn new(message: impl Into<String>) -> Self {
         let message = mp_io::one_line(&message.into(), MAX_MESSAGE);
-        Self(Box::new(Inner { context: Vec::new(), message, help: None, file: None }))
+        Self(Box::new(Inner { kind: ErrorKind::Other, context: Vec::new(), message, help: None, file: None }))
     }
 
     /// Adds what to do about it.
@@ -39,6 +86,19 @@ impl Error {
     pub fn context(mut self, what: impl Into<String>) -> Self {
         self.0.context.insert(0, what.into());
         self
+    }
+
+    /// Says what it is about.
+    #[must_use]
+    pub fn of_kind(mut self, kind: ErrorKind) -> Self {
+        self.0.kind = kind;
+        self
+    }
+
+    /// What it is about.
+    #[must_use]
+    pub fn kind(&self) -> ErrorKind {
+        self.0.kind
     }
 
     /// What is wrong, without context, location and remedy.
@@ -93,7 +153,8 @@ impl std::error::Error for Error {}
 impl From<mp_io::Error> for Error {
     fn from(file: mp_io::Error) -> Self {
         let message = file.message().to_owned();
-        Self(Box::new(Inner { context: Vec::new(), message, help: None, file: Some(file) }))
+        let kind = ErrorKind::File;
+        Self(Box::new(Inner { kind, context: Vec::new(), message, help: None, file: Some(file) }))
     }
 }
 
@@ -115,6 +176,25 @@ impl From<mp_ranks::Error> for Error {
     }
 }
 
+impl From<BuildError> for Error {
+    fn from(error: BuildError) -> Self {
+        let kind = match &error {
+            BuildError::Outside { endpoint, .. }
+            | BuildError::NotFree { endpoint, .. }
+            | BuildError::Refused { endpoint, .. } => ErrorKind::NotFree(match endpoint {
+                Endpoint::Start => End::Start,
+                Endpoint::Goal(i) => End::Goal(*i),
+            }),
+            BuildError::OutOfRange { .. }
+            | BuildError::Malformed { .. }
+            | BuildError::Parameter(_)
+            | BuildError::UnknownParameter { .. } => ErrorKind::Request,
+            _ => ErrorKind::Planner,
+        };
+        Self::new(error.to_string()).of_kind(kind)
+    }
+}
+
 macro_rules! plain {
     ($($error:ty),*) => {
         $(impl From<$error> for Error {
@@ -125,7 +205,6 @@ macro_rules! plain {
     };
 }
 plain!(
-    mp_cspace::BuildError,
     mp_cspace::ParameterError,
     mp_cspace::SpaceError,
     mp_robot::ArmError,

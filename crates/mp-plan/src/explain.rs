@@ -1,7 +1,7 @@
 //! What is wrong with a configuration, or with the ends of a scene.
 
 use crate::numbers::told_apart;
-use crate::{End, Error, Robot, Touch};
+use crate::{End, Error, ErrorKind, Robot, Touch};
 use mp_cspace::{Clearance, Configuration, Space, Validity};
 use serde::{Deserialize, Serialize};
 
@@ -125,7 +125,7 @@ pub(crate) fn enclosures(kind: &dyn Robot, q: &Configuration) -> Option<String> 
 pub(crate) fn check_ends(kind: &dyn Robot) -> Result<Vec<String>, Error> {
     for (end, name, q) in ends(kind) {
         if let Some((message, help)) = refused(kind, &name, q) {
-            return Err(kind.fault(end, message, help));
+            return Err(kind.fault(end, message, help).of_kind(ErrorKind::NotFree(end)));
         }
     }
     let inside = ends(kind).filter_map(|(_, name, q)| Some(format!("at {name} {}", enclosures(kind, q)?)));

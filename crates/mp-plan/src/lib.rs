@@ -51,6 +51,7 @@
 //! | find out why a configuration is not free | [`Scene::explain`] |
 //! | find out what is odd about a scene | [`Scene::lint`] |
 //! | find out what is in a file | [`info::Info`] |
+//! | decide by what an error is about | [`Error::kind`], [`ErrorKind`] |
 //! | draw | `Scene::picture`, `Scene::film` (feature `pictures`), [`Scene::bodies`], [`Scene::poses`], [`Scene::sweep`] |
 //! | add your own kind of robot | [`Robot`] |
 //! | work with states instead of rows of numbers | [`search`], [`shorten`] with a [`Robot`] |
@@ -115,7 +116,7 @@ mod watch;
 
 pub use certificate::Certificate;
 pub use check::Verdict;
-pub use error::Error;
+pub use error::{Error, ErrorKind};
 pub use explain::Explanation;
 pub use field::FieldImage;
 #[cfg(feature = "pictures")]

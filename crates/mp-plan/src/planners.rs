@@ -1,8 +1,8 @@
 //! Planners by name: of trees, with meta-planners or without, and of roadmaps.
 
-use crate::{Error, Robot, roadmaps};
-use mp_cspace::Demand;
+use crate::{Error, ErrorKind, Robot, roadmaps};
 use mp_cspace::registry::{PlannerInfo, Settings};
+use mp_cspace::{BuildError, Demand};
 use std::fmt;
 
 /// All planners by name, planners of trees first. The name of a planner of trees may have the prefix `or-` or `restart-`,
@@ -42,16 +42,14 @@ impl PlannerKind {
             // The error of mp-tree lists only planners of trees.
             let names = planners().flat_map(|p| [p.name].into_iter().chain(p.aliases.iter().copied()));
             let known = planners().map(|p| p.name).collect::<Vec<_>>().join(", ");
-            match (error, mp_cspace::registry::closest(name, names)) {
-                (mp_cspace::BuildError::UnknownPlanner { .. }, Some(near)) => {
-                    Error::new(format!("there is no planner `{name}`"))
-                        .help(format!("did you mean `{near}`? There are: {known}"))
+            let help = match (&error, mp_cspace::registry::closest(name, names)) {
+                (BuildError::UnknownPlanner { .. }, Some(near)) => {
+                    format!("did you mean `{near}`? There are: {known}")
                 }
-                (mp_cspace::BuildError::UnknownPlanner { .. }, None) => {
-                    Error::new(format!("there is no planner `{name}`")).help(format!("there are: {known}"))
-                }
-                (error, _) => error.into(),
-            }
+                (BuildError::UnknownPlanner { .. }, None) => format!("there are: {known}"),
+                _ => return Error::from(error),
+            };
+            Error::new(format!("there is no planner `{name}`")).help(help).of_kind(ErrorKind::Planner)
         })
     }
 
@@ -76,18 +74,21 @@ impl PlannerKind {
             demands.iter().all(|demand| info.can(*demand)) && (by_inputs || !info.can(Demand::Inputs))
         };
         let names = || planners().filter(able).map(|info| info.name).collect::<Vec<_>>().join(", ");
+        let cannot = |why: &str| {
+            Error::new(format!("{self} cannot plan for {}: {why}", kind.name())).of_kind(ErrorKind::Planner)
+        };
         let Some(reason) = demands.iter().find_map(|demand| info.reason_against(*demand)) else {
             if demands.is_empty() || able(&info) {
                 return Ok(());
             }
             let why = "it moves robots by inputs, and the file says nothing of those of this robot";
-            return Err(Error::new(format!("{self} cannot plan for {}: {why}", kind.name())).help(format!(
+            let help = format!(
                 "say how the robot moves, such as `kind = \"velocities\"`, or take one of: {}",
                 names()
-            )));
+            );
+            return Err(cannot(why).help(help));
         };
-        Err(Error::new(format!("{self} cannot plan for {}: {reason}", kind.name()))
-            .help(format!("take one of: {}", names())))
+        Err(cannot(reason).help(format!("take one of: {}", names())))
     }
 
     pub(crate) fn is_roadmap(&self) -> bool {

@@ -9,8 +9,9 @@ use crate::watch::{Events, WatchAdapter};
 use crate::{Control, Error, Length, Measured, MotionValidator, Request, Robot};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
-    AnyProblem, BuildError, Configuration, Interrupt, Iterations, KnownFree, MotionCheck, MotionValidity,
-    Nodes, ParameterError, Problem, Resolution, Stop, Straight, Workers, registry::PlannerInfo,
+    AnyProblem, BuildError, Configuration, Endpoint, Interrupt, Iterations, KnownFree, MotionCheck,
+    MotionValidity, Nodes, ParameterError, Problem, Resolution, Stop, Straight, Workers,
+    registry::PlannerInfo,
 };
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -282,12 +283,15 @@ impl MotionValidity<Configuration> for Possible<'_> {
 
 /// The error, with the state as messages write it.
 fn written(kind: &dyn Robot, mut error: BuildError) -> BuildError {
-    if let BuildError::Outside { state, .. }
-    | BuildError::NotFree { state, .. }
-    | BuildError::Refused { state, .. } = &mut error
+    if let BuildError::Outside { endpoint, state }
+    | BuildError::NotFree { endpoint, state, .. }
+    | BuildError::Refused { endpoint, state } = &mut error
     {
-        let mut ends = std::iter::once(kind.start()).chain(kind.goals());
-        if let Some(end) = ends.find(|end| format!("{end:?}") == *state) {
+        let end = match endpoint {
+            Endpoint::Start => Some(kind.start()),
+            Endpoint::Goal(i) => kind.goals().get(*i),
+        };
+        if let Some(end) = end {
             *state = kind.written(end);
         }
     }

@@ -1,6 +1,6 @@
 //! How to plan: plain data.
 
-use crate::Error;
+use crate::{Error, ErrorKind};
 use mp_cspace::registry::Settings;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -454,6 +454,10 @@ impl Request {
     /// The first fault found.
     pub fn check(&self) -> Result<(), Error> {
         let planner = crate::planners::PlannerKind::new(&self.planner)?;
+        self.check_for(&planner).map_err(|e| e.of_kind(ErrorKind::Request))
+    }
+
+    fn check_for(&self, planner: &crate::planners::PlannerKind) -> Result<(), Error> {
         planner.check(&self.settings())?;
         if let Some(time) = self.budget.time_s
             && (time.is_nan() || time <= 0.0)

@@ -8,7 +8,7 @@ use crate::prepared::Prepared;
 use crate::relax::relax_if_requested;
 use crate::roadmaps::{GrowingFile, Roadmap, RoadmapFile, with_checkpoints};
 use crate::search::Search;
-use crate::{Budget, Control, Error, Report, Request, Robot, Stage, StoppedBy};
+use crate::{Budget, Control, End, Error, ErrorKind, Report, Request, Robot, Stage, StoppedBy};
 use mp_cspace::{Configuration, Interrupt, Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
 use mp_roadmap::{AnyEdgeChecker, PATIENCE, erased::AnyRoadmap};
 use std::fmt;
@@ -189,9 +189,9 @@ impl RobotRoadmap {
         let (kind, request) = (&*self.kind, &self.request);
         let _span = tracing::info_span!("query", scene = kind.name()).entered();
         let [start, goal] = [state(kind, start)?, state(kind, goal)?];
-        for (name, q) in [("the start", &start), ("the goal", &goal)] {
+        for (end, name, q) in [(End::Start, "the start", &start), (End::Goal(0), "the goal", &goal)] {
             if let Some((message, help)) = refused(kind, name, q) {
-                return Err(Error::new(message).help(help));
+                return Err(Error::new(message).help(help).of_kind(ErrorKind::NotFree(end)));
             }
         }
         let prepared = Prepared::new(kind, request)?;

@@ -8,15 +8,15 @@ use std::fmt;
 pub enum Endpoint {
     /// Where it begins.
     Start,
-    /// Where it ends.
-    Goal,
+    /// Where it ends: the goal with this index among those listed.
+    Goal(usize),
 }
 
 impl fmt::Display for Endpoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Start => "start",
-            Self::Goal => "goal",
+            Self::Goal(_) => "goal",
         })
     }
 }

@@ -143,15 +143,16 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
             Ok(())
         };
         check(Endpoint::Start, &start)?;
-        let mut bad = None;
+        let (mut bad, mut number) = (None, 0);
         goals.listed_mut().retain(|q| {
             let distance = space.distance(&start, q);
-            let verdict = check(Endpoint::Goal, q).and(match distance.is_finite() {
+            let verdict = check(Endpoint::Goal(number), q).and(match distance.is_finite() {
                 true => Ok(()),
                 false => Err(BuildError::Distance { distance }),
             });
             let keep = verdict.is_ok();
             bad = bad.take().or(verdict.err());
+            number += 1;
             keep
         });
         match bad {

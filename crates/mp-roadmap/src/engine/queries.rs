@@ -300,7 +300,7 @@ struct RunningQuery<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
 }
 
 /// What [`RunningQuery::ends`] are called in errors.
-const ENDPOINTS: [Endpoint; 2] = [Endpoint::Start, Endpoint::Goal];
+const ENDPOINTS: [Endpoint; 2] = [Endpoint::Start, Endpoint::Goal(0)];
 
 impl<C, L, N> RunningQuery<'_, '_, C, L, N>
 where

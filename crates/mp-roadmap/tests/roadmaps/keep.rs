@@ -81,7 +81,7 @@ fn unanswered_queries_say_why() {
     };
     assert_eq!(ask(&mut answers, [0.1, 0.1], [0.9, 0.1]), Unanswered::Apart);
     assert_eq!(ask(&mut answers, [0.1, 1.1], [0.9, 0.1]), Unanswered::Outside(Endpoint::Start));
-    assert_eq!(ask(&mut answers, [0.1, 0.1], [0.5, 0.1]), Unanswered::NotFree(Endpoint::Goal));
+    assert_eq!(ask(&mut answers, [0.1, 0.1], [0.5, 0.1]), Unanswered::NotFree(Endpoint::Goal(0)));
     let mut none = self::answers(&space, &boxes, Map::new());
     assert_eq!(ask(&mut none, [0.1, 0.1], [0.9, 0.1]), Unanswered::Unreached(Endpoint::Start));
     let small = Rn::<2>::new([0.0; 2], [0.5; 2]).unwrap();

@@ -36,17 +36,17 @@ fn ends_must_be_in_the_space_free_and_admitted() {
         let error = problem(&space, bad, point(0.9, 0.1)).unwrap_err();
         assert!(matches!(error, BuildError::Outside { endpoint: Endpoint::Start, .. }), "{error}");
         let error = problem(&space, ok, Point::from(bad)).unwrap_err();
-        assert!(matches!(error, BuildError::Outside { endpoint: Endpoint::Goal, .. }), "{error}");
+        assert!(matches!(error, BuildError::Outside { endpoint: Endpoint::Goal(0), .. }), "{error}");
     }
     let error = problem(&space, [0.5, 0.2], point(0.9, 0.1)).unwrap_err();
     assert!(matches!(error, BuildError::NotFree { endpoint: Endpoint::Start, .. }), "{error}");
     let error = problem(&space, ok, point(0.5, 0.2)).unwrap_err();
-    assert!(matches!(error, BuildError::NotFree { endpoint: Endpoint::Goal, .. }), "{error}");
+    assert!(matches!(error, BuildError::NotFree { endpoint: Endpoint::Goal(0), .. }), "{error}");
     // Free for the exact verifier, within the tolerance of the certified check.
     let error = problem(&space, [0.4 - 1e-5, 0.2], point(0.9, 0.1)).unwrap_err();
     assert!(matches!(error, BuildError::Refused { endpoint: Endpoint::Start, .. }), "{error}");
     let error = problem(&space, ok, Goals::states([point(0.5, 0.2), point(2.0, 0.0)])).unwrap_err();
-    assert!(matches!(error, BuildError::NotFree { endpoint: Endpoint::Goal, .. }), "{error}");
+    assert!(matches!(error, BuildError::NotFree { endpoint: Endpoint::Goal(0), .. }), "{error}");
     let error = problem(&space, ok, Goals::states([])).unwrap_err();
     assert_eq!(error, BuildError::NoGoal);
     assert!(problem(&space, ok, Goals::states([point(0.5, 0.2), point(0.9, 0.1)])).is_ok());
