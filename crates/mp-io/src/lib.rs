@@ -1,6 +1,7 @@
 //! File formats of motion planning: meshes, scenes, problems, paths.
 //!
 //! - [`RigidProblem::load`] reads a problem and its meshes, whatever the format.
+//! - [`ProblemFile::load_from`] reads a problem in TOML, for any robot.
 //! - [`RobotProblem::load`] reads a problem for an arm, [`JointPath`] its paths.
 //! - [`PlanarProblem::load`] reads a world in the plane.
 //! - [`SceneDocument`] is a scene as an editor keeps it.
@@ -32,6 +33,7 @@ mod ompl;
 mod path;
 mod planar;
 mod problem;
+mod problem_file;
 mod rigid_toml;
 mod robot;
 mod stl;
@@ -57,6 +59,7 @@ pub use planar::{
     RosMap,
 };
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
+pub use problem_file::ProblemFile;
 pub use rigid_toml::{RigidMoving, RigidTask};
 pub use robot::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem, read_robot_text};
 pub use stl::{parse_stl, stl_text, write_stl};

@@ -93,22 +93,18 @@ struct MovingTable {
 }
 
 impl RigidTask {
-    /// Whether a file is such a problem: its name ends in `.toml`, and its table `robot` has a shape.
-    #[must_use]
-    pub fn is_one(files: &dyn Files, path: &Path) -> bool {
-        let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-        let read = || files.read(path, MAX_TEXT_BYTES).ok();
-        named && read().is_some_and(|bytes| has_shape(&String::from_utf8_lossy(&bytes)))
-    }
-
     /// Reads the problem at `path` and its meshes, whose names are relative to it.
     ///
     /// # Errors
     /// [`Error`] when a file cannot be read or makes no sense, with file, line and column.
     pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
+        Self::of_bytes(files, path, &files.read(path, MAX_TEXT_BYTES)?)
+    }
+
+    /// As [`load_from`](Self::load_from), from the content of the file.
+    pub(crate) fn of_bytes(files: &dyn Files, path: &Path, bytes: &[u8]) -> Result<Self, Error> {
         let file = path.display().to_string();
-        let bytes = files.read(path, MAX_TEXT_BYTES)?;
-        let text = decode(&file, &bytes)?;
+        let text = decode(&file, bytes)?;
         let source = TomlText { file: &file, text, guide: GUIDE };
         let File { robot, motion, obstacle, moving } = source.read()?;
         let robot_span = robot.span();
@@ -285,18 +281,6 @@ fn driven(
     Ok(driven)
 }
 
-/// Whether the table `robot` of a text has a shape.
-fn has_shape(text: &str) -> bool {
-    let mut in_robot = false;
-    text.lines().map(str::trim_start).any(|line| {
-        if line.starts_with('[') {
-            in_robot = line.starts_with("[robot]");
-        }
-        let key = line.split(['=', ' ', '\t']).next().unwrap_or_default();
-        in_robot && ["mesh", "box", "sphere", "cylinder"].contains(&key)
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -312,7 +296,6 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("task.toml");
         std::fs::write(&path, text).unwrap();
-        assert!(RigidTask::is_one(&Disk, &path));
         RigidTask::load_from(&Disk, &path)
     }
 

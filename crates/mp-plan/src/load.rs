@@ -2,7 +2,7 @@
 
 use crate::inputs::Recording;
 use crate::{Error, Scene, alone};
-use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RigidTask, RobotProblem, SceneDocument};
+use mp_io::{Disk, Files, ProblemFile, RigidProblem, RobotProblem, SceneDocument};
 use std::path::Path;
 use std::sync::PoisonError;
 
@@ -38,13 +38,12 @@ impl Scene {
         let files: &dyn Files = &recording;
         let scene = match alone::scene(files, file, &ending).map_err(of)? {
             Some(scene) => scene,
-            None if RobotProblem::is_named(file) => match PlanarProblem::is_planar_world_in(files, file) {
-                true => planar(files, file).map_err(of)?,
-                false if RigidTask::is_one(files, file) => {
-                    Self::from_task_until(RigidTask::load_from(files, file)?, &files.interrupt())
-                        .map_err(of)?
+            None if ProblemFile::is_named(file) => match ProblemFile::load_from(files, file)? {
+                ProblemFile::World(problem) => {
+                    Self::from_world_until(*problem, &files.interrupt()).map_err(of)?
                 }
-                false => arm(files, file, before)?,
+                ProblemFile::Body(task) => Self::from_task_until(*task, &files.interrupt()).map_err(of)?,
+                ProblemFile::Links(problem) => arm(files, *problem, before)?,
             },
             None if ending == "json" => {
                 let folder = file.parent().unwrap_or(Path::new(""));
@@ -102,14 +101,8 @@ impl Scene {
     }
 }
 
-/// The scene of a world in the plane.
-fn planar(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
-    Scene::from_world_until(PlanarProblem::load_from(files, file)?, &files.interrupt())
-}
-
 /// The scene of an arm, whose base stands still or floats.
-fn arm(files: &dyn Files, file: &Path, before: Option<&Scene>) -> Result<Scene, Error> {
-    let problem = mp_io::RobotProblem::load_from(files, file)?;
+fn arm(files: &dyn Files, problem: RobotProblem, before: Option<&Scene>) -> Result<Scene, Error> {
     if problem.file.floating.is_some() {
         let before = before.and_then(Scene::robot);
         let scene = crate::FloatingScene::from_problem_after(files, problem, before)?;

@@ -26,27 +26,6 @@ pub struct PlanarProblem {
 }
 
 impl PlanarProblem {
-    /// Whether a file is a world in the plane: its name ends in `.toml`, and it has a table `world`.
-    #[must_use]
-    pub fn is_planar_world(path: &Path) -> bool {
-        Self::is_planar_world_in(&Disk, path)
-    }
-
-    /// As [`is_planar_world`](Self::is_planar_world), with the file read through `files`.
-    #[must_use]
-    pub fn is_planar_world_in(files: &dyn Files, path: &Path) -> bool {
-        let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-        let begins = |line: &str| {
-            let line = line.trim_start();
-            line.starts_with("[world]")
-                || line.strip_prefix("world").is_some_and(|l| l.trim_start().starts_with(['=', '.']))
-        };
-        named
-            && files
-                .read(path, MAX_TEXT_BYTES)
-                .is_ok_and(|bytes| String::from_utf8_lossy(&bytes).lines().any(begins))
-    }
-
     /// Reads a world in the plane, its image or map. File names are relative to the file that has them.
     ///
     /// # Errors
@@ -60,7 +39,12 @@ impl PlanarProblem {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
-        let file = PlanarFile::parse(&path.display().to_string(), &files.read(path, MAX_TEXT_BYTES)?)?;
+        Self::of_bytes(files, path, &files.read(path, MAX_TEXT_BYTES)?)
+    }
+
+    /// As [`load_from`](Self::load_from), from the content of the file.
+    pub(crate) fn of_bytes(files: &dyn Files, path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+        let file = PlanarFile::parse(&path.display().to_string(), bytes)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut obstacles = file.obstacles.clone();
         let (mut walls, mut extent) = (file.walls, None);

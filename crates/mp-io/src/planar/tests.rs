@@ -21,7 +21,8 @@ fn folder(problem: &str) -> (tempfile::TempDir, std::path::PathBuf) {
 #[test]
 fn a_world_of_polygons() {
     let (_dir, path) = folder(GOOD);
-    assert!(PlanarProblem::is_planar_world(&path));
+    let read = crate::ProblemFile::load_from(&crate::Disk, &path).unwrap();
+    assert!(matches!(read, crate::ProblemFile::World(_)));
     let problem = PlanarProblem::load(&path).unwrap();
     assert_eq!((problem.name.as_str(), &problem.file.robot), ("room", &PlanarShape::Disc(0.07)));
     assert_eq!(problem.bounds, [[0.0, 0.0], [4.0, 3.0]]);

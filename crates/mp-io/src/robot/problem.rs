@@ -53,12 +53,6 @@ impl RobotProblem {
             && (a.limit_tolerance, b.limit_tolerance, a.solid) == (0.0, 0.0, b.solid)
     }
 
-    /// Whether the name of a file is that of a robot problem: it ends in `.toml`.
-    #[must_use]
-    pub fn is_named(path: &Path) -> bool {
-        path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
-    }
-
     /// Reads a robot problem, its URDF and SRDF and the meshes of obstacles. File names are relative to the problem
     /// file.
     ///
@@ -74,8 +68,12 @@ impl RobotProblem {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
-        let shown = path.display().to_string();
-        let file = RobotFile::parse(&shown, &files.read(path, MAX_TEXT_BYTES)?)?;
+        Self::of_bytes(files, path, &files.read(path, MAX_TEXT_BYTES)?)
+    }
+
+    /// As [`load_from`](Self::load_from), from the content of the file.
+    pub(crate) fn of_bytes(files: &dyn Files, path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+        let file = RobotFile::parse(&path.display().to_string(), bytes)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let text = |part: RobotPart, name: &str| {
             let place = folder.join(name);

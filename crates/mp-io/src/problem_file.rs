@@ -1,0 +1,95 @@
+//! Problems in TOML files, recognised by their tables.
+
+use crate::error::Error;
+use crate::files::{Files, MAX_TEXT_BYTES, decode};
+use crate::planar::PlanarProblem;
+use crate::rigid_toml::RigidTask;
+use crate::robot::RobotProblem;
+use crate::toml_problem::TomlText;
+use std::path::Path;
+
+/// The pages that describe the formats.
+const GUIDE: &str =
+    "the formats are described in docs/formats: planar-world.md, rigid-problem.md and robot-problem.md";
+
+/// The keys of a table `robot` that is a single body.
+const SHAPES: [&str; 4] = ["mesh", "box", "sphere", "cylinder"];
+
+/// A problem in a TOML file; all files that it names are read, but for the meshes of a robot of links.
+#[derive(Clone, Debug)]
+pub enum ProblemFile {
+    /// A world in the plane: the file has a table `world`.
+    World(Box<PlanarProblem>),
+    /// A rigid body: the table `robot` has a shape.
+    Body(Box<RigidTask>),
+    /// A robot of links and joints: everything else.
+    Links(Box<RobotProblem>),
+}
+
+impl ProblemFile {
+    /// Whether the name of a file is that of such a problem: it ends in `.toml`.
+    #[must_use]
+    pub fn is_named(path: &Path) -> bool {
+        path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+    }
+
+    /// Reads the problem at `path`. File names in it are relative to it.
+    ///
+    /// # Errors
+    /// [`Error`] when a file cannot be read or makes no sense, with file, line and column.
+    pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
+        let (file, bytes) = (path.display().to_string(), files.read(path, MAX_TEXT_BYTES)?);
+        let text = TomlText { file: &file, text: decode(&file, &bytes)?, guide: GUIDE };
+        let tables: toml::Table = text.read()?;
+        let robot = tables.get("robot").and_then(toml::Value::as_table);
+        Ok(if tables.contains_key("world") {
+            Self::World(Box::new(PlanarProblem::of_bytes(files, path, &bytes)?))
+        } else if robot.is_some_and(|robot| SHAPES.iter().any(|shape| robot.contains_key(*shape))) {
+            Self::Body(Box::new(RigidTask::of_bytes(files, path, &bytes)?))
+        } else {
+            Self::Links(Box::new(RobotProblem::of_bytes(files, path, &bytes)?))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::InMemory;
+
+    fn load(text: &str) -> Result<ProblemFile, Error> {
+        let urdf = "<robot name='r'><link name='a'/></robot>";
+        let files = InMemory(|name: &str| match name {
+            "f.toml" => Some(text.as_bytes()),
+            "r.urdf" => Some(urdf.as_bytes()),
+            _ => None,
+        });
+        ProblemFile::load_from(&files, Path::new("f.toml"))
+    }
+
+    #[test]
+    fn problems_are_known_by_their_tables_however_they_are_written() {
+        let ends = "[motion]\nstart = [0, 0, 0, 0, 0, 0]\ngoal = [1, 0, 0, 0, 0, 0]\n";
+        for body in [
+            "[robot]\nbox = [1, 1, 1]\n",
+            "[ robot ] # a body\n\"box\" = [1, 1, 1]\n",
+            "robot.box = [1, 1, 1]\n",
+            "robot = { sphere = 1 }\n",
+        ] {
+            let read = load(&format!("{body}{ends}"));
+            assert!(matches!(read, Ok(ProblemFile::Body(_))), "{body}: {read:?}");
+        }
+        let ends = "[motion]\nstart = [1, 1]\ngoal = [2, 2]\n";
+        for world in ["[world]\nwalls = [[0, 0], [3, 3]]\n", "world = { walls = [[0, 0], [3, 3]] }\n"] {
+            let read = load(&format!("{world}[robot]\ndisc = 0.1\n{ends}"));
+            assert!(matches!(read, Ok(ProblemFile::World(_))), "{world}: {read:?}");
+        }
+        let links = "# box = 1\n[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = []\ngoal = []\n";
+        assert!(matches!(load(links), Ok(ProblemFile::Links(_))));
+        let error = load("[robot\nbox = 1").unwrap_err();
+        assert!(
+            error.line() == Some(1) && error.remedy().is_some_and(|r| r.contains("docs/formats")),
+            "{error}"
+        );
+    }
+}
