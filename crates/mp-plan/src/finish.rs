@@ -1,11 +1,16 @@
 //! Finishing a path: shortens it, writes it as text, and verifies what the text says.
 
-use crate::check::{clearance, fault_text, verified};
-use crate::motion::{By, Counting};
+pub(crate) mod certificate;
+pub(crate) mod check;
+pub(crate) mod field;
+pub(crate) mod relax;
+
+use crate::finish::check::{clearance, fault_text, verified};
+use crate::finish::relax::relax_if_requested;
 use crate::path::states;
-use crate::prepared::{Possible, resolution};
-use crate::relax::relax_if_requested;
-use crate::report::{RunStage, StageTime};
+use crate::robot::motion::{By, Counting};
+use crate::run::prepared::{Possible, resolution};
+use crate::run::report::{RunStage, StageTime};
 use crate::{Control, Error, Finish, PathRows, Request, Robot, Stage, StoppedBy};
 use mp_cspace::erased::{AnyCheck, AnySpace};
 use mp_cspace::shorten::{Effort, simplify};
@@ -42,7 +47,7 @@ pub(crate) fn finish_given(
     control: &mut Control<'_>,
 ) -> Result<Finished, Error> {
     let _span = tracing::info_span!("finish", scene = kind.name()).entered();
-    crate::relax::check(kind, request)?;
+    crate::finish::relax::check(kind, request)?;
     let began = control.clock.now();
     let time = request.budget.time_s.and_then(|time| Duration::try_from_secs_f64(time).ok());
     let left = |control: &Control<'_>| {

@@ -4,8 +4,8 @@
 //!
 //! None may panic, hang or take memory out of proportion, whatever the bytes.
 
-use crate::info::SceneInfo;
-use crate::list::{Next, ResultsReader, merged};
+use crate::batch::list::{Next, ResultsReader, merged};
+use crate::scene::info::SceneInfo;
 use crate::{
     Error, ItemResult, Length, MotionValidator, PathFileKind, ProblemList, RelaxField, Report, Request, Scene,
 };
@@ -203,7 +203,7 @@ pub fn many_list(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn many_results(bytes: &[u8]) -> Result<(), Error> {
-    let bytes = crate::list::checksum(bytes);
+    let bytes = crate::batch::list::checksum(bytes);
     let read = || ResultsReader::new("f.jsonl".to_owned(), &bytes[..]);
     let mut reader = read()?;
     loop {

@@ -59,109 +59,69 @@
 //! Units are metres, radians and seconds. The crate prints nothing. It reports through `tracing`, with the spans `load`,
 //! `build`, `plan`, `roadmap`, `query`, `relax`, `shorten`, `verify`, `check` and `certificate`.
 
-mod alone;
-mod certificate;
-mod check;
-mod counted;
+mod batch;
 mod error;
-mod explain;
-mod field;
-#[cfg(feature = "pictures")]
-mod film;
-mod find;
 mod finish;
 #[cfg(all(feature = "pictures", feature = "roadmaps"))]
 pub mod fuzz;
-mod goals;
-mod in_order;
-pub mod info;
-mod inputs;
-#[cfg(feature = "ranks")]
-mod job_identity;
-mod kinds;
-mod list;
-mod load;
-mod many;
-mod motion;
-#[cfg(feature = "pictures")]
-mod mp4;
 mod numbers;
 mod output;
-mod parallel;
 mod path;
 #[cfg(feature = "pictures")]
 mod picture;
-mod plan;
-mod planners;
-#[cfg(feature = "ranks")]
-mod portfolio;
-mod portfolio_counts;
-mod prepared;
-#[cfg(all(feature = "ranks", feature = "roadmaps"))]
-mod regional;
-mod relax;
-mod report;
-mod request;
-mod roadmaps;
 mod robot;
-mod routes;
 mod run;
-mod runs;
 mod scene;
-#[cfg(feature = "roadmaps")]
-mod scene_roadmap;
-mod search;
-mod sweep;
-mod watch;
 
-pub use certificate::Certificate;
-pub use check::Verdict;
-pub use error::{Error, ErrorKind};
-pub use explain::Explanation;
-pub use field::FieldImage;
-#[cfg(feature = "pictures")]
-pub use film::{Film, FilmKind};
-pub use find::find_problem;
-pub use finish::{Finished, shorten};
-pub use goals::GoalPart;
-pub use in_order::in_order;
+pub use batch::in_order::in_order;
 #[cfg(feature = "ranks")]
-pub use list::RanksOutcome;
-pub use list::{
+pub use batch::list::RanksOutcome;
+pub use batch::list::{
     ItemError, ItemResult, ListResults, ListedProblems, ManyOptions, ManyOutcome, ProblemList,
     RESULTS_VERSION, ResultsHeader, SceneFingerprint, Shard, Tally, merge_results,
 };
-pub use many::plan_many;
-pub use motion::{AnyChecker, AnyMotion, AnyVerifier, By, Counting, TypedMotion};
+pub use batch::many::plan_many;
+pub use batch::parallel::in_parallel;
+#[cfg(feature = "ranks")]
+pub use batch::portfolio::{Portfolio, PortfolioOptions, PortfolioOutcome, RankWork};
+pub use batch::portfolio_counts::{PortfolioCounts, PortfolioSchedule};
+#[cfg(all(feature = "ranks", feature = "roadmaps"))]
+pub use batch::regional::{RegionalTally, RegionalWork};
+pub use error::{Error, ErrorKind};
+pub use finish::certificate::Certificate;
+pub use finish::check::Verdict;
+pub use finish::field::FieldImage;
+pub use finish::{Finished, shorten};
 pub use numbers::{brief, count, plain, positive_number};
 pub use output::{Claims, is_standard, make_folder, write_file};
-pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
+pub use picture::film::{Film, FilmKind};
+#[cfg(feature = "pictures")]
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
-pub use planners::{meta_planners, planners, roadmap_planners};
-#[cfg(feature = "ranks")]
-pub use portfolio::{Portfolio, PortfolioOptions, PortfolioOutcome, RankWork};
-pub use portfolio_counts::{PortfolioCounts, PortfolioSchedule};
-#[cfg(all(feature = "ranks", feature = "roadmaps"))]
-pub use regional::{RegionalTally, RegionalWork};
-pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
-pub use request::{Budget, Finish, Length, MetricName, MotionValidator, RelaxField, Request};
-pub use roadmaps::Roadmap;
+pub use robot::motion::{AnyChecker, AnyMotion, AnyVerifier, By, Counting, TypedMotion};
 pub use robot::{
     Appearance, ArmScene, Body, BodyShape, Checker, Column, Counted, Description, Drive, DriveModel,
     DrivenScene, End, FloatingScene, LinkedScene, LinkedSpace, Measured, Mismatch, ModelBody, ModelFrame,
     ModelPair, ModelPart, Motion, MotionModel, MovingScene, PathFormat, PlanarBody, PlanarScene, Queries,
     RigidScene, RigidSpace, Robot, SpeedBound, Step, Touch, WithMoving,
 };
-pub use run::{PreparedRun, Run};
-pub use runs::{Medians, Runs, median, medians};
-pub use scene::{EditedScene, Scene};
+pub use run::planners::{meta_planners, planners, roadmap_planners};
+pub use run::report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
+pub use run::request::{Budget, Finish, Length, MetricName, MotionValidator, RelaxField, Request};
+pub use run::roadmaps::Roadmap;
+pub use run::runs::{Medians, Runs, median, medians};
 #[cfg(feature = "roadmaps")]
-pub use scene_roadmap::SceneRoadmap;
-pub use search::{Search, search};
-pub use sweep::{Sweep, Track};
-pub use watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
+pub use run::scene_roadmap::SceneRoadmap;
+pub use run::search::{Search, search};
+pub use run::watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
+pub use run::{PreparedRun, Run};
+pub use scene::explain::Explanation;
+pub use scene::find::find_problem;
+pub use scene::goals::GoalPart;
+pub use scene::info;
+pub use scene::sweep::{Sweep, Track};
+pub use scene::{EditedScene, Scene};
 
 #[cfg(feature = "pictures")]
 pub use mp_render::{Mode, View};

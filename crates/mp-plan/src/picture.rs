@@ -1,5 +1,10 @@
 //! Pictures of scenes and paths, made with `mp-render`.
 
+#[cfg(feature = "pictures")]
+pub(crate) mod film;
+#[cfg(feature = "pictures")]
+pub(crate) mod mp4;
+
 use crate::{BodyShape, Error, PathRows, RelaxField, Scene, Sweep};
 use mp_geom::TriMesh;
 use mp_render::palette::{GOAL, INK, MIDDLE, OBSTACLE, PATH, START};

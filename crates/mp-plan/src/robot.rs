@@ -1,5 +1,8 @@
 //! Kinds of robots: the interface between a scene and the rest of this crate.
 
+pub(crate) mod counted;
+pub(crate) mod motion;
+
 mod arm;
 mod driven;
 mod model;
@@ -15,10 +18,10 @@ pub use moving::{MovingScene, WithMoving};
 pub use planar::{PlanarBody, PlanarScene};
 pub use rigid::{RigidScene, RigidSpace};
 
-use crate::goals::turning;
-use crate::motion::AnyMotion;
 use crate::numbers::plain;
 use crate::path::continued;
+use crate::robot::motion::AnyMotion;
+use crate::scene::goals::turning;
 use crate::{Error, Length, MetricName};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex};
 use mp_cspace::{
@@ -455,7 +458,7 @@ impl Mismatch {
     }
 }
 
-pub use crate::counted::Counted;
+pub use crate::robot::counted::Counted;
 
 /// What checkers that `counted` makes know of obstacles: hints, and the clearance gradient.
 pub(crate) fn hints_and_gradient<'c, R>(

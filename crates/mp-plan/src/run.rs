@@ -1,12 +1,25 @@
 //! A run in pieces: for programs with an event loop, which plan a little between two events.
 
-use crate::plan::{left, reported};
-use crate::planners::PlannerKind;
-use crate::prepared::Prepared;
-use crate::relax::relax_if_requested;
-use crate::roadmaps::{Due, GrowingFile, RoadmapPlanner};
-use crate::search::Search;
-use crate::watch::Events;
+pub(crate) mod plan;
+pub(crate) mod planners;
+pub(crate) mod prepared;
+pub(crate) mod report;
+pub(crate) mod request;
+pub(crate) mod roadmaps;
+pub(crate) mod routes;
+pub(crate) mod runs;
+#[cfg(feature = "roadmaps")]
+pub(crate) mod scene_roadmap;
+pub(crate) mod search;
+pub(crate) mod watch;
+
+use crate::finish::relax::relax_if_requested;
+use crate::run::plan::{left, reported};
+use crate::run::planners::PlannerKind;
+use crate::run::prepared::Prepared;
+use crate::run::roadmaps::{Due, GrowingFile, RoadmapPlanner};
+use crate::run::search::Search;
+use crate::run::watch::Events;
 use crate::{Control, Error, Finish, Report, Request, Robot, Stage, StoppedBy};
 use mp_cspace::erased::AnySpace;
 use mp_cspace::{Configuration, Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
@@ -95,7 +108,7 @@ impl fmt::Debug for Run<'_> {
     }
 }
 
-/// What a run came to: plain data, from which [`found_report`](crate::plan::found_report) makes a report elsewhere.
+/// What a run came to: plain data, from which [`found_report`](crate::run::plan::found_report) makes a report elsewhere.
 #[cfg(feature = "ranks")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FoundRun {

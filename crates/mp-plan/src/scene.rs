@@ -1,19 +1,29 @@
 //! A scene of any kind, and what can be done with it.
 
-use crate::certificate::certificate;
-use crate::check::check;
-use crate::explain::{check_ends, explain, lint};
+pub(crate) mod alone;
+pub(crate) mod explain;
+pub(crate) mod find;
+pub(crate) mod goals;
+pub mod info;
+pub(crate) mod inputs;
+pub(crate) mod kinds;
+pub(crate) mod load;
+pub(crate) mod sweep;
+
+use crate::finish::certificate::certificate;
+use crate::finish::check::check;
 use crate::finish::finish_given;
 use crate::path::state;
-use crate::plan::plan;
-#[cfg(feature = "ranks")]
-use crate::prepared::Prepared;
 #[cfg(feature = "ranks")]
 use crate::run::FoundRun;
+use crate::run::plan::plan;
 use crate::run::prepare;
+#[cfg(feature = "ranks")]
+use crate::run::prepared::Prepared;
 #[cfg(feature = "roadmaps")]
-use crate::scene_roadmap::SceneRoadmap;
-use crate::sweep::{sweep, track};
+use crate::run::scene_roadmap::SceneRoadmap;
+use crate::scene::explain::{check_ends, explain, lint};
+use crate::scene::sweep::{sweep, track};
 use crate::{
     Body, Certificate, Column, Control, Error, Explanation, Finished, Length, PathFileKind, PathFormat,
     PathRows, PreparedRun, RelaxField, Report, Request, Robot, Sweep, Track, Verdict,
@@ -422,7 +432,7 @@ impl Scene {
         let (began, robot) = (control.time_if_limited(request), self.robot_for(request)?);
         check_ends(&*robot)?;
         control.spend_since(began);
-        let mut reports = crate::routes::routes(&*robot, request, count.max(1), apart, control)?;
+        let mut reports = crate::run::routes::routes(&*robot, request, count.max(1), apart, control)?;
         for report in &mut reports {
             report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         }
@@ -457,7 +467,7 @@ impl Scene {
         control: &mut Control<'_>,
     ) -> Result<Report, Error> {
         let mut report =
-            crate::plan::found_report(&*self.robot_for(request)?, request, found, time, control)?;
+            crate::run::plan::found_report(&*self.robot_for(request)?, request, found, time, control)?;
         report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(report)
     }
@@ -491,7 +501,7 @@ impl Scene {
     /// As [`roadmap`](Self::roadmap).
     #[cfg(feature = "roadmaps")]
     pub fn roadmap_with(&self, request: &Request, control: &mut Control<'_>) -> Result<SceneRoadmap, Error> {
-        let roadmap = crate::scene_roadmap::build(self.robot_for(request)?, request, control)?;
+        let roadmap = crate::run::scene_roadmap::build(self.robot_for(request)?, request, control)?;
         Ok(SceneRoadmap { roadmap, file: self.file.as_ref().map(|file| file.display().to_string()) })
     }
 
@@ -516,7 +526,7 @@ impl Scene {
     /// When the file is in use, damaged, of another scene or request, or cannot be read or written.
     #[cfg(all(feature = "ranks", feature = "roadmaps"))]
     pub fn regions_checkpoint(&self, request: &Request, file: &Path) -> Result<mp_ranks::Checkpoint, Error> {
-        let identity = self.job_identity(&crate::job_identity::timeless(request))?;
+        let identity = self.job_identity(&crate::batch::job_identity::timeless(request))?;
         self.checkpoint_of("roadmap by regions", file, &identity)
     }
 
@@ -605,7 +615,7 @@ impl Scene {
     /// # Errors
     /// When the text is no certificate of this version; when the kind of robot is your own and has no model.
     pub fn certificate_differences(&self, certificate: &str) -> Result<Vec<String>, Error> {
-        crate::certificate::differences(&*self.robot, certificate)
+        crate::finish::certificate::differences(&*self.robot, certificate)
     }
 
     /// Explains a configuration: whether it is free, how near to contact, what touches, and where it would be free.
@@ -692,7 +702,7 @@ impl Scene {
         cells: usize,
     ) -> Result<crate::FieldImage, Error> {
         if self.is_planar_world() {
-            return crate::field::field(&*self.robot, field, row, path, range, cells);
+            return crate::finish::field::field(&*self.robot, field, row, path, range, cells);
         }
         Err(Error::new(format!("the field of {} is not drawn", self.name()))
             .help("only that of a world of the plane is"))

@@ -1,9 +1,9 @@
 //! One run of a planner by name, for robots of all kinds.
 
-use crate::planners::PlannerKind;
-use crate::prepared::Prepared;
-use crate::roadmaps::Roadmap;
 use crate::run::RobotRun;
+use crate::run::planners::PlannerKind;
+use crate::run::prepared::Prepared;
+use crate::run::roadmaps::Roadmap;
 use crate::{Control, Error, Request, Robot};
 use mp_cspace::{Configuration, Outcome, Path, Progress, Stop, StopReason};
 use std::time::Duration;

@@ -1,15 +1,15 @@
 //! Planning: runs a request, finishes the path and makes the report.
 
-use crate::explain::check_ends;
 use crate::finish::finish;
-use crate::planners::PlannerKind;
 #[cfg(feature = "ranks")]
-use crate::relax::relax_if_requested;
-use crate::report::{RunStage, StageTime};
+use crate::finish::relax::relax_if_requested;
 #[cfg(feature = "ranks")]
 use crate::run::FoundRun;
 use crate::run::PLANNING_PART;
-use crate::search::{Search, search_within};
+use crate::run::planners::PlannerKind;
+use crate::run::report::{RunStage, StageTime};
+use crate::run::search::{Search, search_within};
+use crate::scene::explain::check_ends;
 use crate::{Column, Control, Error, REPORT_VERSION, Report, Request, Robot, StoppedBy};
 #[cfg(feature = "ranks")]
 use mp_cspace::{Configuration, Path};
@@ -135,7 +135,7 @@ pub(crate) fn reported(
         space: kind.space_name(),
         planner: PlannerKind::new(&request.planner)?.to_string(),
         metric: request.metric.to_string(),
-        motion: crate::prepared::motion(kind, request).to_string(),
+        motion: crate::run::prepared::motion(kind, request).to_string(),
         clearance_kept: kind.kept(),
         seed: request.seed,
         iterations: found.progress.iterations,

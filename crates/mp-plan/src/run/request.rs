@@ -453,11 +453,11 @@ impl Request {
     /// # Errors
     /// The first fault found.
     pub fn check(&self) -> Result<(), Error> {
-        let planner = crate::planners::PlannerKind::new(&self.planner)?;
+        let planner = crate::run::planners::PlannerKind::new(&self.planner)?;
         self.check_for(&planner).map_err(|e| e.of_kind(ErrorKind::Request))
     }
 
-    fn check_for(&self, planner: &crate::planners::PlannerKind) -> Result<(), Error> {
+    fn check_for(&self, planner: &crate::run::planners::PlannerKind) -> Result<(), Error> {
         planner.check(&self.settings())?;
         if let Some(time) = self.budget.time_s
             && (time.is_nan() || time <= 0.0)

@@ -1,6 +1,7 @@
 //! Planners by name: of trees, with meta-planners or without, and of roadmaps.
 
-use crate::{Error, ErrorKind, Robot, roadmaps};
+use super::roadmaps;
+use crate::{Error, ErrorKind, Robot};
 use mp_cspace::registry::{PlannerInfo, Settings};
 use mp_cspace::{BuildError, Demand};
 use std::fmt;

@@ -2,8 +2,8 @@
 
 use super::scenes::{Known, SceneFiles, Source, hexadecimal};
 use super::{ListedProblems, ProblemList, SceneFingerprint, changed};
-use crate::find::InFolder;
-use crate::inputs::fingerprint_of;
+use crate::scene::find::InFolder;
+use crate::scene::inputs::fingerprint_of;
 use crate::{Error, Request, Scene};
 use mp_io::{ErrorKind, Files};
 use mp_ranks::{Link, broadcast};
@@ -93,7 +93,9 @@ impl ListedProblems {
             }
             let read = |name: &PathBuf| match shipped {
                 #[cfg(feature = "scenes")]
-                true => crate::find::shipped_files().read(name, mp_io::MAX_MESH_BYTES).map_err(Error::from),
+                true => {
+                    crate::scene::find::shipped_files().read(name, mp_io::MAX_MESH_BYTES).map_err(Error::from)
+                }
                 _ => sent.read(name, mp_io::MAX_MESH_BYTES).map_err(Error::from),
             };
             same(&file, &hexadecimal(fingerprint_of(inputs.iter().map(read))?), &fingerprint)?;

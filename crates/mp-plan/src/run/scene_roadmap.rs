@@ -1,13 +1,13 @@
 //! A roadmap of a scene that answers many queries.
 
-use crate::explain::refused;
+use crate::finish::relax::relax_if_requested;
 use crate::path::state;
-use crate::plan::reported;
-use crate::planners::PlannerKind;
-use crate::prepared::Prepared;
-use crate::relax::relax_if_requested;
-use crate::roadmaps::{GrowingFile, Roadmap, RoadmapFile, with_checkpoints};
-use crate::search::Search;
+use crate::run::plan::reported;
+use crate::run::planners::PlannerKind;
+use crate::run::prepared::Prepared;
+use crate::run::roadmaps::{GrowingFile, Roadmap, RoadmapFile, with_checkpoints};
+use crate::run::search::Search;
+use crate::scene::explain::refused;
 use crate::{Budget, Control, End, Error, ErrorKind, Report, Request, Robot, Stage, StoppedBy};
 use mp_cspace::{Configuration, Interrupt, Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
 use mp_roadmap::{AnyEdgeChecker, PATIENCE, erased::AnyRoadmap};
@@ -143,7 +143,7 @@ fn planner(request: &Request) -> Result<&'static PlannerInfo, Error> {
     match PlannerKind::new(&request.planner)? {
         PlannerKind::Roadmap(info) => Ok(info),
         tree @ PlannerKind::Tree(_) => {
-            let names: Vec<_> = crate::roadmaps::planners().iter().map(|p| p.name).collect();
+            let names: Vec<_> = crate::run::roadmaps::planners().iter().map(|p| p.name).collect();
             Err(Error::new(format!("{tree} builds no roadmap"))
                 .help(format!("take one of: {}", names.join(", "))))
         }

@@ -1,7 +1,8 @@
 //! Reading scenes from files of any kind.
 
-use crate::inputs::Recording;
-use crate::{Error, Scene, alone};
+use super::alone;
+use crate::scene::inputs::Recording;
+use crate::{Error, Scene};
 use mp_io::{Disk, Files, ProblemFile, RigidProblem, RobotProblem, SceneDocument};
 use std::path::Path;
 use std::sync::PoisonError;

@@ -1,11 +1,11 @@
 //! A request prepared for a robot: the space, an index, a verifier, and the problems, planners and stops made from them.
 
-use crate::counted::QueryBudget;
-use crate::goals;
-use crate::motion::{AnyVerifier, By, Counting};
-use crate::planners::PlannerKind;
-use crate::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
-use crate::watch::{Events, WatchAdapter};
+use crate::robot::counted::QueryBudget;
+use crate::robot::motion::{AnyVerifier, By, Counting};
+use crate::run::planners::PlannerKind;
+use crate::run::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
+use crate::run::watch::{Events, WatchAdapter};
+use crate::scene::goals;
 use crate::{Control, Error, Length, Measured, MotionValidator, Request, Robot};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
@@ -41,7 +41,7 @@ impl<'k> Prepared<'k> {
     pub(crate) fn new(kind: &'k dyn Robot, request: &'k Request) -> Result<Self, Error> {
         let planner = PlannerKind::new(&request.planner)?;
         planner.meets(kind)?;
-        crate::relax::check(kind, request)?;
+        crate::finish::relax::check(kind, request)?;
         let Measured { space, index } = kind.measured(request.metric)?;
         let (verifier, queries) = (kind.any_verifier()?, AtomicU64::new(0));
         let counts_exactly = matches!(planner, PlannerKind::Roadmap(_));

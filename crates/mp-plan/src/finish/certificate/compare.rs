@@ -1,7 +1,7 @@
 //! Whether a certificate is about a scene: its bodies, where they stand and how they move, what is kept apart, and the ends of its path.
 
 use super::{VERSION, columns};
-use crate::check::end_faults;
+use crate::finish::check::end_faults;
 use crate::path::states;
 use crate::{Error, ModelBody, ModelFrame, ModelPart, MotionModel, PathRows, Robot, plain};
 use mp_cspace::Space;

@@ -1,11 +1,11 @@
 //! Several routes of one scene: verified paths that are far apart.
 
 use crate::path::states;
-use crate::plan::reported;
-use crate::planners::PlannerKind;
-use crate::prepared::Prepared;
+use crate::run::plan::reported;
+use crate::run::planners::PlannerKind;
+use crate::run::prepared::Prepared;
+use crate::run::search::Search;
 use crate::run::{PLANNING_PART, Pausing};
-use crate::search::Search;
 use crate::{Control, Error, Finish, Length, PathRows, Report, Request, Robot, Stage, planners};
 #[cfg(feature = "roadmaps")]
 use mp_cspace::Stop;
@@ -180,7 +180,7 @@ fn of_roadmap(
     apart: f64,
     control: &mut Control<'_>,
 ) -> Result<Listed, Error> {
-    use crate::roadmaps::{GrowingFile, with_checkpoints};
+    use crate::run::roadmaps::{GrowingFile, with_checkpoints};
     use mp_roadmap::{AnyEdgeChecker, PATIENCE, erased::AnyRoadmap};
     /// How many of the nearest nodes an end is connected to.
     const NEIGHBOURS: usize = 20;

@@ -1,9 +1,9 @@
 //! A roadmap by regions, in numbered items that the ranks of a cluster may do.
 
-use crate::counted::queries_of_thread;
-use crate::planners::PlannerKind;
-use crate::prepared::Prepared;
-use crate::scene_roadmap::of_map;
+use crate::robot::counted::queries_of_thread;
+use crate::run::planners::PlannerKind;
+use crate::run::prepared::Prepared;
+use crate::run::scene_roadmap::of_map;
 use crate::{Error, Request, Robot, SceneRoadmap};
 use mp_cspace::{Configuration, Interrupt, NodeId, Rng};
 use mp_ranks::{Checkpoint, Hand, Items, Job, Link, Options, Work, broadcast, run};

@@ -1,7 +1,7 @@
 //! The files that a scene was read from. An output must not overwrite them.
 
 use crate::Scene;
-use crate::find::InFolder;
+use crate::scene::find::InFolder;
 use mp_io::{Error, Files};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -109,6 +109,7 @@ impl Scene {
     ///
     /// # Errors
     /// When one cannot be read any more.
+    #[cfg(feature = "ranks")]
     pub(crate) fn input_fingerprint(&self, from: &Path) -> Result<u64, crate::Error> {
         fingerprint_of(self.inputs.iter().map(|path| Ok(self.content(from, path)?)))
     }
@@ -117,7 +118,7 @@ impl Scene {
     pub(crate) fn content(&self, from: &Path, path: &Path) -> Result<Vec<u8>, Error> {
         #[cfg(feature = "scenes")]
         if self.shipped {
-            return crate::find::shipped_files().read(path, mp_io::MAX_MESH_BYTES);
+            return crate::scene::find::shipped_files().read(path, mp_io::MAX_MESH_BYTES);
         }
         InFolder(from).read(path, mp_io::MAX_MESH_BYTES)
     }

@@ -1,7 +1,7 @@
 //! What plans with a robot needs to know of its motions: by types, and behind pointers, so that what plans is compiled once for all
 //! kinds of robots.
 
-use crate::counted::Counted;
+use crate::robot::counted::Counted;
 use crate::robot::{Checker, Queries};
 use crate::{Error, Robot};
 use mp_cspace::erased::{AnyCheck, AnyFactored, AnySpace};

@@ -1,6 +1,6 @@
 //! The fields that push snakes: made by name, and as an image of a world of the plane.
 
-use crate::motion::Counting;
+use crate::robot::motion::Counting;
 use crate::{Error, RelaxField, Robot};
 use mp_cspace::erased::AnyGradient;
 use mp_cspace::{Configuration, Path};

@@ -1,6 +1,6 @@
 //! Films of scenes and paths.
 
-use crate::mp4::Mp4;
+use crate::picture::mp4::Mp4;
 use crate::picture::{World, failed, placed_bodies};
 use crate::{Cancel, Error, Look, PathRows, Scene, Track, in_parallel};
 use mp_render::{Animation, Gif, Moment, Picture, Shot};

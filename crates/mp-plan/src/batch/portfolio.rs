@@ -3,7 +3,7 @@
 mod lane;
 mod rounds;
 
-use crate::job_identity::timeless;
+use crate::batch::job_identity::timeless;
 use crate::run::{FoundRun, RobotRun};
 use crate::{Clock, Control, Error, PortfolioSchedule, Report, Request, Scene, Stage, StoppedBy};
 use lane::{Lane, Start};
