@@ -1,9 +1,7 @@
 //! Collision tests of the motion to a successor, and what its edge stores.
 
 use crate::{Flow, Input};
-use mp_cspace::{
-    Direction, Extension, LocalPlanner, Motion, ParameterError, Reach, Resolution, Space, Validity,
-};
+use mp_cspace::{Direction, Extension, Length, LocalPlanner, Motion, ParameterError, Reach, Space, Validity};
 use std::fmt::Debug;
 
 /// An edge that stores its input: applied for `duration` from the state before the edge, it leads to the
@@ -137,8 +135,8 @@ impl<'c, C: Space, V: Validity<C::State>> DiscreteFlowCheck<'c, C, V> {
     ///
     /// # Errors
     /// When the resolution is not positive and finite, or below 10⁻⁹ of the extent.
-    pub fn new(space: &'c C, valid: V, resolution: Resolution) -> Result<Self, ParameterError> {
-        Ok(Self { space, valid, step: resolution.length_in(space)?, samples: Vec::new() })
+    pub fn new(space: &'c C, valid: V, resolution: Length) -> Result<Self, ParameterError> {
+        Ok(Self { space, valid, step: resolution.resolution_in(space)?, samples: Vec::new() })
     }
 
     /// The length of the motion as a polyline: the distance of its ends alone may be too short.

@@ -1,7 +1,7 @@
 //! Verifiers that replay edges.
 
 use crate::{ControlSegment, Flow};
-use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Resolution, Space, Validity, Verify};
+use mp_cspace::{Length, MotionCheck, MotionValidity, ParameterError, Space, Validity, Verify};
 
 /// The answer for an edge whose replay does not end in the state after it.
 const WRONG_END: MotionCheck = MotionCheck::Unproven { at: 1.0 };
@@ -74,8 +74,8 @@ impl<'c, C: Space, F, V: Validity<C::State>> ReplayFinely<'c, C, F, V> {
     ///
     /// # Errors
     /// When the resolution is not positive and finite, or below 10⁻⁹ of the extent.
-    pub fn new(space: &'c C, flow: F, valid: V, resolution: Resolution) -> Result<Self, ParameterError> {
-        Ok(Self { space, flow, valid, step: resolution.length_in(space)? })
+    pub fn new(space: &'c C, flow: F, valid: V, resolution: Length) -> Result<Self, ParameterError> {
+        Ok(Self { space, flow, valid, step: resolution.resolution_in(space)? })
     }
 
     /// Verifies one edge, in forward time.

@@ -19,7 +19,7 @@ fn free(q: &Vector2<f64>) -> bool {
 }
 
 fn straight<C: Space>(space: &C) -> Straight<'_, C, Discrete<'_, C, impl FnMut(&C::State) -> bool + use<C>>> {
-    Straight::new(space, Discrete::new(space, |_: &C::State| true, Resolution::Fraction(0.01)).unwrap())
+    Straight::new(space, Discrete::new(space, |_: &C::State| true, Length::Fraction(0.01)).unwrap())
 }
 
 /// Extends at random in both orders under the same condition: the same successor, and RSRT tests no more.
@@ -31,12 +31,12 @@ where
     V: Validity<C::State> + Clone,
 {
     let make = |order, accept| {
-        let check = DiscreteFlowCheck::new(space, valid.clone(), Resolution::Fraction(0.01)).unwrap();
+        let check = DiscreteFlowCheck::new(space, valid.clone(), Length::Fraction(0.01)).unwrap();
         let planner = InputPlanner::new(space, flow.clone(), inputs.clone(), duration, check).unwrap();
         planner.ordered(order).accepting(accept)
     };
     let mut verifier =
-        ReplayFinely::new(space, flow.clone(), valid.clone(), Resolution::Fraction(0.001)).unwrap();
+        ReplayFinely::new(space, flow.clone(), valid.clone(), Length::Fraction(0.001)).unwrap();
     let mut rng = Rng::seed(seed);
     let mut valid = valid.clone();
     let (mut same, mut trapped, mut fewer) = (0, 0, 0);
@@ -104,9 +104,9 @@ fn verifiers_agree_with_checks_up_to_resolution() {
     let flow = DoubleIntegrator::new(space.spaces().0).unwrap();
     let inputs = InputSet::grid([0.5, 0.5], 3).unwrap();
     let valid = OnPosition(free);
-    let check = DiscreteFlowCheck::new(&space, valid.clone(), Resolution::Fraction(0.001)).unwrap();
+    let check = DiscreteFlowCheck::new(&space, valid.clone(), Length::Fraction(0.001)).unwrap();
     let mut planner = InputPlanner::new(&space, flow, inputs, 0.4, check).unwrap();
-    let mut verifier = ReplayFinely::new(&space, flow, valid.clone(), Resolution::Fraction(1e-4)).unwrap();
+    let mut verifier = ReplayFinely::new(&space, flow, valid.clone(), Length::Fraction(1e-4)).unwrap();
     let mut rng = Rng::seed(3);
     let (mut passed, mut refused) = (0, 0);
     for _ in 0..1000 {
@@ -130,9 +130,9 @@ fn motions_that_come_round_are_tested_on_the_way() {
     let space = Se2::new([-2.0; 2], [2.0; 2]).unwrap();
     let inputs = InputSet::new([[TAU, TAU]]).unwrap();
     let beyond = |q: &Se2State| q.translation.y < 1.0;
-    let check = DiscreteFlowCheck::new(&space, beyond, Resolution::Length(0.5)).unwrap();
+    let check = DiscreteFlowCheck::new(&space, beyond, Length::Absolute(0.5)).unwrap();
     let mut planner = InputPlanner::new(&space, Unicycle, inputs, 0.999, check).unwrap();
-    let mut verifier = ReplayFinely::new(&space, Unicycle, beyond, Resolution::Length(0.5)).unwrap();
+    let mut verifier = ReplayFinely::new(&space, Unicycle, beyond, Length::Absolute(0.5)).unwrap();
     let (from, toward) = (Se2State::new(0.0, 0.0, 0.0), Se2State::new(0.0, 0.1, 0.0));
     assert_eq!(planner.extend(&from, &toward, Direction::Forward, Reach::Step(1.0)), Extension::Trapped);
     assert_eq!(planner.counters().tested, 1);
@@ -187,7 +187,7 @@ fn inputs_that_seldom_stay_in_the_space_are_enough() {
     let flow = DoubleIntegrator::new(space.spaces().0).unwrap();
     let planner = |duration: f64| {
         let inputs = InputSet::grid([1.6; 6], 2).unwrap();
-        let check = DiscreteFlowCheck::new(&space, |_: &_| true, Resolution::Fraction(0.01)).unwrap();
+        let check = DiscreteFlowCheck::new(&space, |_: &_| true, Length::Fraction(0.01)).unwrap();
         InputPlanner::new(&space, flow, inputs, duration, check).map(drop)
     };
     assert!(planner(1.0).is_ok());
@@ -229,7 +229,7 @@ fn backward_edges_run_forward_to_the_bit_or_are_refused() {
     let mut planner =
         InputPlanner::new(&space, flow, inputs.clone(), 0.7, RecordedFlowCheck(straight(&space))).unwrap();
     let mut verifier =
-        ReplayMotions::new(flow, FineDiscrete::new(&space, free, Resolution::Fraction(1e-3)).unwrap());
+        ReplayMotions::new(flow, FineDiscrete::new(&space, free, Length::Fraction(1e-3)).unwrap());
     let mut rng = Rng::seed(1);
     for _ in 0..300 {
         let (node, toward) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
@@ -251,7 +251,7 @@ fn backward_edges_run_forward_to_the_bit_or_are_refused() {
     assert_eq!(planner.counters().irreversible, 0);
     // A flow that cannot be reversed has no backward successors.
     let one_way = |q: &Vector2<f64>, u: &Vector2<f64>, t: f64| q + u * t;
-    let check = DiscreteFlowCheck::new(&space, free, Resolution::Fraction(0.01)).unwrap();
+    let check = DiscreteFlowCheck::new(&space, free, Length::Fraction(0.01)).unwrap();
     let mut planner = InputPlanner::new(&space, one_way, inputs, 0.7, check).unwrap();
     let extension = planner.extend(&node, &Vector2::new(0.1, 0.1), Direction::Backward, Reach::Step(1.0));
     assert_eq!(extension, Extension::Trapped);
@@ -329,7 +329,7 @@ fn bad_input_is_a_typed_error() {
 
     let flow = Kinematic::new(&space).unwrap();
     let axes = || InputSet::axes([0.1, 0.1]).unwrap();
-    let check = || DiscreteFlowCheck::new(&space, free, Resolution::Fraction(0.01)).unwrap();
+    let check = || DiscreteFlowCheck::new(&space, free, Length::Fraction(0.01)).unwrap();
     for duration in [0.0, -1.0, nan, f64::INFINITY] {
         let error = InputPlanner::new(&space, flow, axes(), duration, check()).map(drop).unwrap_err();
         assert!(matches!(error, InputError::Parameter(_)), "{error}");
@@ -388,7 +388,7 @@ fn states_that_are_not_finite_are_dropped_and_counted() {
         if to.x > 0.999 && to.y > 0.999 { Vector2::new(f64::NAN, to.y) } else { to }
     };
     let inputs = InputSet::axes([0.01, 0.01]).unwrap();
-    let check = DiscreteFlowCheck::new(&space, |_: &Vector2<f64>| true, Resolution::Fraction(0.01)).unwrap();
+    let check = DiscreteFlowCheck::new(&space, |_: &Vector2<f64>| true, Length::Fraction(0.01)).unwrap();
     let mut planner = InputPlanner::new(&space, flow, inputs, 1.0, check).unwrap();
     let from = Vector2::new(0.9995, 0.9895);
     let extension = planner.extend(&from, &Vector2::new(1.0, 1.0), Direction::Forward, Reach::Step(1.0));

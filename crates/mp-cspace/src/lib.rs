@@ -5,7 +5,7 @@
 //! from obstacles and how far its points travel. The crate provides the rest:
 //!
 //! ```
-//! use mp_cspace::{Certified, Clearance, FineDiscrete, MotionClearance, Problem, Resolution, Rn, Straight};
+//! use mp_cspace::{Certified, Clearance, FineDiscrete, MotionClearance, Problem, Length, Rn, Straight};
 //! use mp_cspace::{Iterations, Outcome, Planner, Rng};
 //! use mp_tree::{RrtConnect, Tuning};
 //! use nalgebra::Vector2;
@@ -30,7 +30,7 @@
 //! // Motions are proved free while planning, and a finished path is checked again, by other code.
 //! let local = Straight::new(&space, Certified::new(&space, disc.clone(), 0.01)?);
 //! let is_free = |q: &Vector2<f64>| disc.0.iter().all(|pillar| (q - pillar).norm() > 0.4);
-//! let verifier = FineDiscrete::new(&space, is_free, Resolution::Length(0.001))?;
+//! let verifier = FineDiscrete::new(&space, is_free, Length::Absolute(0.001))?;
 //!
 //! let problem = Problem::new(&space, local, verifier, [0.2, 0.2].into(), Vector2::new(3.8, 3.8))?;
 //! let mut planner = RrtConnect::new(problem, Tuning::default())?;
@@ -64,6 +64,7 @@ pub mod erased;
 mod error;
 mod goal;
 mod layout;
+mod length;
 mod local;
 mod metric;
 mod motion;
@@ -91,13 +92,14 @@ pub use configuration::Configuration;
 pub use edge_checker::EdgeChecker;
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
+pub use length::{Length, LengthError};
 pub use local::{
     Direction, Extension, LocalPlanner, Motion, PolylineEdge, Reach, Reversible, RotateAtS, Straight, turn_at,
 };
 pub use metric::{
     Euclidean, Manhattan, MaxDisplacement, Metric, MetricFn, ScaledEuclidean, SweptVolume, WithMetric,
 };
-pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
+pub use motion::{Certified, Discrete, FineDiscrete};
 pub use mp_stop::{Cancel, Clock, Interrupt, Interrupted, SparseClock, StopReason};
 pub use nn::{DefaultNn, Embed, Hit, KdTree, Linear, MetricTree, NearestNeighbors, NodeId};
 pub use numbers::StateVector;
@@ -106,7 +108,7 @@ pub use path::{Path, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
 pub use problem::{
     AnyFlow, AnyProblem, BoxedHints, BoxedVerify, BuildError, Endpoint, Goals, InputSystem,
-    ObstacleKnowledge, Problem, ProblemParts, Step, Verify, Workers,
+    ObstacleKnowledge, Problem, ProblemParts, Verify, Workers,
 };
 pub use registry::Demand;
 pub use rng::Rng;

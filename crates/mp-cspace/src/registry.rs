@@ -1,6 +1,6 @@
 //! Planners by name: their descriptions for people, and their settings as text.
 
-use crate::{BuildError, Space, Step};
+use crate::{BuildError, Length, Space};
 
 /// A parameter of a planner, described for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -206,16 +206,13 @@ impl Settings {
         self.choice(key, "a whole number, not negative", |value| value.parse().ok())
     }
 
-    /// The step set for `key`, if any: a length, or with `%` a part of the extent.
+    /// The length set for `key`, if any.
     ///
     /// # Errors
-    /// When it is neither.
-    pub fn step(&self, key: &str) -> Result<Option<Step>, BuildError> {
-        self.choice(key, "a length, or a percentage of the extent like 20%", |value| {
-            match value.strip_suffix('%') {
-                Some(percent) => percent.trim().parse().ok().map(|p: f64| Step::Fraction(p / 100.0)),
-                None => value.parse().ok().map(Step::Length),
-            }
+    /// When it is none.
+    pub fn length(&self, key: &str) -> Result<Option<Length>, BuildError> {
+        self.choice(key, "a length above zero, or a percentage of the extent like 20%", |value| {
+            value.parse().ok()
         })
     }
 
@@ -225,13 +222,13 @@ impl Settings {
     /// When it is neither, not positive, or longer than the extent.
     pub fn length_of<C: Space>(&self, parameter: &Parameter, space: &C) -> Result<f64, BuildError> {
         let default =
-            || Self(vec![(parameter.name.to_owned(), parameter.default.to_owned())]).step(parameter.name);
-        let step = match self.step(parameter.name)? {
+            || Self(vec![(parameter.name.to_owned(), parameter.default.to_owned())]).length(parameter.name);
+        let step = match self.length(parameter.name)? {
             Some(step) => Some(step),
             None => default()?,
         };
         let malformed = || malformed(format!("{}={}", parameter.name, parameter.default), "a length");
-        step.ok_or_else(malformed)?.length_in(space).map_err(|error| match error {
+        step.ok_or_else(malformed)?.step_in(space).map_err(|error| match error {
             BuildError::OutOfRange { value, range, .. } => {
                 BuildError::OutOfRange { name: parameter.name, value, range }
             }
@@ -281,7 +278,7 @@ mod tests {
     fn refuses_what_it_cannot_read() {
         assert!(matches!(Settings::parse(["=3"]), Err(BuildError::Malformed { .. })));
         let settings = Settings::parse(["near=far", "count = -1", "count=1.5"]).unwrap();
-        assert!(matches!(settings.step("near"), Err(BuildError::Malformed { .. })));
+        assert!(matches!(settings.length("near"), Err(BuildError::Malformed { .. })));
         assert!(matches!(settings.count("count"), Err(BuildError::Malformed { .. })));
         assert_eq!(settings.number("count"), Ok(Some(1.5)));
         assert_eq!(settings.number("none"), Ok(None));

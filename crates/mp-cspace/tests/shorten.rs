@@ -19,7 +19,7 @@ fn space() -> Se2 {
 /// A detour around the disc with much idle turning, by random steps kept free.
 fn rambling(space: &Se2, seed: u64) -> Path<Se2State> {
     let mut rng = Rng::seed(seed);
-    let mut check = Discrete::new(space, free, Resolution::Length(0.01)).unwrap();
+    let mut check = Discrete::new(space, free, Length::Absolute(0.01)).unwrap();
     let mut states = vec![Se2State::new(-2.0, 0.0, 0.0)];
     for i in 1..=12 {
         let around = std::f64::consts::PI * (1.0 - f64::from(i) / 12.0);
@@ -42,7 +42,7 @@ fn rambling(space: &Se2, seed: u64) -> Path<Se2State> {
 }
 
 fn all_free(space: &Se2, path: &Path<Se2State>) {
-    let mut check = FineDiscrete::new(space, free, Resolution::Length(0.005)).unwrap();
+    let mut check = FineDiscrete::new(space, free, Length::Absolute(0.005)).unwrap();
     let report = verify_path(space, path, &mut check);
     assert!(report.is_free(), "{:?}", report.fault);
 }
@@ -53,7 +53,7 @@ fn every_kind_stays_free_and_does_not_lengthen() {
     let effort = Effort { attempts: 300, patience: 100, rounds: 3 };
     for seed in 0..10 {
         let path = rambling(&space, seed);
-        let mut check = FineDiscrete::new(&space, free, Resolution::Length(0.005)).unwrap();
+        let mut check = FineDiscrete::new(&space, free, Length::Absolute(0.005)).unwrap();
         let before = path.length(&space);
         all_free(&space, &path);
         let results = [
@@ -89,12 +89,12 @@ fn bspline_rounds_corners() {
         path.states.windows(3).map(turn).fold(0.0, f64::max)
     };
     let valid = |q: &Vector2<f64>| q.y < 1.9 || (q.x - 2.0).abs() < 0.1;
-    let mut check = FineDiscrete::new(&space, valid, Resolution::Length(0.01)).unwrap();
+    let mut check = FineDiscrete::new(&space, valid, Length::Absolute(0.01)).unwrap();
     let rounded = bspline(&space, &mut check, &path, 4);
     assert!(sharpest(&rounded) < 0.3 * sharpest(&path));
     assert!(rounded.length(&space) < path.length(&space));
     let mut never = |_: &Vector2<f64>| false;
-    let mut check = FineDiscrete::new(&space, &mut never, Resolution::Length(0.1)).unwrap();
+    let mut check = FineDiscrete::new(&space, &mut never, Length::Absolute(0.1)).unwrap();
     assert_eq!(bspline(&space, &mut check, &path, 4), path);
 }
 
@@ -103,14 +103,14 @@ fn reduction_takes_the_straight_way() {
     let space = Rn::<2>::new([0.0, 0.0], [4.0, 4.0]).unwrap();
     let zigzag = (0..41).map(|i| Vector2::new(f64::from(i) * 0.1, f64::from(i % 2) * 0.1));
     let path = Path::straight(zigzag.collect());
-    let mut check = FineDiscrete::new(&space, |_: &Vector2<f64>| true, Resolution::Length(0.1)).unwrap();
+    let mut check = FineDiscrete::new(&space, |_: &Vector2<f64>| true, Length::Absolute(0.1)).unwrap();
     assert_eq!(reduce(&space, &mut check, &path).states.len(), 2);
 }
 
 #[test]
 fn degenerate_paths_are_left_alone() {
     let space = space();
-    let mut check = FineDiscrete::new(&space, free, Resolution::Length(0.01)).unwrap();
+    let mut check = FineDiscrete::new(&space, free, Length::Absolute(0.01)).unwrap();
     let q = Se2State::new(2.0, 2.0, 0.0);
     for n in 0..4 {
         let path = Path::straight(vec![q; n]);

@@ -23,7 +23,7 @@ fn conforms<C: Space + TrueMetric>(space: &C, kit: SpaceKit) {
     let mut rng = mp_cspace::Rng::seed(9);
     let states: Vec<_> = (0..40).map(|_| space.sample_uniform(&mut rng)).collect();
     check_true_metric(space, &states, 1e-12);
-    let check = Discrete::new(space, |_: &C::State| true, Resolution::Fraction(0.1)).unwrap();
+    let check = Discrete::new(space, |_: &C::State| true, Length::Fraction(0.1)).unwrap();
     if kit == SpaceKit::new() {
         check_local_planner(space, &mut Straight::new(space, check), 0.3 * space.extent(), 4);
     }
@@ -353,7 +353,7 @@ fn space_time_conforms() {
 fn nothing_moves_back_in_time_or_too_fast() {
     let space = SpaceTime::new(Rn::<1>::new([0.0], [1.0]).unwrap(), 10.0, 0.5).unwrap();
     let at = |x: f64, t: f64| ([x].into(), t);
-    let check = Discrete::new(&space, |_: &(nalgebra::Vector1<f64>, f64)| true, Resolution::Fraction(0.01));
+    let check = Discrete::new(&space, |_: &(nalgebra::Vector1<f64>, f64)| true, Length::Fraction(0.01));
     let mut check = ForwardInTime { space: &space, check: check.unwrap() };
     assert!(check.check_motion(&at(0.0, 0.0), &at(1.0, 2.0)).is_free());
     assert!(check.check_motion(&at(0.3, 1.0), &at(0.3, 1.0)).is_free());

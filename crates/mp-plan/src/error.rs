@@ -205,6 +205,7 @@ macro_rules! plain {
     };
 }
 plain!(
+    mp_cspace::LengthError,
     mp_cspace::ParameterError,
     mp_cspace::SpaceError,
     mp_robot::ArmError,

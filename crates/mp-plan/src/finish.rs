@@ -9,7 +9,7 @@ use crate::finish::check::{clearance, fault_text, verified};
 use crate::finish::relax::relax_if_requested;
 use crate::path::states;
 use crate::robot::motion::{By, Counting};
-use crate::run::prepared::{Possible, resolution};
+use crate::run::prepared::Possible;
 use crate::run::report::{RunStage, StageTime};
 use crate::{Control, Error, Finish, PathRows, Request, Robot, Stage, StoppedBy};
 use mp_cspace::erased::{AnyCheck, AnySpace};
@@ -107,7 +107,7 @@ pub fn shorten(
         match kind.sampled() {
             None => kind.motions(By::Certificates(if has_wide { wide } else { narrow }), &counting)?,
             Some(length) => {
-                let check = kind.motions(By::States(&space, resolution(length)), &counting)?;
+                let check = kind.motions(By::States(&space, length), &counting)?;
                 Box::new(Both { check, verifier: Box::new(kind.any_verifier()?) })
             }
         },

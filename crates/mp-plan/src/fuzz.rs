@@ -284,8 +284,8 @@ fn text(bytes: &[u8]) -> Result<&str, Error> {
 }
 
 /// Checks that a value is written as it reads.
-fn same<T: FromStr<Err = Error> + ToString + PartialEq>(text: &str) -> Result<(), Error> {
-    let value: T = text.parse()?;
+fn same<T: FromStr<Err: Into<Error>> + ToString + PartialEq>(text: &str) -> Result<(), Error> {
+    let value: T = text.parse().map_err(Into::into)?;
     let written = value.to_string();
     assert!(written.parse::<T>().ok() == Some(value), "{text:?} is written as {written:?}");
     Ok(())

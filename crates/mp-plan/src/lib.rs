@@ -108,7 +108,7 @@ pub use robot::{
 };
 pub use run::planners::{meta_planners, planners, roadmap_planners};
 pub use run::report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
-pub use run::request::{Budget, Finish, Length, MetricName, MotionValidator, RelaxField, Request};
+pub use run::request::{Budget, Finish, MetricName, MotionValidator, RelaxField, Request};
 pub use run::roadmaps::Roadmap;
 pub use run::runs::{Medians, Runs, median, medians};
 #[cfg(feature = "roadmaps")]
@@ -127,6 +127,6 @@ pub use scene::{EditedScene, Scene};
 pub use mp_render::{Mode, View};
 
 pub use mp_cspace::{
-    Cancel, Clock, Interrupt, Progress, StopReason,
+    Cancel, Clock, Interrupt, Length, Progress, StopReason,
     registry::{Parameter, PlannerInfo},
 };

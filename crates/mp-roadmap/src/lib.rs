@@ -5,14 +5,14 @@
 //! the geometry of obstacles ([`ObstacleGeometry`](mp_cspace::obstacles::ObstacleGeometry)).
 //!
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Problem, Resolution, Rn, Rng, Straight, registry::Settings};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Problem, Length, Rn, Rng, Straight, registry::Settings};
 //! use mp_roadmap::build;
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| (q.x - 0.5).abs() > 0.1 || q.y > 0.8;
-//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.1), Vector2::new(0.9, 0.1))?;
 //!
 //! let settings = Settings::parse(["neighbours=10"])?;

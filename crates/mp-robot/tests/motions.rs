@@ -4,7 +4,7 @@ mod common;
 
 use common::{clutter, obstacle, robot, wall};
 use mp_cspace::{
-    Certified, Discrete, MotionCheck, MotionValidity, Resolution, Rn, Rng, Se2, Se3, Space, Validity,
+    Certified, Discrete, Length, MotionCheck, MotionValidity, Rn, Rng, Se2, Se3, Space, Validity,
 };
 use mp_geom::{pose_from_six, primitives};
 use mp_robot::{FreeFlyer, Placement, PlanarFlyer, PointRobot, RigidBody, Verifier};
@@ -18,7 +18,7 @@ fn se3() -> Se3 {
 fn agree<P: Placement, C: Space<State = P::State>>(space: &C, robot: &RigidBody<P>, motions: usize) {
     let tolerance = robot.tolerance();
     let mut certified = Certified::new(space, robot.clone(), tolerance).unwrap();
-    let mut discrete = Discrete::new(space, robot.clone(), Resolution::Fraction(0.002)).unwrap();
+    let mut discrete = Discrete::new(space, robot.clone(), Length::Fraction(0.002)).unwrap();
     let mut verifier = Verifier::new(space, robot).unwrap();
     let mut exact = robot.clone();
     let mut rng = Rng::seed(11);
@@ -110,7 +110,7 @@ fn a_thin_wall_is_never_crossed() {
     // While sampling at one percent of the extent often misses it.
     let point = primitives::sphere(0.01, 0).unwrap();
     let robot = FreeFlyer::new(&point, [wall(1e-4)]).unwrap();
-    let mut discrete = Discrete::new(&space, robot.clone(), Resolution::Fraction(0.01)).unwrap();
+    let mut discrete = Discrete::new(&space, robot.clone(), Length::Fraction(0.01)).unwrap();
     let mut verifier = Verifier::new(&space, &robot).unwrap();
     let (a, b) = (Isometry3::translation(-0.7, 0.0, 0.0), Isometry3::translation(1.3, 0.3, 0.0));
     assert!(discrete.check_motion(&a, &b).is_free());

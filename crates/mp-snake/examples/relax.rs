@@ -3,7 +3,7 @@
 //! `cargo run -p mp-snake --example relax`
 #![allow(clippy::print_stdout)] // examples talk
 
-use mp_cspace::{FineDiscrete, Path, Resolution, Rn};
+use mp_cspace::{FineDiscrete, Length, Path, Rn};
 use mp_snake::{Params, Repulsion, relax};
 use nalgebra::Vector2;
 
@@ -16,8 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let jagged = [(-0.9, 0.0), (-0.4, 0.1), (-0.2, 0.8), (0.0, 0.35), (0.3, 0.7), (0.9, 0.0)];
     let path = Path::straight(jagged.map(|(x, y)| Vector2::new(x, y)).to_vec());
-    let mut check =
-        FineDiscrete::new(&space, |q: &Vector2<f64>| clearance(q) > 0.0, Resolution::Length(1e-3))?;
+    let mut check = FineDiscrete::new(&space, |q: &Vector2<f64>| clearance(q) > 0.0, Length::Absolute(1e-3))?;
     let relaxed =
         relax(&space, &mut check, &mut Repulsion::new(field, 0.2)?, &path, Params::for_range(0.2)?, 1.0)?;
     let least = |path: &Path<Vector2<f64>>| path.states.iter().map(clearance).fold(f64::INFINITY, f64::min);

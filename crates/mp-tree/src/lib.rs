@@ -8,14 +8,14 @@
 //! at a time, or until a stop ends it. [`build`] makes one by name.
 //!
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Resolution, Rn, Rng, Straight};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Length, Rn, Rng, Straight};
 //! use mp_tree::{Problem, Settings, build};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| (q.x - 0.5).abs() > 0.1 || q.y > 0.8;
-//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.1), Vector2::new(0.9, 0.1))?;
 //!
 //! let settings = Settings::parse(["step=10%"])?;
@@ -46,13 +46,13 @@
 //! A variant of the family fills the slots with policies, those here or your own. RRT whose tree is as greedy as those
 //! of [`RrtConCon`]:
 //! ```
-//! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Length, Rn, Rng, Straight};
 //! # use mp_tree::Problem;
 //! # use nalgebra::Vector2;
 //! # let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! # let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
-//! # let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//! # let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! # let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! # let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! # let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //! # let problem = Problem::new(&space, local, verifier, start, goal)?;
 //! use mp_cspace::{Linear, Uniform};
@@ -108,17 +108,17 @@
 //!         self.core.progress(self.tree.nodes().len())
 //!     }
 //! }
-//! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Resolution, Rn, Straight};
-//! # use mp_tree::{Problem, Step, Tuning};
+//! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Length, Rn, Straight};
+//! # use mp_tree::{Problem, Length, Tuning};
 //! # use nalgebra::Vector2;
 //! # let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! # let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
-//! # let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//! # let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! # let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! # let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! # let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //! # let problem = Problem::new(&space, local, verifier, start, goal)?;
 //!
-//! let tuning = Tuning { step: Step::Fraction(0.2), goal_bias: 0.2, ..Tuning::default() };
+//! let tuning = Tuning { step: Length::Fraction(0.2), goal_bias: 0.2, ..Tuning::default() };
 //! let tree = SearchTree::new(0, Direction::Forward, NearestSelector(Linear::new()), AppendDistinct::default());
 //! let mut planner = RandomTree { core: Core::new(problem, &tuning)?, tree };
 //! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
@@ -155,7 +155,7 @@ pub use engine::{
 pub use mp_cspace::AnyProblem;
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{
-    BuildError, EdgeChecker, Endpoint, Goals, Problem, Step, Verify, Workers,
+    BuildError, EdgeChecker, Endpoint, Goals, Length, Problem, Verify, Workers,
     registry::{Demand, Parameter, PlannerInfo, Settings, closest},
 };
 #[cfg(not(test))]

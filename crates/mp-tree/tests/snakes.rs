@@ -162,7 +162,7 @@ fn edges_of_the_tree_are_curves() {
     let local = SnakePlanner::new(&space, check, field(&boxes), 0.03).unwrap();
     let [start, goal] = ENDS.map(Point::from);
     let problem = Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap();
-    let tuning = Tuning { step: Step::Length(0.4), ..Tuning::default() };
+    let tuning = Tuning { step: Length::Absolute(0.4), ..Tuning::default() };
     let mut planner = Rrs::with_index(problem, <KdTree>::default(), tuning).unwrap();
     let Outcome::Solved(path) = planner.solve(&mut Rng::seed(4), &mut Iterations(10_000), &mut ()) else {
         panic!("not solved")
@@ -192,7 +192,7 @@ fn a_rod_bends_and_turns() {
     let settings = Settings::parse(["step=0.5", "range=0.02"]).unwrap();
     for (name, seed) in [("rrs", 1), ("rrs-connect", 2)] {
         let local = Straight::new(&space, Certified::new(&space, rod.clone(), 1e-3).unwrap());
-        let verifier = FineDiscrete::new(&space, rod.clone(), Resolution::Length(1e-4)).unwrap();
+        let verifier = FineDiscrete::new(&space, rod.clone(), Length::Absolute(1e-4)).unwrap();
         let problem = Problem::new(&space, local, verifier, start, goal).unwrap();
         let problem = bending(problem, rod_field(&rod, &space));
         let mut planner = build(name, problem, &settings).unwrap();

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arrival = space.at_any_time(there);
     let goal = Goals::region(arrival.clone()).with_sampler(arrival);
     let problem = Problem::new(&space, Straight::new(&space, check), verifier, (here, 0.0), goal)?;
-    let tuning = Tuning { step: Step::Length(4.0), ..Tuning::default() };
+    let tuning = Tuning { step: Length::Absolute(4.0), ..Tuning::default() };
     let mut planner = Rrt::new(problem, tuning)?;
     match planner.solve(&mut Rng::seed(seed), &mut Iterations(100_000), &mut ()) {
         Outcome::Solved(path) => {

@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let robot = DiscRobot::new(world, 0.1)?;
     let space = Rn::<2>::new([0.0, 0.0], [4.0, 2.0])?;
     let (start, goal) = (Vector2::new(0.3, 0.3), Vector2::new(3.7, 0.3));
-    let tuning = Tuning { step: Step::Length(0.8), ..Tuning::default() };
+    let tuning = Tuning { step: Length::Absolute(0.8), ..Tuning::default() };
 
     let straight = Straight::new(&space, robot.clone());
     let problem = Problem::new(&space, straight, DiscVerifier::new(&robot), start, goal)?;

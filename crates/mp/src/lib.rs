@@ -75,8 +75,8 @@ pub use mp_tree as tree;
 /// The names that most programs need.
 pub mod prelude {
     pub use mp_cspace::{
-        Certified, Discrete, Goal, Iterations, LocalPlanner, MotionCheck, MotionValidity, Outcome, Path,
-        Planner, Resolution, Rn, Rng, Sampler, Se2, Se3, Space, Stop, Straight, Validity,
+        Certified, Discrete, Goal, Iterations, Length, LocalPlanner, MotionCheck, MotionValidity, Outcome,
+        Path, Planner, Rn, Rng, Sampler, Se2, Se3, Space, Stop, Straight, Validity,
     };
     pub use mp_robot::{Arm, ArmModel, ArmVerifier, FreeFlyer, PlanarFlyer, PointRobot, Verifier};
     pub use mp_tree::{Goals, Problem, Rrt, RrtConnect, Tuning};

@@ -34,7 +34,7 @@ fn through(gate: &[(f64, f64)], connect: bool, iterations: u64) -> Option<Path<S
     let goals = Goals::region(arrival.clone()).with_sampler(arrival);
     let start = (Se2State::new(-1.5, 0.0, 0.0), 0.0);
     let problem = Problem::new(&space, local, verifier, start, goals).unwrap();
-    let tuning = Tuning { step: Step::Length(2.0), ..Tuning::default() };
+    let tuning = Tuning { step: Length::Absolute(2.0), ..Tuning::default() };
     let (mut rng, mut stop) = (Rng::seed(1), Iterations(iterations));
     let outcome = if connect {
         let (target_sampler, selector) = (Samples(Uniform(&space)), NearestSelector::<KdTree>::default());

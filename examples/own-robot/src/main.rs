@@ -1,6 +1,6 @@
 //! A drawbridge of two leaves, a space and a check of its own: both must open for a mast, and neither may hit the other.
 
-use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rng, Space, Straight};
+use mp_cspace::{Discrete, FineDiscrete, Iterations, Length, Outcome, Planner, Rng, Space, Straight};
 use mp_tree::{Problem, Rrt, Tuning};
 
 /// The angles of the leaves, radians from lying flat.
@@ -52,8 +52,8 @@ fn free(q: &Leaves) -> bool {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let local = Straight::new(&Bridge, Discrete::new(&Bridge, free, Resolution::Fraction(0.01))?);
-    let verifier = FineDiscrete::new(&Bridge, free, Resolution::Fraction(0.001))?;
+    let local = Straight::new(&Bridge, Discrete::new(&Bridge, free, Length::Fraction(0.01))?);
+    let verifier = FineDiscrete::new(&Bridge, free, Length::Fraction(0.001))?;
     let (start, goal) = (Leaves { left: 0.0, right: 0.0 }, Leaves { left: 1.5, right: 0.0 });
     let problem = Problem::new(&Bridge, local, verifier, start, goal)?;
     let mut planner = Rrt::new(problem, Tuning::default())?;

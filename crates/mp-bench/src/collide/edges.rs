@@ -5,7 +5,7 @@ use crate::clock::nanoseconds;
 use crate::error::{IntoError, Result};
 use crate::experiment::Table;
 use crate::scenes::Rigid;
-use mp_cspace::{Certified, Configuration, Discrete, KnownFree, MotionValidity, Resolution, Rng, Space};
+use mp_cspace::{Certified, Configuration, Discrete, KnownFree, Length, MotionValidity, Rng, Space};
 use mp_plan::{Motion, TypedMotion};
 
 /// The pairs in whose scenes edges are checked.
@@ -45,7 +45,7 @@ impl Costs {
             return Ok(Vec::new());
         };
         let (space, robot) = (setting.space(), setting.checker());
-        let resolution = Resolution::Fraction(RESOLUTION);
+        let resolution = Length::Fraction(RESOLUTION);
         let mut discrete = Discrete::new(space, robot.clone(), resolution).into_error()?;
         let mut certified = Certified::new(space, robot.clone(), setting.tolerance()).into_error()?;
         let measure = |step| {

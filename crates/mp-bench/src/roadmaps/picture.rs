@@ -205,7 +205,7 @@ fn around<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
         let with = OnSurfaces {
             strategy,
             uniform: 0.0,
-            gap: mp_cspace::Step::Length(0.25),
+            gap: mp_cspace::Length::Absolute(0.25),
             ..OnSurfaces::default()
         };
         let all =

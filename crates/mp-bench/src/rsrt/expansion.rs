@@ -112,7 +112,7 @@ fn grow(moves: Moves, start: [f64; 2], nodes: usize, seed: u64) -> Result<GrownT
     match moves {
         Moves::Straight(step) => {
             let problem = Problem::new(&space, straight, Free, start, nowhere).into_error()?;
-            let tuning = Tuning { step: Step::Length(step), ..Tuning::default() };
+            let tuning = Tuning { step: Length::Absolute(step), ..Tuning::default() };
             let mut planner = Rrt::new(problem, tuning).into_error()?;
             follow(nodes, seed, |rng, known| {
                 planner.step(rng, &mut ());

@@ -6,8 +6,8 @@
 
 use crate::error::Result;
 use mp_cspace::{
-    DefaultNn, Direction, Discrete, Extension, FineDiscrete, LocalPlanner, Motion, NearestNeighbors, NodeId,
-    Planner, Reach, Resolution, Rn, Rng, Se3, Space, Straight,
+    DefaultNn, Direction, Discrete, Extension, FineDiscrete, Length, LocalPlanner, Motion, NearestNeighbors,
+    NodeId, Planner, Reach, Rn, Rng, Se3, Space, Straight,
 };
 use mp_plan::Error;
 use mp_tree::{Goals, Problem, Rrt, Step, Tuning};
@@ -89,7 +89,7 @@ impl Growing<'_> {
 
     fn grow<C: DefaultNn>(&self, space: &C, start: &C::State) -> Result<Vec<Row>> {
         let free = |_: &C::State| true;
-        let resolution = Resolution::Fraction(self.resolution);
+        let resolution = Length::Fraction(self.resolution);
         let local = || -> Result<_> { Ok(Straight::new(space, Discrete::new(space, free, resolution)?)) };
         let (mut planner, mut bare) = (Vec::new(), Vec::new());
         // Small trees grow very quickly: they are grown many times, so that the fastest time is undisturbed.
@@ -99,7 +99,7 @@ impl Growing<'_> {
             let verifier = FineDiscrete::new(space, free, resolution)?;
             let nowhere = Goals::region(|_: &C::State| false);
             let problem = Problem::new(space, local()?, verifier, start.clone(), nowhere)?;
-            let tuning = Tuning { step: Step::Fraction(self.step), ..Tuning::default() };
+            let tuning = Tuning { step: Length::Fraction(self.step), ..Tuning::default() };
             let mut rrt = Rrt::new(problem, tuning)?;
             let mut rng = Rng::seed(self.seed);
             let times = clocked(sizes, self.cap, || {

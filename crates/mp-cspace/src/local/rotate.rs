@@ -18,11 +18,11 @@ pub fn turn_at<C: Space>(space: &C, from: &C::State, to: &C::State, at: f64) -> 
 /// of the straight line. Reversed in time it is rotate-at-(1 - s), which backward trees therefore use.
 ///
 /// ```
-/// use mp_cspace::{Direction, Discrete, Extension, LocalPlanner, Reach, Resolution, RotateAtS, Se2, Se2State};
+/// use mp_cspace::{Direction, Discrete, Extension, LocalPlanner, Reach, Length, RotateAtS, Se2, Se2State};
 /// let space = Se2::new([0.0; 2], [4.0; 2])?;
 /// // Turns only at x = 1.
 /// let free = |q: &Se2State| q.angle == 0.0 || q.angle == 1.5 || (q.translation.x - 1.0).abs() < 1e-9;
-/// let check = Discrete::new(&space, free, Resolution::Length(0.01))?;
+/// let check = Discrete::new(&space, free, Length::Absolute(0.01))?;
 /// let (from, to) = (Se2State::new(0.0, 1.0, 0.0), Se2State::new(4.0, 1.0, 1.5));
 /// let mut local = RotateAtS::new(&space, check, 0.25)?;
 /// let Extension::Reached(motion) = local.extend(&from, &to, Direction::Forward, Reach::Full) else { panic!() };
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
     use crate::testkit::check_local_planner;
     use crate::{
-        Discrete, FineDiscrete, Path, Resolution, Reversible, Rng, Straight, Verify, angle::rotation_angle,
+        Discrete, FineDiscrete, Length, Path, Reversible, Rng, Straight, Verify, angle::rotation_angle,
     };
     use crate::{Se2, Se2State, Se3};
     use nalgebra::{Isometry3, Point2, Point3, Vector3};
@@ -142,12 +142,12 @@ mod tests {
     #[test]
     fn edges_are_verified_in_forward_time() {
         let space = Se2::new([0.0; 2], [4.0; 2]).unwrap();
-        let mut verifier = FineDiscrete::new(&space, rod_is_free, Resolution::Length(0.004)).unwrap();
+        let mut verifier = FineDiscrete::new(&space, rod_is_free, Length::Absolute(0.004)).unwrap();
         let mut rng = Rng::seed(9);
         let (mut reached, mut more) = (0, 0);
         for i in 0..600 {
             let at = [0.0, 0.3, 0.5, 1.0][i % 4];
-            let check = || Discrete::new(&space, rod_is_free, Resolution::Length(0.004)).unwrap();
+            let check = || Discrete::new(&space, rod_is_free, Length::Absolute(0.004)).unwrap();
             let mut local = RotateAtS::new(&space, check(), at).unwrap();
             let (from, to) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
             if !(rod_is_free(&from) && rod_is_free(&to)) {
@@ -189,14 +189,14 @@ mod tests {
     #[test]
     fn keeps_the_axioms() {
         let space = Se2::new([0.0; 2], [4.0; 2]).unwrap();
-        let check = Discrete::new(&space, rod_is_free, Resolution::Length(0.02)).unwrap();
+        let check = Discrete::new(&space, rod_is_free, Length::Absolute(0.02)).unwrap();
         check_local_planner(&space, &mut RotateAtS::new(&space, check, 0.5).unwrap(), 0.7, 1);
         let space = Se3::new([-1.0; 3], [1.0; 3]).unwrap();
         let ball = |q: &Isometry3<f64>| (q * Point3::new(0.3, 0.0, 0.0)).coords.norm() > 0.4;
-        let check = Discrete::new(&space, ball, Resolution::Length(0.05)).unwrap();
+        let check = Discrete::new(&space, ball, Length::Absolute(0.05)).unwrap();
         check_local_planner(&space, &mut RotateAtS::new(&space, check, 0.25).unwrap(), 0.7, 2);
         for at in [-0.1, 1.1, f64::NAN] {
-            let check = Discrete::new(&space, ball, Resolution::Length(0.05)).unwrap();
+            let check = Discrete::new(&space, ball, Length::Absolute(0.05)).unwrap();
             assert!(RotateAtS::new(&space, check, at).is_err());
         }
     }

@@ -1,6 +1,6 @@
 //! The sampled motion check.
 
-use super::Resolution;
+use crate::Length;
 use crate::{KnownFree, MotionCheck, MotionValidity, ParameterError, Space, Validity};
 
 /// Checks a motion at states no farther apart than a resolution.
@@ -29,8 +29,8 @@ impl<'c, C: Space, V: Validity<C::State>> Discrete<'c, C, V> {
     ///
     /// # Errors
     /// When the resolution is not positive and finite, or below 10⁻⁹ of the extent.
-    pub fn new(space: &'c C, valid: V, resolution: Resolution) -> Result<Self, ParameterError> {
-        let step = resolution.length_in(space)?;
+    pub fn new(space: &'c C, valid: V, resolution: Length) -> Result<Self, ParameterError> {
+        let step = resolution.resolution_in(space)?;
         Ok(Self { space, valid, step, batch: Vec::new(), times: Vec::new() })
     }
 
@@ -139,7 +139,7 @@ mod tests {
             seen.push(q.x);
             true
         };
-        let mut check = Discrete::new(&space, valid, Resolution::Length(0.3)).unwrap();
+        let mut check = Discrete::new(&space, valid, Length::Absolute(0.3)).unwrap();
         assert!(check.check_extension(&[0.0].into(), &[1.0].into(), KnownFree::From).is_free());
         assert_eq!(seen, [1.0, 0.5, 0.25, 0.75]);
     }
@@ -160,7 +160,7 @@ mod tests {
         let space = line();
         for at in [0.0, 0.013, 0.37, 0.5, 0.99, 1.0, 2.0] {
             let check = |size| {
-                let mut check = Discrete::new(&space, Batched(size, at), Resolution::Fraction(0.01)).unwrap();
+                let mut check = Discrete::new(&space, Batched(size, at), Length::Fraction(0.01)).unwrap();
                 check.check_motion(&[0.0].into(), &[1.0].into())
             };
             assert_eq!(check(1).is_free(), at > 1.5);
@@ -174,10 +174,10 @@ mod tests {
     fn refuses_bad_resolutions_and_states() {
         let space = line();
         for r in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-12] {
-            assert!(Discrete::new(&space, |_: &Vector1<f64>| true, Resolution::Length(r)).is_err());
-            assert!(Discrete::new(&space, |_: &Vector1<f64>| true, Resolution::Fraction(r)).is_err());
+            assert!(Discrete::new(&space, |_: &Vector1<f64>| true, Length::Absolute(r)).is_err());
+            assert!(Discrete::new(&space, |_: &Vector1<f64>| true, Length::Fraction(r)).is_err());
         }
-        let mut check = Discrete::new(&space, |_: &Vector1<f64>| true, Resolution::Length(0.1)).unwrap();
+        let mut check = Discrete::new(&space, |_: &Vector1<f64>| true, Length::Absolute(0.1)).unwrap();
         for x in [f64::NAN, f64::INFINITY, 1e300] {
             assert!(!check.check_motion(&[0.0].into(), &[x].into()).is_free());
         }

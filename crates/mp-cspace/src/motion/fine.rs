@@ -1,6 +1,6 @@
 //! A plain sampled check, to verify finished paths where no clearance is known.
 
-use super::Resolution;
+use crate::Length;
 use crate::{MotionCheck, MotionValidity, ParameterError, Space, Validity};
 
 /// Walks a motion from end to end in equal steps, testing every state on the way.
@@ -20,8 +20,8 @@ impl<'c, C: Space, V: Validity<C::State>> FineDiscrete<'c, C, V> {
     ///
     /// # Errors
     /// When the resolution is not positive and finite, or below 10⁻⁹ of the extent.
-    pub fn new(space: &'c C, valid: V, resolution: Resolution) -> Result<Self, ParameterError> {
-        Ok(Self { space, valid, step: resolution.length_in(space)? })
+    pub fn new(space: &'c C, valid: V, resolution: Length) -> Result<Self, ParameterError> {
+        Ok(Self { space, valid, step: resolution.resolution_in(space)? })
     }
 }
 
@@ -63,11 +63,11 @@ mod tests {
         for i in 0..=100 {
             let at = f64::from(i) / 100.0;
             let valid = |q: &Vector1<f64>| (q.x - at).abs() > 0.006;
-            let mut check = FineDiscrete::new(&space, valid, Resolution::Length(0.01)).unwrap();
+            let mut check = FineDiscrete::new(&space, valid, Length::Absolute(0.01)).unwrap();
             assert!(!check.check_motion(&[0.0].into(), &[1.0].into()).is_free());
             assert!(!check.check_motion(&[at].into(), &[at].into()).is_free());
         }
-        let mut check = FineDiscrete::new(&space, |_: &Vector1<f64>| true, Resolution::Length(0.01)).unwrap();
+        let mut check = FineDiscrete::new(&space, |_: &Vector1<f64>| true, Length::Absolute(0.01)).unwrap();
         assert!(check.check_motion(&[0.0].into(), &[1.0].into()).is_free());
         assert!(!check.check_motion(&[0.0].into(), &[f64::NAN].into()).is_free());
     }

@@ -107,14 +107,14 @@ fn first_fault<C: Space>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FineDiscrete, Resolution, Rn};
+    use crate::{FineDiscrete, Length, Rn};
     use nalgebra::Vector1;
 
     #[test]
     fn the_first_fault_is_named() {
         let space = Rn::<1>::new([0.0], [1.0]).unwrap();
         let valid = |q: &Vector1<f64>| (q.x - 0.5).abs() > 0.05;
-        let mut check = FineDiscrete::new(&space, valid, Resolution::Length(0.01)).unwrap();
+        let mut check = FineDiscrete::new(&space, valid, Length::Absolute(0.01)).unwrap();
         let mut fault = |xs: &[f64]| {
             let path = Path::straight(xs.iter().map(|&x| Vector1::new(x)).collect());
             verify_path(&space, &path, &mut check).fault

@@ -2,13 +2,11 @@
 
 mod error;
 mod goals;
-mod step;
 mod verify;
 mod workers;
 
 pub use error::{BuildError, Endpoint};
 pub use goals::Goals;
-pub use step::Step;
 pub use verify::Verify;
 pub use workers::Workers;
 

@@ -8,11 +8,11 @@ use mp_control::{
     OnPosition, Order, ReplayFinely,
 };
 use mp_cspace::{
-    Cancel, Clock, Deadline, Discrete, Euclidean, Exactly, Manhattan, Metric, MotionValidity, Outcome,
-    Planner, Product, Resolution, Rn, Rng, ScaledEuclidean, Space, Stop, StopReason, Straight, Validity,
+    Cancel, Clock, Deadline, Discrete, Euclidean, Exactly, Length, Manhattan, Metric, MotionValidity,
+    Outcome, Planner, Product, Rn, Rng, ScaledEuclidean, Space, Stop, StopReason, Straight, Validity,
     WithMetric,
 };
-use mp_tree::{BuildError, Goals, Problem, RrtConnect, RrtInputs, Rsrt, Step, Tuning};
+use mp_tree::{BuildError, Goals, Problem, RrtConnect, RrtInputs, Rsrt, Tuning};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -180,7 +180,7 @@ where
     let count = Arc::new(AtomicU64::new(0));
     let began = Began::now(settings)?;
     let valid = CountingValidity { valid: robot, count: count.clone() };
-    let resolution = Resolution::Length(test_robot.resolution());
+    let resolution = Length::Absolute(test_robot.resolution());
     let check = Discrete::new(test_robot.space(), valid, resolution)?;
     let straight = Straight::new(&space, check);
     let (start, goal, tuning) = (test_robot.start().clone(), test_robot.goal().clone(), tuning());
@@ -207,7 +207,7 @@ where
 
 /// The longest step is a fifth of the extent: for connections of inputs to a goal, and for RRT-Connect's edges.
 fn tuning() -> Tuning {
-    Tuning { step: Step::Fraction(0.2), ..Tuning::default() }
+    Tuning { step: Length::Fraction(0.2), ..Tuning::default() }
 }
 
 /// Plans with states that are positions and velocities, under `metric`; the
@@ -226,12 +226,12 @@ where
     let space = WithMetric::new(moving.clone(), metric);
     let mut proof = test_robot.verifier(&robot)?;
     let proved = OnPosition(move |q: &State<M>| proof.check_motion(q, q).is_free());
-    let fine = Resolution::Length(0.1 * test_robot.resolution());
+    let fine = Length::Absolute(0.1 * test_robot.resolution());
     let verifier = ReplayFinely::new(&places, flow, proved, fine)?;
     let count = Arc::new(AtomicU64::new(0));
     let began = Began::now(settings)?;
     let valid = OnPosition(CountingValidity { valid: robot, count: count.clone() });
-    let resolution = Resolution::Length(test_robot.resolution());
+    let resolution = Length::Absolute(test_robot.resolution());
     let check = DiscreteFlowCheck::new(&places, valid, resolution)?;
     let ComparedPlanner::Inputs(order, accept) = settings.planner else {
         return Err("two trees grown by accelerations do not meet".into());

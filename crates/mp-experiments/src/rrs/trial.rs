@@ -2,13 +2,13 @@
 
 use crate::Result;
 use mp_cspace::{
-    Cancel, Clock, DefaultNn, Direction, Extension, Iterations, LocalPlanner, Outcome, Path, Planner,
+    Cancel, Clock, DefaultNn, Direction, Extension, Iterations, Length, LocalPlanner, Outcome, Path, Planner,
     PolylineEdge, Reach, Rn, Rng, Space, Stop, StopReason, Straight, least_clearance,
 };
 use mp_robot::{DiscRobot, DiscVerifier};
 use mp_scenes::source::disc_scenes::DiscScene;
 use mp_snake::{Bending, Field, Grid, Params, Repulsion, SnakeCounters, SnakePlanner, outline_energy};
-use mp_tree::{BuildError, Problem, Rrt, RrtConnect, Step, Tuning};
+use mp_tree::{BuildError, Problem, Rrt, RrtConnect, Tuning};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use std::cell::Cell;
@@ -191,7 +191,7 @@ pub fn planned(world: &PreparedWorld, case: &Case, clock: Clock, cancel: &Cancel
     let PreparedWorld { scene, robot, .. } = world;
     let space = Rn::<2>::new([0.0; 2], scene.size)?;
     let step = f64::from(case.step) / 100.0;
-    let tuning = Tuning { step: Step::Length(step), ..Tuning::default() };
+    let tuning = Tuning { step: Length::Absolute(step), ..Tuning::default() };
     let (start, goal) = (Point::from(scene.start), Point::from(scene.goal));
     let verifier = DiscVerifier::new(robot);
     let settings = TrialSettings { seed: case.trial + 1, clock, cancel, space: &space, robot };
@@ -254,7 +254,7 @@ pub fn rrs<'a, F: Field<Point>>(
     let local = Counted(snakes.map_err(|e| unmade(e.to_string()))?, counters);
     let local = Steps { space, goal, step, exactly, local };
     let problem = Problem::new(space, local, DiscVerifier::new(robot), start, goal)?;
-    Rrt::new(problem, Tuning { step: Step::Length(step), ..Tuning::default() })
+    Rrt::new(problem, Tuning { step: Length::Absolute(step), ..Tuning::default() })
 }
 
 /// A tree of RRS, with its counts.

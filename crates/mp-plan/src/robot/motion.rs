@@ -7,8 +7,8 @@ use crate::{Error, Robot};
 use mp_cspace::erased::{AnyCheck, AnyFactored, AnySpace};
 use mp_cspace::{
     Certified, Clearance, ClearanceSearch, Configuration, Discrete, Factored, Interrupt, IntervalClearance,
-    KnownFree, LeastClearance, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
-    ObstacleKnowledge, ParameterError, Resolution, Validity,
+    KnownFree, LeastClearance, Length, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
+    ObstacleKnowledge, ParameterError, Validity,
 };
 use std::fmt::{self, Debug};
 use std::sync::Arc;
@@ -108,7 +108,7 @@ pub enum By<'c> {
     /// With a certificate of this tolerance (m).
     Certificates(f64),
     /// At states so far apart in this space.
-    States(&'c AnySpace<'c, Configuration>, Resolution),
+    States(&'c AnySpace<'c, Configuration>, Length),
 }
 
 /// The motions of a robot among its obstacles, behind pointers: [`TypedMotion`] gives them.

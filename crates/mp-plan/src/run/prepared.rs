@@ -6,12 +6,11 @@ use crate::run::planners::PlannerKind;
 use crate::run::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
 use crate::run::watch::{Events, WatchAdapter};
 use crate::scene::goals;
-use crate::{Control, Error, Length, Measured, MotionValidator, Request, Robot};
+use crate::{Control, Error, Measured, MotionValidator, Request, Robot};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
     AnyProblem, BuildError, Configuration, Endpoint, Interrupt, Iterations, KnownFree, MotionCheck,
-    MotionValidity, Nodes, ParameterError, Problem, Resolution, Stop, Straight, Workers,
-    registry::PlannerInfo,
+    MotionValidity, Nodes, ParameterError, Problem, Stop, Straight, Workers, registry::PlannerInfo,
 };
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -89,7 +88,7 @@ impl<'k> Prepared<'k> {
         let counting = Counting::new(&self.queries, interrupt.clone()).exactly(self.counts_exactly);
         let by = match motion(kind, self.request) {
             MotionValidator::Certified => By::Certificates(kind.tolerance()),
-            MotionValidator::Discrete(length) => By::States(&self.space, resolution(length)),
+            MotionValidator::Discrete(length) => By::States(&self.space, length),
         };
         let check = build_error(kind.motions(by, &counting))?;
         let deadlines = Some(&self.deadlines);
@@ -308,11 +307,4 @@ pub(crate) fn motion(kind: &dyn Robot, request: &Request) -> MotionValidator {
 
 fn build_error<T>(made: Result<T, ParameterError>) -> Result<T, BuildError> {
     made.map_err(|e| BuildError::Unmade { reason: e.to_string() })
-}
-
-pub(crate) fn resolution(length: Length) -> Resolution {
-    match length {
-        Length::Absolute(v) => Resolution::Length(v),
-        Length::Fraction(f) => Resolution::Fraction(f),
-    }
 }

@@ -1,7 +1,7 @@
 //! How to plan: plain data.
 
 use crate::{Error, ErrorKind};
-use mp_cspace::registry::Settings;
+use mp_cspace::{Length, registry::Settings};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -145,53 +145,6 @@ impl FromStr for MetricName {
     }
 }
 
-/// A distance in the metric, or a fraction of the extent of the space. As text, `0.5` or `20%`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
-pub enum Length {
-    /// A distance in the unit of the metric.
-    Absolute(f64),
-    /// A fraction of the extent; 1 is the whole extent.
-    Fraction(f64),
-}
-
-impl fmt::Display for Length {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Absolute(length) => write!(f, "{length}"),
-            Self::Fraction(fraction) => write!(f, "{}%", 100.0 * fraction),
-        }
-    }
-}
-
-impl FromStr for Length {
-    type Err = Error;
-    fn from_str(s: &str) -> Result<Self, Error> {
-        match s.strip_suffix('%') {
-            Some(percent) => match positive(percent)? / 100.0 {
-                // The least numbers have no hundredth.
-                0.0 => Err(not_positive()),
-                part if part <= 1.0 => Ok(Self::Fraction(part)),
-                _ => Err(Error::new("more than 100% of the extent")),
-            },
-            None => positive(s).map(Self::Absolute),
-        }
-    }
-}
-
-/// A finite number above zero.
-fn positive(s: &str) -> Result<f64, Error> {
-    match s.trim().parse::<f64>() {
-        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
-        Ok(_) => Err(not_positive()),
-        Err(_) => Err(Error::new("not a number")),
-    }
-}
-
-fn not_positive() -> Error {
-    Error::new("must be a finite number above zero")
-}
-
 /// How motions are checked while planning. As text, `certified`, `discrete:1%` or `discrete:0.05`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
@@ -217,7 +170,7 @@ impl FromStr for MotionValidator {
     fn from_str(s: &str) -> Result<Self, Error> {
         match (s, s.strip_prefix("discrete:")) {
             ("certified", _) => Ok(Self::Certified),
-            (_, Some(resolution)) => resolution.parse().map(Self::Discrete),
+            (_, Some(resolution)) => Ok(Self::Discrete(resolution.parse()?)),
             ("discrete", _) => Err(Error::new("give the resolution, such as discrete:1% or discrete:0.05")),
             _ => Err(Error::new("expected `certified` or `discrete:R`, such as discrete:1%")),
         }
@@ -284,7 +237,7 @@ impl FromStr for RelaxField {
             None if s == "clearance" => Ok(Self::Clearance),
             None if s == "paper" => Ok(Self::Paper),
             None if s == "risk" => Ok(Self::Risk(1.0)),
-            Some(("risk", factor)) => match positive(factor) {
+            Some(("risk", factor)) => match crate::positive_number(factor) {
                 Ok(factor) => Ok(Self::Risk(factor)),
                 Err(e) => Err(Error::new(format!("the factor of the noise is `{factor}`: {e}"))
                     .help("give a number, such as risk:2")),
@@ -314,7 +267,7 @@ macro_rules! as_text {
         })*
     };
 }
-as_text!(Length, MotionValidator, RelaxField);
+as_text!(MotionValidator, RelaxField);
 
 /// Whether a member is left out: what was written before it was there stays the same.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]

@@ -42,10 +42,7 @@ pub(crate) fn routes(
     let prepared = Prepared::new(kind, request)?;
     control.spend_since(spent);
     prepared.interrupt_by(prepared.interrupt_of(control, PLANNING_PART));
-    let apart = match apart {
-        Length::Absolute(length) => length,
-        Length::Fraction(part) => part * kind.any_space().extent(),
-    };
+    let apart = apart.in_space(&kind.any_space());
     control.stage(Stage::Planning);
     let listed = match &planner {
         PlannerKind::Tree(spec) if spec.meta_planners.is_empty() && spec.planner.name == "cyclic-rrt" => {

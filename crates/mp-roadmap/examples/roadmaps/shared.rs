@@ -1,8 +1,6 @@
 //! A bug trap and a narrow gap in the plane, and how to print what a planner made of them.
 
-use mp_cspace::{
-    Discrete, FineDiscrete, Iterations, Outcome, Planner, Problem, Resolution, Rn, Rng, Straight,
-};
+use mp_cspace::{Discrete, FineDiscrete, Iterations, Length, Outcome, Planner, Problem, Rn, Rng, Straight};
 use mp_roadmap::Roadmap;
 use nalgebra::Vector2;
 
@@ -38,8 +36,8 @@ fn problem(
     resolution: f64,
     [start, goal]: [Point; 2],
 ) -> Result<Problem<'_, Rn<2>, Local<'_>>> {
-    let check = Discrete::new(space, free, Resolution::Fraction(resolution))?;
-    let verifier = FineDiscrete::new(space, free, Resolution::Fraction(0.0005))?;
+    let check = Discrete::new(space, free, Length::Fraction(resolution))?;
+    let verifier = FineDiscrete::new(space, free, Length::Fraction(0.0005))?;
     Ok(Problem::new(space, Straight::new(space, check), verifier, start, goal)?)
 }
 

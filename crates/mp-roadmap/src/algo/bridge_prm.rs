@@ -33,14 +33,14 @@
 //!
 //! A point goes through a gap in a wall:
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Problem, Resolution, Rn, Rng, Straight};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Problem, Length, Rn, Rng, Straight};
 //! use mp_roadmap::{BridgePrm, Mixing, Reachable, algo::bridge_prm};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| (q.x - 0.5).abs() > 0.1 || (q.y - 0.7).abs() < 0.02;
-//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.002))?);
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.002))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //!
 //! let problem = Problem::new(&space, local, verifier, start, goal)?;
@@ -58,10 +58,10 @@ use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
 use crate::engine::staged::{STRAIGHT, TURNS_RANGE, turns};
 use crate::engine::{ENDS, ENDS_STEP};
 use crate::{Mixing, PairRule, Pairs, PairsPlanner};
-use mp_cspace::{Bridge, Rng, Space, Step, registry::PlannerInfo};
+use mp_cspace::{Bridge, Length, Rng, Space, registry::PlannerInfo};
 
 /// The defaults.
-pub const MIXING: Mixing = Mixing { sigma: Step::Fraction(0.1), uniform: 0.5 };
+pub const MIXING: Mixing = Mixing { sigma: Length::Fraction(0.1), uniform: 0.5 };
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {

@@ -85,7 +85,7 @@ use crate::{
     RoadmapPlanner, RoadmapPlannerParts, StagedConnector, Turns,
 };
 use mp_cspace::{
-    BuildError, LocalPlanner, Reversible, Rng, Space, Step,
+    BuildError, Length, LocalPlanner, Reversible, Rng, Space,
     obstacles::{ObstacleGeometry, PointOf},
     registry::{Parameter, PlannerInfo, Settings},
 };
@@ -121,7 +121,7 @@ pub struct OnSurfaces {
     /// Directions of [`Strategy::Prototype`]; 1 or more.
     pub directions: usize,
     /// The greatest distance of free nodes from contact, and the distance between shells.
-    pub gap: Step,
+    pub gap: Length,
     /// Shells behind contact; 1 or more.
     pub shells: usize,
     /// Part of the attempts that are uniform samples.
@@ -136,7 +136,7 @@ impl Default for OnSurfaces {
             strategy: Strategy::Free,
             points: PointOf::Surface,
             directions: 10,
-            gap: Step::Fraction(0.01),
+            gap: Length::Fraction(0.01),
             shells: 3,
             uniform: 0.1,
             stages: ConnectionStages { turns: Turns::first(1), ..ConnectionStages::default() },
@@ -190,7 +190,7 @@ impl OnSurfaces {
             strategy: settings.choice(NODES.name, NODES.range, strategy)?.unwrap_or(default.strategy),
             points: settings.choice(POINTS.name, POINTS.range, points)?.unwrap_or(default.points),
             directions: settings.count_of(&DIRECTIONS)? as usize,
-            gap: settings.step(GAP.name)?.unwrap_or(default.gap),
+            gap: settings.length(GAP.name)?.unwrap_or(default.gap),
             shells: settings.count_of(&SHELLS)? as usize,
             uniform: settings.number("uniform")?.unwrap_or(default.uniform),
             stages: default.stages.read(settings)?,

@@ -45,14 +45,14 @@
 //!
 //! A point goes around a disc in the unit square:
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Problem, Resolution, Rn, Rng, Straight};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Problem, Length, Rn, Rng, Straight};
 //! use mp_roadmap::{Learning, Prm, Reachable};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
-//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //!
 //! let problem = Problem::new(&space, local, verifier, start, goal)?;
@@ -74,7 +74,7 @@ use crate::{
     ParentMotion, Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts, StagedConnector,
 };
 use mp_cspace::{
-    BuildError, Direction, Extension, LocalPlanner, NodeId, Reach, Reversible, Rng, Space, Step, Uniform,
+    BuildError, Direction, Extension, Length, LocalPlanner, NodeId, Reach, Reversible, Rng, Space, Uniform,
     registry::{Parameter, PlannerInfo, Settings},
 };
 use rand::RngExt;
@@ -89,12 +89,12 @@ pub struct Learning {
     /// Motions of a random-bounce walk; 1 or more.
     pub bounces: usize,
     /// The longest motion of such a walk.
-    pub walk: Step,
+    pub walk: Length,
 }
 
 impl Default for Learning {
     fn default() -> Self {
-        Self { learn: 500, expand: 0.5, bounces: 3, walk: Step::Fraction(0.1) }
+        Self { learn: 500, expand: 0.5, bounces: 3, walk: Length::Fraction(0.1) }
     }
 }
 
@@ -109,7 +109,7 @@ impl Learning {
             learn: settings.count_of(&LEARN)? as usize,
             expand: settings.number(EXPAND.name)?.unwrap_or(default.expand),
             bounces: settings.count_of(&BOUNCES)? as usize,
-            walk: settings.step(WALK.name)?.unwrap_or(default.walk),
+            walk: settings.length(WALK.name)?.unwrap_or(default.walk),
         })
     }
 }

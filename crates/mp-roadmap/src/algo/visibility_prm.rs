@@ -30,14 +30,14 @@
 //! | `failures`: M, samples in a row that are no guards | 1, 2, … 10⁹ | 1000 |
 //!
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Problem, Resolution, Rn, Rng, StopReason, Straight};
+//! use mp_cspace::{Discrete, FineDiscrete, Problem, Length, Rn, Rng, StopReason, Straight};
 //! use mp_roadmap::{MilestoneKind, VisibilityPrm};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
-//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5))?;
 //!
 //! let mut builder = VisibilityPrm::new(problem, 200)?.into_builder();

@@ -9,8 +9,8 @@
 use super::settings::length;
 use super::{Builder, Candidate, Connector, MilestoneKind, NodeGenerator, ParentMotion};
 use mp_cspace::{
-    BuildError, Direction, Extension, LocalPlanner, NearestNeighbors, NodeId, Observer, Reach, Reversible,
-    Rng, Space, Step,
+    BuildError, Direction, Extension, Length, LocalPlanner, NearestNeighbors, NodeId, Observer, Reach,
+    Reversible, Rng, Space,
     registry::{Parameter, Settings},
 };
 use rand::RngExt;
@@ -47,7 +47,7 @@ impl EndGrowth {
     ///
     /// # Errors
     /// When a parameter is out of range.
-    pub fn new<C: Space>(space: &C, part: f64, step: Step) -> Result<Self, BuildError> {
+    pub fn new<C: Space>(space: &C, part: f64, step: Length) -> Result<Self, BuildError> {
         if !(0.0..1.0).contains(&part) {
             return Err(BuildError::OutOfRange {
                 name: ENDS.name,
@@ -64,7 +64,7 @@ impl EndGrowth {
     /// As [`new`](Self::new), and when a value cannot be read.
     pub fn read<C: Space>(space: &C, settings: &Settings) -> Result<Self, BuildError> {
         let part = settings.number(ENDS.name)?.unwrap_or_default();
-        Self::new(space, part, settings.step(ENDS_STEP.name)?.unwrap_or(Step::Fraction(0.03)))
+        Self::new(space, part, settings.length(ENDS_STEP.name)?.unwrap_or(Length::Fraction(0.03)))
     }
 }
 

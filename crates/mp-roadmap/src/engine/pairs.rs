@@ -7,7 +7,7 @@ use super::{
     Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts, StagedConnector,
 };
 use mp_cspace::{
-    BuildError, LocalPlanner, Reversible, Rng, Space, Step,
+    BuildError, Length, LocalPlanner, Reversible, Rng, Space,
     registry::{Parameter, Settings},
 };
 use rand::RngExt;
@@ -18,7 +18,7 @@ use std::marker::PhantomData;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixing {
     /// Standard deviation of the distance, in (0, extent of the space].
-    pub sigma: Step,
+    pub sigma: Length,
     /// Part of the attempts that are uniform samples instead, in \[0, 1\]; without obstacles only these find states.
     pub uniform: f64,
 }
@@ -30,7 +30,7 @@ impl Mixing {
 
     pub(crate) fn read(self, settings: &Settings) -> Result<Self, BuildError> {
         Ok(Self {
-            sigma: settings.step(SIGMA)?.unwrap_or(self.sigma),
+            sigma: settings.length(SIGMA)?.unwrap_or(self.sigma),
             uniform: settings.number(UNIFORM)?.unwrap_or(self.uniform),
         })
     }

@@ -2,7 +2,7 @@
 
 use super::Reachable;
 use mp_cspace::{
-    BuildError, Space, Step,
+    BuildError, Length, Space,
     registry::{Demand, Parameter, Settings},
 };
 
@@ -53,7 +53,7 @@ pub fn yes(settings: &Settings, parameter: &Parameter) -> Result<bool, BuildErro
 /// # Errors
 /// When a value cannot be read or is out of range.
 pub fn reachable<C: Space>(space: &C, settings: &Settings) -> Result<Reachable, BuildError> {
-    let radius = match settings.step(RADIUS.name)? {
+    let radius = match settings.length(RADIUS.name)? {
         Some(step) => length(&RADIUS, step, space)?,
         None => f64::INFINITY,
     };
@@ -65,8 +65,8 @@ pub fn reachable<C: Space>(space: &C, settings: &Settings) -> Result<Reachable, 
 ///
 /// # Errors
 /// When it is not positive or longer than the extent of the space.
-pub fn length<C: Space>(parameter: &Parameter, step: Step, space: &C) -> Result<f64, BuildError> {
-    step.length_in(space).map_err(|error| match error {
+pub fn length<C: Space>(parameter: &Parameter, step: Length, space: &C) -> Result<f64, BuildError> {
+    step.step_in(space).map_err(|error| match error {
         BuildError::OutOfRange { value, range, .. } => {
             BuildError::OutOfRange { name: parameter.name, value, range }
         }

@@ -19,14 +19,14 @@ pub type AnyRegions = InRegions<Configuration, AnyIndex<Configuration>>;
 ///
 /// ```
 /// use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
-/// use mp_cspace::{Configuration, Discrete, FineDiscrete, Iterations, Joints, Outcome, Problem, Resolution, Rng, Straight};
+/// use mp_cspace::{Configuration, Discrete, FineDiscrete, Iterations, Joints, Outcome, Problem, Length, Rng, Straight};
 /// use mp_roadmap::{AnyParallelProblem, Settings, erased::build};
 ///
 /// let space = Joints::<Configuration>::intervals(&[0.0, 0.0], &[1.0, 1.0])?;
 /// let any = AnySpace::new(&space);
 /// let free = |q: &Configuration| (q[0] - 0.5).hypot(q[1] - 0.5) > 0.3;
-/// let check: AnyCheck<_> = Box::new(Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-/// let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+/// let check: AnyCheck<_> = Box::new(Discrete::new(&space, free, Length::Fraction(0.01))?);
+/// let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 /// let (start, goal) = (Configuration::from([0.1, 0.5]), Configuration::from([0.9, 0.5]));
 /// let team = AnyParallelProblem::from(Problem::new(&any, Straight::new(&any, check), verifier, start, goal)?);
 ///

@@ -190,7 +190,8 @@ fn nodes_of_obprm_are_on_surfaces() {
     let (space, mut robot) = (plane(), corridor(0.25));
     let gap = 0.01 * space.extent();
     for strategy in [Strategy::Prototype, Strategy::Contact, Strategy::Free, Strategy::Shells] {
-        let with = OnSurfaces { strategy, gap: Step::Fraction(0.01), uniform: 0.0, ..OnSurfaces::default() };
+        let with =
+            OnSurfaces { strategy, gap: Length::Fraction(0.01), uniform: 0.0, ..OnSurfaces::default() };
         let generator = OnObstacles::new(&space, robot.clone(), with).unwrap();
         let all = candidates(&space, &robot, generator, 0..200);
         let of = |kind| all.iter().filter(move |c| c.kind == kind);
@@ -221,7 +222,7 @@ fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
         tests.set(tests.get() + 1);
         true
     };
-    let check = || Discrete::new(&space, counts, Resolution::Fraction(0.1)).unwrap();
+    let check = || Discrete::new(&space, counts, Length::Fraction(0.1)).unwrap();
     let mut checker =
         EdgeChecker::new(&space, Straight::new(&space, check()), Verifier::new(&space, &robot).unwrap(), 10);
     let (map, mut out, mut first) = (Roadmap::new(), Vec::new(), generator());

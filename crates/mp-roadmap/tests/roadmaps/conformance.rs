@@ -50,11 +50,10 @@ where
         let proof = |tolerance| Certified::new(&self.space, self.robot.clone(), tolerance).unwrap();
         // What is found by samples is verified by proof, so that no corner is cut.
         let (check, verifier): (Check<'_, Configuration>, Check<'_, Configuration>) = if certified {
-            let fine =
-                FineDiscrete::new(&self.space, self.robot.clone(), Resolution::Fraction(5e-4)).unwrap();
+            let fine = FineDiscrete::new(&self.space, self.robot.clone(), Length::Fraction(5e-4)).unwrap();
             (Box::new(proof(1e-3)), Box::new(fine))
         } else {
-            let resolution = Resolution::Fraction(2e-3);
+            let resolution = Length::Fraction(2e-3);
             let sampled = Discrete::new(&self.space, self.robot.clone(), resolution).unwrap();
             (Box::new(sampled), Box::new(proof(1e-5)))
         };

@@ -17,7 +17,7 @@ pub(crate) fn problem<'c>(
     gullible: bool,
 ) -> Problem<'c, Rn<2>, Local<'c>> {
     let check: Box<dyn MotionValidity<Point> + Send> = match gullible {
-        true => Box::new(FineDiscrete::new(space, |_: &Point| true, Resolution::Length(1.0)).unwrap()),
+        true => Box::new(FineDiscrete::new(space, |_: &Point| true, Length::Absolute(1.0)).unwrap()),
         false => Box::new(Exact(boxes.clone())),
     };
     let [start, goal] = ends.map(Point::from);
@@ -192,7 +192,7 @@ fn guards_do_not_see_each_other_and_connections_join_components() {
 #[test]
 fn trees_grow_from_the_ends() {
     let (space, boxes) = (square(), slit(0.2, 0.8, 0.0));
-    let growth = EndGrowth::new(&space, 0.25, Step::Fraction(0.03)).unwrap();
+    let growth = EndGrowth::new(&space, 0.25, Length::Fraction(0.03)).unwrap();
     let learning = Learning { expand: 0.0, ..Learning::default() };
     let reach = Reachable { neighbours: 8, radius: 0.4, cycles: false };
     let mut planner =
@@ -214,7 +214,7 @@ fn trees_grow_from_the_ends() {
     let near = |id: NodeId| map.links(id).any(|(_, _, link)| link.length <= step);
     assert!(grown.iter().all(|&id| near(id)));
     for wrong in [1.0, -0.1, f64::NAN] {
-        assert!(EndGrowth::new(&space, wrong, Step::Fraction(0.03)).is_err());
+        assert!(EndGrowth::new(&space, wrong, Length::Fraction(0.03)).is_err());
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::worlds::{Judge, Point, World, square};
 use mp_cspace::testkit::check_local_planner;
 use mp_cspace::{
-    Direction, Extension, FineDiscrete, KnownFree, LocalPlanner, MotionValidity, Path, Reach, Resolution, Rn,
+    Direction, Extension, FineDiscrete, KnownFree, Length, LocalPlanner, MotionValidity, Path, Reach, Rn,
     Rng, Space,
 };
 use mp_snake::{
@@ -217,7 +217,7 @@ fn the_pace_follows_the_field() {
         };
         let params =
             Params { membrane: 0.0, plate: 0.0, iterations: 200, ..Params::for_range(0.15).unwrap() };
-        let mut check = FineDiscrete::new(&space, |_: &Vector2<f64>| true, Resolution::Length(0.01)).unwrap();
+        let mut check = FineDiscrete::new(&space, |_: &Vector2<f64>| true, Length::Absolute(0.01)).unwrap();
         let relaxed = relax(&space, &mut check, &mut field, &path, params, 1.2).unwrap();
         let off = relaxed.path.states.iter().map(|q| (q.y - bed(q.x)).abs()).fold(0.0, f64::max);
         assert!(relaxed.is_better() && off < 0.3 * width, "{width}: {off} {:?}", relaxed.energy);

@@ -3,7 +3,7 @@
 //! `cargo run -p mp-tree --example trees car [SEED]`
 
 use mp_control::{Car, DiscreteFlowCheck, InputPlanner, ReplayFinely};
-use mp_cspace::{Exactly, Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};
+use mp_cspace::{Exactly, Iterations, Length, Outcome, Planner, Rng, Se2, Se2State};
 use mp_tree::{Goals, Problem, Rsrt, Tuning};
 use nalgebra::Point2;
 
@@ -24,9 +24,9 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let seed = std::env::args().nth(2).map_or(Ok(1), |text| text.parse())?;
     let space = Se2::new([0.0, 0.0], [18.0, 6.0])?.with_rotation_weight(2.0)?;
     let car = Car::new(2.5)?;
-    let check = DiscreteFlowCheck::new(&space, free, Resolution::Length(0.1))?;
+    let check = DiscreteFlowCheck::new(&space, free, Length::Absolute(0.1))?;
     let mut local = InputPlanner::new(&space, car, Car::inputs(1.0, 0.6, 2)?, 0.6, check)?;
-    let verifier = ReplayFinely::new(&space, car, free, Resolution::Length(0.01))?;
+    let verifier = ReplayFinely::new(&space, car, free, Length::Absolute(0.01))?;
     let parked =
         |q: &Se2State| (6.9..9.0).contains(&q.translation.x) && q.translation.y < 1.2 && q.angle.abs() < 0.1;
     let goal = Goals::region(parked).with_sampler(Exactly(Se2State::new(8.0, 1.1, 0.0)));

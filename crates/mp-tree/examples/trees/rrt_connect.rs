@@ -3,9 +3,9 @@
 //! `cargo run -p mp-tree --example trees rrt_connect [SEED]`
 
 use mp_cspace::{
-    Discrete, EventCounts, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight,
+    Discrete, EventCounts, FineDiscrete, Iterations, Length, Outcome, Planner, Rn, Rng, Straight,
 };
-use mp_tree::{Problem, RrtConnect, Step, Tuning};
+use mp_tree::{Problem, RrtConnect, Tuning};
 use nalgebra::Vector2;
 
 /// Whether a point is off a ring of walls that is open only at the right.
@@ -17,10 +17,10 @@ fn free(q: &Vector2<f64>) -> bool {
 pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let seed = std::env::args().nth(2).map_or(Ok(1), |text| text.parse())?;
     let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
-    let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.005))?);
-    let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+    let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.005))?);
+    let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
     let problem = Problem::new(&space, local, verifier, Vector2::new(0.5, 0.5), Vector2::new(0.05, 0.5))?;
-    let tuning = Tuning { step: Step::Length(0.1), ..Tuning::default() };
+    let tuning = Tuning { step: Length::Absolute(0.1), ..Tuning::default() };
     let mut planner = RrtConnect::new(problem, tuning)?;
     let mut seen = EventCounts::default();
     match planner.solve(&mut Rng::seed(seed), &mut Iterations(50_000), &mut seen) {

@@ -4,11 +4,11 @@ use mp_control::{
     ControlSegment, DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, OnPosition, ReplayFinely,
 };
 use mp_cspace::{
-    Discrete, EventCounts, FineDiscrete, Iterations, KdTree, Outcome, ParameterError, Planner, Product,
-    Resolution, Rn, Rng, Straight,
+    Discrete, EventCounts, FineDiscrete, Iterations, KdTree, Length, Outcome, ParameterError, Planner,
+    Product, Rn, Rng, Straight,
 };
 use mp_snake::{Repulsion, SnakePlanner};
-use mp_tree::{BuildError, Goals, Problem, RrtConnect, Step, Tuning, improve};
+use mp_tree::{BuildError, Goals, Problem, RrtConnect, Tuning, improve};
 use nalgebra::Vector2;
 
 pub(crate) type Point = Vector2<f64>;
@@ -44,8 +44,8 @@ pub(crate) fn problem(
     [start, goal]: [Point; 2],
 ) -> std::result::Result<Problem<'_, Rn<2>, Local<'_>>, BuildError> {
     let unmade = |error: ParameterError| BuildError::Unmade { reason: error.to_string() };
-    let check = Discrete::new(space, free, Resolution::Fraction(0.005)).map_err(unmade)?;
-    let verifier = FineDiscrete::new(space, free, Resolution::Fraction(0.0005)).map_err(unmade)?;
+    let check = Discrete::new(space, free, Length::Fraction(0.005)).map_err(unmade)?;
+    let verifier = FineDiscrete::new(space, free, Length::Fraction(0.0005)).map_err(unmade)?;
     Problem::new(space, Straight::new(space, check), verifier, start, goal)
 }
 
@@ -68,15 +68,15 @@ pub(crate) fn bending_trap(space: &Rn<2>) -> Result<Problem<'_, Rn<2>, Bending<'
         gradient.copy_from_slice(out.try_normalize(0.0).unwrap_or(Point::x()).as_slice());
         (from.norm() - 0.25).abs() - 0.05
     };
-    let check = Discrete::new(space, free as fn(&Point) -> bool, Resolution::Fraction(0.005))?;
-    let verifier = FineDiscrete::new(space, free, Resolution::Fraction(0.0005))?;
+    let check = Discrete::new(space, free as fn(&Point) -> bool, Length::Fraction(0.005))?;
+    let verifier = FineDiscrete::new(space, free, Length::Fraction(0.0005))?;
     let (start, goal) = (Point::new(0.5, 0.5), Point::new(0.05, 0.5));
     Ok(Problem::new(space, SnakePlanner::new(space, check, field, 0.05)?, verifier, start, goal)?)
 }
 
 /// A step that fits the trap.
 pub(crate) fn tuning() -> Tuning {
-    Tuning { step: Step::Length(0.1), ..Tuning::default() }
+    Tuning { step: Length::Absolute(0.1), ..Tuning::default() }
 }
 
 /// The seed given as the second argument.
@@ -123,9 +123,9 @@ pub(crate) fn moving() -> Result<Moving> {
 pub(crate) fn moving_trap(space: &Moving) -> Result<Problem<'_, Moving, ByInputs<'_>>> {
     let system = DoubleIntegrator::new(space.spaces().0)?;
     let valid = OnPosition(free as fn(&Point) -> bool);
-    let check = DiscreteFlowCheck::new(space, valid.clone(), Resolution::Length(0.005))?;
+    let check = DiscreteFlowCheck::new(space, valid.clone(), Length::Absolute(0.005))?;
     let local = InputPlanner::new(space, system, InputSet::grid([1.0, 1.0], 3)?, 0.15, check)?;
-    let verifier = ReplayFinely::new(space, system, valid, Resolution::Length(0.0005))?;
+    let verifier = ReplayFinely::new(space, system, valid, Length::Absolute(0.0005))?;
     let beyond = Goals::region(|(q, _): &State| q.x < 0.15);
     Ok(Problem::new(space, local, verifier, (Point::new(0.5, 0.5), Point::zeros()), beyond)?)
 }

@@ -28,7 +28,7 @@
 //! A car leaves a dead end that opens behind it:
 //! ```
 //! use mp_control::{DiscreteFlowCheck, Car, InputPlanner, ReplayFinely};
-//! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};
+//! use mp_cspace::{Iterations, Outcome, Planner, Length, Rng, Se2, Se2State};
 //! use mp_tree::{CvpRrt, Goals, Problem, Tuning};
 //!
 //! let space = Se2::new([0.0, 0.0], [10.0, 6.0])?;
@@ -37,9 +37,9 @@
 //!     !((3.0..7.0).contains(&x) && (1.0..5.0).contains(&y)) || (x < 6.5 && (2.2..3.8).contains(&y))
 //! };
 //! let car = Car::new(1.0)?;
-//! let check = DiscreteFlowCheck::new(&space, free, Resolution::Length(0.05))?;
+//! let check = DiscreteFlowCheck::new(&space, free, Length::Absolute(0.05))?;
 //! let local = InputPlanner::new(&space, car, Car::inputs(1.0, 0.6, 1)?, 0.7, check)?;
-//! let verifier = ReplayFinely::new(&space, car, free, Resolution::Length(0.01))?;
+//! let verifier = ReplayFinely::new(&space, car, free, Length::Absolute(0.01))?;
 //! let beyond = Goals::region(|q: &Se2State| q.translation.x > 8.0);
 //!
 //! let problem = Problem::new(&space, local, verifier, Se2State::new(6.0, 3.0, 0.0), beyond)?;

@@ -35,14 +35,14 @@
 //!
 //! Two routes around a block:
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Planner, Length, Rn, Rng, Straight};
 //! use mp_tree::{CyclicRrt, Problem, Tuning};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).amax() > 0.3;
-//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5))?;
 //!
 //! let mut planner = CyclicRrt::new(problem, Tuning::default(), 0.5)?;
@@ -255,7 +255,7 @@ constructors! {
             return Err(BuildError::OutOfRange { name: "tolerance", value: tolerance, range });
         }
         let extender = Cyclic {
-            tolerance: tolerance * tuning.step.length_in(problem.space())?,
+            tolerance: tolerance * tuning.step.step_in(problem.space())?,
             goals: problem.goals().listed().to_vec(),
             edges: BTreeMap::new(),
             asked: BTreeMap::new(),

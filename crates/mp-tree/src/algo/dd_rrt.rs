@@ -31,14 +31,14 @@
 //!
 //! A point goes around a disc in the unit square:
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Length, Rn, Rng, Straight};
 //! use mp_tree::{Domain, DdRrt, Problem, Tuning};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
-//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //!
 //! let problem = Problem::new(&space, local, verifier, start, goal)?;
@@ -224,7 +224,7 @@ constructors! {
         let target_sampler = Acceptable::new(Samples(Uniform(problem.space())));
         let target_sampler = target_sampler.with_interrupt(problem.interrupt().clone());
         let name = if domain.adapt > 0.0 { super::add_rrt::INFO.name } else { INFO.name };
-        let selector = DynamicDomain::new(index, domain, tuning.step.length_in(problem.space())?)?;
+        let selector = DynamicDomain::new(index, domain, tuning.step.step_in(problem.space())?)?;
         let extender = (Extend, Connect::default());
         Self::assemble(name, problem, TreePlannerParts { target_sampler, selector, extender, inserter: Append, tuning })
     }

@@ -48,7 +48,7 @@
 //!
 //! A point goes around discs in the unit square, along their tangents:
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight, obstacles::ObstacleHints};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Length, Rn, Rng, Straight, obstacles::ObstacleHints};
 //! use mp_tree::{GrowthWeights, Obrrt, Problem, Tuning};
 //! use nalgebra::Vector2;
 //! use rand::RngExt;
@@ -78,8 +78,8 @@
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Point| !Tangents.touches(q);
-//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.005))?);
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.005))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let (start, goal) = (Point::new(0.1, 0.5), Point::new(0.9, 0.5));
 //!
 //! let problem = Problem::new(&space, local, verifier, start, goal)?;

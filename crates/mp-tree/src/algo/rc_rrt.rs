@@ -29,16 +29,16 @@
 //! A point cannot leave a closed ring:
 //! ```
 //! use mp_control::{DiscreteFlowCheck, InputPlanner, InputSet, Kinematic, ReplayFinely};
-//! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rn, Rng, StopReason};
+//! use mp_cspace::{Iterations, Outcome, Planner, Length, Rn, Rng, StopReason};
 //! use mp_tree::{Goals, Problem, RcRrt, Tuning};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| !(0.2..0.3).contains(&(q - Vector2::new(0.5, 0.5)).norm());
 //! let flow = Kinematic::new(&space)?;
-//! let check = DiscreteFlowCheck::new(&space, free, Resolution::Length(0.005))?;
+//! let check = DiscreteFlowCheck::new(&space, free, Length::Absolute(0.005))?;
 //! let local = InputPlanner::new(&space, flow, InputSet::spread([0.05, 0.05], 8)?, 1.0, check)?;
-//! let verifier = ReplayFinely::new(&space, flow, free, Resolution::Length(0.0005))?;
+//! let verifier = ReplayFinely::new(&space, flow, free, Length::Absolute(0.0005))?;
 //! let outside = Goals::region(|q: &Vector2<f64>| q.x < 0.1);
 //!
 //! let problem = Problem::new(&space, local, verifier, Vector2::new(0.5, 0.5), outside)?;
@@ -85,7 +85,7 @@ pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<
 
 /// The setting `apart` as a distance.
 pub(crate) fn apart<C: Space>(space: &C, tuning: &Tuning, settings: &Settings) -> Result<f64, BuildError> {
-    Ok(settings.part_of(&APART)? * tuning.step.length_in(space)?)
+    Ok(settings.part_of(&APART)? * tuning.step.step_in(space)?)
 }
 
 /// RC-RRT: see the [module](self).

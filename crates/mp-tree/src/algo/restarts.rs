@@ -49,14 +49,14 @@
 //! `restart-rrt-connect`; [`build_from`](crate::build_from) makes it.
 //!
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Length, Rn, Rng, Straight};
 //! use mp_tree::{Problem, Restarts, RrtConnect, Schedule, Tuning};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| (q.x - 0.5).abs() > 0.1 || (q.y - 0.8).abs() < 0.02;
-//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let (start, goal) = (Vector2::new(0.1, 0.1), Vector2::new(0.9, 0.1));
 //! let attempt = |_| {
 //!     let problem = Problem::new(&space, local.clone(), verifier.clone(), start, goal)?;

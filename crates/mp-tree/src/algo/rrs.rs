@@ -47,7 +47,7 @@
 //!
 //! A point goes around a disc in the unit square, in one bend:
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Length, Rn, Rng};
 //! use mp_snake::SnakePlanner;
 //! use mp_tree::{Problem, Rrs, Tuning};
 //! use nalgebra::Vector2;
@@ -59,9 +59,9 @@
 //!     gradient.copy_from_slice(from_disc(q).normalize().as_slice());
 //!     from_disc(q).norm() - 0.2
 //! };
-//! let check = Discrete::new(&space, free, Resolution::Fraction(0.01))?;
+//! let check = Discrete::new(&space, free, Length::Fraction(0.01))?;
 //! let local = SnakePlanner::new(&space, check, field, 0.1)?;
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //!
 //! let mut planner = Rrs::new(Problem::new(&space, local, verifier, start, goal)?, Tuning::default())?;

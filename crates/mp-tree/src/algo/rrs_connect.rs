@@ -20,7 +20,7 @@
 //! A point goes around a disc in the unit square, by name:
 //! ```
 //! use mp_cspace::erased::AnyGradient;
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, ObstacleKnowledge, Outcome, Resolution, Rn, Rng, Straight};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, ObstacleKnowledge, Outcome, Length, Rn, Rng, Straight};
 //! use mp_tree::{Problem, Settings, build};
 //! use nalgebra::Vector2;
 //!
@@ -31,8 +31,8 @@
 //!     gradient.copy_from_slice(from_disc(q).normalize().as_slice());
 //!     from_disc(q).norm() - 0.3
 //! };
-//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //!
 //! let problem = Problem::new(&space, local, verifier, start, goal)?;

@@ -42,7 +42,7 @@
 //! A point with velocities goes around a disc, by accelerations:
 //! ```
 //! use mp_control::{DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, OnPosition, ReplayFinely};
-//! use mp_cspace::{Iterations, Outcome, Planner, Product, Resolution, Rn, Rng};
+//! use mp_cspace::{Iterations, Outcome, Planner, Product, Length, Rn, Rng};
 //! use mp_tree::{Goals, Problem, RrtInputs, Tuning};
 //! use nalgebra::Vector2;
 //!
@@ -50,10 +50,10 @@
 //! let space = Product::with_velocity(Rn::new([0.0, 0.0], [1.0, 1.0])?, [0.5, 0.5])?;
 //! let free = OnPosition(|q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3);
 //! let system = DoubleIntegrator::new(space.spaces().0)?;
-//! let check = DiscreteFlowCheck::new(&space, free.clone(), Resolution::Fraction(0.01))?;
+//! let check = DiscreteFlowCheck::new(&space, free.clone(), Length::Fraction(0.01))?;
 //! let inputs = InputSet::grid([1.0, 1.0], 3)?;
 //! let local = InputPlanner::new(&space, system, inputs, 0.2, check)?;
-//! let verifier = ReplayFinely::new(&space, system, free, Resolution::Fraction(0.0005))?;
+//! let verifier = ReplayFinely::new(&space, system, free, Length::Fraction(0.0005))?;
 //! let far_side = Goals::region(|(q, _): &State| q.x > 0.9);
 //!
 //! let start = (Vector2::new(0.1, 0.5), Vector2::zeros());

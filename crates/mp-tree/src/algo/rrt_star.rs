@@ -30,14 +30,14 @@
 //!
 //! A point goes around a disc, on ever shorter paths:
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Resolution, Rn, Rng, Straight};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Length, Rn, Rng, Straight};
 //! use mp_tree::{Problem, RrtStar, Tuning, improve};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
-//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //!
 //! let problem = Problem::new(&space, local, verifier, start, goal)?;

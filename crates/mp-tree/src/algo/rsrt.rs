@@ -45,14 +45,14 @@
 //! A car turns around in a lane too narrow to do so without reversing:
 //! ```
 //! use mp_control::{DiscreteFlowCheck, Car, InputPlanner, ReplayFinely};
-//! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};
+//! use mp_cspace::{Iterations, Outcome, Planner, Length, Rng, Se2, Se2State};
 //! use mp_tree::{Goals, Problem, Rsrt, Tuning};
 //!
 //! let space = Se2::new([0.0, 0.0], [8.0, 3.0])?;
 //! let (car, free) = (Car::new(1.0)?, |q: &Se2State| (q.translation.y - 1.5).abs() < 1.2);
-//! let check = DiscreteFlowCheck::new(&space, free, Resolution::Length(0.1))?;
+//! let check = DiscreteFlowCheck::new(&space, free, Length::Absolute(0.1))?;
 //! let mut local = InputPlanner::new(&space, car, Car::inputs(1.0, 0.6, 2)?, 0.5, check)?;
-//! let verifier = ReplayFinely::new(&space, car, free, Resolution::Length(0.005))?;
+//! let verifier = ReplayFinely::new(&space, car, free, Length::Absolute(0.005))?;
 //! let turned = Goals::region(|q: &Se2State| q.angle.abs() > 3.0);
 //!
 //! let problem = Problem::new(&space, &mut local, verifier, Se2State::new(4.0, 1.5, 0.0), turned)?;

@@ -104,7 +104,7 @@ pub(crate) fn moved_by_inputs<'c, C: Space, L: LocalPlanner<C::State>>(
     settings: &Settings,
 ) -> Result<Problem<'c, C, ByInputs<'c, C, L>>, BuildError> {
     let space = problem.space();
-    let reach = tuning.step.length_in(space)?;
+    let reach = tuning.step.step_in(space)?;
     let directions = settings.count(INPUTS.name)?.unwrap_or(0);
     let directions = in_range(INPUTS.name, directions, 0, 1 << 20)?;
     let levels = in_range(LEVELS.name, settings.count(LEVELS.name)?.unwrap_or(3), 1, 20)?;

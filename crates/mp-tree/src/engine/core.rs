@@ -31,7 +31,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     /// When a parameter is out of range.
     pub fn new(problem: Problem<'c, C, L>, tuning: &Tuning) -> Result<Self, BuildError> {
         let goal_bias = tuning.checked_bias()?;
-        let step = tuning.step.length_in(problem.space())?;
+        let step = tuning.step.step_in(problem.space())?;
         let (checker, start, goals) = EdgeChecker::of(problem, tuning.patience);
         Ok(Self {
             checker: checker.with_step(step),

@@ -1,7 +1,7 @@
 //! The parameters that several planners have.
 
 use mp_cspace::{
-    BuildError, Step,
+    BuildError, Length,
     registry::{Demand, Parameter, PlannerInfo, Settings},
 };
 
@@ -39,7 +39,7 @@ pub const PATIENCE: Parameter = Parameter {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
     /// Longest step, in (0, extent of the space]; by default a twentieth of the extent.
-    pub step: Step,
+    pub step: Length,
     /// Probability of aiming at the goal rather than exploring, in \[0, 1\]; by default 0.05. Planners that grow a tree
     /// from the goal sample a new goal state with this probability, where there is a sampler.
     pub goal_bias: f64,
@@ -50,7 +50,7 @@ pub struct Tuning {
 
 impl Default for Tuning {
     fn default() -> Self {
-        Self { step: Step::Fraction(0.05), goal_bias: 0.05, patience: 10 }
+        Self { step: Length::Fraction(0.05), goal_bias: 0.05, patience: 10 }
     }
 }
 
@@ -64,7 +64,7 @@ impl Tuning {
         settings.check(planner)?;
         let default = Self::default();
         Ok(Self {
-            step: settings.step(STEP.name)?.unwrap_or(default.step),
+            step: settings.length(STEP.name)?.unwrap_or(default.step),
             goal_bias: settings.number(GOAL_BIAS.name)?.unwrap_or(default.goal_bias),
             patience: settings.count(PATIENCE.name)?.unwrap_or(default.patience),
         })
@@ -100,7 +100,7 @@ mod tests {
     fn reads_what_is_set() {
         let settings = Settings::parse(["step = 2.5", "patience=3", "step=10%"]).unwrap();
         let tuning = Tuning::read(&settings, &INFO).unwrap();
-        assert_eq!(tuning, Tuning { step: Step::Fraction(0.1), patience: 3, ..Tuning::default() });
+        assert_eq!(tuning, Tuning { step: Length::Fraction(0.1), patience: 3, ..Tuning::default() });
         assert_eq!(Tuning::read(&Settings::default(), &INFO).unwrap(), Tuning::default());
     }
 

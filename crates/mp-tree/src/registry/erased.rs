@@ -15,7 +15,7 @@ pub type ProblemFactory<'c> =
 ///
 /// ```
 /// use mp_cspace::erased::{AnyIndex, AnySpace};
-/// use mp_cspace::{Configuration, Discrete, FineDiscrete, Iterations, Joints, Outcome, Resolution, Rng, Straight};
+/// use mp_cspace::{Configuration, Discrete, FineDiscrete, Iterations, Joints, Outcome, Length, Rng, Straight};
 /// use mp_tree::{Problem, Settings, Workers, erased::{ProblemFactory, build}};
 /// use std::sync::Arc;
 ///
@@ -24,8 +24,8 @@ pub type ProblemFactory<'c> =
 /// let (start, goal) = (Configuration::from([0.1, 0.5]), Configuration::from([0.9, 0.5]));
 /// let make: ProblemFactory = Arc::new(|| {
 ///     let free = |q: &Configuration| (q[0] - 0.5).hypot(q[1] - 0.5) > 0.3;
-///     let check = Discrete::new(&space, free, Resolution::Fraction(0.01))?;
-///     let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+///     let check = Discrete::new(&space, free, Length::Fraction(0.01))?;
+///     let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 ///     Problem::new(&any, Straight::new(&any, Box::new(check)), verifier, start.clone(), goal.clone())
 /// });
 /// let (index, workers) = (AnyIndex::of(&space), Workers::single());

@@ -92,7 +92,7 @@ fn parameters_must_be_in_range() {
     let ready = || problem(&space, [0.1, 0.1], point(0.9, 0.1)).unwrap();
     let (nan, inf) = (f64::NAN, f64::INFINITY);
     let steps = [0.0, -1.0, nan, inf, -inf, 2.0];
-    let steps = steps.into_iter().flat_map(|value| [Step::Length(value), Step::Fraction(value)]);
+    let steps = steps.into_iter().flat_map(|value| [Length::Absolute(value), Length::Fraction(value)]);
     let biases = [-0.1, 1.1, nan, inf];
     let tunings = steps
         .map(|step| (Tuning { step, ..Tuning::default() }, "step"))
@@ -104,7 +104,7 @@ fn parameters_must_be_in_range() {
             assert!(matches!(error, BuildError::OutOfRange { name, .. } if name == parameter), "{error}");
         }
     }
-    let longest = Tuning { step: Step::Length(space.extent()), goal_bias: 1.0, patience: 0 };
+    let longest = Tuning { step: Length::Absolute(space.extent()), goal_bias: 1.0, patience: 0 };
     assert!(Rrt::with_index(ready(), Linear::new(), longest).is_ok());
 }
 

@@ -4,7 +4,7 @@ use crate::common::*;
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::obstacles::ObstacleHints;
 use mp_cspace::*;
-use mp_tree::{AnyPlanner, Problem, Settings, Step, Tuning, Workers, build, planners};
+use mp_tree::{AnyPlanner, Length, Problem, Settings, Tuning, Workers, build, planners};
 use nalgebra::{SVector, Vector2};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -77,10 +77,10 @@ where
             let proof = |tolerance| Certified::new(space, robot.clone(), tolerance).unwrap();
             // What is found by samples is verified by proof, so that no corner is cut.
             let (check, verifier): (Check<'_, Configuration>, Check<'_, Configuration>) = if certified {
-                let fine = FineDiscrete::new(space, robot.clone(), Resolution::Fraction(5e-4)).unwrap();
+                let fine = FineDiscrete::new(space, robot.clone(), Length::Fraction(5e-4)).unwrap();
                 (Box::new(proof(1e-3)), Box::new(fine))
             } else {
-                let sampled = Discrete::new(space, robot.clone(), Resolution::Fraction(2e-3)).unwrap();
+                let sampled = Discrete::new(space, robot.clone(), Length::Fraction(2e-3)).unwrap();
                 (Box::new(sampled), Box::new(proof(1e-5)))
             };
             let local = Straight::new(&self.erased, check);
@@ -272,7 +272,7 @@ fn coarse<'c>(
     space: &'c Rn<2>,
     boxes: &Boxes<2>,
 ) -> Problem<'c, Rn<2>, Straight<'c, Rn<2>, Check<'c, Vector2<f64>>>> {
-    let check = Discrete::new(space, boxes.clone(), Resolution::Length(0.05)).unwrap();
+    let check = Discrete::new(space, boxes.clone(), Length::Absolute(0.05)).unwrap();
     let ends = [[0.1, 0.1].into(), [0.9, 0.1].into()];
     Problem::new(space, local(space, check), Exact(boxes.clone()), ends[0], ends[1])
         .unwrap()
@@ -320,7 +320,7 @@ fn a_too_coarse_check_does_not_open_a_closed_wall() {
 fn the_direct_planner_types_agree_with_the_registry() {
     let space = square();
     let boxes: Boxes<2> = slit(0.2, 0.8, 0.1);
-    let tuning = Tuning { step: Step::Length(0.1), ..Tuning::default() };
+    let tuning = Tuning { step: Length::Absolute(0.1), ..Tuning::default() };
     let solve = |planner: &mut dyn Planner<_, Edge = ()>| match planner.solve(
         &mut Rng::seed(5),
         &mut Iterations(20_000),

@@ -62,10 +62,10 @@ fn biased<'c>(
     (resolution, least): (f64, f64),
     goal_bias: f64,
 ) -> Cyclic<'c> {
-    let check = Discrete::new(space, boxes.clone(), Resolution::Length(resolution)).unwrap();
+    let check = Discrete::new(space, boxes.clone(), Length::Absolute(resolution)).unwrap();
     let local = Recording { straight: Straight::new(space, check), least };
     let problem = Problem::new(space, local, Replayed(boxes.clone()), START, GOAL).unwrap();
-    let tuning = Tuning { step: Step::Length(STEP), patience: 1_000_000, goal_bias };
+    let tuning = Tuning { step: Length::Absolute(STEP), patience: 1_000_000, goal_bias };
     CyclicRrt::new(problem, tuning, TOLERANCE).unwrap()
 }
 
@@ -215,10 +215,10 @@ fn bad_tolerances_are_refused() {
         (f64::INFINITY, 0.1, "tolerance"),
         (0.2, -0.1, "step"),
     ] {
-        let check = Discrete::new(&space, boxes.clone(), Resolution::Length(0.01)).unwrap();
+        let check = Discrete::new(&space, boxes.clone(), Length::Absolute(0.01)).unwrap();
         let local = Straight::new(&space, check);
         let problem = Problem::new(&space, local, Exact(boxes.clone()), START, GOAL).unwrap();
-        let tuning = Tuning { step: Step::Length(step), ..Tuning::default() };
+        let tuning = Tuning { step: Length::Absolute(step), ..Tuning::default() };
         let error = CyclicRrt::new(problem, tuning, tolerance).map(|_| ()).unwrap_err();
         assert!(matches!(error, BuildError::OutOfRange { name: n, .. } if n == name), "{error}");
     }

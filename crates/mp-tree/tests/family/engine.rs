@@ -24,7 +24,7 @@ fn problem<'c>(
 }
 
 fn short() -> Tuning {
-    Tuning { step: Step::Length(0.05), ..Tuning::default() }
+    Tuning { step: Length::Absolute(0.05), ..Tuning::default() }
 }
 
 fn any<'c>(name: &str, problem: Problem<'c, Rn<2>, Local<'c>>) -> AnyPlanner<'c, Point, ()> {
@@ -138,7 +138,7 @@ fn coarse<'c>(
     space: &'c Rn<2>,
     boxes: &Boxes<2>,
 ) -> Problem<'c, Rn<2>, Straight<'c, Rn<2>, Discrete<'c, Rn<2>, Boxes<2>>>> {
-    let check = Discrete::new(space, boxes.clone(), Resolution::Length(0.05)).unwrap();
+    let check = Discrete::new(space, boxes.clone(), Length::Absolute(0.05)).unwrap();
     let ends = [Point::new(0.1, 0.1), Point::new(0.9, 0.1)];
     Problem::new(space, Straight::new(space, check), Exact(boxes.clone()), ends[0], ends[1]).unwrap()
 }
@@ -219,7 +219,7 @@ fn finitely_many_moves_make_no_duplicates_either() {
         selector: NearestSelector(Linear::new()),
         extender: Extend,
         inserter: AppendDistinct::default(),
-        tuning: Tuning { step: Step::Length(1.0), ..Tuning::default() },
+        tuning: Tuning { step: Length::Absolute(1.0), ..Tuning::default() },
     };
     let never = Goals::region(|_: &Point| false);
     let start = Point::new(5.0, 5.0);
@@ -406,7 +406,7 @@ fn a_solved_planner_goes_on() {
 #[test]
 fn a_tiny_step_does_not_keep_a_planner_from_its_stop() {
     let (space, boxes) = (square(), slit(0.1, 0.8, 0.1));
-    let tuning = Tuning { step: Step::Length(1e-7), ..Tuning::default() };
+    let tuning = Tuning { step: Length::Absolute(1e-7), ..Tuning::default() };
     let problem = problem(&space, &boxes, goal());
     let mut planner = RrtConnect::with_index(problem, Nothing, tuning).unwrap();
     planner.solve(&mut Rng::seed(1), &mut Iterations(3), &mut ());

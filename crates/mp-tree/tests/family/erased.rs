@@ -23,7 +23,7 @@ fn problem<'c, C: Space, P: Space<State = C::State>, V: Robot<C::State> + 'c>(
     [start, goal]: &[C::State; 2],
 ) -> Result<Made<'c, P, C::State>, BuildError> {
     let check = Certified::new(space, robot.clone(), 1e-3).unwrap();
-    let fine = FineDiscrete::new(space, robot.clone(), Resolution::Fraction(1e-3)).unwrap();
+    let fine = FineDiscrete::new(space, robot.clone(), Length::Fraction(1e-3)).unwrap();
     let local = Straight::new(planned, Box::new(check) as mp_cspace::erased::AnyCheck<'c, C::State>);
     let problem = Problem::new(planned, local, fine, start.clone(), goal.clone())?;
     Ok(problem.with_obstacles(knowledge(space, robot)))
@@ -99,7 +99,7 @@ fn joints_are_planned_the_same() {
     let robot = OnVectors::<_, SVector<f64, 2>>::new(slit(0.1, 0.8, 0.1));
     let (erased, ends) = (AnySpace::new(&space), [[0.1, 0.2].into(), [0.9, 0.2].into()]);
     let (settings, tuning) = (Settings::parse(["step=10%"]).unwrap(), Tuning::default());
-    let tuning = Tuning { step: Step::Fraction(0.1), ..tuning };
+    let tuning = Tuning { step: Length::Fraction(0.1), ..tuning };
     let generic = |name: &str| -> AnyPlanner<'_, Configuration, ()> {
         let problem = problem(&space, &space, &robot, &ends).unwrap();
         match name {

@@ -18,7 +18,7 @@ fn planner<'c>(
     goals: Goals<'c, Se2State>,
 ) -> Result<AnyPlanner<'c, Se2State, ()>, BuildError> {
     let check: Check<'c> = Box::new(Certified::new(space, rod.clone(), 1e-3).unwrap());
-    let verifier = FineDiscrete::new(space, rod.clone(), Resolution::Length(1e-3)).unwrap();
+    let verifier = FineDiscrete::new(space, rod.clone(), Length::Absolute(1e-3)).unwrap();
     let start = Se2State::new(0.2, 0.3, 1.0);
     let problem = Problem::new(space, Straight::new(space, check), verifier, start, goals)?;
     build(name, problem.with_obstacles(knowledge(space, rod)), &Settings::parse(["step=0.3"])?)

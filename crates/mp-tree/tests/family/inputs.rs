@@ -14,7 +14,7 @@ type Moving = (Point, Point);
 type Run<S, E> = (Path<S, E>, InputCounters, Progress);
 
 fn tuning(step: f64) -> Tuning {
-    Tuning { step: Step::Length(step), ..Tuning::default() }
+    Tuning { step: Length::Absolute(step), ..Tuning::default() }
 }
 
 /// A point moved by velocities among boxes, straight edges that remember their input.
@@ -80,10 +80,10 @@ fn velocities_by_accelerations() {
     for seed in 0..3 {
         for order in [Order::TestAll, Order::SortFirst] {
             let valid = OnPosition(boxes.clone());
-            let check = DiscreteFlowCheck::new(&space, valid.clone(), Resolution::Fraction(0.005)).unwrap();
+            let check = DiscreteFlowCheck::new(&space, valid.clone(), Length::Fraction(0.005)).unwrap();
             let inputs = InputSet::grid([1.0, 1.0], 3).unwrap();
             let mut local = InputPlanner::new(&space, flow, inputs, 0.2, check).unwrap();
-            let fine = Resolution::Fraction(0.0005);
+            let fine = Length::Fraction(0.0005);
             let verifier = ReplayFinely::new(&space, flow, valid, fine).unwrap();
             let goal = Goals::region(|(q, _): &Moving| (q - Point::new(0.9, 0.2)).norm() < 0.1);
             let start = (Point::new(0.1, 0.2), Point::zeros());

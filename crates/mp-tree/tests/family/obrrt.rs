@@ -14,7 +14,7 @@ fn with(method: usize) -> GrowthWeights {
 }
 
 fn step(length: f64) -> Tuning {
-    Tuning { step: Step::Length(length), ..Tuning::default() }
+    Tuning { step: Length::Absolute(length), ..Tuning::default() }
 }
 
 fn point_problem<'c, const N: usize>(
@@ -86,7 +86,7 @@ fn a_rod_turns_to_pass_a_gap() {
         |q| valid.is_valid(q),
         |weights, rng| {
             let local = Straight::new(&space, Certified::new(&space, rod.clone(), 1e-3).unwrap());
-            let fine = FineDiscrete::new(&space, rod.clone(), Resolution::Fraction(5e-4)).unwrap();
+            let fine = FineDiscrete::new(&space, rod.clone(), Length::Fraction(5e-4)).unwrap();
             let problem = Problem::new(&space, local, fine, ends[0], ends[1]).unwrap();
             let mut planner = Obrrt::new(problem, rod.clone(), step(0.3), weights).unwrap();
             planner.solve(rng, &mut Iterations(40_000), &mut ())

@@ -114,11 +114,11 @@ impl Observer<Point> for Parents {
 fn events_tell_of_rewiring_and_costs_add_up() {
     let (space, boxes) = (square(), slit::<2>(1e-3, 0.6, 0.05));
     for patience in [0, 3, u64::MAX] {
-        let check = Discrete::new(&space, boxes.clone(), Resolution::Length(0.05)).unwrap();
+        let check = Discrete::new(&space, boxes.clone(), Length::Absolute(0.05)).unwrap();
         let local = Straight::new(&space, check);
         let problem =
             Problem::new(&space, local, Exact(boxes.clone()), START.into(), Point::from(GOAL)).unwrap();
-        let tuning = Tuning { step: Step::Length(0.1), patience, ..Tuning::default() };
+        let tuning = Tuning { step: Length::Absolute(0.1), patience, ..Tuning::default() };
         let mut planner = RrtStar::new(problem, tuning).unwrap();
         let (mut seen, mut rng) = (Parents::default(), Rng::seed(1));
         let mut paths = 0;
@@ -162,7 +162,7 @@ fn rewired_edges_are_in_forward_time_in_trees_of_both_directions() {
         selector: NearestSelector(Linear::new()),
         extender: (Extend, Connect::default()),
         inserter: Rewire::default(),
-        tuning: Tuning { step: Step::Length(0.05), ..Tuning::default() },
+        tuning: Tuning { step: Length::Absolute(0.05), ..Tuning::default() },
     };
     let mut planner = TwoTrees::assemble("rewired", problem, parts).unwrap();
     let (mut rng, mut rewired) = (Rng::seed(1), [0; 2]);

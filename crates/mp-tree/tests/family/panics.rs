@@ -43,7 +43,7 @@ impl Observer<Point> for Fuse {
 }
 
 fn planner<'c>(name: &str, space: &'c Rn<2>, boxes: &Boxes<2>, fuse: &Fuse) -> AnyPlanner<'c, Point, ()> {
-    let coarse = Discrete::new(space, boxes.clone(), Resolution::Length(0.05)).unwrap();
+    let coarse = Discrete::new(space, boxes.clone(), Length::Absolute(0.05)).unwrap();
     let local = Straight::new(space, Fragile(coarse, fuse.clone()));
     let verifier = Fragile(Exact(boxes.clone()), fuse.clone());
     let goals = Goals::states([Point::new(0.9, 0.2), Point::new(0.9, 0.9)]);

@@ -21,7 +21,7 @@ fn problem<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Made<'c> {
 }
 
 fn tuning() -> Tuning {
-    Tuning { step: Step::Length(0.1), ..Tuning::default() }
+    Tuning { step: Length::Absolute(0.1), ..Tuning::default() }
 }
 
 fn narrow() -> Boxes<2> {

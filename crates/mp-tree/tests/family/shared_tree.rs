@@ -18,12 +18,12 @@ const GOAL: Point = Point::new(0.9, 0.2);
 const STEP: f64 = 0.1;
 
 fn local<'c>(space: &'c Rn<2>, boxes: &Boxes<2>, resolution: f64) -> Local<'c> {
-    let check = Discrete::new(space, boxes.clone(), Resolution::Length(resolution)).unwrap();
+    let check = Discrete::new(space, boxes.clone(), Length::Absolute(resolution)).unwrap();
     Straight::new(space, Box::new(check))
 }
 
 fn tuning(goal_bias: f64) -> Tuning {
-    Tuning { step: Step::Length(STEP), goal_bias, ..Tuning::default() }
+    Tuning { step: Length::Absolute(STEP), goal_bias, ..Tuning::default() }
 }
 
 fn make<'c>(

@@ -23,7 +23,7 @@ fn trap() -> (Boxes<2>, Point, Point) {
 }
 
 fn short() -> Tuning {
-    Tuning { step: Step::Length(0.1), ..Tuning::default() }
+    Tuning { step: Length::Absolute(0.1), ..Tuning::default() }
 }
 
 fn solves<P: Planner<Point>>(mut planner: P, boxes: &Boxes<2>) -> Progress {

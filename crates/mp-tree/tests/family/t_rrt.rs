@@ -37,7 +37,7 @@ fn solved(mut planner: impl Planner<Point, Edge = ()>, seed: u64) -> Path<Point>
 fn it_goes_around_a_hill() {
     // What stands on the top keeps RRT from leaping over it.
     let (space, top) = (square(), Boxes(vec![([0.49, 0.49], [0.51, 0.51])]));
-    let tuning = Tuning { step: Step::Length(0.05), ..Tuning::default() };
+    let tuning = Tuning { step: Length::Absolute(0.05), ..Tuning::default() };
     let problem = || {
         let local = Straight::new(&space, Certified::new(&space, top.clone(), 1e-3).unwrap());
         let (start, goal) = (Point::new(0.1, 0.5), Point::new(0.9, 0.5));
@@ -89,7 +89,7 @@ fn what_costs_too_much_is_never_entered() {
     let local = Straight::new(&space, Certified::new(&space, empty.clone(), 1e-3).unwrap());
     let problem =
         Problem::new(&space, local, Exact(empty), Point::new(0.1, 0.5), Point::new(0.8, 0.5)).unwrap();
-    let tuning = Tuning { step: Step::Length(0.05), ..Tuning::default() };
+    let tuning = Tuning { step: Length::Absolute(0.05), ..Tuning::default() };
     let mut planner = TRrt::new(problem, cost, tuning, Temperature::default()).unwrap();
     let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(5_000), &mut ());
     assert_eq!(outcome, Outcome::Stopped(StopReason::Iterations));
