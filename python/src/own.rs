@@ -7,7 +7,8 @@ use crate::callback::{Callback, Failure};
 use check::{Check, Functions};
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::{
-    Configuration, JointRange, Joints, Linear, Metric, Rng, ScaledEuclidean, Space, Validity, WithMetric,
+    Configuration, JointRange, Joints, LengthError, Linear, Metric, Rng, ScaledEuclidean, Space, Validity,
+    WithMetric,
 };
 use mp_plan::{
     Appearance, Body, Column, Description, Error, Length, Measured, MetricName, Mismatch, Motion, Touch,
@@ -132,7 +133,10 @@ impl Own {
             check: Check::new(functions, Arc::clone(&numbers)),
             distance: one(given.distance),
             verify: one(given.verify),
-            resolution: given.resolution.parse().map_err(|e: Error| e.context("the resolution"))?,
+            resolution: given
+                .resolution
+                .parse()
+                .map_err(|e: LengthError| Error::from(e).context("the resolution"))?,
             tolerance: given.tolerance,
             space: WithMetric::new(joints, metric),
             numbers,

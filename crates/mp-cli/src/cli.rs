@@ -378,8 +378,8 @@ fn metric(name: &str) -> MetricName {
     name.parse().unwrap_or_default()
 }
 
-fn parsed<T: FromStr<Err = mp_plan::Error>>(text: &str) -> Result<T, String> {
-    text.parse().map_err(|e: mp_plan::Error| e.to_string())
+fn parsed<T: FromStr<Err: ToString>>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|e: T::Err| e.to_string())
 }
 
 /// The field of `--relax`, which may have been left out before the name of a scene.

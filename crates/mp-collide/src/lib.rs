@@ -1,15 +1,12 @@
-//! Exact collision detection between meshes, and with primitives, with trees of oriented bounding boxes.
+//! Exact collision detection between meshes, with trees of oriented bounding boxes.
 //!
 //! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads.
 //! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses,
 //!   intervals of motions.
-//! * [`Solid`]: balls, capsules, boxes, cylinders, cones and half-spaces, to compare with meshes.
 //! * [`Scene`]: many named bodies with a broad phase and allowed pairs; [filled](CollisionMesh::filled) bodies, as those of
 //!   [primitives](mp_geom::primitives), collide with what is inside of them.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
 //! * [`mod@reference`]: a second, plain implementation sharing no code with the first, to check it.
-//! * `parry`, with the feature of that name, which is off by default: conversions from and to shapes of parry3d (used
-//!   by Rapier and Bevy), convex hulls and decompositions. No other module has types of parry in its public API.
 //!
 //! ```
 //! use mp_collide::{CollisionMesh, Query};
@@ -88,10 +85,7 @@ mod query;
 mod scene;
 mod separation;
 mod simd;
-mod solid;
 
-#[cfg(feature = "parry")]
-pub mod parry;
 pub mod reference;
 pub mod triangle;
 
@@ -103,4 +97,3 @@ pub use query::interval::{IntervalCheck, RigidMotion};
 pub use scene::{Body, BodyId, Contact, Scene, SceneError};
 pub use separation::Separation;
 pub use simd::Isa;
-pub use solid::Solid;

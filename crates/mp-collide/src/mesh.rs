@@ -40,12 +40,6 @@ impl CollisionMesh {
         Self::of(mesh, || interrupt.go_on()).ok()
     }
 
-    /// The mesh of `triangles`: at least one, at most `u32::MAX`.
-    pub(crate) fn from_triangles(triangles: &[Triangle]) -> Self {
-        let Ok(made) = Self::built(triangles.len(), |i| triangles[i], || Ok::<(), Infallible>(()));
-        made
-    }
-
     fn of<E>(mesh: &TriMesh, go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
         let count = mesh.triangles().len();
         let made = if count > SMALL {

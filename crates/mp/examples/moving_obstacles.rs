@@ -9,7 +9,7 @@ use mp::cspace::{
 };
 use mp::geom::primitives::cuboid;
 use mp::robot::{AmongMoving, MovingVerifier, PlanarFlyer, Trajectory};
-use mp::tree::{Goals, Problem, Rrt, Step, Tuning};
+use mp::tree::{Goals, Length, Problem, Rrt, Tuning};
 use nalgebra::Isometry3;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

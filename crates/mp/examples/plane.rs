@@ -6,7 +6,7 @@ use mp::cspace::{Iterations, Outcome, Planner, Rn, Rng, Straight};
 use mp::geom::planar::{PlanarWorld, Polygon};
 use mp::robot::{DiscRobot, DiscVerifier};
 use mp::snake::SnakePlanner;
-use mp::tree::{Problem, Rrt, Step, Tuning};
+use mp::tree::{Length, Problem, Rrt, Tuning};
 use nalgebra::Vector2;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

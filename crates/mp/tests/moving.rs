@@ -7,7 +7,7 @@ use mp::cspace::{
 use mp::geom::primitives::cuboid;
 use mp::robot::{AmongMoving, MovingVerifier, PlanarFlyer, Trajectory};
 use mp::tree::{
-    Append, Connect, Goals, NearestSelector, Problem, Rrt, Samples, SingleTree, Step, TreePlannerParts,
+    Append, Connect, Goals, Length, NearestSelector, Problem, Rrt, Samples, SingleTree, TreePlannerParts,
     Tuning,
 };
 use nalgebra::Isometry3;

@@ -6,8 +6,9 @@ use super::poses::QueryPoses;
 use super::record::{QueryId, TimedAnswers, timed_once};
 use crate::clock::nanoseconds;
 use crate::error::{IntoError, Result};
-use mp_collide::parry::{mesh_to_parry, pose_to_parry};
-use parry3d_f64::math::Pose;
+use mp_geom::TriMesh;
+use nalgebra::Isometry3;
+use parry3d_f64::math::{Pose, Rotation, Vector};
 use parry3d_f64::query::{distance, intersection_test};
 use parry3d_f64::shape;
 
@@ -24,7 +25,7 @@ impl Parry {
     /// Builds the trees.
     pub(crate) fn new(pair: &Pair) -> Result<(Self, TreeBuild)> {
         let begin = nanoseconds();
-        let parry = Self { a: mesh_to_parry(&pair.a).into_error()?, b: mesh_to_parry(&pair.b).into_error()? };
+        let parry = Self { a: mesh_to_parry(&pair.a)?, b: mesh_to_parry(&pair.b)? };
         let ms = (nanoseconds() - begin) * 1e-6;
         // parry3d does not report its memory.
         Ok((parry, TreeBuild { lib: PARRY.to_owned(), ms, bytes: 0 }))
@@ -56,4 +57,16 @@ impl Parry {
         }
         Ok(all)
     }
+}
+
+/// The same vertices and triangles, with parry's tree.
+fn mesh_to_parry(mesh: &TriMesh) -> Result<shape::TriMesh> {
+    let vertices = mesh.vertices().iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
+    shape::TriMesh::new(vertices, mesh.triangles().to_vec()).into_error()
+}
+
+/// The same pose, to the bit.
+fn pose_to_parry(pose: &Isometry3<f64>) -> Pose {
+    let (at, q) = (pose.translation.vector, pose.rotation.quaternion());
+    Pose::from_parts(Vector::new(at.x, at.y, at.z), Rotation::from_xyzw(q.i, q.j, q.k, q.w))
 }

@@ -11,7 +11,7 @@ use crate::plot::{Axis, ChartCurve, Labels, chart};
 use mp_control::{InputPlanner, InputSet, Kinematic, LocalFlowCheck};
 use mp_cspace::{KnownFree, MotionCheck, MotionValidity, Planner, Rn, Rng, Straight};
 use mp_render::{Drawing, Item};
-use mp_tree::{Goals, Problem, Rrt, RrtInputs, Step, Tuning};
+use mp_tree::{Goals, Length, Problem, Rrt, RrtInputs, Tuning};
 use nalgebra::Vector2;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 

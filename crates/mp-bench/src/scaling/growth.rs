@@ -10,7 +10,7 @@ use mp_cspace::{
     NodeId, Planner, Reach, Rn, Rng, Se3, Space, Straight,
 };
 use mp_plan::Error;
-use mp_tree::{Goals, Problem, Rrt, Step, Tuning};
+use mp_tree::{Goals, Problem, Rrt, Tuning};
 use nalgebra::{Isometry3, SVector};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};

@@ -279,6 +279,7 @@ mod tests {
     use crate::simd::Isa;
     use crate::triangle::{Triangle, intersect};
     use crate::{CollisionMesh, Query};
+    use mp_geom::TriMesh;
     use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
@@ -306,7 +307,7 @@ mod tests {
         let mut queries: Vec<Query> = Isa::available().into_iter().map(Query::with_isa).collect();
         for _ in 0..150 {
             let (a, b) = (some(&mut rng), some(&mut rng));
-            let meshes = [CollisionMesh::from_triangles(&a), CollisionMesh::from_triangles(&b)];
+            let meshes = [&a, &b].map(|soup| CollisionMesh::new(&TriMesh::from_soup(soup).unwrap()));
             let turn = UnitQuaternion::from_scaled_axis(Vector3::from_fn(|_, _| rng.random_range(-3.0..3.0)));
             let way = Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0)).normalize();
             let mut check = |x: f64| {

@@ -1,7 +1,9 @@
-//! What the tests share: random meshes and poses.
+//! What the tests share: random meshes and poses, and the same in parry.
 
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use parry3d_f64::math::{Pose, Rotation, Vector};
+use parry3d_f64::shape;
 use rand::{RngExt, SeedableRng};
 pub(crate) use rand_pcg::Pcg64;
 
@@ -78,4 +80,20 @@ pub(crate) fn rotation(rng: &mut Pcg64) -> UnitQuaternion<f64> {
 
 pub(crate) fn pose(rng: &mut Pcg64, size: f64) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(point(rng, size).coords), rotation(rng))
+}
+
+pub(crate) fn point_to_parry(point: &Point3<f64>) -> Vector {
+    Vector::new(point.x, point.y, point.z)
+}
+
+/// The same pose, to the bit.
+pub(crate) fn pose_to_parry(pose: &Isometry3<f64>) -> Pose {
+    let q = pose.rotation.quaternion();
+    let rotation = Rotation::from_xyzw(q.i, q.j, q.k, q.w);
+    Pose::from_parts(point_to_parry(&pose.translation.vector.into()), rotation)
+}
+
+pub(crate) fn mesh_to_parry(mesh: &TriMesh) -> shape::TriMesh {
+    let vertices = mesh.vertices().iter().map(point_to_parry).collect();
+    shape::TriMesh::new(vertices, mesh.triangles().to_vec()).unwrap()
 }

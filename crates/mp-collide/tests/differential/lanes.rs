@@ -1,41 +1,37 @@
 //! Every kind of query on every instruction set: the same answers to the last bit, and the same work wherever products
 //! are fused alike.
 
-use mp_collide::{CollisionMesh, Counters, IntervalCheck, Isa, Query, RigidMotion, Separation, Solid};
-use mp_geom::primitives;
-use nalgebra::{Isometry3, Translation3, Vector3};
+use mp_collide::{CollisionMesh, Counters, IntervalCheck, Isa, Query, RigidMotion, Separation};
+use mp_geom::{TriMesh, primitives};
+use nalgebra::{Isometry3, Point3, Translation3, Vector3};
 use rand::RngExt;
 
 use crate::common::{Pcg64, bumpy, cases_of, cuboid, point, pose, rng, soup};
 
-/// What is asked: `a` at `poses` and along `motion` about the first of them, against `b` and `solids` at `here`.
+/// What is asked: `a` at `poses` and along `motion` about the first of them, against `b` at `here`.
 struct Case {
     a: CollisionMesh,
     b: CollisionMesh,
-    solids: Vec<Solid>,
     here: Isometry3<f64>,
     poses: Vec<Isometry3<f64>>,
     motion: RigidMotion,
 }
 
+fn segment(p: Point3<f64>, q: Point3<f64>) -> TriMesh {
+    TriMesh::new(vec![p, q], vec![[0, 1, 1]]).unwrap()
+}
+
 impl Case {
     fn new(rng: &mut Pcg64, kind: usize) -> Self {
-        let (a, b) = match kind % 4 {
+        let (a, b) = match kind % 5 {
             0 => (bumpy(10, 0.5, 0.2), soup(rng, 60, 1.0, 0.3)),
             1 => (soup(rng, 40, 0.6, 0.3), bumpy(9, 0.7, 0.1)),
             // Many pairs of triangles are equally near.
             2 => (cuboid(Vector3::new(0.5, 0.4, 0.3)), cuboid(Vector3::new(0.6, 0.6, 0.6))),
+            // One triangle whose corners are on a line.
+            3 => (bumpy(10, 0.6, 0.2), segment(point(rng, 0.5), point(rng, 0.5))),
             _ => (primitives::cylinder(0.4, 1.0, 24).unwrap(), primitives::torus(1.0, 0.3, 24, 12).unwrap()),
         };
-        let mut size = || rng.random_range(0.1..0.8);
-        let solids = [
-            Solid::ball(size()),
-            Solid::capsule(size(), size()),
-            Solid::cuboid(size(), size(), size()),
-            Solid::cylinder(size(), size()),
-            Solid::cone(size(), size()),
-            Ok(Solid::half_space()),
-        ];
         let a = CollisionMesh::new(&a);
         let upright = Isometry3::from(Translation3::from(point(rng, 1.3)));
         let from = if rng.random_range(0..3) == 0 { upright } else { pose(rng, 1.3) };
@@ -45,7 +41,6 @@ impl Case {
             motion: RigidMotion::new(along, point(rng, 0.05).coords, a.radius()),
             poses: (0..20).map(at).collect(),
             here: if kind.is_multiple_of(2) { Isometry3::identity() } else { pose(rng, 0.5) },
-            solids: solids.map(Result::unwrap).to_vec(),
             b: CollisionMesh::new(&b),
             a,
         }
@@ -57,12 +52,6 @@ impl Case {
         let apart = query.distance(a, at, b, here);
         let d = apart.distance;
         let near = [1e-9, 0.5, 0.999, 1.0, 1.001, 2.0];
-        let solids = self.solids.iter().map(|solid| {
-            let apart = query.solid_distance(a, at, solid, here);
-            let near = near.map(|part| query.solid_within(a, at, solid, here, part * apart.distance));
-            (apart, near, query.solid_clearance(a, at, solid, here, 0.5))
-        });
-        let solids = solids.collect();
         Answers {
             triangles: query.intersecting_triangles(a, at, b, here),
             hit: query.intersects(a, at, b, here),
@@ -72,7 +61,6 @@ impl Case {
             first: query.first_collision(a, poses, b, here),
             check_interval: query.check_interval(a, at, &self.motion, b, here, 0.1),
             apart,
-            solids,
         }
     }
 }
@@ -87,7 +75,6 @@ struct Answers {
     escape: Option<Vector3<f64>>,
     first: Option<usize>,
     check_interval: IntervalCheck,
-    solids: Vec<(Separation, [bool; 6], f64)>,
 }
 
 #[test]

@@ -3,7 +3,6 @@
 mod bad_input;
 mod common;
 mod filled;
-mod hulls;
 mod lanes;
 mod meshes;
 mod motions;
@@ -13,6 +12,4 @@ mod properties;
 mod referee;
 mod scene_model;
 mod scenes;
-mod shapes;
-mod solids;
 mod triangles;

@@ -1,6 +1,5 @@
 //! Solids, surfaces and bodies of both, inside of each other and not: against convex pieces in parry.
 
-use mp_collide::parry::{point_to_parry, pose_to_parry};
 use mp_collide::reference::RefMesh;
 use mp_collide::{CollisionMesh, Query, Scene};
 use mp_geom::TriMesh;
@@ -10,7 +9,7 @@ use parry3d_f64::math::Pose;
 use parry3d_f64::query::intersection_test;
 use parry3d_f64::shape::SharedShape;
 
-use crate::common::{cases_of, pose, rng};
+use crate::common::{cases_of, point_to_parry, pose, pose_to_parry, rng};
 
 /// Where parry and we differ, the shapes are within this of touching, metres.
 const BAND: f64 = 1e-6;

@@ -1,12 +1,11 @@
 //! Against parry3d-f64, whose leaf tests iterate: it errs within 5e-6 of contact, so that band is left out.
 
-use mp_collide::parry::{mesh_to_parry, point_to_parry, pose_to_parry};
 use mp_collide::{CollisionMesh, Query, triangle};
 use parry3d_f64::math::Pose;
 use parry3d_f64::query;
 use parry3d_f64::shape::{self, Shape};
 
-use crate::common::{bumpy, point, pose, rng, soup};
+use crate::common::{bumpy, mesh_to_parry, point, point_to_parry, pose, pose_to_parry, rng, soup};
 
 /// Half the band around contact in which parry is not to be trusted, for sizes about 1.
 const BAND: f64 = 5e-6;
@@ -52,7 +51,7 @@ fn meshes_agree_with_parry() {
             _ => (bumpy(5, 0.5, 0.3), bumpy(4, 0.7, 0.0)),
         };
         let (tree_a, tree_b) = (CollisionMesh::new(&a), CollisionMesh::new(&b));
-        let (parry_a, parry_b) = (mesh_to_parry(&a).unwrap(), mesh_to_parry(&b).unwrap());
+        let (parry_a, parry_b) = (mesh_to_parry(&a), mesh_to_parry(&b));
         for _ in 0..25 {
             let (pose_wa, pose_wb) = (pose(&mut rng, 1.5), pose(&mut rng, 1.5));
             let hit = query.intersects(&tree_a, &pose_wa, &tree_b, &pose_wb);
