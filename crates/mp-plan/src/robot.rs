@@ -56,7 +56,7 @@ pub struct Body {
     pub name: String,
     /// Its shape, in its own frame, metres.
     pub shape: BodyShape,
-    /// Its pose in the world; `None` for a body of the robot, whose pose [`poses`](Robot::poses) gives.
+    /// Its pose in the world; `None` for a body of the robot, whose pose [`poses`](Appearance::poses) gives.
     pub pose: Option<Isometry3<f64>>,
 }
 

@@ -1,8 +1,6 @@
 //! Robots in large meshes are not made to the end when a token says to end, wherever it does.
 
-mod common;
-
-use common::{Obstacle, obstacle};
+use crate::common::{Obstacle, obstacle};
 use mp_cspace::{Cancel, Clock, Configuration, Interrupt};
 use mp_geom::{TriMesh, primitives};
 use mp_robot::{

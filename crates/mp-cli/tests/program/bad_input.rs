@@ -1,8 +1,6 @@
 //! Bad input: exit code 2, an error that says what to do, and no file written.
 
-mod common;
-
-use common::{Dir, mp};
+use crate::common::{Dir, mp};
 
 /// Command lines that make no sense, and words of the error.
 const COMMANDS: &[(&[&str], &[&str])] = &[

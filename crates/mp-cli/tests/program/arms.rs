@@ -1,8 +1,6 @@
 //! Arms, and robots in the plane, on the command line: plan, check, render, info, and bad input.
 
-mod common;
-
-use common::{Dir, mp};
+use crate::common::{Dir, mp};
 
 const URDF: &str = r#"<robot name="two">
 <link name="base"/>

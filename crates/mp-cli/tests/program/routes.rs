@@ -1,8 +1,6 @@
 //! Several routes of one scene, and portfolios of runs, by the command line.
 
-mod common;
-
-use common::{Dir, mp};
+use crate::common::{Dir, mp};
 
 /// A block in the middle of a room: there are two ways around it.
 const BLOCK: &str = "[world]\nwalls = [[0, 0], [4, 4]]\n[robot]\ndisc = 0.1\n[motion]\nstart = [0.4, 2]\ngoal = [3.6, 2]\n\

@@ -1,8 +1,6 @@
 //! `mp view`: the server with the planner behind it, as a program.
 
-mod common;
-
-use common::{Dir, Run, finish, mp, start_with};
+use crate::common::{Dir, Run, finish, mp, start_with};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;

@@ -1,8 +1,6 @@
 //! Robots that cannot make any motion, obstacles that move, and goals that leave something free, by the command line.
 
-mod common;
-
-use common::{Dir, mp};
+use crate::common::{Dir, mp};
 
 /// The shipped scenes of these kinds, and the planner that each takes by default.
 const SCENES: [(&str, &str); 9] = [

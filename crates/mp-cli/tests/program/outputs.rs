@@ -1,8 +1,6 @@
 //! Files that are written: none is an input or another output, none is lost or torn, and a second process waits its turn.
 
-mod common;
-
-use common::{Dir, finish, mp, start, start_unread};
+use crate::common::{Dir, finish, mp, start, start_unread};
 use std::io::Write;
 use std::process::Child;
 use std::time::{Duration, Instant};

@@ -1,8 +1,6 @@
 //! Standard input and output, formats by ending, requests, shipped scenes, completions and the manual.
 
-mod common;
-
-use common::{Dir, fed, mp};
+use crate::common::{Dir, fed, mp};
 
 #[test]
 fn a_scene_comes_in_and_a_path_goes_out() {
@@ -156,8 +154,11 @@ fn shells_and_man_are_served() {
 #[test]
 fn logs_go_to_standard_error() {
     let dir = Dir::new();
-    let run =
-        common::finish(common::start_with(&dir, &["plan", "plane.env", "--json"], &[("RUST_LOG", "info")]));
+    let run = crate::common::finish(crate::common::start_with(
+        &dir,
+        &["plan", "plane.env", "--json"],
+        &[("RUST_LOG", "info")],
+    ));
     assert_eq!(run.code, 0, "{run:?}");
     for words in ["loaded", "planned", "outcome"] {
         assert!(run.stderr.contains(words), "{words}: {run:?}");

@@ -1,8 +1,6 @@
 //! Films, views, modes and meshes from the command line.
 
-mod common;
-
-use common::{Dir, mp};
+use crate::common::{Dir, mp};
 use std::io::Write;
 
 /// A path through the window, of two motions.
@@ -158,7 +156,7 @@ fn an_mp4_needs_ffmpeg() {
     let before = dir.entries(".");
     let args =
         ["render", "window.env", "--turntable", "--out", "film.mp4", "--size", "64x64", "--seconds", "0.2"];
-    let run = common::finish(common::start_with(&dir, &args, &[("PATH", "nowhere")]));
+    let run = crate::common::finish(crate::common::start_with(&dir, &args, &[("PATH", "nowhere")]));
     assert_eq!(run.code, 2, "{run:?}");
     assert!(run.stderr.contains("ffmpeg") && run.stderr.contains(".gif"), "{run:?}");
     assert_eq!(dir.entries("."), before);
@@ -177,7 +175,7 @@ fn frames_go_to_ffmpeg_and_its_errors_come_back() {
     let run = |script: &str| {
         dir.write("bin/ffmpeg", format!("#!/bin/sh\n{script}\n"));
         std::fs::set_permissions(dir.path("bin/ffmpeg"), std::fs::Permissions::from_mode(0o755)).unwrap();
-        common::finish(common::start_with(&dir, &args, &[("PATH", &path)]))
+        crate::common::finish(crate::common::start_with(&dir, &args, &[("PATH", &path)]))
     };
     let good = run("for last; do :; done; wc -c > \"$last\"");
     assert_eq!(good.code, 0, "{good:?}");
@@ -224,14 +222,14 @@ fn an_mp4_is_the_same_twice() {
 fn ctrl_c_ends_a_film() {
     let dir = Dir::new();
     let before = dir.entries(".");
-    let child = common::start(
+    let child = crate::common::start(
         &dir,
         &["render", "window.env", "--turntable", "--out", "film.gif", "--seconds", "3600"],
     );
     std::thread::sleep(std::time::Duration::from_millis(1500));
     let id = child.id().to_string();
     assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
-    let run = common::finish(child);
+    let run = crate::common::finish(child);
     assert_eq!(run.code, 1, "{run:?}");
     assert!(run.stderr.contains("interrupted: film.gif was not written"), "{run:?}");
     assert_eq!(dir.entries("."), before);

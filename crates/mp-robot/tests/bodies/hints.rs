@@ -1,8 +1,6 @@
 //! Hints lead along what is hit, and gradients away from what is near.
 
-mod common;
-
-use common::{clutter, robot};
+use crate::common::{clutter, robot};
 use mp_collide::reference::triangle_distance;
 use mp_cspace::testkit::check_clearance_gradient;
 use mp_cspace::{
@@ -119,7 +117,7 @@ fn gradients_lead_away_from_obstacles() {
 }
 
 /// Each part among which the clutter falls, and another part in one mesh with the last.
-fn parted() -> Vec<common::Obstacle> {
+fn parted() -> Vec<crate::common::Obstacle> {
     let mut all = clutter();
     let (name, sheet, pose) = all.pop().unwrap();
     let two = TriMesh::merged([

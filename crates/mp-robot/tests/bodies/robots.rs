@@ -1,8 +1,6 @@
 //! Validity, messages, defaults.
 
-mod common;
-
-use common::{clutter, obstacle, robot, wall};
+use crate::common::{clutter, obstacle, robot, wall};
 use mp_cspace::{
     Certified, Clearance, MotionValidity, Rn, Rng, Se2, Se2State, Se3, Space, TrueMetric, Validity,
 };
@@ -18,7 +16,7 @@ fn se3() -> Se3 {
 fn consistent<P: Placement, C: Space<State = P::State>>(
     space: &C,
     mut body: RigidBody<P>,
-    obstacles: &[common::Obstacle],
+    obstacles: &[crate::common::Obstacle],
 ) {
     let mut rng = Rng::seed(17);
     let states: Vec<_> = (0..400).map(|_| space.sample_uniform(&mut rng)).collect();

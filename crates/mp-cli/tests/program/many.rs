@@ -1,8 +1,6 @@
 //! Lists of problems: what the program says, and what is left of it when it is killed.
 
-mod common;
-
-use common::{Dir, finish, mp, start};
+use crate::common::{Dir, finish, mp, start};
 use std::io::Write;
 use std::time::{Duration, Instant};
 

@@ -1,8 +1,6 @@
 //! Paths relaxed in fields of choice, and pictures of the fields, by the command line.
 
-mod common;
-
-use common::{Dir, mp};
+use crate::common::{Dir, mp};
 
 /// A black and white image for the world `rrs-follow`: its left half is dark.
 fn image(dir: &Dir) {

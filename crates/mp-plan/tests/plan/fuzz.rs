@@ -2,7 +2,7 @@
 
 #![cfg(not(target_family = "wasm"))]
 
-#[path = "../../../fuzz/damage.rs"]
+#[path = "../../../../fuzz/damage.rs"]
 mod damage;
 
 use mp_plan::fuzz::{TARGETS, check_error};

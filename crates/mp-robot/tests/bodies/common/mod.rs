@@ -1,5 +1,4 @@
 //! Scenes the tests share.
-#![allow(dead_code, reason = "each test file uses its part")]
 
 use mp_geom::{TriMesh, pose_from_six, primitives};
 use nalgebra::Isometry3;

@@ -1,8 +1,6 @@
 //! The command line from outside: exit codes, JSON, files, bad input.
 
-mod common;
-
-use common::{Dir, mp};
+use crate::common::{Dir, mp};
 use serde_json::Value;
 
 /// Every field of the JSON of one run, and whether it may be null.
@@ -351,11 +349,11 @@ fn scenes_are_exported_for_other_planners() {
 #[test]
 fn ctrl_c_stops_at_once_and_says_so() {
     let dir = Dir::new();
-    let child = common::start(&dir, &["plan", "closed.env", "--json", "--out", "p.txt"]);
+    let child = crate::common::start(&dir, &["plan", "closed.env", "--json", "--out", "p.txt"]);
     std::thread::sleep(std::time::Duration::from_millis(1500));
     let id = child.id().to_string();
     assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
-    let run = common::finish(child);
+    let run = crate::common::finish(child);
     assert_eq!(run.code, 1, "{run:?}");
     assert_eq!(run.json()["stopped_by"], "interrupted");
     assert!(run.json()["iterations"].as_u64().unwrap() > 0);

@@ -1,6 +1,6 @@
 //! The corpora of the fuzzer for the viewer's files and requests, and damaged copies of them: docs/fuzzing.md.
 
-#[path = "../../../fuzz/damage.rs"]
+#[path = "../../../../fuzz/damage.rs"]
 mod damage;
 
 use mp_view::fuzz::TARGETS;

@@ -1,7 +1,5 @@
 //! A folder of small scenes, and the program run in it.
 
-#![allow(dead_code, reason = "each test file uses a part of this")]
-
 use mp_geom::{TriMesh, primitives::cuboid};
 use nalgebra::{Isometry3, Translation3};
 use serde_json::Value;

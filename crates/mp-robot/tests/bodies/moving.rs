@@ -1,8 +1,6 @@
 //! Robots among moving obstacles: checks, bounds and the verifier against dense sampling.
 
-mod common;
-
-use common::{clutter, robot};
+use crate::common::{clutter, robot};
 use mp_cspace::{
     Certified, Clearance, MotionCheck, MotionClearance, MotionValidity, Rng, Se2, Se2State, Se3, Space,
     Validity,

@@ -1,8 +1,6 @@
 //! Motion checks: discrete, certified and the verifier, against each other and against sampling.
 
-mod common;
-
-use common::{clutter, obstacle, robot, wall};
+use crate::common::{clutter, obstacle, robot, wall};
 use mp_cspace::{
     Certified, Discrete, Length, MotionCheck, MotionValidity, Rn, Rng, Se2, Se3, Space, Validity,
 };
@@ -188,7 +186,7 @@ fn standing_still_bad_states_and_no_obstacles() {
     for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(Verifier::with_tolerance(&space, &robot, tolerance).is_err());
     }
-    let alone = FreeFlyer::new(&common::robot(), []).unwrap();
+    let alone = FreeFlyer::new(&crate::common::robot(), []).unwrap();
     let mut verifier = Verifier::new(&space, &alone).unwrap();
     let mut certified = Certified::new(&space, alone.clone(), alone.tolerance()).unwrap();
     for _ in 0..2 {

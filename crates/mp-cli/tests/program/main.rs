@@ -1,0 +1,14 @@
+//! The program, as people call it.
+
+mod arms;
+mod bad_input;
+mod cli;
+mod common;
+mod films;
+mod kinds;
+mod many;
+mod outputs;
+mod relax;
+mod routes;
+mod streams;
+mod view;

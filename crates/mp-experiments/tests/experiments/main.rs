@@ -1,0 +1,5 @@
+//! Worlds and robots of experiments.
+
+mod clutter;
+mod follow;
+mod noisy_robot;

@@ -1,0 +1,14 @@
+//! Scenes planned in, in one program: each would link all of the library again.
+
+mod clearance;
+mod find;
+mod fuzz;
+mod kinds;
+mod many;
+mod many_queries;
+mod own_robot;
+mod parts;
+mod relax;
+mod robots;
+mod told;
+mod wrench;
