@@ -223,7 +223,7 @@ pub trait Motion: AnyMotion {
         None
     }
 
-    /// Makes what the first [verifier](Motion::any_verifier) would make otherwise, if that takes long, unless `interrupt` says to end: it is a
+    /// Makes what the first [verifier](AnyMotion::any_verifier) would make otherwise, if that takes long, unless `interrupt` says to end: it is a
     /// part of loading. By default nothing.
     ///
     /// # Errors

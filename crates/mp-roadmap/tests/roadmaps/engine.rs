@@ -142,13 +142,13 @@ fn bad_settings_are_refused() {
     let (space, boxes) = (square(), Boxes::default());
     for (text, part) in [
         ("neighbours=0", "neighbours is 0"),
-        ("radius=-1", "radius is -1"),
+        ("radius=-1", "above zero"),
         ("radius=3", "extent"),
         ("cycles=maybe", "yes or no"),
         ("learn=0", "learn is 0"),
         ("expand=11", "expand is 11"),
         ("bounces=0", "bounces is 0"),
-        ("walk=0", "walk is 0"),
+        ("walk=0", "above zero"),
         ("neighbors=3", "did you mean `neighbours`"),
     ] {
         let settings = Settings::parse([text]).unwrap();
