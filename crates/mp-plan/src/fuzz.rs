@@ -5,7 +5,7 @@
 //! None may panic, hang or take memory out of proportion, whatever the bytes.
 
 use crate::batch::list::{Next, ResultsReader, merged};
-use crate::scene::info::SceneInfo;
+use crate::files::info::SceneInfo;
 use crate::{
     Error, ItemResult, Length, MotionValidator, PathFileKind, ProblemList, RelaxField, Report, Request, Scene,
 };

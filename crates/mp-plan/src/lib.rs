@@ -61,17 +61,25 @@
 
 mod batch;
 mod error;
+mod explain;
+mod files;
 mod finish;
 #[cfg(all(feature = "pictures", feature = "roadmaps"))]
 pub mod fuzz;
+mod goals;
 mod numbers;
 mod output;
 mod path;
 #[cfg(feature = "pictures")]
 mod picture;
+mod possible;
+mod report;
+mod request;
 mod robot;
 mod run;
 mod scene;
+mod sweep;
+mod watch;
 
 pub use batch::in_order::in_order;
 #[cfg(feature = "ranks")]
@@ -88,10 +96,14 @@ pub use batch::portfolio_counts::{PortfolioCounts, PortfolioSchedule};
 #[cfg(all(feature = "ranks", feature = "roadmaps"))]
 pub use batch::regional::{RegionalTally, RegionalWork};
 pub use error::{Error, ErrorKind};
+pub use explain::Explanation;
+pub use files::find::find_problem;
+pub use files::info;
 pub use finish::certificate::Certificate;
 pub use finish::check::Verdict;
 pub use finish::field::FieldImage;
 pub use finish::{Finished, shorten};
+pub use goals::GoalPart;
 pub use numbers::{brief, count, plain, positive_number};
 pub use output::{Claims, is_standard, make_folder, write_file};
 pub use path::{PathFileKind, PathRows};
@@ -99,6 +111,8 @@ pub use path::{PathFileKind, PathRows};
 pub use picture::film::{Film, FilmKind};
 #[cfg(feature = "pictures")]
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
+pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
+pub use request::{Budget, Finish, MetricName, MotionValidator, RelaxField, Request};
 pub use robot::motion::{AnyChecker, AnyMotion, AnyVerifier, By, Counting, TypedMotion};
 pub use robot::{
     Appearance, ArmScene, Body, BodyShape, Checker, Column, Counted, Description, Drive, DriveModel,
@@ -107,21 +121,15 @@ pub use robot::{
     RigidScene, RigidSpace, Robot, SpeedBound, Step, Touch, WithMoving,
 };
 pub use run::planners::{meta_planners, planners, roadmap_planners};
-pub use run::report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
-pub use run::request::{Budget, Finish, MetricName, MotionValidator, RelaxField, Request};
 pub use run::roadmaps::Roadmap;
 pub use run::runs::{Medians, Runs, median, medians};
 #[cfg(feature = "roadmaps")]
 pub use run::scene_roadmap::SceneRoadmap;
 pub use run::search::{Search, search};
-pub use run::watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
 pub use run::{PreparedRun, Run};
-pub use scene::explain::Explanation;
-pub use scene::find::find_problem;
-pub use scene::goals::GoalPart;
-pub use scene::info;
-pub use scene::sweep::{Sweep, Track};
 pub use scene::{EditedScene, Scene};
+pub use sweep::{Sweep, Track};
+pub use watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
 
 #[cfg(feature = "pictures")]
 pub use mp_render::{Mode, View};

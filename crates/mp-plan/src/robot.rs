@@ -18,10 +18,10 @@ pub use moving::{MovingScene, WithMoving};
 pub use planar::{PlanarBody, PlanarScene};
 pub use rigid::{RigidScene, RigidSpace};
 
+use crate::goals::turning;
 use crate::numbers::plain;
 use crate::path::continued;
 use crate::robot::motion::AnyMotion;
-use crate::scene::goals::turning;
 use crate::{Error, Length, MetricName};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex};
 use mp_cspace::{

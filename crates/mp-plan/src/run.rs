@@ -3,15 +3,12 @@
 pub(crate) mod plan;
 pub(crate) mod planners;
 pub(crate) mod prepared;
-pub(crate) mod report;
-pub(crate) mod request;
 pub(crate) mod roadmaps;
 pub(crate) mod routes;
 pub(crate) mod runs;
 #[cfg(feature = "roadmaps")]
 pub(crate) mod scene_roadmap;
 pub(crate) mod search;
-pub(crate) mod watch;
 
 use crate::finish::relax::relax_if_requested;
 use crate::run::plan::{left, reported};
@@ -19,7 +16,7 @@ use crate::run::planners::PlannerKind;
 use crate::run::prepared::Prepared;
 use crate::run::roadmaps::{Due, GrowingFile, RoadmapPlanner};
 use crate::run::search::Search;
-use crate::run::watch::Events;
+use crate::watch::Events;
 use crate::{Control, Error, Finish, Report, Request, Robot, Stage, StoppedBy};
 use mp_cspace::erased::AnySpace;
 use mp_cspace::{Configuration, Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};

@@ -1,15 +1,6 @@
 //! A scene of any kind, and what can be done with it.
 
-pub(crate) mod alone;
-pub(crate) mod explain;
-pub(crate) mod find;
-pub(crate) mod goals;
-pub mod info;
-pub(crate) mod inputs;
-pub(crate) mod kinds;
-pub(crate) mod load;
-pub(crate) mod sweep;
-
+use crate::explain::{check_ends, explain, lint};
 use crate::finish::certificate::certificate;
 use crate::finish::check::check;
 use crate::finish::finish_given;
@@ -22,8 +13,7 @@ use crate::run::prepare;
 use crate::run::prepared::Prepared;
 #[cfg(feature = "roadmaps")]
 use crate::run::scene_roadmap::SceneRoadmap;
-use crate::scene::explain::{check_ends, explain, lint};
-use crate::scene::sweep::{sweep, track};
+use crate::sweep::{sweep, track};
 use crate::{
     Body, Certificate, Column, Control, Error, Explanation, Finished, Length, PathFileKind, PathFormat,
     PathRows, PreparedRun, RelaxField, Report, Request, Robot, Sweep, Track, Verdict,

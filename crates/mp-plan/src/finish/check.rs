@@ -1,10 +1,10 @@
 //! Verifies a path, with code that shares nothing with the planner's checks.
 
+use crate::explain::{enclosures, list};
+use crate::goals::next_to;
 use crate::numbers::{brief, plain};
 use crate::path::states;
 use crate::robot::counted::Counted;
-use crate::scene::explain::{enclosures, list};
-use crate::scene::goals::next_to;
 use crate::{Error, PathRows, Robot};
 use mp_cspace::erased::AnyCheck;
 use mp_cspace::{
@@ -31,7 +31,7 @@ pub struct Verdict {
     /// A lower bound (m) on the clearance along the path; 0 when it is not free, or none is known.
     pub clearance: f64,
     /// The clearance (m) from obstacles that was asked for; left out where none was.
-    #[serde(default, skip_serializing_if = "crate::run::request::is_zero")]
+    #[serde(default, skip_serializing_if = "crate::request::is_zero")]
     pub clearance_kept: f64,
     /// What is wrong. Empty when the path is free.
     pub faults: Vec<String>,

@@ -1,8 +1,8 @@
 //! Relaxing a path by a snake.
 
 use super::field;
+use crate::possible::Possible;
 use crate::robot::motion::{By, Counting};
-use crate::run::prepared::Possible;
 use crate::{Control, Error, Finish, RelaxField, Request, Robot, Stage};
 use mp_cspace::erased::{AnyCheck, AnyGradient, AnySpace};
 use mp_cspace::shorten::reduce;

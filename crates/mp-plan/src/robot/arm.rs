@@ -8,10 +8,10 @@ use super::{
     Appearance, Body, BodyShape, Column, Counted, Description, DrivenScene, End, Measured, Motion, Queries,
     SpeedBound, Touch, hints_and_gradient, no_metric,
 };
+use crate::goals::{GoalPart, examples, rows, turning};
 use crate::numbers::plain_row;
 use crate::path::continued;
 use crate::robot::motion::TypedMotion;
-use crate::scene::goals::{GoalPart, examples, rows, turning};
 use crate::{Error, MetricName, brief, plain};
 use mp_cspace::{
     Configuration, Euclidean, Factored, FloatingJoints, Interrupt, Interrupted, JointRange, Joints,
@@ -588,7 +588,7 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         if let Some(problem) = &self.source {
             details.insert(0, ("urdf".to_owned(), problem.urdf_file.display().to_string()));
         }
-        let goals = self.goal_parts.iter().flatten().map(|goal| crate::scene::goals::written(self, goal));
+        let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
         details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
         // Those that are said are among the notes of the scene.
         let notes = self.arm.model().notes.iter().filter(|note| !self.said.contains(note));

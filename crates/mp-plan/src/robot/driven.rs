@@ -7,8 +7,8 @@ mod system;
 
 use super::model::{self, DriveModel, MotionModel};
 use super::{Appearance, Body, Column, Description, End, Measured, Motion, Touch, no_metric};
+use crate::goals::{GoalPart, examples};
 use crate::robot::motion::TypedMotion;
-use crate::scene::goals::{GoalPart, examples};
 use crate::{Error, MetricName};
 use check::{DrivenChecker, DrivenVerifier};
 use mp_cspace::shorten::Effort;
@@ -341,7 +341,7 @@ impl<K: SpeedBound> Description for DrivenScene<K> {
         details.push(("moves by".to_owned(), moves));
         details.push(("inputs".to_owned(), format!("each held for up to {} s", brief(system.duration))));
         let free = self.columns.len() - system.inputs - 1;
-        let goals = self.goal_parts.iter().map(|goal| crate::scene::goals::written(self, &goal[..free]));
+        let goals = self.goal_parts.iter().map(|goal| crate::goals::written(self, &goal[..free]));
         details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
         details
     }

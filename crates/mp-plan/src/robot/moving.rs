@@ -5,9 +5,9 @@ use super::{
     Appearance, Body, BodyShape, Checker, Column, Description, DrivenScene, End, Measured, Mismatch, Motion,
     SpeedBound, Touch, no_metric,
 };
+use crate::goals::{GoalPart, examples};
 use crate::numbers::told_apart;
 use crate::robot::motion::TypedMotion;
-use crate::scene::goals::{GoalPart, examples};
 use crate::{Error, MetricName, brief, plain};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
@@ -345,7 +345,7 @@ impl<K: WithMoving> Description for MovingScene<K> {
         let names: Vec<&str> = self.obstacles.iter().map(|body| body.name.as_str()).collect();
         details.push(("moving".to_owned(), names.join(", ")));
         details.push(("speed".to_owned(), format!("at most {} per second", brief(self.space.0.speed()))));
-        let goals = self.goal_parts.iter().map(|goal| crate::scene::goals::written(self, goal));
+        let goals = self.goal_parts.iter().map(|goal| crate::goals::written(self, goal));
         details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
         details
     }

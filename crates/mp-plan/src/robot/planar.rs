@@ -5,8 +5,8 @@ use super::{
     Appearance, Body, BodyShape, Checker, Column, Counted, Description, DrivenScene, End, Measured, Motion,
     MovingScene, Queries, SpeedBound, Touch, WithMoving, greatest_speed, hints_and_gradient, no_metric,
 };
+use crate::goals::{GoalPart, examples, rows};
 use crate::robot::motion::TypedMotion;
-use crate::scene::goals::{GoalPart, examples, rows};
 use crate::{Error, MetricName};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
@@ -557,7 +557,7 @@ impl<B: PlanarBody> Description for PlanarScene<B> {
         (0..B::COLUMNS.len()).map(|i| (i < 2).then(|| [low[i], high[i]])).collect()
     }
     fn details(&self) -> Vec<(String, String)> {
-        let goals = self.goal_parts.iter().flatten().map(|goal| crate::scene::goals::written(self, goal));
+        let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
         goals.map(|goal| ("goal is".to_owned(), goal)).collect()
     }
     fn row(&self, q: &Configuration) -> Vec<f64> {

@@ -5,9 +5,9 @@ use super::{
     Appearance, Body, BodyShape, Column, Counted, Description, End, Measured, Mismatch, Motion, MovingScene,
     PathFormat, Queries, SpeedBound, Touch, WithMoving, hints_and_gradient,
 };
+use crate::goals::{GoalPart, examples, rows};
 use crate::numbers::{fingerprint, plain};
 use crate::robot::motion::TypedMotion;
-use crate::scene::goals::{GoalPart, examples, rows};
 use crate::{Error, MetricName};
 use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace};
@@ -522,7 +522,7 @@ impl<M: RigidSpace> Description for RigidScene<M> {
         six_tuples(states.len() - 1, self.radius, at).iter().map(|six| six.to_vec()).collect()
     }
     fn details(&self) -> Vec<(String, String)> {
-        let goals = self.goal_parts.iter().flatten().map(|goal| crate::scene::goals::written(self, goal));
+        let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
         goals.map(|goal| ("goal is".to_owned(), goal)).collect()
     }
     fn export(&self, folder: &std::path::Path) -> Result<std::path::PathBuf, Error> {

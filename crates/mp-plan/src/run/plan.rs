@@ -1,15 +1,15 @@
 //! Planning: runs a request, finishes the path and makes the report.
 
+use crate::explain::check_ends;
 use crate::finish::finish;
 #[cfg(feature = "ranks")]
 use crate::finish::relax::relax_if_requested;
+use crate::report::{RunStage, StageTime};
 #[cfg(feature = "ranks")]
 use crate::run::FoundRun;
 use crate::run::PLANNING_PART;
 use crate::run::planners::PlannerKind;
-use crate::run::report::{RunStage, StageTime};
 use crate::run::search::{Search, search_within};
-use crate::scene::explain::check_ends;
 use crate::{Column, Control, Error, REPORT_VERSION, Report, Request, Robot, StoppedBy};
 #[cfg(feature = "ranks")]
 use mp_cspace::{Configuration, Path};

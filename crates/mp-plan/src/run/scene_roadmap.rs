@@ -1,5 +1,6 @@
 //! A roadmap of a scene that answers many queries.
 
+use crate::explain::refused;
 use crate::finish::relax::relax_if_requested;
 use crate::path::state;
 use crate::run::plan::reported;
@@ -7,7 +8,6 @@ use crate::run::planners::PlannerKind;
 use crate::run::prepared::Prepared;
 use crate::run::roadmaps::{GrowingFile, Roadmap, RoadmapFile, with_checkpoints};
 use crate::run::search::Search;
-use crate::scene::explain::refused;
 use crate::{Budget, Control, End, Error, ErrorKind, Report, Request, Robot, Stage, StoppedBy};
 use mp_cspace::{Configuration, Interrupt, Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
 use mp_roadmap::{AnyEdgeChecker, PATIENCE, erased::AnyRoadmap};

@@ -2,8 +2,8 @@
 
 use super::scenes::{Known, SceneFiles, Source, hexadecimal};
 use super::{ListedProblems, ProblemList, SceneFingerprint, changed};
-use crate::scene::find::InFolder;
-use crate::scene::inputs::fingerprint_of;
+use crate::files::find::InFolder;
+use crate::files::inputs::fingerprint_of;
 use crate::{Error, Request, Scene};
 use mp_io::{ErrorKind, Files};
 use mp_ranks::{Link, broadcast};
@@ -94,7 +94,7 @@ impl ListedProblems {
             let read = |name: &PathBuf| match shipped {
                 #[cfg(feature = "scenes")]
                 true => {
-                    crate::scene::find::shipped_files().read(name, mp_io::MAX_MESH_BYTES).map_err(Error::from)
+                    crate::files::find::shipped_files().read(name, mp_io::MAX_MESH_BYTES).map_err(Error::from)
                 }
                 _ => sent.read(name, mp_io::MAX_MESH_BYTES).map_err(Error::from),
             };

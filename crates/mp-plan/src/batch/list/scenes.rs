@@ -2,9 +2,9 @@
 
 use super::{ProblemList, SceneFingerprint};
 #[cfg(feature = "scenes")]
-use crate::scene::find::shipped_files;
-use crate::scene::find::{InFolder, Location, locate};
-use crate::scene::inputs::fingerprint_of;
+use crate::files::find::shipped_files;
+use crate::files::find::{InFolder, Location, locate};
+use crate::files::inputs::fingerprint_of;
 use crate::{Error, Request, Scene, in_parallel};
 use mp_cspace::{Cancel, Interrupt};
 use mp_io::{ErrorKind, Files};

@@ -264,7 +264,7 @@ impl<K: SpeedBound> DrivenScene<K> {
         let q = self.space.system.vector(state);
         let rounding = ROUNDING * self.space.extent().max(1.0);
         self.goal_parts.iter().any(|goal| {
-            let there = crate::scene::goals::next_to(self, goal, &q);
+            let there = crate::goals::next_to(self, goal, &q);
             self.space.distance(&q, &there) <= rounding
         })
     }

@@ -3,7 +3,7 @@
 //! A problem that names the file is made as text and read by the ordinary reader, so that a robot or a map means the same
 //! with and without a problem around it. Then its ends are chosen, and what was chosen is said in the notes of the scene.
 
-use crate::scene::load::OneText;
+use crate::files::load::OneText;
 use crate::{Error, Scene};
 use mp_io::Files;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Reading scenes from files of any kind.
 
 use super::alone;
-use crate::scene::inputs::Recording;
+use crate::files::inputs::Recording;
 use crate::{Error, Scene};
 use mp_io::{Disk, Files, ProblemFile, RigidProblem, RobotProblem, SceneDocument};
 use std::path::Path;

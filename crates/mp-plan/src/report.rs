@@ -72,7 +72,7 @@ pub struct Report {
     /// A lower bound on the clearance along `path`; `None` where there was no time left to compute one.
     pub clearance: Option<f64>,
     /// The clearance (m) from obstacles that was asked for; left out where none was.
-    #[serde(default, skip_serializing_if = "crate::run::request::is_zero")]
+    #[serde(default, skip_serializing_if = "crate::request::is_zero")]
     pub clearance_kept: f64,
     /// Whether `path` was shortened.
     pub shortened: bool,

@@ -1,6 +1,6 @@
 //! What is in a mesh file.
 
-use crate::scene::inputs::Recording;
+use crate::files::inputs::Recording;
 use crate::{Error, brief, count, plain};
 use mp_geom::TriMesh;
 use serde::Serialize;

@@ -1,7 +1,7 @@
 //! The files that a scene was read from. An output must not overwrite them.
 
 use crate::Scene;
-use crate::scene::find::InFolder;
+use crate::files::find::InFolder;
 use mp_io::{Error, Files};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -118,7 +118,7 @@ impl Scene {
     pub(crate) fn content(&self, from: &Path, path: &Path) -> Result<Vec<u8>, Error> {
         #[cfg(feature = "scenes")]
         if self.shipped {
-            return crate::scene::find::shipped_files().read(path, mp_io::MAX_MESH_BYTES);
+            return crate::files::find::shipped_files().read(path, mp_io::MAX_MESH_BYTES);
         }
         InFolder(from).read(path, mp_io::MAX_MESH_BYTES)
     }
