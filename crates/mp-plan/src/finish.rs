@@ -10,7 +10,7 @@ use crate::finish::relax::relax_if_requested;
 use crate::path::states;
 use crate::possible::Possible;
 use crate::report::{RunStage, StageTime};
-use crate::robot::motion::{By, Counting};
+use crate::robot::motion::{By, Counting, motions};
 use crate::{Control, Error, Finish, PathRows, Request, Robot, Stage, StoppedBy};
 use mp_cspace::erased::{AnyCheck, AnySpace};
 use mp_cspace::shorten::{Effort, simplify};
@@ -105,9 +105,12 @@ pub fn shorten(
         kind,
         interrupt,
         match kind.sampled() {
-            None => kind.motions(By::Certificates(if has_wide { wide } else { narrow }), &counting)?,
+            None => {
+                let tolerance = if has_wide { wide } else { narrow };
+                motions(kind, &space, By::Certificates(tolerance), &counting)?
+            }
             Some(length) => {
-                let check = kind.motions(By::States(&space, length), &counting)?;
+                let check = motions(kind, &space, By::States(length), &counting)?;
                 Box::new(Both { check, verifier: Box::new(kind.any_verifier()?) })
             }
         },
@@ -116,8 +119,8 @@ pub fn shorten(
     if let Some(short) = kind.shortened(path, &mut check, Effort::default(), &mut rng) {
         return Ok(short);
     }
-    let space = kind.any_space();
-    let short = shorten_by(&space, &mut check, path, &mut rng);
+    let factors = kind.any_space();
+    let short = shorten_by(&factors, &mut check, path, &mut rng);
     if !has_wide {
         return Ok(short);
     }
@@ -126,7 +129,8 @@ pub fn shorten(
     if roomy.iter().all(|roomy| *roomy) {
         return Ok(short);
     }
-    let mut narrow = possible(kind, interrupt, kind.motions(By::Certificates(narrow), &counting)?);
+    let narrow = motions(kind, &space, By::Certificates(narrow), &counting)?;
+    let mut narrow = possible(kind, interrupt, narrow);
     let mut states: Vec<Configuration> = short.states.first().cloned().into_iter().collect();
     let mut first = 0;
     for passage in roomy.chunk_by(|a, b| a == b) {
@@ -135,14 +139,14 @@ pub fn shorten(
         match passage[0] || passage.len() == 1 {
             true => states.extend_from_slice(&edges[1..]),
             false => {
-                let part = shorten_by(&space, &mut narrow, &Path::straight(edges.to_vec()), &mut rng);
+                let part = shorten_by(&factors, &mut narrow, &Path::straight(edges.to_vec()), &mut rng);
                 states.extend(part.states.into_iter().skip(1));
             }
         }
     }
     let short = Path::straight(states);
     // There are passages where little is kept: a far shorter way may lead through others.
-    let other = shorten_by(&space, &mut narrow, &short, &mut rng);
+    let other = shorten_by(&factors, &mut narrow, &short, &mut rng);
     let is_far_shorter = other.length(&space) < FAR_SHORTER * short.length(&space);
     Ok(if is_far_shorter { other } else { short })
 }

@@ -113,7 +113,7 @@ pub use picture::film::{Film, FilmKind};
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
 pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
 pub use request::{Budget, Finish, MetricName, MotionValidator, RelaxField, Request};
-pub use robot::motion::{AnyChecker, AnyMotion, AnyVerifier, By, Counting, TypedMotion};
+pub use robot::motion::{AnyChecker, AnyMotion, AnyVerifier, Counting, TypedMotion};
 pub use robot::{
     Appearance, ArmScene, Body, BodyShape, Checker, Column, Counted, Description, Drive, DriveModel,
     DrivenScene, End, FloatingScene, LinkedScene, LinkedSpace, Measured, Mismatch, ModelBody, ModelFrame,

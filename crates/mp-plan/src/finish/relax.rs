@@ -2,7 +2,7 @@
 
 use super::field;
 use crate::possible::Possible;
-use crate::robot::motion::{By, Counting};
+use crate::robot::motion::{By, Counting, motions};
 use crate::{Control, Error, Finish, RelaxField, Request, Robot, Stage};
 use mp_cspace::erased::{AnyCheck, AnyGradient, AnySpace};
 use mp_cspace::shorten::reduce;
@@ -76,11 +76,11 @@ fn relaxed(
     let _span = tracing::info_span!("relax", %field).entered();
     let unused = AtomicU64::new(0);
     let gradient = gradient(kind, &unused, interrupt)?;
-    let check =
-        kind.motions(By::Certificates(kind.tolerance()), &Counting::new(&unused, interrupt.clone()))?;
+    let space = AnySpace::new(&kind.any_space());
+    let counting = Counting::new(&unused, interrupt.clone());
+    let check = motions(kind, &space, By::Certificates(kind.tolerance()), &counting)?;
     let mut check: AnyCheck<'_, Configuration> =
         Box::new(Possible { kind, check, interrupt: interrupt.clone(), deadlines: None });
-    let space = AnySpace::new(&kind.any_space());
     let short = reduce(&space, &mut check, &path);
     let range = RELAX_RANGE * space.extent();
     let mut field = field::make(kind, field, range, Some(&short), gradient)?;

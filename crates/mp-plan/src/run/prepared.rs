@@ -3,7 +3,7 @@
 use crate::goals;
 use crate::possible::{Deadlines, Possible};
 use crate::robot::counted::QueryBudget;
-use crate::robot::motion::{AnyVerifier, By, Counting};
+use crate::robot::motion::{AnyVerifier, By, Counting, motions};
 use crate::run::planners::PlannerKind;
 use crate::run::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
 use crate::watch::{Events, WatchAdapter};
@@ -89,9 +89,9 @@ impl<'k> Prepared<'k> {
         let counting = Counting::new(&self.queries, interrupt.clone()).exactly(self.counts_exactly);
         let by = match motion(kind, self.request) {
             MotionValidator::Certified => By::Certificates(kind.tolerance()),
-            MotionValidator::Discrete(length) => By::States(&self.space, length),
+            MotionValidator::Discrete(length) => By::States(length),
         };
-        let check = build_error(kind.motions(by, &counting))?;
+        let check = build_error(motions(kind, &self.space, by, &counting))?;
         let deadlines = Some(&self.deadlines);
         let check: AnyCheck<'_, Configuration> =
             Box::new(Possible { kind, check, interrupt: interrupt.clone(), deadlines });
