@@ -12,7 +12,7 @@ mod rigid;
 
 pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace};
 pub(crate) use driven::greatest_speed;
-pub use driven::{DrivenScene, SpeedBound};
+pub use driven::{Drivable, DrivenScene, SpeedBound};
 pub use model::{Drive, DriveModel, ModelBody, ModelFrame, ModelPair, ModelPart, MotionModel, Step};
 pub use moving::{MovingScene, WithMoving};
 pub use planar::{PlanarBody, PlanarScene};

@@ -351,7 +351,7 @@ impl ArmScene {
     ///
     /// # Errors
     /// When the arm cannot move so.
-    pub fn driven(&self) -> Result<Option<DrivenScene<Self>>, Error> {
+    pub fn driven(&self) -> Result<Option<DrivenScene>, Error> {
         let Some(file) = self.source.as_ref().map(|problem| &problem.file) else { return Ok(None) };
         let Some(driven) = &file.driven else { return Ok(None) };
         let names: Vec<_> = self.arm.coordinates().iter().map(|c| c.name.clone()).collect();

@@ -1,6 +1,7 @@
 //! Robots that move by inputs: cars, unicycles, and robots with limited velocities or accelerations.
 
 mod check;
+mod drivable;
 mod space;
 mod steer;
 mod system;
@@ -11,6 +12,7 @@ use crate::goals::{GoalPart, examples};
 use crate::robot::motion::TypedMotion;
 use crate::{Error, MetricName};
 use check::{DrivenChecker, DrivenVerifier};
+pub use drivable::Drivable;
 use mp_cspace::shorten::Effort;
 use mp_cspace::{
     AnyFlow, Configuration, Demand, Embed, InputSystem, Interrupt, Interrupted, MotionCheck, MotionValidity,
@@ -77,17 +79,17 @@ pub(crate) fn greatest_speed<C: Space>(space: &C, driven: &Driven) -> f64 {
 
 /// A robot of another kind that moves by inputs, each held for a time.
 #[derive(Clone, Debug)]
-pub struct DrivenScene<K: SpeedBound> {
-    robot: Arc<K>,
-    space: DrivenSpace<K::Space>,
-    checker: DrivenChecker<K>,
+pub struct DrivenScene {
+    robot: Arc<dyn Drivable>,
+    space: DrivenSpace,
+    checker: DrivenChecker,
     start: Configuration,
     goals: Vec<Configuration>,
     goal_parts: Vec<Vec<GoalPart>>,
     columns: Vec<Column>,
 }
 
-impl<K: SpeedBound> DrivenScene<K> {
+impl DrivenScene {
     /// `robot` moved as `driven` says. It starts with `velocity`, if its velocities are part of its state, or at rest when
     /// that is empty. `goals` say what is asked of each number of the configuration, then of the velocities; what they do not
     /// mention is free.
@@ -95,13 +97,22 @@ impl<K: SpeedBound> DrivenScene<K> {
     /// # Errors
     /// When the robot cannot move so.
     pub fn new(
-        robot: K,
+        robot: impl Drivable,
+        driven: &Driven,
+        velocity: &[f64],
+        goals: Vec<Vec<GoalPart>>,
+    ) -> Result<Self, Error> {
+        Self::of(Arc::new(robot), driven, velocity, goals)
+    }
+
+    fn of(
+        robot: Arc<dyn Drivable>,
         driven: &Driven,
         velocity: &[f64],
         mut goals: Vec<Vec<GoalPart>>,
     ) -> Result<Self, Error> {
         let own = robot.columns();
-        let degrees = robot.degrees_of_freedom();
+        let degrees = robot.degrees();
         let names: Vec<(String, String)> = degrees.iter().map(|c| (c.name.clone(), c.unit.clone())).collect();
         let inputs = driven.input_names(&names);
         let velocities = match driven.drive {
@@ -125,14 +136,13 @@ impl<K: SpeedBound> DrivenScene<K> {
             numbers: robot.start().len(),
             velocities,
             inputs: inputs.len(),
-            timed: K::TIMED,
+            timed: robot.is_timed(),
         };
-        let space = DrivenSpace::new(robot.space().clone(), system);
+        let space = DrivenSpace::new(Arc::clone(&robot), system);
         let mut start = space.at_rest(robot.start().clone());
         start.velocity.iter_mut().zip(velocity).for_each(|(v, given)| *v = *given);
         let start = space.system.vector(&start);
-        let robot = Arc::new(robot);
-        let checker = DrivenChecker::new(&robot, &space, robot.checker().clone());
+        let checker = DrivenChecker::new(&robot, &space, robot.any_checker());
         let ends = vec![start.clone()];
         let mut scene = Self { robot, space, checker, start, goals: ends, goal_parts: goals, columns };
         scene.goals = scene.examples();
@@ -150,13 +160,10 @@ impl<K: SpeedBound> DrivenScene<K> {
     }
 }
 
-impl<K: SpeedBound> TypedMotion for DrivenScene<K> {
-    type Space = DrivenSpace<K::Space>;
-    type Checker = DrivenChecker<K>;
-    type Verifier<'c>
-        = DrivenVerifier<'c, K>
-    where
-        Self: 'c;
+impl TypedMotion for DrivenScene {
+    type Space = DrivenSpace;
+    type Checker = DrivenChecker;
+    type Verifier<'c> = DrivenVerifier<'c>;
     fn space(&self) -> &Self::Space {
         &self.space
     }
@@ -176,35 +183,36 @@ impl<K: SpeedBound> TypedMotion for DrivenScene<K> {
         };
         let goal_parts = goals.iter().map(around).collect();
         let mut parts = self.parts(&start);
-        let robot = self.robot.with_ends(parts.q.clone(), goals.iter().map(|q| self.parts(q).q).collect())?;
+        let places = goals.iter().map(|q| self.parts(q).q).collect();
+        let robot = self.robot.with_other_ends(parts.q.clone(), places)?;
         (parts.input, parts.duration) = (vec![0.0; self.space.system.inputs], 0.0);
         let start = self.space.system.vector(&parts);
-        let mut scene = Self { robot: Arc::new(robot), start, goal_parts, ..self.clone() };
+        let mut scene = Self { robot, start, goal_parts, ..self.clone() };
         scene.goals = scene.examples();
         Ok(scene)
     }
-    fn checker(&self) -> &DrivenChecker<K> {
+    fn checker(&self) -> &DrivenChecker {
         &self.checker
     }
-    fn verifier(&self) -> Result<DrivenVerifier<'_, K>, Error> {
-        Ok(DrivenVerifier { scene: self, verifier: self.robot.verifier()? })
+    fn verifier(&self) -> Result<DrivenVerifier<'_>, Error> {
+        Ok(DrivenVerifier { scene: self, verifier: self.robot.state_verifier()? })
     }
     fn starting_as(mut self, row: &[f64]) -> Self {
         let own = self.robot.given_start().len().min(row.len());
-        self.robot = Arc::new(K::clone(&self.robot).starting_as(&row[..own]));
+        self.robot = self.robot.started_as(&row[..own]);
         self
     }
     fn keeping(&self, kept: f64) -> Result<Self, Error> {
-        let robot = Arc::new(self.robot.keeping(kept)?);
-        let checker = DrivenChecker::new(&robot, &self.space, robot.checker().clone());
+        let robot = self.robot.that_keeps(kept)?;
+        let checker = DrivenChecker::new(&robot, &self.space, robot.any_checker());
         Ok(Self { robot, checker, ..self.clone() })
     }
-    fn checker_keeping(&self, kept: f64) -> Option<DrivenChecker<K>> {
-        Some(DrivenChecker::new(&self.robot, &self.space, self.robot.checker_keeping(kept)?))
+    fn checker_keeping(&self, kept: f64) -> Option<DrivenChecker> {
+        Some(DrivenChecker::new(&self.robot, &self.space, self.robot.checker_that_keeps(kept)?))
     }
 }
 
-impl<K: SpeedBound> Motion for DrivenScene<K> {
+impl Motion for DrivenScene {
     fn start(&self) -> &Configuration {
         &self.start
     }
@@ -227,7 +235,9 @@ impl<K: SpeedBound> Motion for DrivenScene<K> {
         let space = &self.space;
         let flow: AnyFlow<'_, Configuration> =
             Arc::new(move |from: &Configuration, input: &[f64], time| match space.parts(from) {
-                Some(parts) => space.system.vector(&space.system.flow(&space.positions, &parts, input, time)),
+                Some(parts) => {
+                    space.system.vector(&space.system.flow(&space.positions(), &parts, input, time))
+                }
                 None => from.clone(),
             });
         let system = Arc::clone(&self.space.system);
@@ -271,7 +281,7 @@ impl<K: SpeedBound> Motion for DrivenScene<K> {
     }
 }
 
-impl<K: SpeedBound> Description for DrivenScene<K> {
+impl Description for DrivenScene {
     fn name(&self) -> &str {
         self.robot.name()
     }
@@ -403,7 +413,7 @@ impl<K: SpeedBound> Description for DrivenScene<K> {
     }
 }
 
-impl<K: SpeedBound> Appearance for DrivenScene<K> {
+impl Appearance for DrivenScene {
     fn bodies(&self) -> Vec<Body> {
         self.robot.bodies()
     }

@@ -210,6 +210,13 @@ impl<R: Checker<Configuration> + 'static> ErasedChecker for R {
 /// Any [`Checker`] behind a pointer.
 pub struct AnyChecker(Box<dyn ErasedChecker>);
 
+impl AnyChecker {
+    /// `checker`, behind a pointer.
+    pub(crate) fn new(checker: impl Checker<Configuration> + 'static) -> Self {
+        Self(Box::new(checker))
+    }
+}
+
 impl Clone for AnyChecker {
     fn clone(&self) -> Self {
         Self((*self.0).boxed())

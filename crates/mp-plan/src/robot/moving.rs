@@ -164,7 +164,7 @@ impl<K: WithMoving<Checker: Debug> + SpeedBound> MovingScene<K> {
         driven: &Driven,
         velocity: &[f64],
         mut goals: Vec<Vec<GoalPart>>,
-    ) -> Result<DrivenScene<Self>, Error> {
+    ) -> Result<DrivenScene, Error> {
         let own = self.still.columns().len();
         for (goal, timed) in goals.iter_mut().zip(&self.goal_parts) {
             goal.insert(own.min(goal.len()), timed.last().copied().unwrap_or(GoalPart::Free));

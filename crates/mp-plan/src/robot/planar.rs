@@ -359,7 +359,7 @@ impl<B: PlanarBody> PlanarScene<B> {
     ///
     /// # Errors
     /// When the robot cannot move so.
-    pub fn driven(self, driven: &Driven) -> Result<DrivenScene<Self>, Error> {
+    pub fn driven(self, driven: &Driven) -> Result<DrivenScene, Error> {
         let (velocity, goals) = self.driven_ends();
         DrivenScene::new(self, driven, &velocity, goals)
     }
@@ -368,7 +368,7 @@ impl<B: PlanarBody> PlanarScene<B> {
     ///
     /// # Errors
     /// When the robot cannot move so, or a shape or a time is not valid.
-    pub fn driven_among_moving(self, driven: &Driven) -> Result<DrivenScene<MovingScene<Self>>, Error> {
+    pub fn driven_among_moving(self, driven: &Driven) -> Result<DrivenScene, Error> {
         let (velocity, goals) = self.driven_ends();
         self.among_moving()?.driven(driven, &velocity, goals)
     }

@@ -1,8 +1,10 @@
 //! Whether motions by inputs are free: for planners, and for the verification of finished paths.
 
+use super::drivable::{AnyStateVerifier, Drivable};
 use super::space::DrivenSpace;
-use super::{DrivenScene, ROUND_UP, ROUNDING, SpeedBound};
+use super::{DrivenScene, ROUND_UP, ROUNDING};
 use crate::robot::Queries;
+use crate::robot::motion::AnyChecker;
 use mp_cspace::{
     Clearance, Configuration, Interrupt, MotionCheck, MotionClearance, MotionValidity, Space, Validity,
 };
@@ -13,36 +15,36 @@ const SHORTEST: f64 = 1e-12;
 
 /// Whether a robot that moves by inputs is free, and how far its motions move it.
 #[derive(Clone, Debug)]
-pub struct DrivenChecker<K: SpeedBound> {
-    pub(super) robot: Arc<K>,
-    pub(super) space: DrivenSpace<K::Space>,
-    pub(super) checker: K::Checker,
+pub struct DrivenChecker {
+    pub(super) robot: Arc<dyn Drivable>,
+    pub(super) space: DrivenSpace,
+    pub(super) checker: AnyChecker,
 }
 
-impl<K: SpeedBound> DrivenChecker<K> {
+impl DrivenChecker {
     /// The checker of `robot` in `space`, which asks `checker` about single configurations.
-    pub(super) fn new(robot: &Arc<K>, space: &DrivenSpace<K::Space>, checker: K::Checker) -> Self {
+    pub(super) fn new(robot: &Arc<dyn Drivable>, space: &DrivenSpace, checker: AnyChecker) -> Self {
         Self { robot: Arc::clone(robot), space: space.clone(), checker }
     }
 }
 
-impl<K: SpeedBound> Queries for DrivenChecker<K> {
+impl Queries for DrivenChecker {
     fn queries(&self) -> u64 {
         self.checker.queries()
     }
 }
 
-impl<K: SpeedBound> Validity<Configuration> for DrivenChecker<K> {
+impl Validity<Configuration> for DrivenChecker {
     fn is_valid(&mut self, q: &Configuration) -> bool {
         self.space.parts(q).is_some_and(|parts| self.checker.is_valid(&parts.q))
     }
 }
 
-impl<K: SpeedBound> Clearance<Configuration> for DrivenChecker<K> {
+impl Clearance<Configuration> for DrivenChecker {
     /// None outside of the bounds, which curved motions may leave.
     fn clearance(&mut self, q: &Configuration, enough: f64) -> f64 {
         match self.space.parts(q) {
-            Some(parts) if self.space.positions.contains(&parts.q) => {
+            Some(parts) if self.space.positions().contains(&parts.q) => {
                 self.checker.clearance(&parts.q, enough)
             }
             _ => 0.0,
@@ -53,14 +55,14 @@ impl<K: SpeedBound> Clearance<Configuration> for DrivenChecker<K> {
     }
 }
 
-impl<K: SpeedBound> MotionClearance<Configuration> for DrivenChecker<K> {
+impl MotionClearance<Configuration> for DrivenChecker {
     fn motion_bound(&self, from: &Configuration, to: &Configuration) -> f64 {
         if from == to {
             return 0.0;
         }
         match [from, to].map(|q| self.space.parts(q)) {
             [Some(from), Some(to)] if to.duration > 0.0 => {
-                self.robot.speed_bound(&self.space.system.rates(&from, &to)) * to.duration * ROUND_UP
+                self.robot.speed(&self.space.system.rates(&from, &to)) * to.duration * ROUND_UP
             }
             // Straight motions are made nowhere; pictures of paths that are not valid ask for them.
             [Some(from), Some(to)] => self.checker.motion_bound(&from.q, &to.q),
@@ -77,13 +79,14 @@ impl<K: SpeedBound> MotionClearance<Configuration> for DrivenChecker<K> {
 ///
 /// It shares the equations of motion and the bound on the speed of the robot's points with the planner's check; all that
 /// it knows of obstacles comes from the robot's own verifier, which shares nothing with it.
-#[derive(Clone, Debug)]
-pub struct DrivenVerifier<'c, K: SpeedBound> {
-    pub(super) scene: &'c DrivenScene<K>,
-    pub(super) verifier: K::Verifier<'c>,
+#[derive(Clone)]
+#[allow(missing_debug_implementations, reason = "a pointer has nothing to print")]
+pub struct DrivenVerifier<'c> {
+    pub(super) scene: &'c DrivenScene,
+    pub(super) verifier: AnyStateVerifier<'c>,
 }
 
-impl<K: SpeedBound> MotionValidity<Configuration> for DrivenVerifier<'_, K> {
+impl MotionValidity<Configuration> for DrivenVerifier<'_> {
     fn check_motion(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
         let space = &self.scene.space;
         let [Some(a), Some(b)] = [from, to].map(|q| space.contains(q).then(|| space.parts(q)).flatten())
@@ -91,7 +94,7 @@ impl<K: SpeedBound> MotionValidity<Configuration> for DrivenVerifier<'_, K> {
             return MotionCheck::Unproven { at: 0.0 };
         };
         if from == to {
-            return K::check_state(&mut self.verifier, &a.q, f64::INFINITY);
+            return self.verifier.check_state(&a.q, f64::INFINITY);
         }
         let gap = space.off_course(&a, &b);
         if gap > ROUNDING * space.extent() {
@@ -99,12 +102,12 @@ impl<K: SpeedBound> MotionValidity<Configuration> for DrivenVerifier<'_, K> {
         }
         // Between these moments and the ends no number of the position is beyond its values there.
         for time in space.system.turning_times(&a, &b) {
-            let then = space.system.flow(&space.positions, &a, &b.input, time);
-            if !space.positions.contains(&then.q) {
+            let then = space.system.flow(&space.positions(), &a, &b.input, time);
+            if !space.positions().contains(&then.q) {
                 return MotionCheck::Unproven { at: time / b.duration };
             }
         }
-        let travel = self.scene.robot.speed_bound(&space.system.rates(&a, &b)) * b.duration * ROUND_UP;
+        let travel = self.scene.robot.speed(&space.system.rates(&a, &b)) * b.duration * ROUND_UP;
         let margin = self.scene.robot.kept() + 0.1 * self.scene.robot.tolerance();
         let mut least = f64::INFINITY;
         let mut open = vec![(0.0_f64, 1.0_f64)];
@@ -113,11 +116,11 @@ impl<K: SpeedBound> MotionValidity<Configuration> for DrivenVerifier<'_, K> {
             if self.verifier.is_interrupted() {
                 return MotionCheck::Unproven { at };
             }
-            let now = space.system.flow(&space.positions, &a, &b.input, at * b.duration);
+            let now = space.system.flow(&space.positions(), &a, &b.input, at * b.duration);
             let near = half * travel;
             let needed = (near + margin) * ROUND_UP;
-            match K::check_state(&mut self.verifier, &now.q, 2.0 * needed) {
-                _ if !space.positions.contains(&now.q) => return MotionCheck::Unproven { at },
+            match self.verifier.check_state(&now.q, 2.0 * needed) {
+                _ if !space.positions().contains(&now.q) => return MotionCheck::Unproven { at },
                 MotionCheck::Free { clearance } if clearance >= needed => {
                     least = least.min(clearance - near);
                 }
@@ -129,7 +132,7 @@ impl<K: SpeedBound> MotionValidity<Configuration> for DrivenVerifier<'_, K> {
             }
         }
         // The last state itself, as written.
-        match K::check_state(&mut self.verifier, &b.q, least) {
+        match self.verifier.check_state(&b.q, least) {
             MotionCheck::Free { clearance } => MotionCheck::Free { clearance: least.min(clearance) },
             MotionCheck::Collision { .. } => MotionCheck::Collision { at: 1.0 },
             MotionCheck::Unproven { .. } => MotionCheck::Unproven { at: 1.0 },

@@ -1,7 +1,7 @@
 //! Steering: inputs that lead from one state to another where there are no obstacles. With it paths are made shorter.
 
 use super::system::{Parts, System};
-use super::{DrivenScene, ROUNDING, SpeedBound};
+use super::{DrivenScene, ROUNDING};
 use mp_control::{dubins, reeds_shepp};
 use mp_cspace::angle::{angle_difference, wrap_angle};
 use mp_cspace::shorten::Effort;
@@ -163,7 +163,7 @@ fn time(held: &[Held]) -> f64 {
     held.iter().map(|(_, time)| time).sum()
 }
 
-impl<K: SpeedBound> DrivenScene<K> {
+impl DrivenScene {
     /// Replaces stretches of the path, between two random places of it, by steering from one to the other, where that takes less
     /// time, is no longer and is free, again and again. Behind such a stretch the inputs stay as they are; what they lead to is computed anew, as
     /// it differs by rounding. The path still ends at a goal.
@@ -174,7 +174,7 @@ impl<K: SpeedBound> DrivenScene<K> {
         effort: Effort,
         rng: &mut Rng,
     ) -> Path<Configuration> {
-        let (system, positions) = (&self.space.system, &self.space.positions);
+        let (system, positions) = (&self.space.system, &self.space.positions());
         let mut states: Vec<_> = path.states.iter().map(|q| self.parts(q)).collect();
         let after = |from: &Parts, input: &[f64], time: f64| system.flow(positions, from, input, time);
         let length =
