@@ -11,5 +11,4 @@ mod own_robot;
 mod parts;
 mod relax;
 mod robots;
-mod told;
 mod wrench;
