@@ -109,7 +109,7 @@
 //!     }
 //! }
 //! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Length, Rn, Straight};
-//! # use mp_tree::{Problem, Length, Tuning};
+//! # use mp_tree::{Problem, Tuning};
 //! # use nalgebra::Vector2;
 //! # let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! # let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
