@@ -145,7 +145,7 @@ fn runs_that_are_killed_go_on_to_the_same_bytes() {
     kill_runs(12);
 }
 
-/// As many as a release is tested with: `cargo test -p mp-motion-cli --test many -- --ignored --nocapture`.
+/// As many as a release is tested with: `cargo test -p mp-motion-cli --test program many -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn hundreds_of_runs_that_are_killed_go_on_to_the_same_bytes() {

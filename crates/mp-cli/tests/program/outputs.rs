@@ -188,7 +188,7 @@ fn roadmaps_of_runs_that_are_killed_within_a_checkpoint_are_whole() {
     kill_growths(2, 2);
 }
 
-/// As many as a release is tested with: `cargo test -p mp-motion-cli --test outputs -- --ignored --nocapture`.
+/// As many as a release is tested with: `cargo test -p mp-motion-cli --test program outputs -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn hundreds_of_roadmaps_of_runs_that_are_killed_within_a_checkpoint_are_whole() {
@@ -297,7 +297,7 @@ fn runs_that_are_killed_lose_and_tear_nothing() {
     kill_runs(20);
 }
 
-/// As many as a release is tested with: `cargo test -p mp-motion-cli --test outputs -- --ignored --nocapture`.
+/// As many as a release is tested with: `cargo test -p mp-motion-cli --test program outputs -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn a_thousand_runs_that_are_killed_lose_and_tear_nothing() {

@@ -259,7 +259,7 @@ fn views_that_are_killed_while_they_save_tear_nothing() {
     kill_views(4);
 }
 
-/// As many as a release is tested with: `cargo test -p mp-motion-cli --test view -- --ignored`.
+/// As many as a release is tested with: `cargo test -p mp-motion-cli --test program view -- --ignored`.
 #[cfg(unix)]
 #[test]
 #[ignore = "takes a minute"]
