@@ -214,7 +214,7 @@ class Scene:
 
         Parameters
         ----------
-        robot : Mesh, Box, Sphere or Cylinder
+        robot : Shape
             The body, about its origin.
         start : array_like, shape (6,) or (4, 4)
             ``x y z α β γ`` (m, rad), or a matrix. With `planar`, the same: ``z β γ`` are zero.

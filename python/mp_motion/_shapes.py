@@ -256,7 +256,85 @@ class Cylinder:
     height: float
 
 
-Shape: TypeAlias = Mesh | Box | Sphere | Cylinder
+@dataclass(frozen=True)
+class Capsule:
+    """All points near a segment of the axis Z. Planning takes a mesh that contains it, larger by at most 1%.
+
+    Parameters
+    ----------
+    radius : float
+        Metres.
+    length : float
+        Of the segment, metres: the capsule is longer by two radii.
+    """
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Cone:
+    """A cone about Z, apex up. Planning takes a mesh that contains it, larger by at most 0.5%.
+
+    Parameters
+    ----------
+    radius, height : float
+        Metres.
+    """
+
+    radius: float
+    height: float
+
+
+@dataclass(frozen=True, eq=False)
+class Hull:
+    """The convex hull of points.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+        Metres; at most 10,000, not all in one plane.
+    """
+
+    points: ArrayLike
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Points, such as those of a depth camera, each with a ball around it. Planning takes meshes of 20 triangles that contain the balls.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+        Metres.
+    radius : float
+        Of the balls, metres.
+    """
+
+    points: ArrayLike
+    radius: float
+
+
+@dataclass(frozen=True, eq=False)
+class HeightField:
+    """Ground of varying height over a grid that is centred on the origin.
+
+    Parameters
+    ----------
+    heights : array_like, shape (ny, nx)
+        Metres: a row for each y, from the least.
+    cell : (float, float)
+        The lengths of a cell in x and y, metres.
+    bottom : float, optional
+        How far down the ground reaches, metres. By default as far below the lowest height as a cell is long.
+    """
+
+    heights: ArrayLike
+    cell: tuple[float, float]
+    bottom: float | None = None
+
+
+Shape: TypeAlias = Mesh | Box | Sphere | Cylinder | Capsule | Cone | Hull | Points | HeightField
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,7 +343,7 @@ class Body:
 
     Parameters
     ----------
-    shape : Mesh, Box, Sphere or Cylinder
+    shape : Mesh, Box, Sphere, Cylinder, Capsule, Cone, Hull, Points or HeightField
         Its shape.
     pose : array_like, shape (6,) or (4, 4)
         Where it is: ``x y z α β γ`` (m, rad) or a matrix. By default the origin.
@@ -348,11 +426,32 @@ def shape_members(shape: Shape, files: dict[str, bytes]) -> dict[str, Any]:
             return {"sphere": float(radius)}
         case Cylinder(radius, height):
             return {"cylinder": [float(radius), float(height)]}
+        case Capsule(radius, length):
+            return {"capsule": [float(radius), float(length)]}
+        case Cone(radius, height):
+            return {"cone": [float(radius), float(height)]}
+        case Hull():
+            return {"hull": _rows(shape.points, "points")}
+        case Points():
+            return {"points": {"radius": float(shape.radius), "at": _rows(shape.points, "points")}}
+        case HeightField():
+            heights = np.asarray(shape.heights, dtype=np.float64)
+            if heights.ndim != 2:
+                raise Error(f"heights have the shape {heights.shape}", remedy="give an array of shape (ny, nx)")
+            bottom = {} if shape.bottom is None else {"bottom": float(shape.bottom)}
+            return {"height_field": {"cell": [float(c) for c in shape.cell], "heights": heights.tolist()} | bottom}
         case Mesh():
             name = f"mesh-{len(files) + 1}.off"
             files[name] = _mp.mesh_off(shape.vertices, shape.triangles)
             return {"mesh": name} | ({"solid": True} if shape.solid else {})
-    raise Error(f"{shape!r} is no shape", remedy="give a Mesh, a Box, a Sphere or a Cylinder")
+    raise Error(f"{shape!r} is no shape", remedy="give a Mesh, a Box, a Sphere, a Cylinder, a Capsule, a Cone, a Hull, Points or a HeightField")
+
+
+def _rows(points: ArrayLike, what: str) -> list[list[float]]:
+    rows = np.asarray(points, dtype=np.float64)
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise Error(f"{what} have the shape {rows.shape}", remedy="give an array of shape (n, 3)")
+    return rows.tolist()
 
 
 def body_members(body: Body | Shape, files: dict[str, bytes]) -> dict[str, Any]:

@@ -106,6 +106,33 @@ def test_shapes_goals_and_bounds() -> None:
     assert abs(end[0] - 1.5) < 1e-6 or np.allclose(end, [1, 1, 1, 0, 0, 0], atol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("shape", "inside"),
+    [
+        (mp.Box(1, 1, 1), [0.4, 0, 0]),
+        (mp.Capsule(0.3, 1), [0, 0, 0.7]),
+        (mp.Cone(0.5, 1), [0, 0, 0.3]),
+        (mp.Hull([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]), [0.2, 0.2, 0.2]),
+        (mp.Points([[0, 0, 0], [0.5, 0, 0]], 0.2), [0.5, 0, 0.1]),
+        (mp.HeightField([[0, 0, 1], [0, 0, 1]], (0.5, 1)), [0.4, 0, 0.5]),
+    ],
+)
+def test_what_is_inside_of_a_shape_collides(shape: mp.Shape, inside: list[float]) -> None:
+    ends = [[0, 0, 5, 0, 0, 0], [1, 0, 5, 0, 0, 0]]
+    scene = mp.Scene.rigid(mp.Sphere(0.01), *ends, obstacles=[shape])
+    assert scene.is_free([2, 2, 2, 0, 0, 0]) and not scene.is_free([*inside, 0, 0, 0])
+    # As a robot, it has the small ball inside.
+    there = [0, 0, 1]
+    ball = mp.Body(mp.Sphere(0.01), [*(a + b for a, b in zip(inside, there, strict=True)), 0, 0, 0])
+    assert not mp.Scene.rigid(shape, *ends, obstacles=[ball]).is_free([*there, 0, 0, 0])
+
+
+@pytest.mark.parametrize("shape", [mp.Hull([0, 0, 0]), mp.Points([[0, 0]], 0.1), mp.HeightField([1, 2], (1, 1))])
+def test_shapes_of_other_arrays_are_refused(shape: mp.Shape) -> None:
+    with pytest.raises(mp.Error, match="have the shape"):
+        mp.Scene.rigid(shape, [0, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0])
+
+
 def test_worlds_of_the_plane() -> None:
     square = mp.Polygon([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)])
     obstacles: list[mp.Rectangle | mp.Circle | mp.Polygon] = [

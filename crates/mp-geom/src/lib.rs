@@ -5,6 +5,7 @@
 //! - [`Aabb`], [`Obb`], [`Sphere`]: bounding volumes.
 //! - [`MassProperties`]: volume, centroid, inertia, principal axes.
 //! - [`Features`]: size, place and direction of a body for obstacle-geometry planners; [`TriMesh::parts`]: its components.
+//! - [`Shape`]: what robots and obstacles are made of: meshes, boxes, spheres, capsules, hulls, ground, points.
 //! - [`primitives`]: closed solids; [`TriMesh::into_solid`]: a closed mesh as one.
 //! - [`planar`]: polygons in the plane.
 //! - [`pose_from_six`] and others: poses to and from numbers; [`six_tuples`] of a motion.
@@ -20,6 +21,7 @@ mod obb;
 pub mod planar;
 mod pose;
 pub mod primitives;
+mod shape;
 mod six_tuples;
 mod solid;
 mod sphere;
@@ -37,6 +39,7 @@ pub use pose::{
     rotation_from_matrix, short_six_from_pose, six_from_pose,
 };
 pub use primitives::PrimitiveError;
+pub use shape::{HeightField, PRIMITIVES, Points, Primitive, Shape, convex_hull};
 pub use six_tuples::{continued_six, displacement_bound, six_tuples};
 pub use solid::SolidError;
 pub use sphere::{Sphere, minimal_sphere};

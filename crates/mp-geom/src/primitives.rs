@@ -63,6 +63,12 @@ pub enum PrimitiveError {
     /// The four corners are in one plane.
     #[error("the corners of the tetrahedron are in one plane")]
     Flat,
+    /// There is no inside.
+    #[error("{what} has no inside")]
+    NoInside {
+        /// What was to be a solid.
+        what: &'static str,
+    },
     /// The resulting mesh is invalid, such as by overflow.
     #[error(transparent)]
     Mesh(#[from] MeshError),

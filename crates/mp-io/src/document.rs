@@ -6,7 +6,7 @@ use crate::gempa::{Environment, Obstacle, gempa_mesh_text};
 use crate::mesh::{mesh_error, read_mesh_of, solid_mesh};
 use crate::off::{OffDocument, off_text};
 use crate::problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind, vertex_beyond};
-use mp_geom::{Aabb, TriMesh, pose_from_six, primitives, short_six_from_pose};
+use mp_geom::{Aabb, PrimitiveError, Shape, TriMesh, pose_from_six, short_six_from_pose};
 use nalgebra::{Isometry3, Point3};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -15,12 +15,6 @@ use std::path::Path;
 const VERSION: u32 = 1;
 /// The page that describes the format.
 const GUIDE: &str = "the format is described in docs/formats/session.md, “Documents”";
-/// How often the triangles of a sphere are split: 1280 triangles.
-const SUBDIVISIONS: u32 = 3;
-/// The sides of cones, cylinders and rings, and of the tube of a torus.
-const SEGMENTS: u32 = 32;
-const TUBE_SEGMENTS: u32 = 16;
-
 /// A scene of a rigid body, to be edited: our own scene file, `.mp.json`. docs/formats/session.md describes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -372,28 +366,15 @@ impl SceneDocument {
 impl DocumentBody {
     /// Its mesh, scaled, in its own frame. `own` is its mesh unless it is a figure.
     fn mesh(&self, file: &str, own: Option<&TriMesh>) -> Result<TriMesh, Error> {
-        let impossible = |e: primitives::PrimitiveError| {
+        let impossible = |e: PrimitiveError| {
             Error::new(ErrorKind::Content, file, format!("{} cannot be made: {e}", self.name))
                 .help("give lengths above zero, metres")
         };
-        let made = match &self.shape {
-            DocumentShape::Sphere { radius } => {
-                primitives::sphere(*radius, SUBDIVISIONS).map_err(impossible)?
-            }
-            DocumentShape::Cube { size: [x, y, z] } => primitives::cuboid(*x, *y, *z).map_err(impossible)?,
-            DocumentShape::Cone { radius, height } => {
-                primitives::cone(*radius, *height, SEGMENTS).map_err(impossible)?
-            }
-            DocumentShape::Cylinder { radius, height } => {
-                primitives::cylinder(*radius, *height, SEGMENTS).map_err(impossible)?
-            }
-            DocumentShape::Torus { ring, tube } => {
-                primitives::torus(*ring, *tube, SEGMENTS, TUBE_SEGMENTS).map_err(impossible)?
-            }
-            DocumentShape::Tetrahedron { edge } => primitives::tetrahedron(*edge).map_err(impossible)?,
-            DocumentShape::Mesh { file: mesh, .. } => own.cloned().ok_or_else(|| {
-                Error::new(ErrorKind::Content, file, format!("the mesh {mesh} is missing"))
-                    .help("open it first")
+        let made = match self.shape.figure() {
+            Some(figure) => figure.mesh().map_err(impossible)?,
+            None => own.cloned().ok_or_else(|| {
+                let what = format!("the mesh {} is missing", self.shape.file());
+                Error::new(ErrorKind::Content, file, what).help("open it first")
             })?,
         };
         let made = match self.scale {
@@ -414,6 +395,19 @@ impl DocumentBody {
 }
 
 impl DocumentShape {
+    /// The shape of a figure; `None` for a mesh.
+    fn figure(&self) -> Option<Shape> {
+        match self {
+            Self::Sphere { radius } => Shape::primitive("sphere", &[*radius]),
+            Self::Cube { size } => Shape::primitive("box", size),
+            Self::Cone { radius, height } => Shape::primitive("cone", &[*radius, *height]),
+            Self::Cylinder { radius, height } => Shape::primitive("cylinder", &[*radius, *height]),
+            Self::Torus { ring, tube } => Shape::primitive("torus", &[*ring, *tube]),
+            Self::Tetrahedron { edge } => Shape::primitive("tetrahedron", &[*edge]),
+            Self::Mesh { .. } => None,
+        }
+    }
+
     /// The file of its mesh; empty for a figure.
     fn file(&self) -> &str {
         match self {
@@ -503,7 +497,7 @@ mod tests {
     }
 
     fn mesh(_: &str) -> Result<TriMesh, Error> {
-        Ok(primitives::cuboid(1.0, 0.1, 0.1).unwrap())
+        Ok(mp_geom::primitives::cuboid(1.0, 0.1, 0.1).unwrap())
     }
 
     #[test]

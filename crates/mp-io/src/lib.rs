@@ -36,6 +36,7 @@ mod problem;
 mod problem_file;
 mod rigid_toml;
 mod robot;
+mod shape;
 mod stl;
 mod text;
 mod toml_problem;
@@ -61,6 +62,7 @@ pub use planar::{
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
 pub use problem_file::ProblemFile;
 pub use rigid_toml::{RigidMoving, RigidTask};
-pub use robot::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem, read_robot_text};
+pub use robot::{ObstacleEntry, RobotFile, RobotPart, RobotProblem, read_robot_text};
+pub use shape::ShapeEntry;
 pub use stl::{parse_stl, stl_text, write_stl};
 pub use toml_problem::{GoalEntry, GoalPart, Timing};

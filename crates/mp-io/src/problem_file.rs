@@ -5,15 +5,13 @@ use crate::files::{Files, MAX_TEXT_BYTES, decode};
 use crate::planar::PlanarProblem;
 use crate::rigid_toml::RigidTask;
 use crate::robot::RobotProblem;
+use crate::shape;
 use crate::toml_problem::TomlText;
 use std::path::Path;
 
 /// The pages that describe the formats.
 const GUIDE: &str =
     "the formats are described in docs/formats: planar-world.md, rigid-problem.md and robot-problem.md";
-
-/// The keys of a table `robot` that is a single body.
-const SHAPES: [&str; 4] = ["mesh", "box", "sphere", "cylinder"];
 
 /// A problem in a TOML file; all files that it names are read, but for the meshes of a robot of links.
 #[derive(Clone, Debug)]
@@ -44,7 +42,7 @@ impl ProblemFile {
         let robot = tables.get("robot").and_then(toml::Value::as_table);
         Ok(if tables.contains_key("world") {
             Self::World(Box::new(PlanarProblem::of_bytes(files, path, &bytes)?))
-        } else if robot.is_some_and(|robot| SHAPES.iter().any(|shape| robot.contains_key(*shape))) {
+        } else if robot.is_some_and(|robot| shape::names().any(|shape| robot.contains_key(shape))) {
             Self::Body(Box::new(RigidTask::of_bytes(files, path, &bytes)?))
         } else {
             Self::Links(Box::new(RobotProblem::of_bytes(files, path, &bytes)?))

@@ -4,7 +4,8 @@ use crate::drive::{DriveTable, Driven};
 use crate::error::Error;
 use crate::files::{Files, MAX_TEXT_BYTES, decode, stem};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind};
-use crate::robot::{Figures, ObstacleTable, entry};
+use crate::robot::{ObstacleTable, entry};
+use crate::shape::{Meshes, Shaped};
 use crate::toml_problem::{GoalPart, MotionTable, Timing, TomlText, timed_rows};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
 use nalgebra::Point3;
@@ -54,23 +55,17 @@ pub struct RigidTask {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    robot: Spanned<RobotTable>,
+    robot: Spanned<Shaped<RobotTable>>,
     motion: MotionTable,
     #[serde(default)]
-    obstacle: Vec<Spanned<ObstacleTable>>,
+    obstacle: Vec<Spanned<Shaped<ObstacleTable>>>,
     #[serde(default)]
-    moving: Vec<Spanned<MovingTable>>,
+    moving: Vec<Spanned<Shaped<MovingTable>>>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RobotTable {
-    mesh: Option<Spanned<String>>,
-    solid: Option<Spanned<bool>>,
-    #[serde(rename = "box")]
-    cuboid: Option<Spanned<[f64; 3]>>,
-    sphere: Option<Spanned<f64>>,
-    cylinder: Option<Spanned<[f64; 2]>>,
     bounds: Option<Spanned<[[f64; 3]; 2]>>,
     planar: Option<bool>,
     kind: Option<Spanned<String>>,
@@ -83,12 +78,6 @@ struct RobotTable {
 #[serde(deny_unknown_fields)]
 struct MovingTable {
     name: Option<String>,
-    mesh: Option<Spanned<String>>,
-    solid: Option<Spanned<bool>>,
-    #[serde(rename = "box")]
-    cuboid: Option<Spanned<[f64; 3]>>,
-    sphere: Option<Spanned<f64>>,
-    cylinder: Option<Spanned<[f64; 2]>>,
     path: Spanned<Vec<Vec<f64>>>,
 }
 
@@ -108,9 +97,10 @@ impl RigidTask {
         let source = TomlText { file: &file, text, guide: GUIDE };
         let File { robot, motion, obstacle, moving } = source.read()?;
         let robot_span = robot.span();
-        let robot = robot.into_inner();
+        let mut meshes = Meshes::new(files, path);
+        let body = robot.get_ref().shape(&source, "robot", &robot_span);
+        let robot = robot.into_inner().own;
         let planar = robot.planar.unwrap_or(false);
-        let mut figures = Figures::new(files, path);
         let table = DriveTable {
             kind: robot.kind,
             duration: robot.duration,
@@ -119,39 +109,26 @@ impl RigidTask {
             ..DriveTable::default()
         };
         let driven = driven(&source, &robot_span, table, planar)?;
-        let table = ObstacleTable {
-            name: Some("robot".to_owned()),
-            mesh: robot.mesh,
-            solid: robot.solid,
-            cuboid: robot.cuboid,
-            sphere: robot.sphere,
-            cylinder: robot.cylinder,
-            pose: None,
-        };
-        let body = entry(&source, 0, robot_span.clone(), table)?;
-        let (from, mesh) = figures.mesh(&source, &body)?;
-        let robot_body = Body { name: body.name, file: from, mesh };
+        let (from, mesh) = meshes.of(&source, "robot", &body?)?;
+        let robot_body = Body { name: "robot".to_owned(), file: from, mesh };
 
         let mut obstacles = Vec::new();
-        for (i, table) in obstacle.into_iter().enumerate() {
-            let (span, table) = (table.span(), table.into_inner());
-            let entry = entry(&source, i, span, table)?;
-            let (file, mesh) = figures.mesh(&source, &entry)?;
+        for (i, table) in obstacle.iter().enumerate() {
+            let entry = entry(&source, i, table)?;
+            let (file, mesh) = meshes.of(&source, &entry.name, &entry.shape)?;
             obstacles.push(PlacedBody { name: entry.name, file, mesh, pose: pose_from_six(entry.pose) });
         }
         let mut movers = Vec::new();
-        for (i, table) in moving.into_iter().enumerate() {
-            let (span, table) = (table.span(), table.into_inner());
-            let MovingTable { name, mesh, solid, cuboid, sphere, cylinder, path } = table;
-            let name = name.unwrap_or_else(|| format!("moving obstacle {}", i + 1));
-            let shown = crate::text::clipped(&name).to_string();
-            let table = ObstacleTable { name: Some(name), mesh, solid, cuboid, sphere, cylinder, pose: None };
-            let entry = entry(&source, i, span, table)?;
-            let (_, mesh) = figures.mesh(&source, &entry)?;
+        for (i, table) in moving.iter().enumerate() {
+            let MovingTable { name, path } = &table.get_ref().own;
+            let name = name.clone().unwrap_or_else(|| format!("moving obstacle {}", i + 1));
+            let shape = table.get_ref().shape(&source, &name, &table.span())?;
+            let (_, mesh) = meshes.of(&source, &name, &shape)?;
             let expected = "rows [TIME, x, y, z] or [TIME, x, y, z, α, β, γ], times increasing";
-            let rows = timed_rows(&source, &shown, &path, [6, 3], expected)?;
+            let shown = crate::text::clipped(&name).to_string();
+            let rows = timed_rows(&source, &shown, path, [6, 3], expected)?;
             let row = |row: &Vec<f64>| std::array::from_fn(|i| row.get(i).copied().unwrap_or(0.0));
-            movers.push(RigidMoving { name: entry.name, mesh, path: rows.iter().map(row).collect() });
+            movers.push(RigidMoving { name, mesh, path: rows.iter().map(row).collect() });
         }
 
         let own: Vec<usize> = if planar { IN_THE_PLANE.to_vec() } else { (0..6).collect() };
@@ -321,7 +298,7 @@ mod tests {
     #[test]
     fn faults_have_their_place() {
         for (from, to, line, words) in [
-            ("box = [0.4", "box = [0", 2, "a side of the box"),
+            ("box = [0.4", "box = [0", 2, "the length in x of the box"),
             ("[-3, -3, -1]", "[-3, 4, -1]", 3, "enclose nothing"),
             ("[-2, 0, 0, 0, 0, 0]", "[-2, 0, 0]", 6, "the start has 3"),
             ("{ x = 2", "{ x = 2, beta = 2", 7, "a quarter turn"),

@@ -5,12 +5,12 @@ mod problem;
 mod tests;
 mod urdf_mesh;
 
-pub(crate) use problem::Figures;
 pub use problem::{RobotProblem, read_robot_text};
 
 use crate::drive::{DriveTable, Driven};
 use crate::error::Error;
 use crate::files::decode;
+use crate::shape::{ShapeEntry, Shaped};
 use crate::toml_problem::{GoalEntry, MotionPlaces, MotionTable, TomlText};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -20,32 +20,15 @@ use toml::Spanned;
 /// The page that describes the format.
 const GUIDE: &str = "the format is described in docs/formats/robot-problem.md";
 
-/// The shape of an obstacle, as the file gives it: metres, centred on its own origin.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ObstacleShape {
-    /// The name of a mesh file.
-    Mesh(String),
-    /// The lengths of the sides.
-    Box([f64; 3]),
-    /// The radius.
-    Sphere(f64),
-    /// Radius and height, about Z.
-    Cylinder([f64; 2]),
-}
-
 /// An obstacle of a [`RobotFile`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObstacleEntry {
     /// Its name in messages.
     pub name: String,
-    /// Its shape.
-    pub shape: ObstacleShape,
-    /// Whether a mesh is a solid; other shapes always are.
-    pub solid: bool,
+    /// Its shape, and where it is in the text.
+    pub(crate) shape: (ShapeEntry, Range<usize>),
     /// x, y, z, α, β, γ.
     pub pose: [f64; 6],
-    /// Where the shape is in the text.
-    span: Range<usize>,
 }
 
 /// The content of a robot problem file; the files that it names are not yet read.
@@ -118,7 +101,7 @@ struct File {
     robot: Spanned<RobotTable>,
     motion: MotionTable,
     #[serde(default)]
-    obstacle: Vec<Spanned<ObstacleTable>>,
+    obstacle: Vec<Spanned<Shaped<ObstacleTable>>>,
 }
 
 #[derive(Deserialize)]
@@ -154,14 +137,8 @@ enum BaseEntry {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ObstacleTable {
-    pub(crate) name: Option<String>,
-    pub(crate) mesh: Option<Spanned<String>>,
-    pub(crate) solid: Option<Spanned<bool>>,
-    #[serde(rename = "box")]
-    pub(crate) cuboid: Option<Spanned<[f64; 3]>>,
-    pub(crate) sphere: Option<Spanned<f64>>,
-    pub(crate) cylinder: Option<Spanned<[f64; 2]>>,
-    pub(crate) pose: Option<Spanned<[f64; 6]>>,
+    name: Option<String>,
+    pose: Option<Spanned<[f64; 6]>>,
 }
 
 impl RobotFile {
@@ -218,8 +195,7 @@ impl RobotFile {
             let message = "nothing moves around this robot, so that it needs no speed";
             return Err(source.error(place, message).expected("no `speed` in [motion]"));
         }
-        let obstacles = obstacle.into_iter().enumerate();
-        let obstacles = obstacles.map(|(i, o)| entry(&source, i, o.span(), o.into_inner()));
+        let obstacles = obstacle.iter().enumerate().map(|(i, table)| entry(&source, i, table));
         let places = Places {
             urdf: robot.urdf.span(),
             srdf: robot.srdf.as_ref().map_or(0..0, Spanned::span),
@@ -330,40 +306,11 @@ fn base_of(
 pub(crate) fn entry(
     source: &TomlText<'_>,
     index: usize,
-    span: Range<usize>,
-    table: ObstacleTable,
+    table: &Spanned<Shaped<ObstacleTable>>,
 ) -> Result<ObstacleEntry, Error> {
-    let name = table.name.unwrap_or_else(|| format!("obstacle {}", index + 1));
-    let mut shapes = Vec::new();
-    if let (Some(solid), None) = (&table.solid, &table.mesh) {
-        let message = format!("{} has `solid`, and no mesh", crate::text::clipped(&name));
-        return Err(source
-            .error(&solid.span(), message)
-            .expected("`solid` beside `mesh`: a box, a sphere or a cylinder is a solid"));
-    }
-    let solid = table.solid.is_some_and(Spanned::into_inner);
-    if let Some(mesh) = table.mesh {
-        shapes.push((mesh.span(), ObstacleShape::Mesh(mesh.into_inner())));
-    }
-    if let Some(sides) = table.cuboid {
-        source.positive("a side of the box", sides.get_ref(), &sides.span())?;
-        shapes.push((sides.span(), ObstacleShape::Box(sides.into_inner())));
-    }
-    if let Some(radius) = table.sphere {
-        source.positive("the radius", &[*radius.get_ref()], &radius.span())?;
-        shapes.push((radius.span(), ObstacleShape::Sphere(radius.into_inner())));
-    }
-    if let Some(sizes) = table.cylinder {
-        source.positive("the radius or height of the cylinder", sizes.get_ref(), &sizes.span())?;
-        shapes.push((sizes.span(), ObstacleShape::Cylinder(sizes.into_inner())));
-    }
-    let pose = source.six("the pose", table.pose)?;
-    let count = shapes.len();
-    match shapes.pop() {
-        Some((span, shape)) if count == 1 => Ok(ObstacleEntry { name, shape, solid, pose, span }),
-        _ => {
-            let message = format!("{} has {count} shapes", crate::text::clipped(&name));
-            Err(source.error(&span, message).expected("one of `mesh`, `box`, `sphere`, `cylinder`"))
-        }
-    }
+    let own = &table.get_ref().own;
+    let name = own.name.clone().unwrap_or_else(|| format!("obstacle {}", index + 1));
+    let shape = table.get_ref().shape(source, &name, &table.span())?;
+    let pose = source.six("the pose", own.pose.clone())?;
+    Ok(ObstacleEntry { name, shape, pose })
 }

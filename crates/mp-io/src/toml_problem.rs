@@ -31,6 +31,15 @@ impl TomlText<'_> {
         })
     }
 
+    /// A value of the text, as another type.
+    pub(crate) fn value<T: DeserializeOwned>(&self, value: &Spanned<toml::Value>) -> Result<T, Error> {
+        let read = T::deserialize(value.get_ref().clone());
+        read.map_err(|e| {
+            let message = e.message().split_whitespace().collect::<Vec<_>>().join(" ");
+            self.error(&value.span(), crate::text::clipped_to(&message, 300)).with_kind(ErrorKind::Format)
+        })
+    }
+
     /// An error at `span`.
     pub(crate) fn error(&self, span: &Range<usize>, message: impl Into<String>) -> Error {
         let length = span.end.saturating_sub(span.start).max(1);

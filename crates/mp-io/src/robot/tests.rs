@@ -63,6 +63,41 @@ fn equal_primitives_share_a_mesh() {
     assert_eq!(*meshes[2], mp_geom::primitives::sphere(around, 3).unwrap());
 }
 
+/// All shapes, in every kind of file.
+#[test]
+fn shapes_are_read() {
+    let cloud = "# a cloud\n0 0 0\n0.5, 0, 0, 255\n  1 0 0.25 7 7\n";
+    for (shape, size, solids) in [
+        ("capsule = [0.25, 1]", [0.5, 0.5, 1.5], 1),
+        ("cone = [0.5, 2]", [1.0, 1.0, 2.0], 1),
+        ("torus = [1, 0.25]", [2.5, 2.5, 0.5], 1),
+        ("tetrahedron = 1", [0.87, 1.0, 0.82], 1),
+        ("hull = [[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3], [0.1, 0.1, 0.1]]", [1.0, 2.0, 3.0], 1),
+        ("points = { radius = 0.05, at = [[0, 0, 0], [1, 0, 0.25]] }", [1.1, 0.1, 0.35], 2),
+        ("points = { radius = 0.05, file = \"cloud.xyz\" }", [1.1, 0.1, 0.35], 3),
+        (
+            "height_field = { cell = [0.5, 1], heights = [[0, 1, 0], [0, 1, 2]], bottom = -1 }",
+            [1.0, 1.0, 3.0],
+            1,
+        ),
+    ] {
+        let (dir, path) = folder(&GOOD.replace("sphere = 0.25", shape));
+        std::fs::write(dir.path().join("cloud.xyz"), cloud).unwrap();
+        let mesh = &RobotProblem::load(&path).unwrap().obstacles[1].mesh;
+        let found = mesh.aabb().max - mesh.aabb().min;
+        assert!((0..3).all(|i| (found[i] - size[i]).abs() < 0.08), "{shape}: {found}");
+        assert_eq!(mesh.solids().len(), solids, "{shape}");
+        // The same as a body that moves, and as an obstacle that does.
+        let rigid = format!(
+            "[robot]\n{shape}\n[motion]\nstart = [0, 0, 9, 0, 0, 0]\ngoal = [1, 0, 9, 0, 0, 0]\nspeed = 1\n\
+             [[moving]]\n{shape}\npath = [[0, 0, 0, 0], [1, 1, 0, 0]]\n"
+        );
+        std::fs::write(&path, rigid).unwrap();
+        let task = crate::RigidTask::load_from(&crate::Disk, &path).unwrap();
+        assert_eq!((&task.problem.robot.mesh, &task.moving[0].mesh), (mesh, mesh), "{shape}");
+    }
+}
+
 #[test]
 fn faults_have_their_place() {
     let mut wrong = Vec::new();
@@ -77,10 +112,22 @@ fn faults_have_their_place() {
         ("[[1, 0], [0.0, -1]]", "[]", 8, "no goals"),
         ("goals = [[1, 0], [0.0, -1]]", "goal = [1, 0]\ngoals = [[1, 0]]", 9, "a goal and a list"),
         ("[-1, 1.5]", "[1.5, -1]", 4, "limits of elbow"),
-        ("[1, 2, 0.1]", "[1, 0, 0.1]", 12, "side of the box"),
+        ("[1, 2, 0.1]", "[1, 0, 0.1]", 12, "length in y of the box"),
         ("sphere = 0.25", "sphere = -0.25", 15, "radius"),
-        ("sphere = 0.25", "sphere = 0.25\nbox = [1, 1, 1]", 14, "2 shapes"),
+        ("sphere = 0.25", "sphere = 0.25\nbox = [1, 1, 1]", 16, "2 shapes"),
         ("sphere = 0.25", "", 14, "0 shapes"),
+        ("sphere = 0.25", "sphere = [0.25, 1]", 15, "expected f64"),
+        ("sphere = 0.25", "capsule = 0.25", 15, "capsule = [radius, length]"),
+        ("sphere = 0.25", "capsule = [0.25, \"long\"]", 15, "long"),
+        ("sphere = 0.25", "teapot = 0.25", 15, "teapot"),
+        ("sphere = 0.25", "sphere = 0.25\nsolid = true", 16, "no mesh"),
+        ("sphere = 0.25", "hull = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]", 15, "no inside"),
+        ("sphere = 0.25", "hull = [[0, 0], [1, 0]]", 15, ""),
+        ("sphere = 0.25", "points = { radius = 0.1 }", 15, "two places, or in none"),
+        ("sphere = 0.25", "points = { radius = 0.1, file = \"lost.xyz\" }", 15, "lost.xyz"),
+        ("sphere = 0.25", "points = { radius = -0.1, at = [[0, 0, 0]] }", 15, "radius"),
+        ("sphere = 0.25", "height_field = { cell = [1, 1], heights = [[0, 1], [0]] }", 15, "equally long"),
+        ("sphere = 0.25", "height_field = { cell = [1, 1], heights = [[0, nan]] }", 15, "NaN"),
         ("0.5, 0, 0, 0]", "0.5]", 3, ""),
         ("wall.off", "wal.off", 19, "wal.off"),
         ("arm.urdf", "leg.urdf", 2, "leg.urdf"),

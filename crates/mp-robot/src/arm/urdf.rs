@@ -7,12 +7,12 @@ use super::xml::some;
 use super::{ArmModel, Joint, JointKind, Link, UrdfError};
 use extract::{Extract, extract};
 use mp_cspace::Interrupt;
-use mp_geom::{TriMesh, primitives};
+use mp_geom::{Shape, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::collections::HashMap;
 use urdf_rs::{Geometry, JointType};
 
-/// Segments around a cylinder or a capsule. The mesh contains the shape.
+/// Sides of the sheet in place of a cylinder without height, which contains it.
 const SEGMENTS: u32 = 32;
 
 impl ArmModel {
@@ -182,9 +182,8 @@ fn without_volume(geometry: &Geometry) -> Option<Result<Option<TriMesh>, String>
         Geometry::Box { size } => size.0,
         Geometry::Sphere { radius } => [2.0 * radius; 3],
         Geometry::Cylinder { radius, length } => [2.0 * radius, 2.0 * radius, *length],
-        Geometry::Capsule { radius, length } if *length == 0.0 && *radius > 0.0 => {
-            return Some(ball(*radius).map(Some));
-        }
+        // A ball.
+        Geometry::Capsule { radius, length } if *length == 0.0 && *radius > 0.0 => return None,
         Geometry::Capsule { radius, length } => [2.0 * radius, 2.0 * radius, *length],
         Geometry::Mesh { .. } => return None,
     };
@@ -196,9 +195,11 @@ fn without_volume(geometry: &Geometry) -> Option<Result<Option<TriMesh>, String>
         ([], _) => return Some(Ok(None)),
         (&[x, y], Geometry::Cylinder { radius, .. }) => (0..SEGMENTS)
             .map(|i| {
-                let (sin, cos) = mp_math::sin_cos(std::f64::consts::TAU * f64::from(i) / f64::from(SEGMENTS));
+                let turn = std::f64::consts::TAU / f64::from(SEGMENTS);
+                let (sin, cos) = mp_math::sin_cos(turn * f64::from(i));
+                let around = radius / mp_math::cos(0.5 * turn);
                 let mut corner = Point3::origin();
-                (corner[x], corner[y]) = (radius * grown() * cos, radius * grown() * sin);
+                (corner[x], corner[y]) = (around * cos, around * sin);
                 corner
             })
             .collect(),
@@ -219,25 +220,17 @@ fn without_volume(geometry: &Geometry) -> Option<Result<Option<TriMesh>, String>
     Some(TriMesh::new(corners, triangles).map(Some).map_err(|error| error.to_string()))
 }
 
-/// How much larger than a circle the polygon of [`SEGMENTS`] sides around it is.
-fn grown() -> f64 {
-    1.0 / mp_math::cos(std::f64::consts::PI / f64::from(SEGMENTS))
-}
-
 /// The shape as a mesh, in its own frame.
 fn shape(
     geometry: &Geometry,
     mesh: &mut impl FnMut(&str) -> Result<TriMesh, String>,
 ) -> Result<TriMesh, String> {
-    let grown = grown();
-    let made = match geometry {
-        Geometry::Box { size } => primitives::cuboid(size[0], size[1], size[2]),
-        Geometry::Cylinder { radius, length } => primitives::cylinder(radius * grown, *length, SEGMENTS),
-        Geometry::Sphere { radius } => return ball(*radius),
-        Geometry::Capsule { radius, length } => {
-            // Flat faces in both directions.
-            primitives::capsule(radius * grown * grown, *length, SEGMENTS, SEGMENTS / 4)
-        }
+    let shape = match geometry {
+        Geometry::Box { size } => Shape::primitive("box", &size.0),
+        Geometry::Cylinder { radius, length } => Shape::primitive("cylinder", &[*radius, *length]),
+        Geometry::Sphere { radius } => Shape::primitive("sphere", &[*radius]),
+        Geometry::Capsule { radius, length } if *length == 0.0 => Shape::primitive("sphere", &[*radius]),
+        Geometry::Capsule { radius, length } => Shape::primitive("capsule", &[*radius, *length]),
         Geometry::Mesh { filename, scale } => {
             let read = mesh(filename)?;
             let [x, y, z] = scale.map_or([1.0; 3], |scale| scale.0);
@@ -246,21 +239,9 @@ fn shape(
                     "the scale of {filename} is {x} {y} {z}: it must be finite and not zero"
                 ));
             }
-            return read.scaled([x, y, z]).map_err(|error| error.to_string());
+            Some(read.scaled([x, y, z]).map_err(|error| error.to_string())?.into())
         }
     };
-    made.map_err(|error| error.to_string())
-}
-
-/// A mesh that contains a ball: a sphere mesh enlarged until no face cuts the ball.
-fn ball(radius: f64) -> Result<TriMesh, String> {
-    let unit = primitives::sphere(1.0, 3).map_err(|error| error.to_string())?;
-    let inner = (0..unit.triangles().len())
-        .map(|i| {
-            let [a, b, c] = unit.triangle(i);
-            let normal = (b - a).cross(&(c - a));
-            normal.dot(&a.coords) / normal.norm()
-        })
-        .fold(1.0, f64::min);
-    primitives::sphere(radius / inner, 3).map_err(|error| error.to_string())
+    let made = shape.map(|shape| shape.mesh()).transpose().map_err(|error| error.to_string())?;
+    made.ok_or_else(|| "this shape is not known".to_owned())
 }
