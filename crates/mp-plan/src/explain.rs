@@ -48,6 +48,9 @@ fn fault(kind: &dyn Robot, q: &Configuration) -> Option<String> {
     if !kind.any_space().contains(q) {
         return Some(kind.out_of_bounds(q));
     }
+    if let Some(constraint) = kind.broken(q) {
+        return Some(format!("against the constraint `{constraint}`"));
+    }
     if kind.sampled().is_some() {
         return (!kind.any_checker().is_valid(q)).then(|| "in collision".to_owned());
     }

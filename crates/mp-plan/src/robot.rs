@@ -4,6 +4,7 @@ pub(crate) mod counted;
 pub(crate) mod motion;
 
 mod arm;
+mod constrained;
 mod driven;
 mod model;
 mod moving;
@@ -11,6 +12,8 @@ mod planar;
 mod rigid;
 
 pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace};
+pub(crate) use constrained::Constrained;
+pub use constrained::Constraint;
 pub(crate) use driven::greatest_speed;
 pub use driven::{Drivable, DrivenScene, SpeedBound};
 pub use model::{Drive, DriveModel, ModelBody, ModelFrame, ModelPair, ModelPart, MotionModel, Step};
@@ -294,6 +297,11 @@ pub trait Description: Motion {
 
     /// What to do about contacts at the start or a goal, besides moving it. By default there is nothing else.
     fn remedy(&self, _touching: &[Touch]) -> Option<String> {
+        None
+    }
+
+    /// The [constraint](crate::Constraint) that does not hold at a configuration. By default there is none.
+    fn broken(&self, _q: &Configuration) -> Option<String> {
         None
     }
 

@@ -5,6 +5,7 @@ use crate::finish::certificate::certificate;
 use crate::finish::check::check;
 use crate::finish::finish_given;
 use crate::path::state;
+use crate::robot::Constrained;
 #[cfg(feature = "ranks")]
 use crate::run::FoundRun;
 use crate::run::plan::plan;
@@ -15,8 +16,8 @@ use crate::run::prepared::Prepared;
 use crate::run::scene_roadmap::SceneRoadmap;
 use crate::sweep::{sweep, track};
 use crate::{
-    Body, Certificate, Column, Control, Error, Explanation, Finished, Length, PathFileKind, PathFormat,
-    PathRows, PreparedRun, RelaxField, Report, Request, Robot, Sweep, Track, Verdict,
+    Body, Certificate, Column, Constraint, Control, Error, Explanation, Finished, Length, PathFileKind,
+    PathFormat, PathRows, PreparedRun, RelaxField, Report, Request, Robot, Sweep, Track, Verdict,
 };
 use mp_cspace::registry::PlannerInfo;
 use mp_cspace::{Configuration, Interrupt, Interrupted, Rng, Space, Validity};
@@ -328,6 +329,27 @@ impl Scene {
             true => Ok(self.clone()),
             false => Ok(Self { robot: self.robot.any_keeping(clearance)?, ..self.clone() }),
         }
+    }
+
+    /// The same scene, in which a constraint of yours must hold too, all along every path: whatever the robot is, and in every use of
+    /// the scene. It is sampled, where collisions are certified.
+    ///
+    /// ```
+    /// use mp_plan::{Constraint, Request, Scene};
+    /// use mp_cspace::Length;
+    ///
+    /// // A body that must stay below a ceiling.
+    /// let low = Constraint::new("below 1.5 m", Length::Fraction(0.005), |row| row[2] <= 1.5);
+    /// let report = Scene::load("easy")?.under(low)?.plan(&Request::default())?;
+    /// assert!(report.path.iter().flatten().all(|row| row[2] <= 1.5));
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the distance between tested states is not above zero, or below 10⁻⁹ of the extent of the space.
+    pub fn under(&self, constraint: Constraint) -> Result<Self, Error> {
+        let robot = Arc::new(Constrained::new(Arc::clone(&self.robot), constraint)?);
+        Ok(Self { robot, document: None, ..self.clone() })
     }
 
     /// The clearance (m) that paths [keep](Self::keeping) from obstacles: zero unless told to.

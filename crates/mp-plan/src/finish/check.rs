@@ -163,7 +163,9 @@ pub(crate) fn fault_text(kind: &dyn Robot, path: &Path<Configuration>, fault: Pa
     let state = kind.any_space().interpolate(from, to, check.failed_at().unwrap_or(0.0));
     let at: Vec<_> = kind.row(&state).into_iter().map(plain).collect();
     let touching = kind.touching(&state);
+    let broken = kind.broken(&state);
     let what = match (check, touching.is_empty()) {
+        _ if let Some(constraint) = &broken => format!("is against the constraint `{constraint}`"),
         _ if kind.sampled().is_some() => "collides".to_owned(),
         (_, true) if kind.kept() > 0.0 => {
             format!("comes nearer to an obstacle than {} m", brief(kind.kept()))

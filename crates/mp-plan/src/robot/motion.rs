@@ -172,16 +172,16 @@ impl<K: TypedMotion + Robot> AnyMotion for K {
         AnyFactored::new(self.space())
     }
     fn any_checker(&self) -> AnyChecker {
-        AnyChecker(Box::new(self.checker().clone()))
+        AnyChecker::new(self.checker().clone())
     }
     fn any_measure(&self) -> AnyChecker {
-        AnyChecker(Box::new(self.checker_keeping(0.0).unwrap_or_else(|| self.checker().clone())))
+        AnyChecker::new(self.checker_keeping(0.0).unwrap_or_else(|| self.checker().clone()))
     }
     fn any_keeping(&self, kept: f64) -> Result<Arc<dyn Robot>, Error> {
         Ok(Arc::new(self.keeping(kept)?))
     }
     fn any_verifier(&self) -> Result<AnyVerifier<'_>, Error> {
-        Ok(AnyVerifier(Box::new(self.verifier()?)))
+        Ok(AnyVerifier::new(self.verifier()?))
     }
     fn any_obstacles<'c>(&'c self, counting: &Counting<'c>) -> ObstacleKnowledge<'c, Configuration> {
         self.obstacles(&|| counting.of(self.checker().clone()))
@@ -289,6 +289,13 @@ impl<V: MotionValidity<Configuration> + Clone + Send + Sync> ErasedVerifier for 
 
 /// Any verifier behind a pointer.
 pub struct AnyVerifier<'c>(Box<dyn ErasedVerifier + 'c>);
+
+impl<'c> AnyVerifier<'c> {
+    /// `verifier`, behind a pointer.
+    pub(crate) fn new(verifier: impl MotionValidity<Configuration> + Clone + Send + Sync + 'c) -> Self {
+        Self(Box::new(verifier))
+    }
+}
 
 impl Clone for AnyVerifier<'_> {
     fn clone(&self) -> Self {

@@ -1,6 +1,7 @@
 //! Scenes planned in, in one program: each would link all of the library again.
 
 mod clearance;
+mod constrained;
 mod field;
 mod find;
 mod fuzz;
