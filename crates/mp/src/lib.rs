@@ -59,6 +59,7 @@
 //! `examples/arm.rs` plan on one. With [`plan::Scene`] this takes three lines, with shortening, pictures and a report
 //! included; the program `mp` is built on it.
 
+pub use mp_batch as batch;
 pub use mp_collide as collide;
 pub use mp_control as control;
 pub use mp_cspace as cspace;
