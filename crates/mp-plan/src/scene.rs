@@ -480,7 +480,7 @@ impl Scene {
         Ok(SceneRoadmap { roadmap, file: self.file.as_ref().map(|file| file.display().to_string()) })
     }
 
-    /// The work on a roadmap by regions, for the ranks of a cluster: one round of the planner `regional-prm`. Its parameters say how large
+    /// The work on a roadmap by regions, in items that may be done anywhere: one round of the planner `regional-prm`. Its parameters say how large
     /// the roadmap is. The request has no budget but that of time, which is for the caller to watch. A request with a clearance needs the
     /// scene that [`for_request`](Self::for_request) gives.
     ///

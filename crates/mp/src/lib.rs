@@ -13,6 +13,8 @@
 //! | [`roadmap`] | the PRM family |
 //! | [`io`] | meshes, scenes, problems and paths in files |
 //! | [`render`] | pictures of scenes in space and in the plane |
+//! | [`plan`] | a scene in, a verified path out |
+//! | [`batch`] | many runs: lists of problems, races, work for clusters |
 //!
 //! # A tour
 //! A body that must pass through a window, from its mesh to a verified path:
