@@ -89,7 +89,7 @@ pub struct Report {
     pub columns: Vec<Column>,
     /// The path, one configuration in each row, start first.
     pub path: Option<Vec<Vec<f64>>>,
-    /// Of a [portfolio](crate::Scene::portfolio), its runs; the other members are then those of the winner.
+    /// Of a portfolio (`mp-batch`), its runs; the other members are then those of the winner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub portfolio: Option<PortfolioCounts>,
 }

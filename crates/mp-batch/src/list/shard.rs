@@ -8,7 +8,7 @@ use std::str::FromStr;
 /// The part `index` of `of` parts of a list, both from 1: every item whose number, modulo `of`, is `index` − 1. As text, `2/5`.
 ///
 /// ```
-/// let shard: mp_plan::Shard = "2/3".parse()?;
+/// let shard: mp_batch::Shard = "2/3".parse()?;
 /// assert_eq!(shard.items(8).collect::<Vec<_>>(), [1, 4, 7]);
 /// # Ok::<(), mp_plan::Error>(())
 /// ```
