@@ -33,6 +33,7 @@ mod in_order;
 mod job;
 mod list;
 mod many;
+mod pieces;
 mod portfolio;
 mod ranks;
 #[cfg(feature = "roadmaps")]

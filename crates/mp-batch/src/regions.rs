@@ -1,6 +1,7 @@
 //! A roadmap by regions, built by the ranks of a cluster.
 
 use crate::job;
+use crate::pieces::{Reader, Writer};
 use crate::ranks::{broadcast, run};
 use mp_cspace::Interrupt;
 use mp_plan::{Error, RegionalWork, Request, Scene, SceneRoadmap};
@@ -52,7 +53,7 @@ pub fn build_regions(
     if !complete? || all.is_empty() {
         return Ok(None);
     }
-    let built = split(&all);
+    let built = split(&all)?;
     let of_pair = |item: u64| {
         let pair = work.pair(item).unwrap_or_default();
         pair.map(|region| built.get(region as usize).copied().unwrap_or_default())
@@ -135,24 +136,15 @@ impl Phases<'_> {
 
     /// The results of the first items, for [`split`]. Not empty.
     fn joined(&self, items: u64) -> Vec<u8> {
-        let mut joined = items.to_le_bytes().to_vec();
-        for result in self.results.iter().take(items as usize).flatten() {
-            joined.extend((result.len() as u64).to_le_bytes());
-            joined.extend(result);
-        }
-        joined
+        let mut joined = Writer::new();
+        joined.number(items as usize);
+        self.results.iter().take(items as usize).flatten().for_each(|result| joined.bytes(result));
+        joined.0
     }
 }
 
 /// The results in what the master has joined.
-fn split(joined: &[u8]) -> Vec<&[u8]> {
-    let (mut results, mut rest) = (Vec::new(), joined.get(size_of::<u64>()..).unwrap_or_default());
-    while let Some((length, after)) = rest.split_first_chunk() {
-        let Some((result, after)) = after.split_at_checked(u64::from_le_bytes(*length) as usize) else {
-            break;
-        };
-        results.push(result);
-        rest = after;
-    }
-    results
+fn split(joined: &[u8]) -> Result<Vec<&[u8]>, Error> {
+    let mut joined = Reader::new(joined)?;
+    (0..joined.number()?).map(|_| joined.bytes()).collect()
 }

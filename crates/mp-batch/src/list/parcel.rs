@@ -2,6 +2,7 @@
 
 use super::scenes::{InFolder, Known, Source, fingerprint_of, hexadecimal};
 use super::{ListedProblems, ProblemList, SceneFingerprint, changed};
+use crate::pieces::{Reader, Writer, torn};
 use crate::ranks::broadcast;
 use mp_io::{ErrorKind, Files};
 use mp_plan::{Error, Request, Scene, SceneFiles, shipped_files};
@@ -9,9 +10,6 @@ use mp_ranks::Link;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// What such bytes begin with.
-const FORMAT: &str = "mp parcel 2";
 
 impl ListedProblems {
     /// The list and all files of its scenes.
@@ -143,20 +141,61 @@ pub fn scene_on_ranks(
         }
         let mut parcel = Reader::new(&bytes)?;
         let request = serde_json::from_str(parcel.text()?).map_err(|_| torn())?;
-        return Ok(Some((parcel.scene()?, request)));
+        return Ok(Some((unpack(&mut parcel)?, request)));
     }
     let loaded = load().and_then(|(scene, request)| {
         let mut parcel = Writer::new();
         if link.ranks() > 1 {
             let text = serde_json::to_string(&request);
             parcel.text(&text.map_err(|e| Error::new(format!("the request is not valid: {e}")))?);
-            parcel.scene(&scene)?;
+            pack(&scene, &mut parcel)?;
         }
         Ok(((scene, request), parcel.0))
     });
     match loaded {
         Ok((loaded, parcel)) => broadcast(link, parcel).map(|_| Some(loaded)),
         Err(e) => broadcast(link, Vec::new()).and(Err(e)),
+    }
+}
+
+/// Writes a scene, with all files that it was read from.
+fn pack(scene: &Scene, parcel: &mut Writer) -> Result<(), Error> {
+    let file = scene.file().ok_or_else(|| {
+        Error::new("a scene that was read from no file cannot be sent to other ranks")
+            .help("write it to a file")
+    })?;
+    let contents = scene.input_files()?;
+    parcel.path(file);
+    parcel.number(contents.len());
+    for (name, (_, bytes)) in scene.inputs().iter().zip(&contents) {
+        parcel.path(name);
+        parcel.bytes(bytes);
+    }
+    parcel.number(scene.files().folders.len());
+    for (folder, absolute) in &scene.files().folders {
+        parcel.path(folder);
+        parcel.path(absolute);
+    }
+    Ok(())
+}
+
+/// Reads a scene. What it reads here must be what it read there.
+fn unpack(parcel: &mut Reader<'_>) -> Result<Scene, Error> {
+    let file = parcel.path()?;
+    let (mut sent, mut inputs) = (Sent::default(), Vec::new());
+    for _ in 0..parcel.number()? {
+        let name = parcel.path()?;
+        sent.files.insert(name.clone(), parcel.bytes()?.to_vec());
+        inputs.push(name);
+    }
+    for _ in 0..parcel.number()? {
+        sent.folders.insert(parcel.path()?, parcel.path()?);
+    }
+    let scene = Scene::load_from(&sent, &file)?;
+    match scene.inputs() == inputs {
+        true => Ok(scene),
+        false => Err(Error::new(format!("the scene {} is read otherwise here", file.display()))
+            .help("start the same program on all nodes")),
     }
 }
 
@@ -189,110 +228,4 @@ impl Files for Sent {
     fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
         self.folders.get(folder).cloned().ok_or_else(|| std::io::ErrorKind::NotFound.into())
     }
-}
-
-/// Pieces of bytes, each after its length.
-struct Writer(Vec<u8>);
-
-impl Writer {
-    fn new() -> Self {
-        let mut parcel = Self(Vec::new());
-        parcel.text(FORMAT);
-        parcel.text(env!("CARGO_PKG_VERSION"));
-        parcel
-    }
-    /// A scene, with all files that it was read from.
-    fn scene(&mut self, scene: &Scene) -> Result<(), Error> {
-        let file = scene.file().ok_or_else(|| {
-            Error::new("a scene that was read from no file cannot be sent to other ranks")
-                .help("write it to a file")
-        })?;
-        let contents = scene.input_files()?;
-        self.path(file);
-        self.number(contents.len());
-        for (name, (_, bytes)) in scene.inputs().iter().zip(&contents) {
-            self.path(name);
-            self.bytes(bytes);
-        }
-        self.number(scene.files().folders.len());
-        for (folder, absolute) in &scene.files().folders {
-            self.path(folder);
-            self.path(absolute);
-        }
-        Ok(())
-    }
-    fn number(&mut self, number: usize) {
-        self.0.extend((number as u64).to_le_bytes());
-    }
-    fn bytes(&mut self, bytes: &[u8]) {
-        self.number(bytes.len());
-        self.0.extend(bytes);
-    }
-    fn text(&mut self, text: &str) {
-        self.bytes(text.as_bytes());
-    }
-    /// A name that is not UTF-8 fails where it is read.
-    fn path(&mut self, path: &Path) {
-        self.bytes(path.as_os_str().as_encoded_bytes());
-    }
-}
-
-/// Reads what a [`Writer`] wrote.
-struct Reader<'b>(&'b [u8]);
-
-impl<'b> Reader<'b> {
-    /// What a [`Writer`] of the same version wrote.
-    fn new(bytes: &'b [u8]) -> Result<Self, Error> {
-        let mut parcel = Self(bytes);
-        if parcel.text()? != FORMAT {
-            return Err(torn());
-        }
-        let version = parcel.text()?;
-        if version != env!("CARGO_PKG_VERSION") {
-            let own = env!("CARGO_PKG_VERSION");
-            let message = format!("this rank has version {own} of the program, and the master {version}");
-            return Err(Error::new(message).help("start the same program on all nodes"));
-        }
-        Ok(parcel)
-    }
-    /// A scene. What it reads here must be what it read there.
-    fn scene(&mut self) -> Result<Scene, Error> {
-        let file = self.path()?;
-        let (mut sent, mut inputs) = (Sent::default(), Vec::new());
-        for _ in 0..self.number()? {
-            let name = self.path()?;
-            sent.files.insert(name.clone(), self.bytes()?.to_vec());
-            inputs.push(name);
-        }
-        for _ in 0..self.number()? {
-            sent.folders.insert(self.path()?, self.path()?);
-        }
-        let scene = Scene::load_from(&sent, &file)?;
-        match scene.inputs() == inputs {
-            true => Ok(scene),
-            false => Err(Error::new(format!("the scene {} is read otherwise here", file.display()))
-                .help("start the same program on all nodes")),
-        }
-    }
-    fn number(&mut self) -> Result<usize, Error> {
-        let (number, rest) = self.0.split_first_chunk::<8>().ok_or_else(torn)?;
-        self.0 = rest;
-        usize::try_from(u64::from_le_bytes(*number)).map_err(|_| torn())
-    }
-    fn bytes(&mut self) -> Result<&'b [u8], Error> {
-        let length = self.number()?;
-        let (bytes, rest) = self.0.split_at_checked(length).ok_or_else(torn)?;
-        self.0 = rest;
-        Ok(bytes)
-    }
-    fn text(&mut self) -> Result<&'b str, Error> {
-        std::str::from_utf8(self.bytes()?).map_err(|_| torn())
-    }
-    fn path(&mut self) -> Result<PathBuf, Error> {
-        Ok(self.text()?.into())
-    }
-}
-
-fn torn() -> Error {
-    Error::new("what the master sent did not arrive whole").help("start the same program on all nodes")
 }
