@@ -19,6 +19,7 @@ static MEMORY: Bounded = Bounded;
 enum Target {
     Io(mp_io::fuzz::Target),
     Plan(mp_plan::fuzz::Target),
+    Batch(mp_batch::fuzz::Target),
     View(mp_view::fuzz::Target),
     Tree(tree::Target),
     Certificate(certificate::Target),
@@ -31,6 +32,8 @@ const TARGET: Target = {
         Target::Io(target)
     } else if let Some(target) = find(&mp_plan::fuzz::TARGETS, NAME) {
         Target::Plan(target)
+    } else if let Some(target) = find(&mp_batch::fuzz::TARGETS, NAME) {
+        Target::Batch(target)
     } else if let Some(target) = find(&mp_view::fuzz::TARGETS, NAME) {
         Target::View(target)
     } else if let Some(target) = find(&tree::TARGETS, NAME) {
@@ -48,6 +51,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     match TARGET {
         Target::Io(target) => drop(target(bytes)),
         Target::Plan(target) => drop(target(bytes)),
+        Target::Batch(target) => drop(target(bytes).inspect_err(mp_plan::fuzz::check_error)),
         Target::View(target) => drop(target(bytes)),
         Target::Tree(target) => drop(target(bytes)),
         Target::Certificate(target) => drop(target(bytes)),

@@ -2,7 +2,8 @@
 
 use crate::output::{Teller, note, print};
 use clap::Args;
-use mp_plan::{Error, ListedProblems, ManyOptions, ManyOutcome, Shard, Tally, positive_number};
+use mp_batch::{ListedProblems, ManyOptions, ManyOutcome, Shard, Tally};
+use mp_plan::{Error, positive_number};
 use mp_ranks::Link;
 use mp_stop::Cancel;
 use std::path::PathBuf;

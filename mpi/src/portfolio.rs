@@ -4,9 +4,10 @@ use crate::output::{Teller, note, print};
 use crate::request::Problem;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use mp_batch::{Portfolio, PortfolioOptions};
 use mp_plan::{
-    Claims, Control, Error, PathFileKind, PathRows, Portfolio, PortfolioOptions, PortfolioSchedule, Progress,
-    Request, Scene, Watch, write_file,
+    Claims, Control, Error, PathFileKind, PathRows, PortfolioSchedule, Progress, Request, Scene, Watch,
+    write_file,
 };
 use mp_ranks::Link;
 use mp_stop::Cancel;
@@ -81,7 +82,7 @@ pub(crate) fn run(args: &Race, link: &dyn Link, cancel: &Cancel) -> Result<bool,
     let options = PortfolioOptions { threads: args.problem.threads(), checkpoint: args.checkpoint.clone() };
     let mut watcher = Watcher(Teller::new());
     let mut control = Control::new(cancel.clone(), &mut watcher);
-    let outcome = scene.portfolio_on(link, &request, &portfolio, &options, &mut control)?;
+    let outcome = portfolio.plan_on(link, &scene, &request, &options, &mut control)?;
     let Some(outcome) = outcome else { return Ok(true) };
     if outcome.known > 0 {
         note(&format!("went on after {} runs", outcome.known));

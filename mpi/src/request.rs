@@ -49,7 +49,7 @@ impl Problem {
         planner: impl FnOnce(&Scene) -> String,
         check: impl FnOnce(&Scene, &Request) -> Result<(), Error>,
     ) -> Result<Option<(Scene, Request)>, Error> {
-        Scene::on_ranks(link, || {
+        mp_batch::scene_on_ranks(link, || {
             let scene = Scene::find_until(&self.scene, &Interrupt::new(cancel.clone()))?;
             scene.notes().iter().for_each(|line| crate::output::note(&format!("note: {line}")));
             let request = self.request(planner(&scene))?;

@@ -3,6 +3,7 @@
 use crate::output::{note, print};
 use crate::request::Problem;
 use clap::Args;
+use mp_batch::{build_regions, ranks_error, regions_checkpoint};
 use mp_plan::{Claims, Error, Request, Scene};
 use mp_ranks::{Link, Options};
 use mp_stop::Cancel;
@@ -58,7 +59,7 @@ pub(crate) fn run(args: &Regions, link: &dyn Link, cancel: &Cancel) -> Result<bo
         |_| PLANNER.to_owned(),
         |scene, request| {
             args.check(scene, request)?;
-            checkpoint = Some(scene.regions_checkpoint(request, &args.checkpoint())?);
+            checkpoint = Some(regions_checkpoint(scene, request, &args.checkpoint())?);
             Ok(())
         },
     )?;
@@ -71,7 +72,7 @@ pub(crate) fn run(args: &Regions, link: &dyn Link, cancel: &Cancel) -> Result<bo
         note(&format!("going on after {known} of {} items", work.items()));
     }
     let options = Options { threads: args.problem.threads(), cancel: cancel.clone() };
-    let built = work.over(link, &options, checkpoint.as_ref())?;
+    let built = build_regions(&work, link, &options, checkpoint.as_ref())?;
     if !link.is_master() {
         return Ok(true);
     }
@@ -81,7 +82,7 @@ pub(crate) fn run(args: &Regions, link: &dyn Link, cancel: &Cancel) -> Result<bo
     };
     roadmap.save(&args.roadmap)?;
     if let Some(checkpoint) = checkpoint {
-        checkpoint.delete()?;
+        checkpoint.delete().map_err(ranks_error)?;
     }
     print(&format!(
         "{} regions: {} nodes, {} edges, {} components",

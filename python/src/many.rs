@@ -5,7 +5,8 @@ use crate::error::{internal, to_python};
 use crate::interrupt::{Cancel, INTERVAL};
 use crate::report::parts;
 use crate::scene::{Scene, request};
-use mp_plan::{Control, Error, Report, Request, in_order};
+use mp_batch::in_order;
+use mp_plan::{Control, Error, Report, Request};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -161,7 +162,7 @@ impl Many {
 }
 
 impl Many {
-    /// Does `job` with all items, as [`mp_plan::plan_many`] does, in threads that the interpreter knows, and with functions that may fail.
+    /// Does `job` with all items, as [`mp_batch::plan_many`] does, in threads that the interpreter knows, and with functions that may fail.
     fn start<I: Send + 'static>(
         items: impl Iterator<Item = I> + Send + 'static,
         threads: usize,

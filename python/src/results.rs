@@ -3,7 +3,7 @@
 use crate::error::{ToPython, to_python};
 use crate::report::parts;
 use crate::scene::json;
-use mp_plan::ListResults;
+use mp_batch::ListResults;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};

@@ -92,7 +92,7 @@ impl Options {
     fn identity(&self) -> String {
         let mut same = self.clone();
         let c = &mut same.common;
-        (c.shard, c.threads, c.fresh) = (mp_plan::Shard::WHOLE, None, false);
+        (c.shard, c.threads, c.fresh) = (mp_batch::Shard::WHOLE, None, false);
         (c.out, c.merge, c.peer) = Default::default();
         format!("{:?} {:?} {:?} {:?} {:?}", same.suite, c, same.rsrt, same.roadmaps, same.rrs)
     }
@@ -133,7 +133,7 @@ pub fn run(options: &Options) -> Result<bool, Error> {
     if common.counted_time {
         clock::count();
     }
-    let (whole, command) = (common.shard == mp_plan::Shard::WHOLE, options.identity());
+    let (whole, command) = (common.shard == mp_batch::Shard::WHOLE, options.identity());
     if !common.merge.is_empty() {
         shards::begin(&common.out, &shards::merged(&common.merge, &command)?)?;
     }

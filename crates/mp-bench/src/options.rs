@@ -1,7 +1,8 @@
 //! Options that several suites have.
 
 use clap::Args;
-use mp_plan::{Shard, positive_number};
+use mp_batch::Shard;
+use mp_plan::positive_number;
 use std::path::PathBuf;
 
 /// The options of several suites.

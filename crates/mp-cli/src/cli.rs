@@ -2,8 +2,9 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
+use mp_batch::Shard;
 use mp_plan::{
-    Length, MetricName, Mode, MotionValidator, PlannerInfo, PortfolioSchedule, RelaxField, Request, Shard,
+    Length, MetricName, Mode, MotionValidator, PlannerInfo, PortfolioSchedule, RelaxField, Request,
     positive_number,
 };
 use std::ffi::OsStr;

@@ -5,7 +5,8 @@ use crate::input::is_standard;
 use crate::interrupt;
 use crate::output::{Claims, note, print};
 use crate::progress::Line;
-use mp_plan::{Error, ListedProblems, ManyOptions, ManyOutcome, Shard, Tally, merge_results};
+use mp_batch::{ListedProblems, ManyOptions, ManyOutcome, Shard, Tally, merge_results};
+use mp_plan::Error;
 use std::path::Path;
 
 /// Plans the problems of a list. True when all are planned, solved or not.

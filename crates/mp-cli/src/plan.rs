@@ -9,9 +9,10 @@ use crate::progress::Line;
 use crate::request::{request, request_for};
 use crate::text::{caption, summary, table};
 use crate::{interrupt, memory};
+use mp_batch::{Portfolio, PortfolioOptions};
 use mp_plan::{
-    Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Portfolio, PortfolioOptions,
-    Report, Request, Runs, Scene, StopReason, StoppedBy, in_parallel, make_folder,
+    Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Report, Request, Runs,
+    Scene, StopReason, StoppedBy, in_parallel, make_folder,
 };
 use mp_view::GrownTrees;
 use std::path::{Path, PathBuf};
@@ -225,7 +226,7 @@ impl How<'_> {
         let Some(runs) = self.args.portfolio else { return scene.plan_with(request, control) };
         let portfolio = Portfolio { runs, schedule: *schedule, unit: *unit, round: *round };
         let options = PortfolioOptions { threads: usize::from(self.threads), checkpoint: checkpoint.clone() };
-        let outcome = scene.portfolio(request, &portfolio, &options, control)?;
+        let outcome = portfolio.plan(scene, request, &options, control)?;
         if outcome.known > 0 {
             note(&format!("went on after {} runs", outcome.known));
         }

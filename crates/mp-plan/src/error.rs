@@ -164,18 +164,6 @@ impl From<mp_store::Error> for Error {
     }
 }
 
-#[cfg(feature = "ranks")]
-impl From<mp_ranks::Error> for Error {
-    fn from(error: mp_ranks::Error) -> Self {
-        match error {
-            mp_ranks::Error::Checkpoint { file, message, remedy } => {
-                Self::new(format!("{file}: {message}")).help(remedy)
-            }
-            other => Self::new(other.to_string()),
-        }
-    }
-}
-
 impl From<BuildError> for Error {
     fn from(error: BuildError) -> Self {
         let kind = match &error {

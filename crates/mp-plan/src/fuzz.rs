@@ -1,14 +1,10 @@
 //! Entry points for fuzzing, as those of [`mp_io::fuzz`]: everything that is read above single files. Scenes with the files that
-//! they name, robots, requests, options, reports, roadmaps, lists of problems and their
-//! results.
+//! they name, robots, requests, options, reports, roadmaps.
 //!
 //! None may panic, hang or take memory out of proportion, whatever the bytes.
 
-use crate::batch::list::{Next, ResultsReader, merged};
 use crate::files::info::SceneInfo;
-use crate::{
-    Error, ItemResult, Length, MotionValidator, PathFileKind, ProblemList, RelaxField, Report, Request, Scene,
-};
+use crate::{Error, Length, MotionValidator, PathFileKind, RelaxField, Report, Request, Scene};
 use mp_cspace::Configuration;
 use mp_io::InMemory;
 use mp_robot::{ArmModel, Kinematics};
@@ -20,7 +16,7 @@ use std::sync::OnceLock;
 pub type Target = fn(&[u8]) -> Result<(), Error>;
 
 /// What is read: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 15] = [
+pub const TARGETS: [(&str, Target); 13] = [
     ("scene-gempa", scene_gempa),
     ("scene-ompl", scene_ompl),
     ("scene-problem", scene_problem),
@@ -33,8 +29,6 @@ pub const TARGETS: [(&str, Target); 15] = [
     ("report", report),
     ("checked-path", checked_path),
     ("roadmap", roadmap),
-    ("many-list", many_list),
-    ("many-results", many_results),
     ("plan-errors", errors),
 ];
 
@@ -177,50 +171,6 @@ pub fn roadmap(bytes: &[u8]) -> Result<(), Error> {
     let again = mp_roadmap::Roadmap::<Configuration, ()>::from_bytes(&map.to_bytes(FINGERPRINT), FINGERPRINT);
     let again = again.unwrap_or_else(|e| panic!("what was written cannot be read: {e}"));
     assert_eq!(again.to_bytes(FINGERPRINT), map.to_bytes(FINGERPRINT));
-    Ok(())
-}
-
-/// Lists of problems, with a small scene for all of them.
-///
-/// # Errors
-/// When the bytes are refused.
-pub fn many_list(bytes: &[u8]) -> Result<(), Error> {
-    let list = ProblemList::parse("f.jsonl", bytes)?;
-    assert!(list.items() > 0 && !list.scenes().is_empty());
-    let problems = list.with_scene(small_scene());
-    for item in [0, list.items() / 2, list.items() - 1] {
-        if let Ok((scene, request)) = problems.problem(item, Some(1.0)) {
-            // Results tell whether the request suits the scene.
-            let _ = scene.prepare(&request);
-        }
-    }
-    assert!(problems.problem(list.items(), None).is_err());
-    Ok(())
-}
-
-/// Results of lists, with the right checksum. A shard that is the whole is merged.
-///
-/// # Errors
-/// When the bytes are refused.
-pub fn many_results(bytes: &[u8]) -> Result<(), Error> {
-    let bytes = crate::batch::list::checksum(bytes);
-    let read = || ResultsReader::new("f.jsonl".to_owned(), &bytes[..]);
-    let mut reader = read()?;
-    loop {
-        match reader.read()? {
-            Next::Item(result) => {
-                let again = serde_json::to_vec(&result).unwrap_or_default();
-                assert_eq!(serde_json::from_slice::<ItemResult>(&again).ok(), Some(*result));
-            }
-            Next::Cut => return Ok(()),
-            Next::End => break,
-        }
-    }
-    // One of several shards is not the whole.
-    let Ok(merged) = merged(vec![read()?]).inspect_err(check_error) else { return Ok(()) };
-    let merged = merged.collect::<Result<Vec<_>, _>>()?.concat();
-    let mut again = ResultsReader::new("f.jsonl".to_owned(), &merged[..])?;
-    while !matches!(again.read()?, Next::End) {}
     Ok(())
 }
 

@@ -36,14 +36,11 @@
 //! | load a scene, or make one in code | [`Scene::find`], [`Scene::load`], [`Scene::parse`], [`Scene::from_problem`], [`Scene::from_world`], [`ArmScene`], [`Scene::new`] |
 //! | say how to plan | [`Request`]: planner, settings, metric, motion check, budgets, seed, what is done to the path found |
 //! | plan | [`Scene::plan`]; with progress reports and a stop: [`Scene::plan_with`], [`Control`], [`Watch`] |
-//! | plan thousands of problems on all cores | [`plan_many`] |
-//! | plan the problems of a list, in shards, and go on where that ended | [`ProblemList`], [`ListedProblems::run`], [`merge_results`]; read the results: [`ListResults`] |
-//! | do so on all ranks of a cluster | [`ListedProblems::run_on`] |
-//! | race many runs of a hard problem, over threads and ranks | [`Scene::portfolio`], [`Portfolio`] |
+//! | plan thousands of problems, on all cores or on the ranks of a cluster, and race many runs of a hard one | the crate `mp-batch` |
 //! | plan in pieces, between the events of a program | [`Scene::prepare`], [`Run`] |
 //! | move start and goal | [`Scene::with_ends`] |
 //! | build a roadmap once for many queries | [`Scene::roadmap`], [`SceneRoadmap`] |
-//! | build a roadmap by regions, on the ranks of a cluster | `Scene::regions`, `RegionalWork` (feature `ranks`) |
+//! | build a roadmap by regions, in pieces that may be made anywhere | `Scene::regions`, `RegionalWork` (feature `roadmaps`) |
 //! | read the result | [`Report`], with a documented JSON form |
 //! | shorten a path from elsewhere | [`Scene::finish`] |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
@@ -59,7 +56,6 @@
 //! Units are metres, radians and seconds. The crate prints nothing. It reports through `tracing`, with the spans `load`,
 //! `build`, `plan`, `roadmap`, `query`, `relax`, `shorten`, `verify`, `check` and `certificate`.
 
-mod batch;
 mod error;
 mod explain;
 mod files;
@@ -69,9 +65,11 @@ pub mod fuzz;
 mod goals;
 mod numbers;
 mod output;
+mod parallel;
 mod path;
 #[cfg(feature = "pictures")]
 mod picture;
+mod portfolio_counts;
 mod possible;
 mod report;
 mod request;
@@ -81,23 +79,9 @@ mod scene;
 mod sweep;
 mod watch;
 
-pub use batch::in_order::in_order;
-#[cfg(feature = "ranks")]
-pub use batch::list::RanksOutcome;
-pub use batch::list::{
-    ItemError, ItemResult, ListResults, ListedProblems, ManyOptions, ManyOutcome, ProblemList,
-    RESULTS_VERSION, ResultsHeader, SceneFingerprint, Shard, Tally, merge_results,
-};
-pub use batch::many::plan_many;
-pub use batch::parallel::in_parallel;
-#[cfg(feature = "ranks")]
-pub use batch::portfolio::{Portfolio, PortfolioOptions, PortfolioOutcome, RankWork};
-pub use batch::portfolio_counts::{PortfolioCounts, PortfolioSchedule};
-#[cfg(all(feature = "ranks", feature = "roadmaps"))]
-pub use batch::regional::{RegionalTally, RegionalWork};
 pub use error::{Error, ErrorKind};
 pub use explain::Explanation;
-pub use files::find::find_problem;
+pub use files::find::{SceneFiles, find_problem, shipped_files};
 pub use files::info;
 pub use finish::certificate::Certificate;
 pub use finish::check::Verdict;
@@ -106,11 +90,13 @@ pub use finish::{Finished, shorten};
 pub use goals::GoalPart;
 pub use numbers::{brief, count, plain, positive_number};
 pub use output::{Claims, is_standard, make_folder, write_file};
+pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
 pub use picture::film::{Film, FilmKind};
 #[cfg(feature = "pictures")]
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
+pub use portfolio_counts::{PortfolioCounts, PortfolioSchedule};
 pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
 pub use request::{Budget, Finish, MetricName, MotionValidator, RelaxField, Request};
 pub use robot::motion::{AnyChecker, AnyMotion, AnyVerifier, Counting, TypedMotion};
@@ -121,12 +107,14 @@ pub use robot::{
     PlanarScene, Queries, RigidScene, RigidSpace, Robot, SpeedBound, Step, Touch, WithMoving,
 };
 pub use run::planners::{meta_planners, planners, roadmap_planners};
+#[cfg(feature = "roadmaps")]
+pub use run::regions::{RegionalTally, RegionalWork};
 pub use run::roadmaps::Roadmap;
 pub use run::runs::{Medians, Runs, median, medians};
 #[cfg(feature = "roadmaps")]
 pub use run::scene_roadmap::SceneRoadmap;
 pub use run::search::{Search, search};
-pub use run::{PreparedRun, Run};
+pub use run::{FoundRun, PreparedRun, Run};
 pub use scene::{EditedScene, Scene};
 pub use sweep::{Sweep, Track};
 pub use watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};

@@ -89,7 +89,7 @@ pub struct Report {
     pub columns: Vec<Column>,
     /// The path, one configuration in each row, start first.
     pub path: Option<Vec<Vec<f64>>>,
-    /// Of a [portfolio](crate::Scene::portfolio), its runs; the other members are then those of the winner.
+    /// Of a portfolio (`mp-batch`), its runs; the other members are then those of the winner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub portfolio: Option<PortfolioCounts>,
 }
@@ -240,7 +240,8 @@ impl Report {
     }
 
     /// Whether it has what [`without_times`](Self::without_times) takes away.
-    pub(crate) fn has_times(&self) -> bool {
+    #[must_use]
+    pub fn has_times(&self) -> bool {
         let times = [self.time_s, self.finish_s];
         let timed = |stage: &StageTime| stage.stage == RunStage::Loading || stage.time_s != 0.0;
         times != [0.0; 2] || self.first_s.is_some() || self.stages.iter().any(timed)

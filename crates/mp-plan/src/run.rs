@@ -3,6 +3,8 @@
 pub(crate) mod plan;
 pub(crate) mod planners;
 pub(crate) mod prepared;
+#[cfg(feature = "roadmaps")]
+pub(crate) mod regions;
 pub(crate) mod roadmaps;
 pub(crate) mod routes;
 pub(crate) mod runs;
@@ -39,8 +41,24 @@ impl PreparedRun<'_> {
     /// # Errors
     /// When the request is not valid for the robot, or a roadmap cannot be read.
     pub fn begin(&self, control: &mut Control<'_>) -> Result<Run<'_>, Error> {
-        let rng = Rng::seed(self.prepared.request.seed);
+        self.begin_with(Rng::seed(self.prepared.request.seed), control)
+    }
+
+    /// As [`begin`](Self::begin), with other random numbers than those of the seed of the request.
+    ///
+    /// # Errors
+    /// As [`begin`](Self::begin).
+    pub fn begin_with(&self, rng: Rng, control: &mut Control<'_>) -> Result<Run<'_>, Error> {
         Ok(Run { run: RobotRun::begin(&self.prepared, rng, control)?, file: self.file.clone() })
+    }
+
+    /// The same once more: of runs that are advanced by turns, each needs its own.
+    ///
+    /// # Errors
+    /// As those of the first.
+    pub fn again(&self) -> Result<Self, Error> {
+        let prepared = Prepared::new(self.prepared.kind, self.prepared.request)?;
+        Ok(Self { prepared, file: self.file.clone() })
     }
 }
 
@@ -97,6 +115,14 @@ impl Run<'_> {
         report.scene_file = self.file;
         Ok(report)
     }
+
+    /// Ends the run as it is, with the path as found: [`Scene::found_report`](crate::Scene::found_report) makes a report of it.
+    ///
+    /// # Errors
+    /// When a roadmap cannot be written.
+    pub fn into_found(self) -> Result<FoundRun, Error> {
+        self.run.into_found()
+    }
 }
 
 impl fmt::Debug for Run<'_> {
@@ -105,18 +131,19 @@ impl fmt::Debug for Run<'_> {
     }
 }
 
-/// What a run came to: plain data, from which [`found_report`](crate::run::plan::found_report) makes a report elsewhere.
-#[cfg(feature = "ranks")]
+/// What a run came to: plain data, from which [`Scene::found_report`](crate::Scene::found_report) makes a report elsewhere.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct FoundRun {
-    pub(crate) progress: Progress,
-    pub(crate) queries: u64,
+pub struct FoundRun {
+    /// Its counts.
+    pub progress: Progress,
+    /// Collision and clearance queries.
+    pub queries: u64,
     /// Edges and components of a roadmap.
-    pub(crate) map: Option<[usize; 2]>,
+    pub map: Option<[usize; 2]>,
     /// The path, if there is one: the numbers of its configurations, to the bit.
-    pub(crate) path: Option<Vec<Vec<f64>>>,
+    pub path: Option<Vec<Vec<f64>>>,
     /// What ended the run; `None` where the planner ended with its path, or the run is not over.
-    pub(crate) ended_by: Option<StopReason>,
+    pub ended_by: Option<StopReason>,
 }
 
 /// The request, prepared for a robot.
@@ -325,8 +352,7 @@ impl<'p, 'k> RobotRun<'p, 'k> {
     }
 
     /// Ends the run as it is, with the path as found.
-    #[cfg(feature = "ranks")]
-    pub(crate) fn into_found(mut self) -> Result<FoundRun, Error> {
+    fn into_found(mut self) -> Result<FoundRun, Error> {
         let progress = self.progress();
         let map = match &mut self.made {
             None | Some(NamedPlanner::Tree(_)) => None,

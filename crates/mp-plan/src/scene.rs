@@ -6,18 +6,15 @@ use crate::finish::check::check;
 use crate::finish::finish_given;
 use crate::path::state;
 use crate::robot::Constrained;
-#[cfg(feature = "ranks")]
-use crate::run::FoundRun;
 use crate::run::plan::plan;
 use crate::run::prepare;
-#[cfg(feature = "ranks")]
-use crate::run::prepared::Prepared;
 #[cfg(feature = "roadmaps")]
-use crate::run::scene_roadmap::SceneRoadmap;
+use crate::run::{regions::RegionalWork, scene_roadmap::SceneRoadmap};
 use crate::sweep::{sweep, track};
 use crate::{
-    Body, Certificate, Column, Constraint, Control, Error, Explanation, Finished, Length, PathFileKind,
-    PathFormat, PathRows, PreparedRun, RelaxField, Report, Request, Robot, Sweep, Track, Verdict,
+    Body, Certificate, Column, Constraint, Control, Error, Explanation, Finished, FoundRun, Length,
+    PathFileKind, PathFormat, PathRows, PreparedRun, RelaxField, Report, Request, Robot, SceneFiles, Sweep,
+    Track, Verdict,
 };
 use mp_cspace::registry::PlannerInfo;
 use mp_cspace::{Configuration, Interrupt, Interrupted, Rng, Space, Validity};
@@ -28,7 +25,6 @@ use std::any::Any;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-#[cfg(feature = "ranks")]
 use std::time::Duration;
 
 /// A scene to plan in: a robot of any kind among its obstacles, with a start and goals. Clones share the data.
@@ -46,11 +42,7 @@ use std::time::Duration;
 pub struct Scene {
     robot: Arc<dyn Robot>,
     file: Option<PathBuf>,
-    pub(crate) inputs: Arc<[PathBuf]>,
-    /// Folders in which files were sought, with their absolute names.
-    pub(crate) folders: Arc<[(PathBuf, PathBuf)]>,
-    /// Whether its files are those that come with the program.
-    pub(crate) shipped: bool,
+    pub(crate) files: Arc<SceneFiles>,
     /// What it was made from, if that is a document of an editor.
     document: Option<Arc<EditedScene>>,
     notes: Arc<[String]>,
@@ -90,9 +82,7 @@ impl Scene {
         Self {
             robot: Arc::new(robot),
             file: None,
-            inputs: Arc::default(),
-            folders: Arc::default(),
-            shipped: false,
+            files: Arc::default(),
             document: None,
             notes: Arc::default(),
             remarks: Arc::default(),
@@ -462,16 +452,12 @@ impl Scene {
         Ok(PreparedRun { prepared: prepare(&*self.robot, request)?, file })
     }
 
-    /// The request, prepared for a run that makes no report itself.
-    #[cfg(feature = "ranks")]
-    pub(crate) fn prepared<'s>(&'s self, request: &'s Request) -> Result<Prepared<'s>, Error> {
-        self.keeps(request)?;
-        prepare(&*self.robot, request)
-    }
-
-    /// The report of a run that made none itself, and took the time `time`.
-    #[cfg(feature = "ranks")]
-    pub(crate) fn found_report(
+    /// The report of a run that made none itself ([`Run::into_found`](crate::Run::into_found)), maybe on another machine, and took the time
+    /// `time`. Its path is finished and verified here.
+    ///
+    /// # Errors
+    /// When the path is of another robot, or the robot refuses to relax it.
+    pub fn found_report(
         &self,
         request: &Request,
         found: FoundRun,
@@ -517,29 +503,18 @@ impl Scene {
         Ok(SceneRoadmap { roadmap, file: self.file.as_ref().map(|file| file.display().to_string()) })
     }
 
-    /// The work on a roadmap by regions, for the ranks of a cluster: one round of the planner `regional-prm`. Its parameters say how large
+    /// The work on a roadmap by regions, in items that may be done anywhere: one round of the planner `regional-prm`. Its parameters say how large
     /// the roadmap is. The request has no budget but that of time, which is for the caller to watch. A request with a clearance needs the
     /// scene that [`for_request`](Self::for_request) gives.
     ///
     /// # Errors
     /// When the request is not valid, for this scene or for such work.
-    #[cfg(all(feature = "ranks", feature = "roadmaps"))]
-    pub fn regions<'s>(&'s self, request: &'s Request) -> Result<crate::RegionalWork<'s>, Error> {
+    #[cfg(feature = "roadmaps")]
+    pub fn regions<'s>(&'s self, request: &'s Request) -> Result<RegionalWork<'s>, Error> {
         self.keeps(request)?;
         self.check_ends()?;
         let file = self.file.as_ref().map(|file| file.display().to_string());
-        crate::RegionalWork::new(&self.robot, file, request)
-    }
-
-    /// Opens a file, or begins it, that keeps results of [`regions`](Self::regions) with this request:
-    /// [`RegionalWork::over`](crate::RegionalWork::over) goes on with those in it.
-    ///
-    /// # Errors
-    /// When the file is in use, damaged, of another scene or request, or cannot be read or written.
-    #[cfg(all(feature = "ranks", feature = "roadmaps"))]
-    pub fn regions_checkpoint(&self, request: &Request, file: &Path) -> Result<mp_ranks::Checkpoint, Error> {
-        let identity = self.job_identity(&crate::batch::job_identity::timeless(request))?;
-        self.checkpoint_of("roadmap by regions", file, &identity)
+        RegionalWork::new(&self.robot, file, request)
     }
 
     /// Finishes a path from elsewhere, between any two configurations: verifies it, shortens or relaxes it as the request says, and

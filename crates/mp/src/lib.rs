@@ -13,6 +13,8 @@
 //! | [`roadmap`] | the PRM family |
 //! | [`io`] | meshes, scenes, problems and paths in files |
 //! | [`render`] | pictures of scenes in space and in the plane |
+//! | [`plan`] | a scene in, a verified path out |
+//! | [`batch`] | many runs: lists of problems, races, work for clusters |
 //!
 //! # A tour
 //! A body that must pass through a window, from its mesh to a verified path:
@@ -59,6 +61,7 @@
 //! `examples/arm.rs` plan on one. With [`plan::Scene`] this takes three lines, with shortening, pictures and a report
 //! included; the program `mp` is built on it.
 
+pub use mp_batch as batch;
 pub use mp_collide as collide;
 pub use mp_control as control;
 pub use mp_cspace as cspace;

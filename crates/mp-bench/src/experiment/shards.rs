@@ -1,7 +1,8 @@
 //! Parts of an experiment that were measured elsewhere.
 
 use crate::error::{IntoError, Result};
-use mp_plan::{Error, Shard};
+use mp_batch::Shard;
+use mp_plan::Error;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 

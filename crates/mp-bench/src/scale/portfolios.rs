@@ -6,8 +6,9 @@ use crate::error::Result;
 use crate::experiment::{Lab, Table, mean, seconds, short};
 use crate::options::Common;
 use crate::scenes::bare;
+use mp_batch::{Portfolio, PortfolioOptions};
 use mp_cspace::Rng;
-use mp_plan::{Cancel, Control, Error, Portfolio, PortfolioOptions, PortfolioSchedule, Request, Scene};
+use mp_plan::{Cancel, Control, Error, PortfolioSchedule, Request, Scene};
 use mp_tree::Schedule;
 use serde::{Deserialize, Serialize};
 
@@ -90,7 +91,7 @@ fn worked(scene: &Scene, case: &OnThreads, cancel: &Cancel) -> Result<Option<Wor
     let portfolio = Portfolio { schedule: case.schedule, unit: UNIT, round: RUNS, ..Portfolio::new(1 << 20) };
     let one = |link: mp_ranks::ThreadLink| {
         let mut control = Control { cancel: cancel.clone(), ..Control::default() };
-        scene.portfolio_on(&link, &request, &portfolio, &PortfolioOptions::default(), &mut control)
+        portfolio.plan_on(&link, scene, &request, &PortfolioOptions::default(), &mut control)
     };
     let outcome = std::thread::scope(|scope| {
         let mut links = mp_ranks::threads(case.ranks).into_iter();

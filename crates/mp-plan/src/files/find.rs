@@ -5,6 +5,7 @@ use mp_cspace::Interrupt;
 use mp_io::{Disk, Files, Until};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Endings of scene files, in the order in which they are tried.
 const ENDINGS: [&str; 5] = ["env", "txt", "cfg", "toml", "mp.json"];
@@ -25,15 +26,13 @@ impl Scene {
     /// As [`find`](Self::find), and when it was told to end.
     pub fn find_until(given: impl AsRef<Path>, interrupt: &Interrupt) -> Result<Self, Error> {
         let until = |files| Until { files, interrupt: interrupt.clone() };
-        match locate(Path::new(""), given.as_ref())? {
-            Location::Disk(file) => Self::load_from(&until(&Disk), &file),
-            #[cfg(feature = "scenes")]
-            Location::Memory(file) => {
-                let mut scene = Self::load_from(&until(&shipped_files()), Path::new(file))?;
-                scene.shipped = true;
-                Ok(scene)
-            }
+        let SceneFiles { file, shipped, .. } = SceneFiles::find(Path::new(""), given.as_ref())?;
+        if !shipped {
+            return Self::load_from(&until(&Disk), &file);
         }
+        let mut scene = Self::load_from(&until(&shipped_files()), &file)?;
+        Arc::make_mut(&mut scene.files).shipped = true;
+        Ok(scene)
     }
 
     /// The names of the shipped scenes.
@@ -51,54 +50,59 @@ impl Scene {
 /// # Errors
 /// When there is no such scene, or its robot is not a rigid body among meshes.
 pub fn find_problem(given: impl AsRef<Path>) -> Result<mp_io::RigidProblem, Error> {
-    Ok(match locate(Path::new(""), given.as_ref())? {
-        Location::Disk(file) => mp_io::RigidProblem::load(file)?,
-        #[cfg(feature = "scenes")]
-        Location::Memory(file) => mp_io::RigidProblem::load_from(&shipped_files(), Path::new(file))?,
+    let SceneFiles { file, shipped, .. } = SceneFiles::find(Path::new(""), given.as_ref())?;
+    Ok(match shipped {
+        true => mp_io::RigidProblem::load_from(&shipped_files(), &file)?,
+        false => mp_io::RigidProblem::load(file)?,
     })
 }
 
-/// Where a scene is.
-pub(crate) enum Location {
-    Disk(PathBuf),
+/// What a scene is read from: enough to [read it again](Scene::load_again), or elsewhere.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SceneFiles {
+    /// The file of the scene itself.
+    pub file: PathBuf,
+    /// Whether all of them are among the [shipped files](shipped_files).
+    pub shipped: bool,
+    /// All that could be read, in the order in which they were.
+    pub inputs: Vec<PathBuf>,
+    /// Folders whose absolute names were asked for, with these.
+    pub folders: Vec<(PathBuf, PathBuf)>,
+}
+
+/// The files of the scenes that come with the program, which are in memory. None without the feature `scenes`.
+pub fn shipped_files() -> impl Files {
     #[cfg(feature = "scenes")]
-    Memory(&'static str),
+    let file = |name: &str| mp_scenes::file(name).map(|file| file.bytes);
+    #[cfg(not(feature = "scenes"))]
+    let file = |_: &str| None::<&[u8]>;
+    mp_io::InMemory(file)
 }
 
-#[cfg(feature = "scenes")]
-pub(crate) fn shipped_files() -> impl mp_io::Files {
-    mp_io::InMemory(|name: &str| mp_scenes::file(name).map(|file| file.bytes))
-}
-
-/// The files of a folder.
-#[derive(Debug)]
-pub(crate) struct InFolder<'f>(pub(crate) &'f Path);
-
-impl Files for InFolder<'_> {
-    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
-        Disk.read(&self.0.join(path), limit)
-    }
-    fn holds(&self, path: &Path) -> bool {
-        Disk.holds(&self.0.join(path))
-    }
-    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
-        Disk.absolute(&self.0.join(folder))
+impl SceneFiles {
+    /// Where the scene `given` is, found as by [`Scene::find`], if files are relative to `folder`; so is the file that it returns. Which
+    /// others there are is not known yet.
+    ///
+    /// # Errors
+    /// When there is no such scene.
+    pub fn find(folder: &Path, given: &Path) -> Result<Self, Error> {
+        if let Some(file) = file_of(folder, given) {
+            return Ok(Self { file, ..Self::default() });
+        }
+        #[cfg(feature = "scenes")]
+        if let Some(scene) = given.to_str().and_then(mp_scenes::scene) {
+            return Ok(Self { file: scene.path.into(), shipped: true, ..Self::default() });
+        }
+        Err(unknown(folder, given))
     }
 }
 
-/// Where the scene `given` is, if files are relative to `folder`; so is the file that it returns.
-pub(crate) fn locate(folder: &Path, given: &Path) -> Result<Location, Error> {
-    if let Some(file) = file_of(folder, given) {
-        return Ok(Location::Disk(file));
-    }
-    #[cfg(feature = "scenes")]
-    if let Some(scene) = given.to_str().and_then(mp_scenes::scene) {
-        return Ok(Location::Memory(scene.path));
-    }
+/// The error about a scene that is not there.
+fn unknown(folder: &Path, given: &Path) -> Error {
     let given = &folder.join(given);
     if given.is_dir() {
-        return Err(Error::new(format!("{} is a folder, not a scene file", given.display()))
-            .help("name a file in it"));
+        return Error::new(format!("{} is a folder, not a scene file", given.display()))
+            .help("name a file in it");
     }
     let stem = given.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let shipped = Scene::shipped();
@@ -112,7 +116,7 @@ pub(crate) fn locate(folder: &Path, given: &Path) -> Result<Location, Error> {
         Some(name) => format!("did you mean `{name}`?"),
         None => format!("name a scene file, or one of the shipped scenes: {}", shipped.join(", ")),
     };
-    Err(Error::new(format!("there is no scene {}", given.display())).help(help))
+    Error::new(format!("there is no scene {}", given.display())).help(help)
 }
 
 /// The file in `folder` that `given` names, with or without its ending.

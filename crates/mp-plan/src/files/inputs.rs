@@ -1,10 +1,10 @@
 //! The files that a scene was read from. An output must not overwrite them.
 
 use crate::Scene;
-use crate::files::find::InFolder;
-use mp_io::{Error, Files};
+use crate::files::find::{SceneFiles, shipped_files};
+use mp_io::{Disk, Error, Files};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 /// Files, with a record of those that were read.
 #[derive(Debug)]
@@ -85,7 +85,13 @@ impl Scene {
     /// The files that the scene was read from: its own, meshes, maps, robot descriptions.
     #[must_use]
     pub fn inputs(&self) -> &[PathBuf] {
-        &self.inputs
+        &self.files.inputs
+    }
+
+    /// The files that the scene was read from, and where they are: for [`load_again`](Self::load_again).
+    #[must_use]
+    pub fn files(&self) -> &Arc<SceneFiles> {
+        &self.files
     }
 
     /// The files that the scene was read from, its own first, with their content, so that it can be read elsewhere. Their
@@ -94,57 +100,27 @@ impl Scene {
     /// # Errors
     /// When the scene is not from a file, or a file cannot be read any more.
     pub fn input_files(&self) -> Result<Vec<(String, Vec<u8>)>, crate::Error> {
-        if self.inputs.is_empty() {
+        let inputs = self.inputs();
+        if inputs.is_empty() {
             return Err(crate::Error::new(format!("{} was not read from a file", self.name())));
         }
-        let folder = common_folder(self.inputs.iter().map(PathBuf::as_path));
+        let folder = common_folder(inputs.iter().map(PathBuf::as_path));
         let file = |path: &PathBuf| {
             let inside = path.strip_prefix(&folder).unwrap_or(path);
-            Ok((inside.to_string_lossy().replace('\\', "/"), self.content(Path::new(""), path)?))
+            let content = match self.files.shipped {
+                true => shipped_files().read(path, mp_io::MAX_MESH_BYTES)?,
+                false => Disk.read(path, mp_io::MAX_MESH_BYTES)?,
+            };
+            Ok((inside.to_string_lossy().replace('\\', "/"), content))
         };
-        self.inputs.iter().map(file).collect()
-    }
-
-    /// A hash of the content of all files that the scene was read from, which are relative to `from` (XXH3).
-    ///
-    /// # Errors
-    /// When one cannot be read any more.
-    #[cfg(feature = "ranks")]
-    pub(crate) fn input_fingerprint(&self, from: &Path) -> Result<u64, crate::Error> {
-        fingerprint_of(self.inputs.iter().map(|path| Ok(self.content(from, path)?)))
-    }
-
-    /// The content of one of the files that the scene was read from, which are relative to `from`.
-    pub(crate) fn content(&self, from: &Path, path: &Path) -> Result<Vec<u8>, Error> {
-        #[cfg(feature = "scenes")]
-        if self.shipped {
-            return crate::files::find::shipped_files().read(path, mp_io::MAX_MESH_BYTES);
-        }
-        InFolder(from).read(path, mp_io::MAX_MESH_BYTES)
+        inputs.iter().map(file).collect()
     }
 
     /// The input files that are on the disk: an output must be none of them. Empty for a shipped scene, which is in memory.
     #[must_use]
     pub fn inputs_on_disk(&self) -> &[PathBuf] {
-        if self.shipped { &[] } else { &self.inputs }
+        if self.files.shipped { &[] } else { &self.files.inputs }
     }
-}
-
-/// A hash of the content of files in their order (XXH3).
-///
-/// # Errors
-/// The first one among them.
-pub(crate) fn fingerprint_of<B: AsRef<[u8]>>(
-    files: impl Iterator<Item = Result<B, crate::Error>>,
-) -> Result<u64, crate::Error> {
-    let mut hash = xxhash_rust::xxh3::Xxh3::new();
-    for bytes in files {
-        let bytes = bytes?;
-        let bytes = bytes.as_ref();
-        hash.update(&(bytes.len() as u64).to_le_bytes());
-        hash.update(bytes);
-    }
-    Ok(hash.digest())
 }
 
 /// The innermost folder that holds all files.

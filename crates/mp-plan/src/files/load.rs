@@ -2,10 +2,10 @@
 
 use super::alone;
 use crate::files::inputs::Recording;
-use crate::{Error, Scene};
+use crate::{Error, Scene, SceneFiles};
 use mp_io::{Disk, Files, ProblemFile, RigidProblem, RobotProblem, SceneDocument};
 use std::path::Path;
-use std::sync::PoisonError;
+use std::sync::{Arc, PoisonError};
 
 impl Scene {
     /// Reads a scene: a GEMPA environment (`.env`, `.txt`), an OMPL.app problem (`.cfg`), a robot problem, a rigid body or
@@ -27,8 +27,18 @@ impl Scene {
         Self::load_after(files, file, None)
     }
 
-    /// As [`load_from`](Self::load_from). The robot is taken from the scene `before`, if that has the same: an arm of the same files.
-    pub(crate) fn load_after(files: &dyn Files, file: &Path, before: Option<&Self>) -> Result<Self, Error> {
+    /// Reads a scene again, or elsewhere. `of` says what it is read from: all that [`files`](Self::files) gave of it, as what is taken from
+    /// `before` is not read. That is the robot of the scene `before`, if it is the same: an arm of the same files.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_again(files: &dyn Files, of: Arc<SceneFiles>, before: Option<&Self>) -> Result<Self, Error> {
+        let mut scene = Self::load_after(files, &of.file, before)?;
+        scene.files = of;
+        Ok(scene)
+    }
+
+    fn load_after(files: &dyn Files, file: &Path, before: Option<&Self>) -> Result<Self, Error> {
         let _span = tracing::info_span!("load", file = %file.display()).entered();
         let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         let of = |e: Error| match e.file() {
@@ -61,8 +71,12 @@ impl Scene {
         let mut scene = scene.with_file(file);
         scene.remarks = recording.remarks().into();
         let Recording { read, folders, .. } = recording;
-        scene.inputs = read.into_inner().unwrap_or_else(PoisonError::into_inner).into();
-        scene.folders = folders.into_inner().unwrap_or_else(PoisonError::into_inner).into();
+        scene.files = Arc::new(SceneFiles {
+            file: file.to_owned(),
+            shipped: false,
+            inputs: read.into_inner().unwrap_or_else(PoisonError::into_inner),
+            folders: folders.into_inner().unwrap_or_else(PoisonError::into_inner),
+        });
         Ok(scene)
     }
 

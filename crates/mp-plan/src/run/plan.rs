@@ -2,16 +2,13 @@
 
 use crate::explain::check_ends;
 use crate::finish::finish;
-#[cfg(feature = "ranks")]
 use crate::finish::relax::relax_if_requested;
 use crate::report::{RunStage, StageTime};
-#[cfg(feature = "ranks")]
 use crate::run::FoundRun;
 use crate::run::PLANNING_PART;
 use crate::run::planners::PlannerKind;
 use crate::run::search::{Search, search_within};
 use crate::{Column, Control, Error, REPORT_VERSION, Report, Request, Robot, StoppedBy};
-#[cfg(feature = "ranks")]
 use mp_cspace::{Configuration, Path};
 use mp_cspace::{Outcome, StopReason};
 use std::time::Duration;
@@ -188,7 +185,6 @@ pub(crate) fn reported(
 }
 
 /// Finishes the path of a run that took the time `time`, if there is one, and makes the report.
-#[cfg(feature = "ranks")]
 pub(crate) fn found_report(
     kind: &dyn Robot,
     request: &Request,

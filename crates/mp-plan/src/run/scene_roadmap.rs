@@ -126,7 +126,6 @@ pub(crate) fn build(
 }
 
 /// A roadmap that was built elsewhere, for this robot: a [`Roadmap`].
-#[cfg(all(feature = "ranks", feature = "roadmaps"))]
 pub(crate) fn of_map(
     kind: Arc<dyn Robot>,
     request: &Request,

@@ -6,7 +6,6 @@ mod field;
 mod find;
 mod fuzz;
 mod kinds;
-mod many;
 mod many_queries;
 mod own_robot;
 mod parts;
