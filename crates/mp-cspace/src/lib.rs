@@ -94,7 +94,7 @@ pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use length::{Length, LengthError};
 pub use local::{
-    Direction, Extension, LocalPlanner, Motion, PolylineEdge, Reach, Reversible, RotateAtS, Straight, turn_at,
+    Direction, Extension, LocalPlanner, Motion, PolylineEdge, Reach, Reversible, Straight,
 };
 pub use metric::{
     Euclidean, Manhattan, MaxDisplacement, Metric, MetricFn, ScaledEuclidean, SweptVolume, WithMetric,

@@ -206,13 +206,6 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         ProblemParts { space, local, verify, start, goals, interrupt }
     }
 
-    /// The same problem with obstacle hints, for planners by name that grow along obstacles.
-    #[must_use]
-    pub fn with_hints(mut self, hints: impl ObstacleHints<C::State> + Send + 'c) -> Self {
-        self.obstacles.hints = Some(Box::new(hints));
-        self
-    }
-
     /// The same problem with this obstacle knowledge, for planners by name that need it.
     #[must_use]
     pub fn with_obstacles(self, obstacles: ObstacleKnowledge<'c, C::State>) -> Self {
@@ -250,13 +243,6 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
     /// Takes the obstacle knowledge out of the problem.
     pub fn take_obstacles(&mut self) -> ObstacleKnowledge<'c, C::State> {
         std::mem::take(&mut self.obstacles)
-    }
-
-    /// The problem, and its obstacle hints if they were given.
-    #[must_use]
-    pub fn take_hints(mut self) -> (Self, Option<BoxedHints<'c, C::State>>) {
-        let hints = self.obstacles.hints.take();
-        (self, hints)
     }
 
     /// The same problem with a local planner made from its present one, for instance a wrapper of it.
