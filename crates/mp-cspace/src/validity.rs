@@ -268,11 +268,11 @@ pub trait MotionValidity<S> {
         self.check_motion(from, to)
     }
 
-    /// From now on asks `interrupt` whether to end, also within a check. A check that was told to end finds no motion free. Checks
+    /// From now on asks `interrupt` whether to end, also within a check. A check that was interrupted finds no motion free. Checks
     /// that take little time need not implement this.
     fn interrupt_by(&mut self, _interrupt: &Interrupt) {}
 
-    /// Whether the check was told to end: then its answers mean nothing, and whoever asks should end too.
+    /// Whether the check was interrupted: then its answers mean nothing, and whoever asks should end too.
     fn is_interrupted(&mut self) -> bool {
         false
     }

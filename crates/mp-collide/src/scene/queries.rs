@@ -8,7 +8,7 @@ use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::Relative;
 use crate::query::Query;
 
-/// Up to so many bodies are looked at one by one for what is inside of what.
+/// Up to this number of bodies are looked at one by one for what is inside of what.
 const FEW: usize = 16;
 
 /// Queries of a mesh, which need not be a body of the scene, against all bodies.

@@ -3,7 +3,7 @@
 use crate::{Interrupt, Rng};
 use nalgebra::Vector3;
 
-/// Suggests states along obstacles, for planners that grow along them, such as obstacle-based RRT.
+/// Suggests states along obstacles, for planners that grow along them.
 ///
 /// A suggested state need be neither free nor within the space: planners check it. States have a position,
 /// and may have a rotation; a point robot has a position only.
@@ -58,7 +58,7 @@ pub enum PointOf {
     Surface,
 }
 
-/// The geometry of obstacles, for planners that place the robot at them: OBPRM, and PRM by obstacle geometry.
+/// The geometry of obstacles, for planners that place the robot at them.
 ///
 /// Here an obstacle is a connected *part*, however many bodies the scene is made of. As with hints, the states
 /// returned need be neither free nor within the space.

@@ -55,11 +55,11 @@ pub type AnyProblem<'c, S> = Problem<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 /// What planners by name may query about obstacles, beside whether a motion is free. Each field is optional; a planner
 /// that needs a missing one returns an error.
 pub struct ObstacleKnowledge<'c, S> {
-    /// States along obstacles: for obstacle-based RRT.
+    /// States along obstacles: for planners that grow along them.
     pub hints: Option<BoxedHints<'c, S>>,
     /// The clearance and its gradient: for edges bent by snakes, and for costs of being near obstacles.
     pub gradient: Option<AnyGradient<'c, S>>,
-    /// The geometry of obstacles: for OBPRM, and PRM by obstacle geometry.
+    /// The geometry of obstacles: for planners that place the robot at them.
     pub geometry: Option<AnyGeometry<'c, S>>,
 }
 
@@ -220,7 +220,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
 
     /// The same problem, whose planner asks `interrupt` whether to end also within an iteration.
     ///
-    /// A planner that was told to end has done part of an iteration. So the iteration counts for nothing, and the planner is of no
+    /// A planner that was interrupted has done part of an iteration. So the iteration counts for nothing, and the planner is of no
     /// further use: a path found before is what there is. [`Planner::solve`](crate::Planner::solve) keeps to this when its stop
     /// contains a clone of `interrupt`.
     #[must_use]

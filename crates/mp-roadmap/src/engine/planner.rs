@@ -217,7 +217,7 @@ where
 }
 
 /// Verifies the edges of a path that have not passed yet, in the direction of the path. Blocks the first that fails, unless
-/// the checker was told to end. Returns whether none did.
+/// the checker was interrupted. Returns whether none did.
 pub(crate) fn verify<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,
