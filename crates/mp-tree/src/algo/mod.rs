@@ -22,7 +22,7 @@
 //! | [`Obrrt`](crate::Obrrt) | [`obrrt`] | from the start | one step toward a sample or along an obstacle, by hints |
 //! | [`TRrt`](crate::TRrt) | [`t_rrt`] | from the start | one step toward a sample, if its end does not cost too much more |
 //! | [`Rrs`](crate::Rrs) | [`rrs`] | from the start, of edges that bend | one step toward a sample, around obstacles by a snake |
-//! | [`RrsConnect`](crate::RrsConnect) | [`rrs_connect`] | from start and goal, of edges that bend | as RRT-Connect, around obstacles by snakes |
+//! | [`RrsConnect`](crate::RrsConnect) | [`rrs`] | from start and goal, of edges that bend | as RRT-Connect, around obstacles by snakes |
 
 pub mod aorrtc;
 pub mod cvp_rrt;
@@ -35,7 +35,6 @@ pub mod or_parallel;
 pub mod rc_rrt;
 pub mod restarts;
 pub mod rrs;
-pub mod rrs_connect;
 pub mod rrt;
 pub mod rrt_connect;
 pub mod rrt_inputs;
@@ -90,6 +89,6 @@ planners! {
     obrrt: GrowthWeights, Obrrt, ObstacleGuided;
     cyclic_rrt: Cyclic, CyclicRrt, Listed;
     rrs: Rrs;
-    rrs_connect: RrsConnect;
+    rrs::connect: RrsConnect;
     t_rrt: TRrt, Temperature, Transition;
 }
