@@ -47,7 +47,7 @@
 //! | which to try | a [`Sampler`]: [`Uniform`], [`Halton`], [`GoalBias`], [`Gaussian`], [`Bridge`] |
 //! | when a state is free | [`Validity`], or a [`Clearance`] in metres |
 //! | when a motion is free | [`MotionValidity`]: [`Certified`] proves it by a [`MotionClearance`], [`Discrete`] samples it; [`FineDiscrete`] verifies |
-//! | how to move | a [`LocalPlanner`]: [`Straight`], [`RotateAtS`]; by inputs: the crate `mp-control` |
+//! | how to move | a [`LocalPlanner`]: [`Straight`]; by inputs: the crate `mp-control` |
 //! | what to reach | a [`Goal`]: [`Exactly`], [`Ball`], [`FixedFactors`], a closure |
 //! | what to plan | a [`Problem`], with [`Goals`] and a [verifier](Verify) |
 //! | when to stop | a [`Stop`]: [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |

@@ -104,39 +104,6 @@ pub trait ObstacleGeometry<S>: ObstacleHints<S> {
     }
 }
 
-impl<S, H: ObstacleGeometry<S> + ?Sized> ObstacleGeometry<S> for &mut H {
-    fn prepare(&self, interrupt: &Interrupt) -> bool {
-        (**self).prepare(interrupt)
-    }
-    fn obstacles(&self) -> &[BodyFeatures] {
-        (**self).obstacles()
-    }
-    fn robot(&self) -> BodyFeatures {
-        (**self).robot()
-    }
-    fn touched_obstacle(&mut self, q: &S) -> Option<usize> {
-        (**self).touched_obstacle(q)
-    }
-    fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
-        (**self).obstacle_point(obstacle, of, rng)
-    }
-    fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
-        (**self).robot_point(of, rng)
-    }
-    fn world_point(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64> {
-        (**self).world_point(q, point)
-    }
-    fn moved_to(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S {
-        (**self).moved_to(q, point, place)
-    }
-    fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> S {
-        (**self).aligned(place, direction, angle)
-    }
-    fn is_far(&self, q: &S) -> bool {
-        (**self).is_far(q)
-    }
-}
-
 impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for Box<H> {
     fn touches(&mut self, q: &S) -> bool {
         (**self).touches(q)

@@ -1,4 +1,4 @@
-//! The algorithms, one file each, and the list of those that can be made by name.
+//! The algorithms and the list of those that can be made by name: one file each, but for those that differ in one slot.
 //!
 //! | algorithm | | nodes | edges |
 //! |---|---|---|---|
