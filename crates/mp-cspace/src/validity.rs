@@ -278,31 +278,22 @@ pub trait MotionValidity<S> {
     }
 }
 
-impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for &mut V {
-    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
-        (**self).check_motion(from, to)
+macro_rules! behind {
+    ($($pointer:ty),*) => {$(
+    impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for $pointer {
+        fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
+            (**self).check_motion(from, to)
+        }
+        fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
+            (**self).check_extension(from, to, known)
+        }
+        fn interrupt_by(&mut self, interrupt: &Interrupt) {
+            (**self).interrupt_by(interrupt);
+        }
+        fn is_interrupted(&mut self) -> bool {
+            (**self).is_interrupted()
+        }
     }
-    fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
-        (**self).check_extension(from, to, known)
-    }
-    fn interrupt_by(&mut self, interrupt: &Interrupt) {
-        (**self).interrupt_by(interrupt);
-    }
-    fn is_interrupted(&mut self) -> bool {
-        (**self).is_interrupted()
-    }
+    )*};
 }
-impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for Box<V> {
-    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
-        (**self).check_motion(from, to)
-    }
-    fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
-        (**self).check_extension(from, to, known)
-    }
-    fn interrupt_by(&mut self, interrupt: &Interrupt) {
-        (**self).interrupt_by(interrupt);
-    }
-    fn is_interrupted(&mut self) -> bool {
-        (**self).is_interrupted()
-    }
-}
+behind!(&mut V, Box<V>);

@@ -20,17 +20,22 @@ pub trait ObstacleHints<S> {
     fn moved_by(&self, q: &S, from: &S, to: &S) -> S;
 }
 
-impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for &mut H {
-    fn touches(&mut self, q: &S) -> bool {
-        (**self).touches(q)
+macro_rules! behind {
+    ($($pointer:ty),*) => {$(
+    impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for $pointer {
+        fn touches(&mut self, q: &S) -> bool {
+            (**self).touches(q)
+        }
+        fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
+            (**self).slide_along(from, toward, hit, rng)
+        }
+        fn moved_by(&self, q: &S, from: &S, to: &S) -> S {
+            (**self).moved_by(q, from, to)
+        }
     }
-    fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        (**self).slide_along(from, toward, hit, rng)
-    }
-    fn moved_by(&self, q: &S, from: &S, to: &S) -> S {
-        (**self).moved_by(q, from, to)
-    }
+    )*};
 }
+behind!(&mut H, Box<H>);
 
 /// A coarse description of a body: its place, size, longest axis and fullness. Metres; in the plane z is 0.
 ///
@@ -101,17 +106,5 @@ pub trait ObstacleGeometry<S>: ObstacleHints<S> {
         let robot = self.robot();
         let place = self.world_point(q, &robot.center);
         self.obstacles().iter().all(|o| (o.center - place).norm() > o.radius + robot.radius)
-    }
-}
-
-impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for Box<H> {
-    fn touches(&mut self, q: &S) -> bool {
-        (**self).touches(q)
-    }
-    fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        (**self).slide_along(from, toward, hit, rng)
-    }
-    fn moved_by(&self, q: &S, from: &S, to: &S) -> S {
-        (**self).moved_by(q, from, to)
     }
 }

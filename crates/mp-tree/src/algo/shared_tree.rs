@@ -65,7 +65,7 @@ use crate::{
 };
 use mp_cspace::{
     DefaultNn, Direction, Event, Extension, Interrupt, LocalPlanner, NearestNeighbors, NodeId, Observer,
-    Path, Planner, ProblemParts, Progress, Reach, Rng, Space,
+    PathOf, Planner, ProblemParts, Progress, Reach, Rng, Space,
 };
 use rand::RngExt;
 use std::any::Any;
@@ -270,7 +270,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
     }
 
     /// The first path to a node in the goal that passes verification. Nodes that are pruned meanwhile are dropped.
-    fn arrive(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
+    fn arrive(&mut self, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         while !self.arrived.is_empty() {
             let id = self.arrived.remove(0);
             let rest = &mut self.arrived;
@@ -294,11 +294,7 @@ where
 {
     type Edge = L::Edge;
 
-    fn step(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         self.core.iterations += 1;
         let seed = *self.seed.get_or_insert_with(|| rng.random());
         self.begin(rng, observer);
