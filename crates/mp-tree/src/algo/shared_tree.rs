@@ -69,7 +69,6 @@ use mp_cspace::{
 };
 use rand::RngExt;
 use std::any::Any;
-use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 /// How many samples a batch has.
@@ -81,6 +80,7 @@ pub const BATCH: Parameter = Parameter {
 };
 
 /// One sample of a batch, and the extension toward it.
+#[derive(Debug)]
 struct BatchSample<S, L: LocalPlanner<S>> {
     local: L,
     interrupt: Interrupt,
@@ -126,6 +126,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for FoundExtension<C::S
 }
 
 /// One RRT grown by all threads: see the [module](self).
+#[derive(Debug)]
 pub struct SharedTree<'c, C: Space, L: LocalPlanner<C::State>, N> {
     core: Core<'c, C, L>,
     tree: SearchTree<C, L, NearestSelector<N>, AppendDistinct>,
@@ -312,20 +313,5 @@ where
         let mut progress = self.core.progress(self.tree.nodes().len());
         progress.motions += self.motions;
         progress
-    }
-}
-
-impl<C, L, N> fmt::Debug for SharedTree<'_, C, L, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State>,
-{
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SharedTree")
-            .field("batch", &self.samples.len())
-            .field("iterations", &self.core.iterations)
-            .field("motions", &self.motions)
-            .field("panics", &self.panics)
-            .finish_non_exhaustive()
     }
 }
