@@ -52,7 +52,7 @@ impl CollisionMesh {
         Ok(Self { solids: mesh.solids().into(), ..made })
     }
 
-    /// Of so many triangles, at least one and at most `u32::MAX`.
+    /// Of `count` triangles, at least one and at most `u32::MAX`.
     ///
     /// # Errors
     /// That of `go_on`, which is called often.

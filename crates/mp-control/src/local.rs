@@ -138,7 +138,7 @@ impl<S: PartialEq> Exact<S> {
 /// Number of states from which the flow is tried at construction.
 const PROBES: usize = 32;
 
-/// So many where each input leads out of the space until then: with many joints near their limits few states are left by none.
+/// The most states tried while every input leads out of the space: with many joints near their limits most states are such.
 const MOST_PROBES: usize = 1024;
 
 /// The most inputs tried from each of these states.

@@ -4,7 +4,7 @@ use crate::{Coordinates, StateVector};
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 
-/// So many numbers need no memory of their own.
+/// The most numbers that lie in the value itself, without memory on the heap.
 const INLINE: usize = 16;
 
 /// A configuration as a row of numbers, whose meaning its space knows: joint values; the shift of a rigid body and its rotation
@@ -24,7 +24,7 @@ pub struct Configuration(Numbers);
 
 #[derive(Clone)]
 enum Numbers {
-    /// The first so many; the others are zero.
+    /// The count, and that many numbers; the others are zero.
     Inline(u8, [f64; INLINE]),
     Heap(Box<[f64]>),
 }

@@ -157,7 +157,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
         motion.filter(|motion| !self.distrusts() || self.passes(from, &motion.edge, to, Direction::Forward))
     }
 
-    /// Whether so many paths were rejected that each new edge is verified.
+    /// Whether `patience` paths were rejected, so that each new edge is verified.
     #[inline]
     #[must_use]
     pub fn distrusts(&self) -> bool {

@@ -24,7 +24,6 @@ pub struct Layout {
     /// Past-the-end coordinate of each group.
     pub(crate) groups: Vec<usize>,
     pub(crate) symmetries: Vec<Symmetry>,
-    pub(crate) slack: f64,
     /// Whether the distance is hardly more than its bound, for states that are near each other.
     pub(crate) tight: bool,
 }
@@ -42,7 +41,7 @@ impl Layout {
     /// `n` plain coordinates: ‖Δ‖₂.
     #[must_use]
     pub fn euclidean(n: usize) -> Self {
-        Self { groups: vec![n], symmetries: Vec::new(), slack: 0.0, tight: true }
+        Self { groups: vec![n], symmetries: Vec::new(), tight: true }
     }
 
     /// `n` coordinates of the given period, embedded in \[−period/2, period/2\]: the Euclidean norm
@@ -77,7 +76,6 @@ impl Layout {
                 *period *= factor;
             }
         }
-        self.slack *= factor;
         self
     }
 
@@ -87,7 +85,6 @@ impl Layout {
         let shift = self.dim();
         self.groups.extend(other.groups.iter().map(|end| end + shift));
         self.symmetries.extend(other.symmetries.iter().map(|s| s.shifted(shift)));
-        self.slack += other.slack;
         self.tight &= other.tight;
         self
     }
@@ -101,14 +98,6 @@ impl Layout {
         let single = self.groups.len() <= 1 && other.groups.len() <= 1;
         let both = self.plus(other);
         Self { groups: vec![n], tight: both.tight && single, ..both }
-    }
-
-    /// Allows the computed distance to fall short of the bound by `slack`, an absolute error. A
-    /// relative error of 1e-7 is always allowed.
-    #[must_use]
-    pub fn with_slack(mut self, slack: f64) -> Self {
-        self.slack = slack;
-        self
     }
 
     /// Says that the distance may be much greater than its bound even for states that are near each other. Answers do

@@ -47,7 +47,7 @@
 //! | which to try | a [`Sampler`]: [`Uniform`], [`Halton`], [`GoalBias`], [`Gaussian`], [`Bridge`] |
 //! | when a state is free | [`Validity`], or a [`Clearance`] in metres |
 //! | when a motion is free | [`MotionValidity`]: [`Certified`] proves it by a [`MotionClearance`], [`Discrete`] samples it; [`FineDiscrete`] verifies |
-//! | how to move | a [`LocalPlanner`]: [`Straight`], [`RotateAtS`]; by inputs: the crate `mp-control` |
+//! | how to move | a [`LocalPlanner`]: [`Straight`]; by inputs: the crate `mp-control` |
 //! | what to reach | a [`Goal`]: [`Exactly`], [`Ball`], [`FixedFactors`], a closure |
 //! | what to plan | a [`Problem`], with [`Goals`] and a [verifier](Verify) |
 //! | when to stop | a [`Stop`]: [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
@@ -93,9 +93,7 @@ pub use edge_checker::EdgeChecker;
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use length::{Length, LengthError};
-pub use local::{
-    Direction, Extension, LocalPlanner, Motion, PolylineEdge, Reach, Reversible, RotateAtS, Straight, turn_at,
-};
+pub use local::{Direction, Extension, LocalPlanner, Motion, PolylineEdge, Reach, Reversible, Straight};
 pub use metric::{
     Euclidean, Manhattan, MaxDisplacement, Metric, MetricFn, ScaledEuclidean, SweptVolume, WithMetric,
 };
@@ -104,7 +102,7 @@ pub use mp_stop::{Cancel, Clock, Interrupt, Interrupted, SparseClock, StopReason
 pub use nn::{DefaultNn, Embed, Hit, KdTree, Linear, MetricTree, NearestNeighbors, NodeId};
 pub use numbers::StateVector;
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
-pub use path::{Path, least_clearance, verify_path};
+pub use path::{Path, PathOf, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
 pub use problem::{
     AnyFlow, AnyProblem, BoxedHints, BoxedVerify, BuildError, Endpoint, Goals, InputSystem,

@@ -1,10 +1,8 @@
 //! Local planners: they propose and check the motion from one configuration to another.
 
 mod polyline;
-mod rotate;
 
 pub use polyline::PolylineEdge;
-pub use rotate::{RotateAtS, turn_at};
 
 use crate::{KnownFree, MotionCheck, MotionValidity, Space};
 use std::fmt::Debug;
@@ -50,8 +48,8 @@ pub enum Extension<S, E> {
     Reached(Motion<S, E>),
 }
 
-/// Extends from one state toward another. Straight lines (sampled or certified), rotate-at-s, input
-/// sets of kinodynamic systems and snakes implement it.
+/// Extends from one state toward another. Straight lines (sampled or certified), input sets of
+/// kinodynamic systems and snakes implement it.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not plan motions between states `{S}`",
     label = "not a `LocalPlanner<{S}>`",

@@ -9,6 +9,7 @@ pub use factors::{Euclidean, Manhattan, ScaledEuclidean};
 pub use swept::SweptVolume;
 
 use crate::error::weight;
+use crate::space::as_inside;
 use crate::{DefaultNn, Factored, Linear, NearestNeighbors, Rng, Space, SpaceError, TrueMetric, nn::Layout};
 use std::fmt::{self, Debug};
 
@@ -75,47 +76,11 @@ impl<C: Space, M: Metric<C>> Space for WithMetric<C, M> {
     fn distance(&self, from: &C::State, to: &C::State) -> f64 {
         self.metric.distance(&self.space, from, to)
     }
-
-    #[inline]
-    fn dim(&self) -> usize {
-        self.space.dim()
-    }
     #[inline]
     fn extent(&self) -> f64 {
         self.extent
     }
-    #[inline]
-    fn interpolate_into(&self, from: &C::State, to: &C::State, t: f64, out: &mut C::State) {
-        self.space.interpolate_into(from, to, t, out);
-    }
-    #[inline]
-    fn unit_cube_to_state(&self, u: &[f64]) -> C::State {
-        self.space.unit_cube_to_state(u)
-    }
-    #[inline]
-    fn sample_uniform(&self, rng: &mut Rng) -> C::State {
-        self.space.sample_uniform(rng)
-    }
-    #[inline]
-    fn contains(&self, q: &C::State) -> bool {
-        self.space.contains(q)
-    }
-    #[inline]
-    fn moved(&self, from: &C::State, velocity: &[f64], time: f64) -> Option<C::State> {
-        self.space.moved(from, velocity, time)
-    }
-    #[inline]
-    fn velocity_into(&self, from: &C::State, to: &C::State, out: &mut [f64]) -> bool {
-        self.space.velocity_into(from, to, out)
-    }
-    #[inline]
-    fn with_rotation_of(&self, position: &C::State, rotation: &C::State) -> C::State {
-        self.space.with_rotation_of(position, rotation)
-    }
-    #[inline]
-    fn interpolate(&self, from: &C::State, to: &C::State, t: f64) -> C::State {
-        self.space.interpolate(from, to, t)
-    }
+    as_inside!(space);
 }
 
 impl<C: Factored, M: Metric<C>> Factored for WithMetric<C, M> {

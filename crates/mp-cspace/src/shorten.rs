@@ -2,7 +2,7 @@
 //!
 //! Every edge these functions add, halves of old edges included, has been found free by `check`; a
 //! change with an edge that is not free is dropped. All are bounded in work and depend on their
-//! arguments only: the same seed gives the same path. When `check` is [told to end](MotionValidity::interrupt_by), the path is
+//! arguments only: the same seed gives the same path. When `check` is [interrupted](MotionValidity::interrupt_by), the path is
 //! returned as it is by then.
 //!
 //! | function | does |

@@ -164,6 +164,48 @@ pub trait Factored: Space {
     fn embed_factors(&self, state: &Self::State, put: &mut impl FnMut(usize, f64));
 }
 
+/// The methods of [`Space`] that the space in a field answers: all but `distance`, `extent` and `sample_between`.
+macro_rules! as_inside {
+    ($field:tt) => {
+        fn dim(&self) -> usize {
+            self.$field.dim()
+        }
+        #[inline]
+        fn interpolate_into(&self, from: &Self::State, to: &Self::State, t: f64, out: &mut Self::State) {
+            self.$field.interpolate_into(from, to, t, out);
+        }
+        #[inline]
+        fn interpolate(&self, from: &Self::State, to: &Self::State, t: f64) -> Self::State {
+            self.$field.interpolate(from, to, t)
+        }
+        #[inline]
+        fn unit_cube_to_state(&self, u: &[f64]) -> Self::State {
+            self.$field.unit_cube_to_state(u)
+        }
+        #[inline]
+        fn sample_uniform(&self, rng: &mut Rng) -> Self::State {
+            self.$field.sample_uniform(rng)
+        }
+        #[inline]
+        fn contains(&self, q: &Self::State) -> bool {
+            self.$field.contains(q)
+        }
+        #[inline]
+        fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
+            self.$field.moved(from, velocity, time)
+        }
+        #[inline]
+        fn velocity_into(&self, from: &Self::State, to: &Self::State, out: &mut [f64]) -> bool {
+            self.$field.velocity_into(from, to, out)
+        }
+        #[inline]
+        fn with_rotation_of(&self, position: &Self::State, rotation: &Self::State) -> Self::State {
+            self.$field.with_rotation_of(position, rotation)
+        }
+    };
+}
+pub(crate) use as_inside;
+
 /// Linear interpolation that is exact at both ends and never leaves \[a, b\] by rounding.
 #[inline]
 pub(crate) fn lerp(a: f64, b: f64, t: f64) -> f64 {

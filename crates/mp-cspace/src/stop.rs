@@ -31,7 +31,7 @@ impl Progress {
 pub trait Stop {
     /// `Some(reason)` to stop now. Called once per iteration, before it.
     fn check(&mut self, progress: &Progress) -> Option<StopReason>;
-    /// `Some(reason)` when the work inside the last iteration was told to end early: then the iteration counts for nothing, and
+    /// `Some(reason)` when the last iteration was interrupted: then the iteration counts for nothing, and
     /// neither does a path that it returned. Called after each iteration. `None`, the default, for stops that act between
     /// iterations only.
     fn cut_short(&self) -> Option<StopReason> {

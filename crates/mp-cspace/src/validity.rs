@@ -268,41 +268,32 @@ pub trait MotionValidity<S> {
         self.check_motion(from, to)
     }
 
-    /// From now on asks `interrupt` whether to end, also within a check. A check that was told to end finds no motion free. Checks
+    /// From now on asks `interrupt` whether to end, also within a check. A check that was interrupted finds no motion free. Checks
     /// that take little time need not implement this.
     fn interrupt_by(&mut self, _interrupt: &Interrupt) {}
 
-    /// Whether the check was told to end: then its answers mean nothing, and whoever asks should end too.
+    /// Whether the check was interrupted: then its answers mean nothing, and whoever asks should end too.
     fn is_interrupted(&mut self) -> bool {
         false
     }
 }
 
-impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for &mut V {
-    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
-        (**self).check_motion(from, to)
+macro_rules! behind {
+    ($($pointer:ty),*) => {$(
+    impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for $pointer {
+        fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
+            (**self).check_motion(from, to)
+        }
+        fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
+            (**self).check_extension(from, to, known)
+        }
+        fn interrupt_by(&mut self, interrupt: &Interrupt) {
+            (**self).interrupt_by(interrupt);
+        }
+        fn is_interrupted(&mut self) -> bool {
+            (**self).is_interrupted()
+        }
     }
-    fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
-        (**self).check_extension(from, to, known)
-    }
-    fn interrupt_by(&mut self, interrupt: &Interrupt) {
-        (**self).interrupt_by(interrupt);
-    }
-    fn is_interrupted(&mut self) -> bool {
-        (**self).is_interrupted()
-    }
+    )*};
 }
-impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for Box<V> {
-    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
-        (**self).check_motion(from, to)
-    }
-    fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
-        (**self).check_extension(from, to, known)
-    }
-    fn interrupt_by(&mut self, interrupt: &Interrupt) {
-        (**self).interrupt_by(interrupt);
-    }
-    fn is_interrupted(&mut self) -> bool {
-        (**self).is_interrupted()
-    }
-}
+behind!(&mut V, Box<V>);

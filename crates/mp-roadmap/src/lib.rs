@@ -1,4 +1,4 @@
-//! The probabilistic roadmap family: one engine, and one file per named algorithm. [`algo`] has the table of them.
+//! The probabilistic roadmap family: one engine, and the algorithms on it. [`algo`] has the table of them.
 //!
 //! A roadmap is built once and answers many queries; or it grows until one start and goal are connected.
 //! [`build`] makes planners of the second kind by name. Those by obstacles ([`Obprm`] and [`ObstacleGeometryPrm`]) need

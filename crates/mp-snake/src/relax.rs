@@ -37,7 +37,7 @@ impl<S> Relaxed<S> {
 /// pace, since a field that changes over short distances needs short steps; the pace grows again while steps succeed. It ends
 /// when a step at a thousandth of the pace gains nothing. A path that needs more than ten thousand nodes is returned
 /// unchanged. Use a `check` you trust, as nothing else is checked. Each step costs one check per piece that moved, and three
-/// evaluations of the field per node. When `check` is [told to end](MotionValidity::interrupt_by), the path of the last whole step
+/// evaluations of the field per node. When `check` is [interrupted](MotionValidity::interrupt_by), the path of the last whole step
 /// is returned.
 ///
 /// # Errors
@@ -104,7 +104,7 @@ pub fn relax<C: Space>(
 const LEAST_GAIN: f64 = 1e-6;
 /// The shortest pace that is tried, as a part of the one that was given.
 const LEAST_PACE: f64 = 1e-3;
-/// After so many successful steps in a row the pace is doubled, up to the one that was given.
+/// After this number of successful steps in a row the pace is doubled, up to the one that was given.
 const SUCCESSES: u32 = 4;
 
 /// Moves the ends of each piece of `next` that is not free back to where they were in `curve`, until all pieces are free,

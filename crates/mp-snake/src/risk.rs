@@ -184,23 +184,6 @@ impl RiskMaps {
     }
 }
 
-/// The cost of a path in a map of risks: `∫ (1 + weight · risk) ds`, so its length where there is no risk. By the
-/// midpoint rule, four times per cell.
-///
-/// # Errors
-/// When the weight is negative or not finite.
-pub fn path_cost(path: &Path<Vector2<f64>>, risk: &Grid, weight: f64) -> Result<f64, ParameterError> {
-    let weight = not_negative("the weight of risk", weight)?;
-    let cost = |w: &[Vector2<f64>]| {
-        let length = (w[1] - w[0]).norm();
-        let parts = (4.0 * length / risk.cell()).ceil().clamp(1.0, 1e7);
-        let middle = |k: f64| w[0] + (w[1] - w[0]) * ((k + 0.5) / parts);
-        let sum: f64 = (0..parts as u32).map(|k| risk.at(&middle(f64::from(k))).0).sum();
-        length * (1.0 + weight * sum / parts)
-    };
-    Ok(path.states.windows(2).map(cost).sum())
-}
-
 fn gauss(x: f64, sigma: f64) -> f64 {
     mp_math::exp(-0.5 * mp_math::powi(x / sigma, 2)) / (sigma * TAU.sqrt())
 }
@@ -249,10 +232,7 @@ mod tests {
         let at = Vector2::new((worst % 200) as f64, (worst / 200) as f64) * 0.02 - Vector2::repeat(1.99);
         assert!(at.x.abs() < 0.4 && (0.02..0.4).contains(&at.y), "{at}");
         assert!(risk.values().iter().all(|r| (0.0..=1.0).contains(r)));
-        let cost = |y: f64| path_cost(&through(y), &risk, 1e5).unwrap();
-        assert!(cost(-0.3) < cost(0.0) && cost(-0.3) < cost(0.1));
-        assert!((path_cost(&through(0.0), &risk, 0.0).unwrap() - 2.0).abs() < 1e-12);
-        assert!(landscape(&passing, &seen.map(|_| 0.0)).is_ok() && path_cost(&path, &risk, -1.0).is_err());
+        assert!(landscape(&passing, &seen.map(|_| 0.0)).is_ok());
         assert!(MotionNoise { turn: 0.0, ..NOISE }.checked().is_err());
     }
 }

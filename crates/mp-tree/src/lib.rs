@@ -1,4 +1,4 @@
-//! The rapidly-exploring random tree family: one engine, and one file per named algorithm. [`algo`] has the table of them.
+//! The rapidly-exploring random tree family: one engine, and the algorithms on it. [`algo`] has the table of them.
 //!
 //! [`SharedTree`] ([`algo::shared_tree`]) is RRT on several threads, which grow one tree together.
 //! Two meta-planners run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]

@@ -9,7 +9,7 @@ use crate::bvh::split::{BinaryNode, BuildTriangle, split_all};
 use crate::bvh::{LEAF, Leaf, Node, NodeBox, Tree, WIDTH};
 use crate::triangle::Triangle;
 
-/// For up to so many triangles it is speed that counts, for more of them memory.
+/// Up to this number of triangles building is optimised for speed, above it for memory.
 pub(crate) const SMALL: usize = 1 << 20;
 
 impl Tree {

@@ -128,10 +128,10 @@ impl Query {
     }
 }
 
-/// An interval is divided into at most so many subintervals.
+/// The most subintervals into which an interval is divided.
 const SUBINTERVALS: u32 = 32;
 
-/// Triangles are compared over parts of at most so many subintervals. Measured: half as many or twice as many are slower.
+/// Triangles are compared over parts of at most this number of subintervals. Measured: half as many or twice as many are slower.
 const FINE: u32 = 4;
 
 /// An interval of a motion; parts are ranges of its subintervals.

@@ -275,7 +275,7 @@ impl Scene {
     /// As [`merge_static`](Self::merge_static), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// When it was told to end. Then nothing is merged.
+    /// When it was interrupted. Then nothing is merged.
     pub fn merge_static_until(&mut self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         let (fixed, mut interrupt): (Vec<_>, _) =
             (self.bodies().filter(|(_, body)| !body.movable).collect(), interrupt.clone());

@@ -2,7 +2,7 @@
 
 use nalgebra::Isometry3;
 
-use super::{BodyId, Scene, bounds};
+use super::{BodyId, Scene};
 use crate::mesh::CollisionMesh;
 use crate::query::Query;
 use crate::query::interval::{IntervalCheck, RigidMotion};
@@ -81,19 +81,11 @@ impl Scene {
                 return found;
             }
         }
-        // A body farther than this from the box in the middle stays farther than the margin. Without a box, or with
-        // a reach that is NaN, every body is compared.
+        // A body farther than this from the box in the middle stays farther than the margin.
         let reach = (motion.most + margin) * (1.0 + 1e-9);
-        let own = bounds(mesh, middle_wm).filter(|_| reach >= 0.0).map(|own| own.enlarged(reach));
-        let blocked = self.phases(!self.is_merged()).find_map(|broad| {
-            broad.find(
-                |bounds| own.is_none_or(|own| own.intersects(bounds)),
-                |item| {
-                    let body = self.bodies[item as usize].as_ref()?;
-                    let found = query.check_interval(mesh, middle_wm, motion, &body.mesh, &body.pose, margin);
-                    (!found.is_free()).then_some(found)
-                },
-            )
+        let blocked = self.near_by(mesh, middle_wm, reach, !self.is_merged(), |_, body| {
+            let found = query.check_interval(mesh, middle_wm, motion, &body.mesh, &body.pose, margin);
+            (!found.is_free()).then_some(found)
         });
         blocked.unwrap_or(IntervalCheck::Free)
     }

@@ -8,7 +8,7 @@ use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::Relative;
 use crate::query::Query;
 
-/// Up to so many bodies are looked at one by one for what is inside of what.
+/// Up to this number of bodies are looked at one by one for what is inside of what.
 const FEW: usize = 16;
 
 /// Queries of a mesh, which need not be a body of the scene, against all bodies.
@@ -62,14 +62,8 @@ impl Scene {
 
     /// Whether `mesh` at `pose_wm` collides with any body.
     pub fn collides(&self, query: &mut Query, mesh: &CollisionMesh, pose_wm: &Isometry3<f64>) -> bool {
-        let mut merged = self.merged.iter();
         // Any pair of triangles will do here, which is found sooner than always the same pair.
-        merged.any(|merged| query.intersects(mesh, pose_wm, &merged.mesh, &Isometry3::identity()))
-            || self
-                .near(mesh, pose_wm, !self.is_merged(), |_, body| {
-                    query.intersects(mesh, pose_wm, &body.mesh, &body.pose).then_some(())
-                })
-                .is_some()
+        self.any_surface(mesh, pose_wm, 0.0, |(body, at)| query.intersects(mesh, pose_wm, body, at))
             || self.nested(query, mesh, pose_wm).is_some()
     }
 
@@ -82,16 +76,24 @@ impl Scene {
         pose_wm: &Isometry3<f64>,
         tolerance: f64,
     ) -> bool {
-        let mut merged = self.merged.iter();
         // Rounding of boxes is far below this part.
         let reach = tolerance.max(0.0) * (1.0 + 1e-9);
-        merged.any(|merged| query.within(mesh, pose_wm, &merged.mesh, &Isometry3::identity(), tolerance))
-            || self
-                .near_by(mesh, pose_wm, reach, !self.is_merged(), |_, body| {
-                    query.within(mesh, pose_wm, &body.mesh, &body.pose, tolerance).then_some(())
-                })
-                .is_some()
+        self.any_surface(mesh, pose_wm, reach, |(body, at)| query.within(mesh, pose_wm, body, at, tolerance))
             || self.nested(query, mesh, pose_wm).is_some()
+    }
+
+    /// Whether `test` holds for the merged mesh, or for a body whose box overlaps that of the mesh, enlarged by `reach` (metres).
+    fn any_surface(
+        &self,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+        reach: f64,
+        mut test: impl FnMut(PosedMesh<'_>) -> bool,
+    ) -> bool {
+        self.merged.iter().any(|merged| test((&merged.mesh, &Isometry3::identity())))
+            || self
+                .near_by(mesh, pose_wm, reach, !self.is_merged(), |_, body| test(body.posed()).then_some(()))
+                .is_some()
     }
 
     /// A lower bound on the distance from `mesh` at `pose_wm` to the bodies, exact when below `enough`
@@ -180,8 +182,8 @@ impl Scene {
         self.near_by(mesh, pose_wm, 0.0, fixed, visit)
     }
 
-    /// [`near`](Self::near) with the box of the mesh enlarged by `reach` (metres).
-    fn near_by<T>(
+    /// [`near`](Self::near) with the box of the mesh enlarged by `reach` (metres); all bodies when that is NaN.
+    pub(super) fn near_by<T>(
         &self,
         mesh: &CollisionMesh,
         pose_wm: &Isometry3<f64>,
@@ -191,7 +193,7 @@ impl Scene {
     ) -> Option<T> {
         let mut phases = self.phases(fixed).peekable();
         phases.peek()?;
-        let own = bounds(mesh, pose_wm).map(|own| own.enlarged(reach));
+        let own = bounds(mesh, pose_wm).filter(|_| reach >= 0.0).map(|own| own.enlarged(reach));
         phases.find_map(|broad| {
             broad.find(
                 |bounds| own.is_none_or(|own| own.intersects(bounds)),

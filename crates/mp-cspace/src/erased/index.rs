@@ -5,6 +5,7 @@ use crate::{
     AsVectors, Configuration, DefaultNn, Hit, Joints, KdTree, MetricTree, NearestNeighbors, NodeId, Rn, Rng,
     Se2, Se3, Space, TrueMetric,
     nn::{Embed, Layout},
+    space::as_inside,
 };
 use std::fmt::{self, Debug};
 use std::sync::Arc;
@@ -75,12 +76,11 @@ impl AnyIndex<Configuration> {
     /// A [`KdTree`] for a copy of `space`, empty and erased. All spaces share its code: a little slower than [`of`](Self::of), but
     /// compiled once.
     pub fn by_coordinates<C: Embed<State = Configuration> + Clone + Send + 'static>(space: &C) -> Self {
-        Self::by_layout(AnySpace::new(space), AnyEmbed(Arc::new(space.clone())))
+        Self::embedded(Embedded(Arc::new(space.clone())))
     }
 
-    fn by_layout(space: AnySpace<'static, Configuration>, layout: AnyEmbed<Configuration>) -> Self {
-        let space = Arc::new(Embedded { space, layout });
-        Self(Box::new(IndexWithSpace { space, index: <KdTree>::default() }))
+    fn embedded(space: Embedded<Configuration>) -> Self {
+        Self(Box::new(IndexWithSpace { space: Arc::new(space), index: <KdTree>::default() }))
     }
 
     /// A [`MetricTree`] for a copy of `space`, empty and erased. All spaces share its code: for metrics whose distances cost more than
@@ -96,64 +96,28 @@ impl AnyIndex<Configuration> {
     }
 }
 
-/// The methods of [`Embed`] as a trait object.
-trait ErasedEmbed<S>: Send + Sync {
-    fn layout(&self) -> Layout;
-    fn embed(&self, state: &S, out: &mut [f64]) -> usize;
-}
+/// A space with coordinates, behind a pointer.
+struct Embedded<S>(Arc<dyn Embed<State = S> + Send>);
 
-impl<S, C: Embed<State = S> + Send> ErasedEmbed<S> for C {
-    fn layout(&self) -> Layout {
-        Embed::layout(self)
-    }
-    fn embed(&self, state: &S, out: &mut [f64]) -> usize {
-        Embed::embed(self, state, out)
-    }
-}
-
-/// Coordinates behind a pointer.
-struct AnyEmbed<S>(Arc<dyn ErasedEmbed<S>>);
-
-/// An erased space with coordinates.
-struct Embedded<S> {
-    space: AnySpace<'static, S>,
-    layout: AnyEmbed<S>,
-}
-
-/// An index uses only distances and coordinates; the other methods complete the trait.
 impl<S: Clone + Debug + PartialEq + Send + Sync> Space for Embedded<S> {
     type State = S;
     #[inline]
     fn distance(&self, from: &S, to: &S) -> f64 {
-        self.space.distance(from, to)
-    }
-    fn dim(&self) -> usize {
-        self.space.dim()
+        self.0.distance(from, to)
     }
     fn extent(&self) -> f64 {
-        self.space.extent()
+        self.0.extent()
     }
-    fn interpolate_into(&self, from: &S, to: &S, t: f64, out: &mut S) {
-        self.space.interpolate_into(from, to, t, out);
-    }
-    fn unit_cube_to_state(&self, u: &[f64]) -> S {
-        self.space.unit_cube_to_state(u)
-    }
-    fn sample_uniform(&self, rng: &mut Rng) -> S {
-        self.space.sample_uniform(rng)
-    }
-    fn contains(&self, q: &S) -> bool {
-        self.space.contains(q)
-    }
+    as_inside!(0);
 }
 
 impl<S: Clone + Debug + PartialEq + Send + Sync> Embed for Embedded<S> {
     fn layout(&self) -> Layout {
-        self.layout.0.layout()
+        self.0.layout()
     }
     #[inline]
     fn embed(&self, state: &S, out: &mut [f64]) -> usize {
-        self.layout.0.embed(state, out)
+        self.0.embed(state, out)
     }
 }
 

@@ -21,7 +21,7 @@ pub struct Discrete<'c, C: Space, V> {
     times: Vec<f64>,
 }
 
-/// Motions of more parts than this are refused: only states far out of bounds need so many.
+/// Motions of more parts than this are refused: only states far out of bounds need more.
 const MAX_PARTS: f64 = 4e9;
 
 impl<'c, C: Space, V: Validity<C::State>> Discrete<'c, C, V> {

@@ -3,7 +3,7 @@
 use super::{NearestNeighbors, NodeId};
 use crate::{Rng, Space};
 
-/// Grows a tree from `start` as RRT does (LaValle 1998, *Rapidly-exploring random trees*) when
+/// Grows a rapidly-exploring random tree from `start` (LaValle 1998, *Rapidly-exploring random trees*) when
 /// every motion is free: sample, find the nearest node, step toward the sample, insert.
 ///
 /// `at` is called whenever the tree reaches the next of the ascending `sizes`; it may read a clock.

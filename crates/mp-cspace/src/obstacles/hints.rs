@@ -3,7 +3,7 @@
 use crate::{Interrupt, Rng};
 use nalgebra::Vector3;
 
-/// Suggests states along obstacles, for planners that grow along them, such as obstacle-based RRT.
+/// Suggests states along obstacles, for planners that grow along them.
 ///
 /// A suggested state need be neither free nor within the space: planners check it. States have a position,
 /// and may have a rotation; a point robot has a position only.
@@ -20,17 +20,22 @@ pub trait ObstacleHints<S> {
     fn moved_by(&self, q: &S, from: &S, to: &S) -> S;
 }
 
-impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for &mut H {
-    fn touches(&mut self, q: &S) -> bool {
-        (**self).touches(q)
+macro_rules! behind {
+    ($($pointer:ty),*) => {$(
+    impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for $pointer {
+        fn touches(&mut self, q: &S) -> bool {
+            (**self).touches(q)
+        }
+        fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
+            (**self).slide_along(from, toward, hit, rng)
+        }
+        fn moved_by(&self, q: &S, from: &S, to: &S) -> S {
+            (**self).moved_by(q, from, to)
+        }
     }
-    fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        (**self).slide_along(from, toward, hit, rng)
-    }
-    fn moved_by(&self, q: &S, from: &S, to: &S) -> S {
-        (**self).moved_by(q, from, to)
-    }
+    )*};
 }
+behind!(&mut H, Box<H>);
 
 /// A coarse description of a body: its place, size, longest axis and fullness. Metres; in the plane z is 0.
 ///
@@ -58,7 +63,7 @@ pub enum PointOf {
     Surface,
 }
 
-/// The geometry of obstacles, for planners that place the robot at them: OBPRM, and PRM by obstacle geometry.
+/// The geometry of obstacles, for planners that place the robot at them.
 ///
 /// Here an obstacle is a connected *part*, however many bodies the scene is made of. As with hints, the states
 /// returned need be neither free nor within the space.
@@ -101,50 +106,5 @@ pub trait ObstacleGeometry<S>: ObstacleHints<S> {
         let robot = self.robot();
         let place = self.world_point(q, &robot.center);
         self.obstacles().iter().all(|o| (o.center - place).norm() > o.radius + robot.radius)
-    }
-}
-
-impl<S, H: ObstacleGeometry<S> + ?Sized> ObstacleGeometry<S> for &mut H {
-    fn prepare(&self, interrupt: &Interrupt) -> bool {
-        (**self).prepare(interrupt)
-    }
-    fn obstacles(&self) -> &[BodyFeatures] {
-        (**self).obstacles()
-    }
-    fn robot(&self) -> BodyFeatures {
-        (**self).robot()
-    }
-    fn touched_obstacle(&mut self, q: &S) -> Option<usize> {
-        (**self).touched_obstacle(q)
-    }
-    fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
-        (**self).obstacle_point(obstacle, of, rng)
-    }
-    fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
-        (**self).robot_point(of, rng)
-    }
-    fn world_point(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64> {
-        (**self).world_point(q, point)
-    }
-    fn moved_to(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S {
-        (**self).moved_to(q, point, place)
-    }
-    fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> S {
-        (**self).aligned(place, direction, angle)
-    }
-    fn is_far(&self, q: &S) -> bool {
-        (**self).is_far(q)
-    }
-}
-
-impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for Box<H> {
-    fn touches(&mut self, q: &S) -> bool {
-        (**self).touches(q)
-    }
-    fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        (**self).slide_along(from, toward, hit, rng)
-    }
-    fn moved_by(&self, q: &S, from: &S, to: &S) -> S {
-        (**self).moved_by(q, from, to)
     }
 }

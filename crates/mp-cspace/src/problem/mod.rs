@@ -55,11 +55,11 @@ pub type AnyProblem<'c, S> = Problem<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 /// What planners by name may query about obstacles, beside whether a motion is free. Each field is optional; a planner
 /// that needs a missing one returns an error.
 pub struct ObstacleKnowledge<'c, S> {
-    /// States along obstacles: for obstacle-based RRT.
+    /// States along obstacles: for planners that grow along them.
     pub hints: Option<BoxedHints<'c, S>>,
     /// The clearance and its gradient: for edges bent by snakes, and for costs of being near obstacles.
     pub gradient: Option<AnyGradient<'c, S>>,
-    /// The geometry of obstacles: for OBPRM, and PRM by obstacle geometry.
+    /// The geometry of obstacles: for planners that place the robot at them.
     pub geometry: Option<AnyGeometry<'c, S>>,
 }
 
@@ -206,13 +206,6 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         ProblemParts { space, local, verify, start, goals, interrupt }
     }
 
-    /// The same problem with obstacle hints, for planners by name that grow along obstacles.
-    #[must_use]
-    pub fn with_hints(mut self, hints: impl ObstacleHints<C::State> + Send + 'c) -> Self {
-        self.obstacles.hints = Some(Box::new(hints));
-        self
-    }
-
     /// The same problem with this obstacle knowledge, for planners by name that need it.
     #[must_use]
     pub fn with_obstacles(self, obstacles: ObstacleKnowledge<'c, C::State>) -> Self {
@@ -227,7 +220,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
 
     /// The same problem, whose planner asks `interrupt` whether to end also within an iteration.
     ///
-    /// A planner that was told to end has done part of an iteration. So the iteration counts for nothing, and the planner is of no
+    /// A planner that was interrupted has done part of an iteration. So the iteration counts for nothing, and the planner is of no
     /// further use: a path found before is what there is. [`Planner::solve`](crate::Planner::solve) keeps to this when its stop
     /// contains a clone of `interrupt`.
     #[must_use]
@@ -250,13 +243,6 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
     /// Takes the obstacle knowledge out of the problem.
     pub fn take_obstacles(&mut self) -> ObstacleKnowledge<'c, C::State> {
         std::mem::take(&mut self.obstacles)
-    }
-
-    /// The problem, and its obstacle hints if they were given.
-    #[must_use]
-    pub fn take_hints(mut self) -> (Self, Option<BoxedHints<'c, C::State>>) {
-        let hints = self.obstacles.hints.take();
-        (self, hints)
     }
 
     /// The same problem with a local planner made from its present one, for instance a wrapper of it.

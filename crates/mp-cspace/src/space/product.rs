@@ -1,7 +1,7 @@
 //! Products of two spaces; nest them for more.
 
-use super::{Factored, Joints, Rn, Space, TrueMetric};
-use crate::{Configuration, Rng, SpaceError, error::weight, layout::Layout};
+use super::{Factored, Rn, Space, TrueMetric};
+use crate::{Rng, SpaceError, error::weight, layout::Layout};
 use nalgebra::SVector;
 
 /// The product of two spaces. Its states are pairs.
@@ -73,41 +73,18 @@ impl<A: Space, const N: usize> Product<A, Rn<N>> {
     /// When there are not as many limits as degrees of freedom, or one is not positive and finite.
     pub fn with_velocity(positions: A, limits: impl Into<SVector<f64, N>>) -> Result<Self, SpaceError> {
         let limits = limits.into();
-        check_limits(&positions, limits.as_slice())?;
+        let (expected, found) = (positions.dim(), N);
+        if expected != found {
+            return Err(SpaceError::Count { what: "limits of velocities", expected, found });
+        }
+        limits.iter().try_for_each(|&limit| weight("the limit of a velocity", limit).map(drop))?;
         let velocities = Rn::new(-limits, limits)?;
         let weight = positions.extent() / velocities.extent();
         Self::new(positions, 1.0, velocities, weight)
     }
 }
 
-impl<A: Space> Product<A, Joints<Configuration>> {
-    /// As [`with_velocity`](Product::with_velocity), with the number of degrees of freedom known at run time.
-    ///
-    /// # Errors
-    /// Those of [`with_velocity`](Product::with_velocity).
-    pub fn with_velocity_dyn(positions: A, limits: &[f64]) -> Result<Self, SpaceError> {
-        check_limits(&positions, limits)?;
-        let low: Vec<f64> = limits.iter().map(|limit| -limit).collect();
-        let velocities = Joints::intervals(&low, limits)?;
-        let weight = positions.extent() / velocities.extent();
-        Self::new(positions, 1.0, velocities, weight)
-    }
-}
-
-fn check_limits<A: Space>(positions: &A, limits: &[f64]) -> Result<(), SpaceError> {
-    let (expected, found) = (positions.dim(), limits.len());
-    if expected != found {
-        return Err(SpaceError::Count { what: "limits of velocities", expected, found });
-    }
-    limits.iter().try_for_each(|&limit| weight("the limit of a velocity", limit).map(drop))
-}
-
-impl<A, B> TrueMetric for Product<A, B>
-where
-    A: TrueMetric,
-    B: TrueMetric,
-{
-}
+impl<A: TrueMetric, B: TrueMetric> TrueMetric for Product<A, B> {}
 
 impl<A: Space, B: Space> Space for Product<A, B> {
     type State = (A::State, B::State);

@@ -385,17 +385,6 @@ where
     L: LocalPlanner<C::State, Edge: Reversible>,
     N: NearestNeighbors<C> + Clone,
 {
-    /// There are no candidates: all is in the piece.
-    fn generate(
-        &mut self,
-        _: u64,
-        _: &Roadmap<C::State, L::Edge>,
-        _: &mut EdgeChecker<'_, C, L>,
-        _: &mut Rng,
-        _: &mut Vec<Candidate<C::State, L::Edge>>,
-    ) {
-    }
-
     fn begin(&mut self, attempt: u64, map: &Roadmap<C::State, L::Edge>, space: &C) {
         self.next = attempt;
         let item = attempt % self.items();
@@ -407,6 +396,7 @@ where
         }
     }
 
+    /// All that an attempt adds: there are no candidates.
     fn piece(
         &mut self,
         attempt: u64,

@@ -169,10 +169,10 @@ impl Visibility {
         seen
     }
 
-    /// Adds a node with edges to the guards that see it, and merges their components.
-    fn join<C, L, N>(
+    /// Adds a node with edges to the guards that see it, and merges their components; a guard if none does.
+    fn insert<C, L, N>(
         &mut self,
-        candidate: Candidate<C::State, L::Edge>,
+        mut candidate: Candidate<C::State, L::Edge>,
         seen: Vec<Seen<C::State, L::Edge>>,
         growing: &mut Growing<'_, '_, C, L, N>,
     ) -> NodeId
@@ -181,37 +181,24 @@ impl Visibility {
         L: LocalPlanner<C::State, Edge: Reversible>,
         N: NearestNeighbors<C>,
     {
+        let Some(first) = seen.first().map(|(component, ..)| *component) else {
+            candidate.kind = MilestoneKind::Guard;
+            let id = growing.add(candidate);
+            self.components.push(vec![id]);
+            return id;
+        };
         let id = growing.add(candidate);
-        let first = seen.first().map(|(component, ..)| *component);
         let mut merged = Vec::new();
         for (component, guard, motion) in seen {
             growing.link(guard, id, motion);
-            if Some(component) != first {
+            if component != first {
                 merged.push(component);
             }
         }
-        if let Some(first) = first {
-            for &component in merged.iter().rev() {
-                let guards = self.components.remove(component);
-                self.components[first].extend(guards);
-            }
+        for &component in merged.iter().rev() {
+            let guards = self.components.remove(component);
+            self.components[first].extend(guards);
         }
-        id
-    }
-
-    /// Adds a guard.
-    fn guard<C, L, N>(
-        &mut self,
-        candidate: Candidate<C::State, L::Edge>,
-        growing: &mut Growing<'_, '_, C, L, N>,
-    ) -> NodeId
-    where
-        C: Space,
-        L: LocalPlanner<C::State, Edge: Reversible>,
-        N: NearestNeighbors<C>,
-    {
-        let id = growing.add(Candidate { kind: MilestoneKind::Guard, ..candidate });
-        self.components.push(vec![id]);
         id
     }
 }
@@ -227,13 +214,9 @@ where
         growing: &mut Growing<'_, '_, C, L, N>,
     ) -> Option<NodeId> {
         let seen = self.seen(&candidate.state, growing);
-        if seen.is_empty() {
-            self.failures = 0;
-            return Some(self.guard(candidate, growing));
-        }
-        self.failures += 1;
+        self.failures = if seen.is_empty() { 0 } else { self.failures + 1 };
         let connection = Candidate { kind: MilestoneKind::Connection, ..candidate };
-        (seen.len() > 1).then(|| self.join(connection, seen, growing))
+        (seen.len() != 1).then(|| self.insert(connection, seen, growing))
     }
 
     fn adopt<N: NearestNeighbors<C>>(
@@ -242,10 +225,7 @@ where
         growing: &mut Growing<'_, '_, C, L, N>,
     ) -> NodeId {
         let seen = self.seen(&candidate.state, growing);
-        match seen.is_empty() {
-            true => self.guard(candidate, growing),
-            false => self.join(candidate, seen, growing),
-        }
+        self.insert(candidate, seen, growing)
     }
 
     fn resumed(&mut self, map: &Roadmap<C::State, L::Edge>) {

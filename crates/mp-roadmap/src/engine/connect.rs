@@ -146,12 +146,14 @@ where
 
 /// Slot: which candidates become nodes, and with which edges. It may refuse candidates.
 pub trait Connector<C: Space, L: LocalPlanner<C::State>> {
-    /// Adds a candidate by [`Growing::add`], or refuses it.
+    /// Adds a candidate by [`Growing::add`], or refuses it. Refuses none if not overridden.
     fn connect<N: NearestNeighbors<C>>(
         &mut self,
         candidate: Candidate<C::State, L::Edge>,
         growing: &mut Growing<'_, '_, C, L, N>,
-    ) -> Option<NodeId>;
+    ) -> Option<NodeId> {
+        Some(self.adopt(candidate, growing))
+    }
 
     /// Adds a candidate that must not be refused: an end of the path.
     fn adopt<N: NearestNeighbors<C>>(
@@ -228,14 +230,6 @@ where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    fn connect<N: NearestNeighbors<C>>(
-        &mut self,
-        candidate: Candidate<C::State, L::Edge>,
-        growing: &mut Growing<'_, '_, C, L, N>,
-    ) -> Option<NodeId> {
-        Some(self.adopt(candidate, growing))
-    }
-
     fn prefetch<N: NearestNeighbors<C>>(&self, prefetching: &mut Prefetching<'_, '_, C, L, N>) {
         if !self.lazy {
             prefetching.reach_nearest(&self.within);

@@ -32,7 +32,7 @@ pub const ENDS_STEP: Parameter = Parameter {
     doc: "longest step of the trees from start and goal",
 };
 
-/// Up to so many random nodes of a tree are compared with a sample. Trees are local: an index for each would be of little use.
+/// The most random nodes of a tree that are compared with a sample. Trees are local: an index for each would be of little use.
 const LOOKS: usize = 64;
 
 /// How trees grow from start and goals. By default they do not.

@@ -11,7 +11,7 @@ const VERSION: u32 = 1;
 /// Stands for no obstacle or no motion.
 const NONE: u32 = u32::MAX;
 const CHECKSUM: usize = 8;
-/// So many bytes of a file are read at a time while its checksum is computed.
+/// How many bytes of a file are read at a time while its checksum is computed.
 const PIECE: u64 = 1 << 20;
 
 /// The largest number of a state or motion, in magnitude. Collision queries accept no larger coordinates.
@@ -287,7 +287,7 @@ impl Reader<'_> {
         Ok((state, Tag { kind, obstacle, tried: self.u32()?, failed: self.u32()? }))
     }
 
-    /// An edge between two of so many nodes.
+    /// An edge between two of `nodes` nodes.
     pub(super) fn link<E: StateVector>(
         &mut self,
         nodes: u32,

@@ -41,17 +41,18 @@ impl<S, E> Candidate<S, E> {
 /// Slot: which configurations are tried as nodes.
 pub trait NodeGenerator<C: Space, L: LocalPlanner<C::State>> {
     /// Writes the candidates of attempt number `attempt`, in order, to `out`, which is empty: none when the attempt
-    /// fails. Each must be [admitted](EdgeChecker::admits).
+    /// fails, and by default. Each must be [admitted](EdgeChecker::admits).
     ///
     /// `rng` is the stream of this attempt.
     fn generate(
         &mut self,
-        attempt: u64,
-        map: &Roadmap<C::State, L::Edge>,
-        checker: &mut EdgeChecker<'_, C, L>,
-        rng: &mut Rng,
-        out: &mut Vec<Candidate<C::State, L::Edge>>,
-    );
+        _attempt: u64,
+        _map: &Roadmap<C::State, L::Edge>,
+        _checker: &mut EdgeChecker<'_, C, L>,
+        _rng: &mut Rng,
+        _out: &mut Vec<Candidate<C::State, L::Edge>>,
+    ) {
+    }
 
     /// Called before attempt number `attempt` is made, with the roadmap as it is; on one thread, also where others make attempts.
     fn begin(&mut self, _attempt: u64, _map: &Roadmap<C::State, L::Edge>, _space: &C) {}

@@ -153,7 +153,7 @@ impl<S: StateVector, E: StateVector> Piece<S, E> {
     /// The piece from the bytes of [`to_bytes`](Self::to_bytes); `members` are its members in the roadmap.
     ///
     /// # Errors
-    /// When the bytes are cut off, or are not a piece with so many members of such states.
+    /// When the bytes are cut off, or are not a piece with these members and such states.
     pub fn from_bytes(bytes: &[u8], members: Vec<NodeId>) -> Result<Self, RoadmapError> {
         let mut reader = Reader { bytes, at: 0 };
         let motions = reader.u64()?;

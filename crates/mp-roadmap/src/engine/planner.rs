@@ -6,7 +6,7 @@ use super::{
     Query, QueryMeter, Roadmap, RoadmapPlannerParts,
 };
 use mp_cspace::{
-    BuildError, Direction, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
+    BuildError, Direction, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, PathOf, Planner,
     Problem, Progress, Reversible, Rng, Space, Stop, StopReason, Workers,
 };
 
@@ -144,7 +144,7 @@ where
     }
 
     /// A verified path from the start to a goal, if the roadmap has one. Tells of edges that turn out to be blocked.
-    fn answer(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
+    fn answer(&mut self, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         let before = self.builder.map.blocked();
         let path = self.find_path(observer);
         let map = &self.builder.map;
@@ -154,7 +154,7 @@ where
         path
     }
 
-    fn find_path(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
+    fn find_path(&mut self, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         let (start, goals) = self.ends.as_ref()?;
         let (start, goals) = (*start, goals.clone());
         self.looked = self.builder.map.len();
@@ -181,11 +181,7 @@ where
     }
 
     /// One iteration, which may have been cut short.
-    fn iterate(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn iterate(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         self.iterations += 1;
         if self.ends.is_none() {
             self.begin(observer);
@@ -217,7 +213,7 @@ where
 }
 
 /// Verifies the edges of a path that have not passed yet, in the direction of the path. Blocks the first that fails, unless
-/// the checker was told to end. Returns whether none did.
+/// the checker was interrupted. Returns whether none did.
 pub(crate) fn verify<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,
@@ -310,11 +306,7 @@ where
     type Edge = L::Edge;
 
     /// An iteration that was cut short leaves the roadmap as it was before.
-    fn step(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         self.builder.map.mark();
         let path = self.iterate(rng, observer);
         if self.builder.checker.interrupt().raised().is_some() {

@@ -6,8 +6,8 @@ use super::search::check;
 use super::{AStar, Builder, EdgeChecker, EdgeId, GraphPath, LinkState, Query, Roadmap};
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
-    BuildError, Direction, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, Reversible,
-    Space,
+    BuildError, Direction, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, PathOf,
+    Reversible, Space,
 };
 
 /// Why a query has no answer.
@@ -126,11 +126,7 @@ where
     ///
     /// # Errors
     /// When the roadmap has no such path, with the reason.
-    pub fn answer(
-        &mut self,
-        start: &C::State,
-        goal: &C::State,
-    ) -> Result<Path<C::State, L::Edge>, Unanswered> {
+    pub fn answer(&mut self, start: &C::State, goal: &C::State) -> Result<PathOf<C, L>, Unanswered> {
         self.indexed.answer(&mut self.checker, start, goal)
     }
 
@@ -308,7 +304,7 @@ where
     L: LocalPlanner<C::State, Edge: Reversible>,
     N: NearestNeighbors<C>,
 {
-    fn answer(mut self) -> Result<Path<C::State, L::Edge>, Unanswered> {
+    fn answer(mut self) -> Result<PathOf<C, L>, Unanswered> {
         self.prepare()?;
         let [start, goal] = self.ends;
         if let Some(motion) = self.verified(start, goal) {

@@ -233,7 +233,7 @@ impl<S, E> Roadmap<S, E> {
         self.blocked.len()
     }
 
-    /// The edges that were blocked after so many others.
+    /// The edges that were blocked after the first `others`.
     pub(crate) fn blocked_after(&self, others: usize) -> &[EdgeId] {
         self.blocked.get(others..).unwrap_or_default()
     }
@@ -326,7 +326,7 @@ impl<S, E> Roadmap<S, E> {
         self.tried_often(id, 1, u32::from(failed));
     }
 
-    /// Counts so many attempts, of which so many failed.
+    /// Counts `tried` attempts, of which `failed` failed.
     pub(crate) fn tried_often(&mut self, id: NodeId, tried: u32, failed: u32) {
         let tag = &mut self.graph[NodeIndex::from(id)];
         let before = *tag;

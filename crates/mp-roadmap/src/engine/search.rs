@@ -183,7 +183,7 @@ fn inward(n: usize) -> impl Iterator<Item = usize> {
     (0..n).map(move |i| if i % 2 == 0 { i / 2 } else { n - 1 - i / 2 })
 }
 
-/// Checks the unchecked edges of a path. Blocks those that fail, unless the checker was told to end. Returns whether none did.
+/// Checks the unchecked edges of a path. Blocks those that fail, unless the checker was interrupted. Returns whether none did.
 pub(crate) fn check<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,

@@ -230,14 +230,6 @@ where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    fn connect<N: NearestNeighbors<C>>(
-        &mut self,
-        candidate: Candidate<C::State, L::Edge>,
-        growing: &mut Growing<'_, '_, C, L, N>,
-    ) -> Option<NodeId> {
-        Some(self.adopt(candidate, growing))
-    }
-
     fn prefetch<N: NearestNeighbors<C>>(&self, prefetching: &mut Prefetching<'_, '_, C, L, N>) {
         if self.stages.straight && self.stages.among == NeighborSet::Nearest {
             prefetching.reach_nearest(&self.within);

@@ -8,7 +8,7 @@ use mp_roadmap::{AnyParallelProblem, AnyPlanner};
 use std::f64::consts::FRAC_PI_2;
 
 const SEEDS: u64 = 20;
-/// Of these seeds so many are planned with a discrete check as well.
+/// How many of these seeds are planned with a discrete check as well.
 const DISCRETE: u64 = 4;
 /// Iterations given to problems that have no solution.
 const HOPELESS: u64 = 2_000;

@@ -30,7 +30,7 @@ fn answers<'c>(
     RoadmapQueries::new(checker(space, boxes), map, KdTree::new(), 10).unwrap()
 }
 
-/// A roadmap with cycles of so many nodes.
+/// A roadmap with cycles, of `nodes` nodes.
 fn map(space: &Rn<2>, boxes: &Boxes<2>, nodes: usize, seed: u64) -> Map {
     let connector = Star::new(2, 1.1).unwrap();
     let mut builder =

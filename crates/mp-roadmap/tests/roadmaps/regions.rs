@@ -110,7 +110,7 @@ fn planner<'c>(
     RegionalPrm::new(problem(space, boxes, ENDS, gullible), REGIONS, REACH).unwrap()
 }
 
-/// The checkers of so many threads.
+/// The checkers of `threads` threads.
 fn checkers<'c>(
     space: &'c Rn<2>,
     boxes: &Boxes<2>,

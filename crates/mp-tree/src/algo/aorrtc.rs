@@ -62,7 +62,7 @@ use crate::{
     PlannerInfo, SearchTree, Selector, Tree, Tuning,
 };
 use mp_cspace::{
-    Direction, Event, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
+    Direction, Event, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, PathOf, Planner,
     Progress, Reach, Rng, Space,
 };
 use rand::RngExt;
@@ -206,11 +206,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
     }
 
     /// Adds the roots that are missing, and tries the straight motions to goals that were not tried yet.
-    fn begin(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         if let Some(root) = self.core.add_start(&mut self.trees[0], observer)
             && self.best > 0.0
         {
@@ -268,7 +264,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         meeting: [NodeId; 2],
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    ) -> Option<PathOf<C, L>> {
         for (tree, id) in self.trees.iter_mut().zip(meeting) {
             if !tree.verify(id, &mut self.core.checker, observer, |_| ()) {
                 return None;
@@ -291,7 +287,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
     }
 
     /// Replaces parts of a path by single verified motions that are cheaper.
-    fn shorten(&mut self, path: &mut Path<C::State, L::Edge>, costs: &mut Vec<f64>, rng: &mut Rng) {
+    fn shorten(&mut self, path: &mut PathOf<C, L>, costs: &mut Vec<f64>, rng: &mut Rng) {
         for _ in 0..2 * path.edges.len() {
             if path.edges.len() < 2 {
                 return;
@@ -318,11 +314,7 @@ impl<C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Planne
 {
     type Edge = L::Edge;
 
-    fn step(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         self.core.iterations += 1;
         if self.best < f64::INFINITY && self.core.iterations - self.since > self.allowed {
             self.allowed += PATIENT;

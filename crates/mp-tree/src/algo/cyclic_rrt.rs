@@ -65,8 +65,8 @@ use crate::{
 };
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
-    Direction, Extension, Hit, Interrupt, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
-    Progress, Reach, Rng, Space, Uniform,
+    Direction, Extension, Hit, Interrupt, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, PathOf,
+    Planner, Progress, Reach, Rng, Space, Uniform,
 };
 use std::collections::BTreeMap;
 
@@ -372,11 +372,7 @@ where
 {
     type Edge = L::Edge;
 
-    fn step(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         let path = self.inner.step(rng, observer)?;
         let end = path.states.last().filter(|end| !self.arrived.contains(end));
         self.arrived.extend(end.cloned());
@@ -387,7 +383,7 @@ where
         self.inner.progress()
     }
 
-    fn routes(&mut self, k: usize, apart: f64) -> Option<Vec<Path<C::State, L::Edge>>> {
+    fn routes(&mut self, k: usize, apart: f64) -> Option<Vec<PathOf<C, L>>> {
         let routes = CyclicRrt::routes(self, k, apart).ok()?;
         Some(routes.into_iter().map(|(path, _)| path).collect())
     }

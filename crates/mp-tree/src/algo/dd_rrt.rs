@@ -2,21 +2,23 @@
 //!
 //! A. Yershova, L. Jaillet, T. Siméon and S. M. LaValle, *Dynamic-domain RRTs: efficient exploration
 //! by controlling the sampling domain*, ICRA 2005, on the two trees of
-//! [RRT-Connect](super::rrt_connect). With `adapt` above 0 it is [`add_rrt`](super::add_rrt).
+//! [RRT-Connect](super::rrt_connect). With `adapt` above 0, and as [`adaptive`] by name, the radii are not fixed: L. Jaillet,
+//! A. Yershova, S. M. LaValle and T. Siméon, *Adaptive tuning of the sampling domain for dynamic-domain RRTs*, IROS 2005.
 //!
 //! Each node has a radius, infinite at first. From one tree that holds the start and one that
 //! holds the goal, repeat:
 //! 1. draw samples, uniform in the space, until one is no farther from its nearest node in the tree
 //!    whose turn it is than the radius of that node; after `tries` samples take the next;
-//! 2. extend the tree from that node, one step at most, toward it; where that fails, the radius of
-//!    the node becomes `radius`;
+//! 2. extend the tree from that node, one step at most, toward it; where that fails, an infinite
+//!    radius becomes `radius`, another is multiplied by 1 - `adapt` but not below `least`; where
+//!    it succeeds, a finite radius is multiplied by 1 + `adapt`;
 //! 3. if that added a node, connect the other tree to it, regardless of radii;
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
 //! **When to use it.** Where the tree is enclosed, as in a bug trap: then most of the space is nearest to nodes at a wall,
 //! and plain RRT runs into the walls again and again. Pays off where checking a motion costs more than finding a nearest
-//! neighbour.
+//! neighbour. The adaptive variant needs no good radius.
 //!
 //! The paper's radius is ten steps, of much shorter steps than here. `tries` is not in the paper: in spaces of many
 //! dimensions nearly every sample may be refused.
@@ -24,7 +26,9 @@
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `step`: longest step | (0, extent of the space] | 5% of the extent |
-//! | `radius`: of nodes that failed, in steps | (0, ∞) | 2 |
+//! | `radius`: of nodes that failed for the first time, in steps | (0, ∞) | 2 |
+//! | `adapt`: part by which a radius grows and shrinks | \[0, 1) | 0, adaptive 0.05 |
+//! | `least`: smallest radius, in steps | (0, `radius`\] | 0.5 |
 //! | `tries`: samples refused in a row before one is taken regardless | 0, 1, 2, … | 100 |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
@@ -41,11 +45,13 @@
 //! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //!
-//! let problem = Problem::new(&space, local, verifier, start, goal)?;
-//! let mut planner = DdRrt::new(problem, Tuning::default(), Domain::fixed())?;
-//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
-//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
-//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! for domain in [Domain::fixed(), Domain::adaptive()] {
+//!     let problem = Problem::new(&space, local.clone(), verifier.clone(), start, goal)?;
+//!     let mut planner = DdRrt::new(problem, Tuning::default(), domain)?;
+//!     let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//!     let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//!     assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -59,14 +65,14 @@ use crate::{
 use mp_cspace::{Hit, NearestNeighbors, NodeId, Rng, Space, Uniform};
 
 /// [`Domain::radius`].
-pub(super) const RADIUS: Parameter = Parameter {
+const RADIUS: Parameter = Parameter {
     name: "radius",
     range: "positive and finite, in steps",
     default: "2",
     doc: "how far a sample may be from a node that failed",
 };
 /// [`Domain::tries`].
-pub(super) const TRIES: Parameter = Parameter {
+const TRIES: Parameter = Parameter {
     name: "tries",
     range: "a whole number",
     default: "100",
@@ -89,6 +95,42 @@ pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<
     Ok(Box::new(DdRrt::with_index(args.problem, args.index, args.tuning, domain)?))
 }
 
+/// The variant whose radii adapt, by name.
+pub mod adaptive {
+    use super::*;
+
+    /// [`Domain::adapt`].
+    const ADAPT: Parameter = Parameter {
+        name: "adapt",
+        range: "in [0, 1)",
+        default: "0.05",
+        doc: "part by which the radius of a node grows with a success and shrinks with a failure",
+    };
+    /// [`Domain::least`].
+    const LEAST: Parameter = Parameter {
+        name: "least",
+        range: "in (0, radius], in steps",
+        default: "0.5",
+        doc: "smallest radius of a node",
+    };
+
+    /// The entry of [`planners`](crate::planners).
+    pub const INFO: PlannerInfo = PlannerInfo {
+        name: "add-rrt",
+        summary: "dynamic-domain RRT that tunes itself; for traps and tight spaces",
+        citation: "Jaillet, Yershova, LaValle and Siméon 2005",
+        parameters: &[STEP, RADIUS, ADAPT, LEAST, TRIES, GOAL_BIAS, PATIENCE],
+        aliases: &["adaptive-dynamic-domain"],
+        cannot: NEEDS_BOTH_ENDS,
+    };
+
+    /// Makes it by name.
+    pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+        let domain = Domain::adaptive().read(args.settings)?;
+        Ok(Box::new(DdRrt::with_index(args.problem, args.index, args.tuning, domain)?))
+    }
+}
+
 /// The parameters of the dynamic domain: how near a sample must be to a node that failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
@@ -107,6 +149,12 @@ impl Domain {
     #[must_use]
     pub fn fixed() -> Self {
         Self { radius: 2.0, adapt: 0.0, least: 0.5, tries: 100 }
+    }
+
+    /// The defaults of the adaptive dynamic domain.
+    #[must_use]
+    pub fn adaptive() -> Self {
+        Self { adapt: 0.05, ..Self::fixed() }
     }
 
     /// The values that are set, the others as in `self`.
@@ -223,7 +271,7 @@ constructors! {
     |problem, index, tuning: Tuning, domain: Domain| {
         let target_sampler = Acceptable::new(Samples(Uniform(problem.space())));
         let target_sampler = target_sampler.with_interrupt(problem.interrupt().clone());
-        let name = if domain.adapt > 0.0 { super::add_rrt::INFO.name } else { INFO.name };
+        let name = if domain.adapt > 0.0 { adaptive::INFO.name } else { INFO.name };
         let selector = DynamicDomain::new(index, domain, tuning.step.step_in(problem.space())?)?;
         let extender = (Extend, Connect::default());
         Self::assemble(name, problem, TreePlannerParts { target_sampler, selector, extender, inserter: Append, tuning })

@@ -1,4 +1,5 @@
-//! RRS, the rapidly-exploring random snakes: an RRT whose blocked edges are bent around obstacles.
+//! RRS, the rapidly-exploring random snakes: an RRT whose blocked edges are bent around obstacles; and RRS-Connect, an
+//! RRT-Connect of that kind.
 //!
 //! K. Baizid, R. Chellali, R. Luza, B. Vitezslav and F. Arrichiello, *RRS: rapidly-exploring random snakes, a new
 //! method for mobile robot path planning*, §3.3, steps 1 to 8. Snakes: M. Kass, A. Witkin and D. Terzopoulos, *Snakes:
@@ -14,7 +15,8 @@
 //! 7. where every piece of the snake is free, add its end and the snake: the sample is rescued;
 //! 8. return the tree; here, the path as soon as a node is in the goal and the path is verified piece by piece.
 //!
-//! So RRS is [RRT](super::rrt) with the local planner [`SnakePlanner`]; a sample whose end is itself in collision is not
+//! So RRS is [RRT](super::rrt) with the local planner [`SnakePlanner`], and RRS-Connect is
+//! [RRT-Connect](super::rrt_connect) with it: in the tree from the goal edges are bent in forward time. A sample whose end is itself in collision is not
 //! rescued. How a blocked edge bends is a strategy, [`Bending`]:
 //! - `snake`, the paper's step 6: the contour starts on the straight edge and relaxes;
 //! - `bulge`: all of the edge moves to the side to which the obstacle pushes it, in closed form
@@ -30,12 +32,13 @@
 //!
 //! **When to use it.** Where the clearance and its gradient are cheap to compute (in the plane, by a distance map, some
 //! nanoseconds) and obstacles are many and small: then steps can be much longer, and far fewer iterations are needed. It
-//! does not help with long walls, around which no edge can bend within a step.
+//! does not help with long walls, around which no edge can bend within a step. RRS-Connect, where both ends are known, takes
+//! even fewer iterations.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `step`: longest step | (0, extent of the space] | 5% of the extent |
-//! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
+//! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at (RRS-Connect: of sampling a further one) | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //! | `range`: how far obstacles repel | (0, extent of the space] | 3% of the extent |
 //! | `bend`: how blocked edges are bent | `snake`, `bulge`, `hybrid` | `hybrid` |
@@ -71,10 +74,39 @@
 //! assert!(path.flattened().states.iter().all(free));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! RRS-Connect does so by name:
+//! ```
+//! use mp_cspace::erased::AnyGradient;
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, ObstacleKnowledge, Outcome, Length, Rn, Rng, Straight};
+//! use mp_tree::{Problem, Settings, build};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let from_disc = |q: &Vector2<f64>| q - Vector2::new(0.5, 0.5);
+//! let free = move |q: &Vector2<f64>| from_disc(q).norm() > 0.3;
+//! let field = move |q: &Vector2<f64>, _reach: f64, gradient: &mut [f64]| {
+//!     gradient.copy_from_slice(from_disc(q).normalize().as_slice());
+//!     from_disc(q).norm() - 0.3
+//! };
+//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
+//! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+//!
+//! let problem = Problem::new(&space, local, verifier, start, goal)?;
+//! let settings = Settings::parse(["step=30%", "range=0.1"])?;
+//! let gradient: Option<AnyGradient<Vector2<f64>>> = Some(Box::new(field));
+//! let problem = problem.with_obstacles(ObstacleKnowledge { gradient, ..ObstacleKnowledge::default() });
+//! let mut planner = build("rrs-connect", problem, &settings)?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(100), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::by_name::{BuildArgs, BuildResult, Types};
-use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{BuildError, Parameter, PlannerInfo, Problem, Rrt, Settings, Verify};
+use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::{BuildError, Parameter, PlannerInfo, Problem, Rrt, RrtConnect, Settings, Verify};
 use mp_cspace::erased::AnyGradient;
 use mp_cspace::{
     MotionCheck, MotionValidity, Observer, Path, Planner, PolylineEdge, Progress, Rng, Space, Straight,
@@ -123,6 +155,33 @@ pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<
 
 /// RRS: see the [module](self). Made by [`Rrt::new`] of a problem with a [`SnakePlanner`].
 pub type Rrs<'c, C, M, F, N, B = Bending> = Rrt<'c, C, SnakePlanner<'c, C, M, F, B>, N>;
+
+/// RRS-Connect: see the [module](self). Made by [`RrtConnect::new`] of a problem with a [`SnakePlanner`].
+pub type RrsConnect<'c, C, M, F, N, B = Bending> = RrtConnect<'c, C, SnakePlanner<'c, C, M, F, B>, N>;
+
+/// RRS-Connect by name.
+pub mod connect {
+    use super::*;
+
+    /// The entry of [`planners`](crate::planners).
+    pub const INFO: PlannerInfo = PlannerInfo {
+        name: "rrs-connect",
+        summary: "RRT-Connect whose blocked edges are bent around obstacles by snakes",
+        citation: "Baizid et al. 2014; Kuffner and LaValle 2000",
+        parameters: &[STEP, GOAL_BIAS, PATIENCE, RANGE, BEND, SNAKE_STEPS],
+        aliases: &[],
+        cannot: NEEDS_BOTH_ENDS,
+    };
+
+    /// Makes it by name.
+    pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+        if !args.problem.goals().can_aim() {
+            return Err(BuildError::NoGoalState { planner: INFO.name });
+        }
+        let problem = with_bending_edges(INFO.name, args.problem, args.settings)?;
+        Ok(Box::new(Flattened(RrsConnect::with_index(problem, args.index, args.tuning)?)))
+    }
+}
 
 /// A problem with a local planner that bends blocked edges.
 type BendingProblem<'c, C, M> =

@@ -65,11 +65,10 @@ use crate::{
 };
 use mp_cspace::{
     DefaultNn, Direction, Event, Extension, Interrupt, LocalPlanner, NearestNeighbors, NodeId, Observer,
-    Path, Planner, ProblemParts, Progress, Reach, Rng, Space,
+    PathOf, Planner, ProblemParts, Progress, Reach, Rng, Space,
 };
 use rand::RngExt;
 use std::any::Any;
-use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 /// How many samples a batch has.
@@ -81,6 +80,7 @@ pub const BATCH: Parameter = Parameter {
 };
 
 /// One sample of a batch, and the extension toward it.
+#[derive(Debug)]
 struct BatchSample<S, L: LocalPlanner<S>> {
     local: L,
     interrupt: Interrupt,
@@ -126,6 +126,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for FoundExtension<C::S
 }
 
 /// One RRT grown by all threads: see the [module](self).
+#[derive(Debug)]
 pub struct SharedTree<'c, C: Space, L: LocalPlanner<C::State>, N> {
     core: Core<'c, C, L>,
     tree: SearchTree<C, L, NearestSelector<N>, AppendDistinct>,
@@ -270,7 +271,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
     }
 
     /// The first path to a node in the goal that passes verification. Nodes that are pruned meanwhile are dropped.
-    fn arrive(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
+    fn arrive(&mut self, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         while !self.arrived.is_empty() {
             let id = self.arrived.remove(0);
             let rest = &mut self.arrived;
@@ -294,11 +295,7 @@ where
 {
     type Edge = L::Edge;
 
-    fn step(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         self.core.iterations += 1;
         let seed = *self.seed.get_or_insert_with(|| rng.random());
         self.begin(rng, observer);
@@ -316,20 +313,5 @@ where
         let mut progress = self.core.progress(self.tree.nodes().len());
         progress.motions += self.motions;
         progress
-    }
-}
-
-impl<C, L, N> fmt::Debug for SharedTree<'_, C, L, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State>,
-{
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SharedTree")
-            .field("batch", &self.samples.len())
-            .field("iterations", &self.core.iterations)
-            .field("motions", &self.motions)
-            .field("panics", &self.panics)
-            .finish_non_exhaustive()
     }
 }

@@ -2,7 +2,8 @@
 
 use super::{Grown, Inserter, SearchTree, Selector, Tuning};
 use mp_cspace::{
-    BuildError, EdgeChecker, Goals, LocalPlanner, NodeId, Observer, Path, Problem, Progress, Rng, Space,
+    BuildError, EdgeChecker, Goals, LocalPlanner, NodeId, Observer, Path, PathOf, Problem, Progress, Rng,
+    Space,
 };
 use rand::RngExt;
 
@@ -102,7 +103,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         id: NodeId,
         observer: &mut dyn Observer<C::State>,
         pruned: impl FnMut(&[NodeId]),
-    ) -> Option<Path<C::State, L::Edge>> {
+    ) -> Option<PathOf<C, L>> {
         let passed = tree.verify(id, &mut self.checker, observer, pruned);
         passed.then(|| tree.nodes().path(id))
     }

@@ -48,7 +48,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Extend {
     }
 }
 
-/// Length after step until the target is reached or a step fails (CONNECT of Kuffner and LaValle
+/// Step after step until the target is reached or a step fails (CONNECT of Kuffner and LaValle
 /// 2000). Each step becomes a node.
 ///
 /// Also ends where a step comes no nearer to the target, and after `limit` steps: local planners whose steps need not

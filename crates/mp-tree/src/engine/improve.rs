@@ -4,8 +4,8 @@ use super::{
     Core, Extender, Grown, Inserter, Purpose, SearchTree, Selector, TargetSampler, Tree, TreePlannerParts,
 };
 use mp_cspace::{
-    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
-    Space, Stop, StopReason,
+    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, PathOf, Planner, Problem, Progress,
+    Rng, Space, Stop, StopReason,
 };
 
 /// The least part of its cost by which a path must be better than the one before: less may be rounding.
@@ -99,7 +99,7 @@ where
     }
 
     /// The cheapest path, if it is better than the path returned last and passes verification.
-    fn better(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
+    fn better(&mut self, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         while self.core.goals.has_region() && (self.tested as usize) < self.tree.nodes().len() {
             let reached = self.core.goals.reached(self.tree.nodes().state(self.tested));
             self.arrived.extend(reached.then_some(self.tested));
@@ -141,11 +141,7 @@ where
 {
     type Edge = L::Edge;
 
-    fn step(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         self.core.iterations += 1;
         self.begin(rng, observer);
         if let Some(path) = self.better(observer) {

@@ -129,8 +129,8 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
     }
 
     /// Verifies the path between a root and `id`, edge by edge from the root; each edge is verified once. `false` when an
-    /// edge fails: the subtree below it is pruned (unless the checker was told to end), and `pruned` is called with the former ids of the remaining nodes,
-    /// before observers are.
+    /// edge fails: the subtree below it is pruned (unless the checker was interrupted), and `pruned` is called with
+    /// the former ids of the remaining nodes, before observers are.
     pub fn verify(
         &mut self,
         id: NodeId,

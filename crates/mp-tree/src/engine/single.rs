@@ -4,7 +4,7 @@ use super::{
     Core, Extender, Grown, Inserter, Purpose, SearchTree, Selector, TargetSampler, Tree, TreePlannerParts,
 };
 use mp_cspace::{
-    BuildError, Direction, EdgeChecker, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem,
+    BuildError, Direction, EdgeChecker, Event, LocalPlanner, NodeId, Observer, PathOf, Planner, Problem,
     Progress, Rng, Space,
 };
 
@@ -73,11 +73,7 @@ where
 
     /// Adds the root and tries the straight motions to the goals. After a panic of the user's code the next step
     /// continues behind the motion that panicked.
-    fn begin(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         if let Some(root) = self.core.add_start(&mut self.tree, observer) {
             return self.candidate(root, observer);
         }
@@ -99,7 +95,7 @@ where
         purpose: Purpose,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    ) -> Option<PathOf<C, L>> {
         observer.on(Event::Sampled(target));
         let before = self.tree.nodes().len();
         let grown =
@@ -116,11 +112,7 @@ where
     }
 
     /// The path to `id` if it passes verification; otherwise the part from the failed edge on is pruned.
-    fn candidate(
-        &mut self,
-        id: NodeId,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn candidate(&mut self, id: NodeId, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         let pruned = |survivors: &[NodeId]| self.extender.pruned(Direction::Forward, survivors);
         self.core.path(&mut self.tree, id, observer, pruned)
     }
@@ -137,11 +129,7 @@ where
 {
     type Edge = L::Edge;
 
-    fn step(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         self.core.iterations += 1;
         if let Some(path) = self.begin(rng, observer) {
             return Some(path);

@@ -5,7 +5,7 @@ use super::{
     Core, Extender, Grown, Inserter, Purpose, SearchTree, Selector, TargetSampler, Tree, TreePlannerParts,
 };
 use mp_cspace::{
-    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
+    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, PathOf, Planner, Problem, Progress, Rng,
     Space,
 };
 
@@ -81,11 +81,7 @@ where
 
     /// Adds the roots and tries the straight motions to the goals. After a panic of the user's code the next step
     /// continues behind the motion that panicked.
-    fn begin(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         if let Some(root) = self.core.add_start(&mut self.trees[0], observer) {
             return Some(self.trees[0].nodes().path(root));
         }
@@ -117,7 +113,7 @@ where
         &mut self,
         meeting: [NodeId; 2],
         observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    ) -> Option<PathOf<C, L>> {
         for (tree, id) in self.trees.iter_mut().zip(meeting) {
             let direction = tree.nodes().direction();
             let pruned = |survivors: &[NodeId]| {
@@ -144,11 +140,7 @@ where
 {
     type Edge = L::Edge;
 
-    fn step(
-        &mut self,
-        rng: &mut Rng,
-        observer: &mut dyn Observer<C::State>,
-    ) -> Option<Path<C::State, L::Edge>> {
+    fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         self.core.iterations += 1;
         if let Some(path) = self.begin(rng, observer) {
             return Some(path);

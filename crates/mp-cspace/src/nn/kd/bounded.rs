@@ -79,7 +79,7 @@ impl<const K: usize> KdTree<K> {
         out.clear();
         let mut least = [f32::INFINITY; MOST + 1];
         least[0] = f32::NEG_INFINITY;
-        let pad = self.layout.slack + self.pads(self.largest)[1];
+        let pad = self.pads(self.largest)[1];
         let stretch = STRETCH[usize::from(!self.layout.antipodes.is_empty())];
         let mut bounded = Bounded { k, least, stretch, pad, found: out };
         let reach = f64::from(self.search(space, points, query, &mut bounded));

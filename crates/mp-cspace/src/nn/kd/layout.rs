@@ -19,7 +19,6 @@ pub(super) struct TreeLayout<const K: usize> {
     pub(super) period: [f64; K],
     /// The ranges of coordinates that mean the same when negated together.
     pub(super) antipodes: Vec<(usize, usize)>,
-    pub(super) slack: f64,
     /// Whether the distance is hardly more than its bound.
     pub(super) tight: bool,
     /// Coordinates of the first state, to which those of all others are relative, unless the
@@ -36,7 +35,6 @@ impl<const K: usize> Default for TreeLayout<K> {
             ends: Vec::new(),
             period: [f64::INFINITY; K],
             antipodes: Vec::new(),
-            slack: 0.0,
             tight: false,
             origin: [0.0; K],
         }
@@ -46,10 +44,10 @@ impl<const K: usize> Default for TreeLayout<K> {
 impl<const K: usize> TreeLayout<K> {
     /// The layout of `space`, relative to the state `first`.
     pub(super) fn new<C: Embed>(space: &C, first: &C::State) -> Self {
-        let Layout { groups, symmetries, slack, tight } = space.layout();
+        let Layout { groups, symmetries, tight } = space.layout();
         let full = groups.last().copied().unwrap_or(0);
         let dim = if K == ANY { full.min(K) } else { K };
-        let mut layout = Self { dim, full, slack, tight: tight && full == dim, ..Self::default() };
+        let mut layout = Self { dim, full, tight: tight && full == dim, ..Self::default() };
         let mut start = 0;
         for end in groups {
             let end = end.min(dim);

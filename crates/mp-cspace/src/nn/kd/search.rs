@@ -80,7 +80,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
     pub(super) fn limit(&mut self) {
         // A layout allows 1e-7; `f32` arithmetic is off by some 2^-24 per operation, in some 30
         // operations.
-        let limit = (self.collector.limit() + self.tree.layout.slack) * (1.0 + 1e-7);
+        let limit = self.collector.limit() * (1.0 + 1e-7);
         if limit < 0.0 {
             (self.reach, self.lane_reach) = (-1.0, -1.0);
             return;

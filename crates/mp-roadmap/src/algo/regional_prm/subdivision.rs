@@ -38,7 +38,7 @@ pub struct Subdivision<S> {
 const ROUNDING: f64 = 1e-6;
 
 impl<S: Clone> Subdivision<S> {
-    /// The space cut into so many regions, which are sampled beyond their faces by a part `overlap` of their widths. One region, if it
+    /// The space cut into this number of regions, which are sampled beyond their faces by a part `overlap` of their widths. One region, if it
     /// cannot be cut.
     ///
     /// # Errors
