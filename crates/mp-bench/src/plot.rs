@@ -1,9 +1,9 @@
-//! Charts of curves, as SVG and as PNG.
+//! Charts of curves, as SVG.
 
 use crate::error::{IntoError, Result};
 use crate::output::note;
 use mp_plan::{Error, write_file};
-use mp_render::{Drawing, Series};
+use mp_render::Drawing;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -248,14 +248,6 @@ pub(crate) fn save_drawing(stem: &Path, drawing: &Drawing, size: (usize, usize))
     write_file(&stem.with_extension("svg"), drawing.svg(size).into_error()?.as_bytes())?;
     write_file(&stem.with_extension("png"), &drawing.pixels(size).into_error()?.to_png())?;
     note(&format!("written: {}.svg and .png", stem.display()));
-    Ok(())
-}
-
-/// Writes curves over a logarithmic axis as PNG.
-pub(crate) fn save_series(file: &Path, title: &str, axes: [&str; 2], series: &[Series]) -> Result<()> {
-    let picture = mp_render::plot(title, axes, series, (960, 600)).into_error()?;
-    write_file(file, &picture.to_png())?;
-    note(&format!("written: {}", file.display()));
     Ok(())
 }
 

@@ -155,7 +155,7 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
             }),
         ],
     );
-    lab.report("rigid", &summary, &each)?;
+    lab.report("rigid", &summary.markdown(), &each)?;
     Ok(solved)
 }
 

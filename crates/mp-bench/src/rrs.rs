@@ -52,6 +52,8 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let results = Results::new(&log, &plan);
     // An interrupted measurement may have nothing to draw.
     let charts = if complete { results.charts() } else { Vec::new() };
-    lab.publish(&name, &results.markdown(), [&results.summary(), &results.each()], charts)?;
+    lab.text(&name, &results.markdown())?;
+    lab.charts(&name, charts)?;
+    lab.report(&format!("{name}-summary"), &results.summary().markdown(), &results.each())?;
     Ok(complete)
 }

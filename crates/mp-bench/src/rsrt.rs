@@ -105,7 +105,8 @@ fn run_factorial(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
         .into_iter()
         .chain([("Solved runs and median times, s".into(), results.corners())]);
     lab.write(&format!("{name}-by-problem.md"), &sections(3, &details.collect::<Vec<_>>()))?;
-    lab.publish_runs(&name, &text, &log, |case| plan.has(case), results.charts())?;
+    lab.report(&name, &text, &log.table(&plan.cases())?)?;
+    lab.charts(&name, results.charts())?;
     Ok(true)
 }
 
@@ -122,7 +123,8 @@ fn run_restarts(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
     }
     let results = restarts_tables::Results::new(&log, &plan);
     let text = results.summary().markdown() + "\n";
-    lab.publish_runs(&name, &text, &log, |case| case.seed <= plan.seeds, results.charts())?;
+    lab.report(&name, &text, &log.table(&plan.cases())?)?;
+    lab.charts(&name, results.charts())?;
     Ok(true)
 }
 
@@ -137,7 +139,9 @@ fn run_clutter(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
     let mut log = lab.log(&name, cap)?;
     let complete = series::measure(&plan, lab, &mut log)?;
     let results = tables::Results::new(&log, &plan);
-    lab.publish(&name, &results.markdown(), [&results.summary(), &results.each()], results.charts())?;
+    lab.text(&name, &results.markdown())?;
+    lab.charts(&name, results.charts())?;
+    lab.report(&format!("{name}-summary"), &results.summary().markdown(), &log.table(&plan.cases())?)?;
     note(&format!("{} runs of up to {:?} each", log.all().len(), Duration::from_secs_f64(cap)));
     Ok(complete)
 }

@@ -85,7 +85,7 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
             }),
         ],
     );
-    lab.report("scaling", &table, &table)?;
+    lab.report("scaling", &table.markdown(), &table)?;
     Ok(reached)
 }
 

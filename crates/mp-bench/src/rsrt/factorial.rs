@@ -99,13 +99,6 @@ impl Plan {
         Case { problem, inputs, order, accept, seed }
     }
 
-    /// Whether a case of the log belongs to this measurement: an earlier one may have had more seeds.
-    pub(super) fn has(&self, case: &Case) -> bool {
-        case.seed <= self.seeds
-            && self.inputs.contains(&case.inputs)
-            && self.problems.iter().any(|problem| problem.name == case.problem)
-    }
-
     /// All cases, seed by seed: what was interrupted has all cells for the seeds it has.
     pub(super) fn cases(&self) -> Vec<Case> {
         let mut all = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::series::{Case, PLANNERS, Plan, Series};
 use crate::error::Result;
-use crate::experiment::{Log, Median, Table, bit, geometric_mean, ratio, seconds};
+use crate::experiment::{Log, Median, Table, geometric_mean, ratio, seconds};
 use crate::plot::{Axis, ChartCurve, Labels, chart};
 use mp_experiments::clutter::{METRICS, MODELS, MOVERS, Run};
 
@@ -93,29 +93,6 @@ impl<'a> Results<'a> {
                 ("checks RRT : RSRT", &|(.., g)| both(g, &|a, b| finite(&a.checks, &b.checks))),
                 ("checks per expansion RRT", &|(.., g)| checks(&g[0])),
                 ("RSRT", &|(.., g)| checks(&g[1])),
-            ],
-        )
-    }
-
-    /// A row for each run.
-    pub(super) fn each(&self) -> Table {
-        Table::of(
-            self.log.all(),
-            &[
-                ("mover", &|(case, _)| case.mover.clone()),
-                ("model", &|(case, _)| case.model.clone()),
-                ("metric", &|(case, _)| case.metric.clone()),
-                ("planner", &|(case, _)| case.planner.clone()),
-                ("obstacles", &|(case, _)| case.obstacles.to_string()),
-                ("instance", &|(case, _)| case.instance.to_string()),
-                ("solved", &|(_, run)| bit(run.solved)),
-                ("s", &|(_, run)| format!("{:.6}", run.seconds)),
-                ("iterations", &|(_, run)| run.iterations.to_string()),
-                ("nodes", &|(_, run)| run.nodes.to_string()),
-                ("checks", &|(_, run)| run.checks.to_string()),
-                ("expansions", &|(_, run)| run.expansions.to_string()),
-                ("rejected", &|(_, run)| run.rejected.to_string()),
-                ("edges", &|(_, run)| run.edges.to_string()),
             ],
         )
     }
@@ -334,7 +311,7 @@ mod tests {
         assert_eq!(summary.rows[3][4..8], ["1/4", "4/4", "4/4", "> 6 (2.00 – > 6)"]);
         assert_eq!(summary.rows[3][10], "> 2.40");
         assert_eq!(summary.rows[0][11..], ["3.00", "12.0", "4.0"]);
-        assert_eq!(results.each().rows.len(), log.all().len());
+        assert_eq!(plan.cases().len(), log.all().len());
         let text = results.markdown();
         assert!(text.contains("euclidean 2.00 at 2") && text.contains("1/4 at 4 / 4/4 at 4"), "{text}");
         let charts = results.charts();
