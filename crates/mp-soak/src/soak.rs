@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 
-/// The tally is written after so many problems.
+/// The tally is written after this many problems.
 const BLOCK: u64 = 200;
 /// A tally is small.
 const MAX_TALLY_BYTES: u64 = 1 << 24;

@@ -1,9 +1,9 @@
 //! Arms and bodies with joints that fly, written as URDF.
 
 use super::bodies::{Form, form, loose, mesh_file, pose};
-use super::{World, end, goals, line, list, lists, wide_goal};
+use super::{World, by_rates, end, goals, line, list, lists, wide_goal};
 use crate::draw::Draw;
-use crate::oracle::{Body, Case, Drive, DriveKind, Joint, Moves, Piece, Shape, Tree};
+use crate::oracle::{Body, Case, Joint, Moves, Piece, Shape, Tree};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -46,14 +46,11 @@ fn collision(
     let (element, pieces) = match draw.below(6) {
         0 => {
             let radius = thick + 0.1 * length;
-            let Shape::Pieces(pieces) = Form::Ball(radius).shape(&at) else { return Default::default() };
-            (format!("<sphere radius=\"{radius}\"/>"), pieces)
+            (format!("<sphere radius=\"{radius}\"/>"), Form::Ball(radius).pieces(&at))
         }
         1 => {
-            let Shape::Pieces(pieces) = Form::Cylinder([thick, tall]).shape(&at) else {
-                return Default::default();
-            };
-            (format!("<cylinder radius=\"{thick}\" length=\"{tall}\"/>"), pieces)
+            let element = format!("<cylinder radius=\"{thick}\" length=\"{tall}\"/>");
+            (element, Form::Cylinder([thick, tall]).pieces(&at))
         }
         2 => {
             let end = |z: f64| at * Point3::new(0.0, 0.0, z);
@@ -64,20 +61,17 @@ fn collision(
             let file = mesh_file(draw, name);
             let file = file.replace(".txt", ".off");
             let count = draw.count(2, 8);
-            let form = Form::Mesh(loose(draw, count, 0.4 * length), file.clone());
-            form.write(files);
+            let triangles = loose(draw, count, 0.4 * length);
+            Form::Mesh(triangles.clone(), file.clone()).write(files);
             let scale = draw.within(0.2, 1.0);
-            let Form::Mesh(triangles, _) = form else { return Default::default() };
             let scaled = triangles.iter().map(|t| t.map(|p| p.map(|x| scale * x))).collect();
-            let Shape::Pieces(pieces) = Form::Mesh(scaled, String::new()).shape(&at) else {
-                return Default::default();
-            };
-            (format!("<mesh filename=\"{file}\" scale=\"{scale} {scale} {scale}\"/>"), pieces)
+            let element = format!("<mesh filename=\"{file}\" scale=\"{scale} {scale} {scale}\"/>");
+            (element, Form::Mesh(scaled, file).pieces(&at))
         }
         _ => {
             let sides = [2.0 * thick, 2.0 * thick * draw.within(0.3, 1.0), tall];
-            let Shape::Pieces(pieces) = Form::Box(sides).shape(&at) else { return Default::default() };
-            (format!("<box size=\"{} {} {}\"/>", sides[0], sides[1], sides[2]), pieces)
+            let element = format!("<box size=\"{} {} {}\"/>", sides[0], sides[1], sides[2]);
+            (element, Form::Box(sides).pieces(&at))
         }
     };
     (format!("<collision>{}<geometry>{element}</geometry></collision>", origin(&six)), pieces)
@@ -267,23 +261,10 @@ impl Made {
     }
 
     fn case(&self) -> Case {
-        Case {
-            moves: Moves::Tree(self.tree.clone()),
-            robot: self.bodies.clone(),
-            pairs: self.pairs.clone(),
-            still: Vec::new(),
-            moving: Vec::new(),
-            timing: None,
-            drive: None,
-            limits: match self.tree.floats {
-                true => [None; 6].into_iter().chain(self.limits.iter().copied()).collect(),
-                false => self.limits.clone(),
-            },
-            start: Vec::new(),
-            goals: Vec::new(),
-            extent: 2.0 * self.reach,
-            far: 2.0 * self.reach,
-        }
+        let root: &[Option<[f64; 2]>] = if self.tree.floats { &[None; 6] } else { &[] };
+        let limits = [root, &self.limits].concat();
+        let case = Case::new(Moves::Tree(self.tree.clone()), self.bodies.clone(), limits, 2.0 * self.reach);
+        Case { pairs: self.pairs.clone(), ..case }
     }
 }
 
@@ -379,26 +360,13 @@ fn jointed(draw: &mut Draw, floats: bool) -> World {
     } else {
         let time = draw.logarithmic(0.05, 1.5);
         let by_velocities = draw.chance(0.5);
-        let rates =
+        let drawn =
             |draw: &mut Draw| widths.iter().map(|width| width * draw.within(2.0, 8.0)).collect::<Vec<f64>>();
-        let (speeds, accelerations) = (rates(draw), rates(draw));
-        line(&mut text, format!("speeds = {}\nduration = {time:?}", list(&speeds)));
-        let (kind, limits, velocities) = match by_velocities {
-            true => {
-                line(&mut text, "kind = \"velocities\"");
-                (DriveKind::Velocities, &speeds, Vec::new())
-            }
-            false => {
-                line(
-                    &mut text,
-                    format!("kind = \"accelerations\"\naccelerations = {}", list(&accelerations)),
-                );
-                (DriveKind::Accelerations, &accelerations, speeds.clone())
-            }
-        };
-        let resting = velocities.len();
-        let limits = limits.iter().map(|x| [-x, *x]).collect();
-        case.drive = Some(Drive { kind, limits, velocities, longest: time });
+        let (speeds, accelerations) = (drawn(draw), drawn(draw));
+        let (drive, lines) = by_rates(time, speeds, (!by_velocities).then_some(accelerations));
+        lines.iter().for_each(|extra| line(&mut text, extra));
+        let resting = drive.velocities.len();
+        case.drive = Some(drive);
         let whole = |draw: &mut Draw| {
             let mut row = configuration(draw);
             row.extend(std::iter::repeat_n(0.0, resting));

@@ -7,7 +7,7 @@ mod rigid;
 mod shipped;
 
 use crate::draw::Draw;
-use crate::oracle::{Ask, Case};
+use crate::oracle::{Ask, Case, Drive, DriveKind, Timing};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -182,6 +182,39 @@ fn wide_goal(draw: &mut Draw, names: &[String], row: &[f64], widths: &[f64]) -> 
         }
     }
     (goal, format!("goal = {{ {} }}", parts.join(", ")))
+}
+
+/// How a robot moves by velocities, or by accelerations if there are any: as the oracle has it, and as TOML writes it.
+fn by_rates(longest: f64, speeds: Vec<f64>, accelerations: Option<Vec<f64>>) -> (Drive, Vec<String>) {
+    let mut lines = vec![format!("speeds = {}", list(&speeds)), format!("duration = {longest:?}")];
+    let limits = |most: &[f64]| most.iter().map(|x| [-x, *x]).collect();
+    let drive = match accelerations {
+        None => {
+            lines.push("kind = \"velocities\"".to_owned());
+            let limits = limits(&speeds);
+            Drive { kind: DriveKind::Velocities, limits, velocities: Vec::new(), longest }
+        }
+        Some(most) => {
+            lines.push(format!("kind = \"accelerations\"\naccelerations = {}", list(&most)));
+            let limits = limits(&most);
+            Drive { kind: DriveKind::Accelerations, limits, velocities: speeds, longest }
+        }
+    };
+    (drive, lines)
+}
+
+/// The motion of a robot among obstacles that move, as TOML writes it.
+fn timed_motion(case: &Case, goal: String) -> Vec<String> {
+    let configuration = &case.start[..case.start.len() - 1];
+    let mut lines = vec![format!("start = {}", list(configuration)), goal];
+    if let Some(Timing { speed, start, goal: [first, last] }) = case.timing {
+        lines.extend(speed.map(|speed| format!("speed = {speed:?}")));
+        lines.push(format!("start_time = {start:?}\nhorizon = {last:?}"));
+        if first > start {
+            lines.push(format!("goal_time = {}", list(&[first, last])));
+        }
+    }
+    lines
 }
 
 /// Writes a line.

@@ -1,9 +1,9 @@
 //! Rigid bodies among figures and loose triangles.
 
 use super::bodies::{Form, form, loose, mesh_file, pose};
-use super::{World, end, goals, line, list, lists, names, wide_goal};
+use super::{World, by_rates, end, goals, line, list, lists, names, timed_motion, wide_goal};
 use crate::draw::Draw;
-use crate::oracle::{Ask, Body, Case, Drive, DriveKind, Mover, Moves, Timing};
+use crate::oracle::{Ask, Body, Case, Mover, Moves, Timing};
 use nalgebra::{Isometry3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -103,21 +103,9 @@ impl Room {
             true => (Moves::Plane, own.take(2).chain([None]).collect()),
             false => (Moves::Space, own.chain([None, None, None]).collect()),
         };
-        let moving: Vec<_> = moving.collect();
-        Case {
-            moves,
-            robot: vec![self.robot.body("robot", &Isometry3::identity(), 0)],
-            pairs: Vec::new(),
-            still,
-            moving,
-            timing: None,
-            drive: None,
-            limits,
-            start: Vec::new(),
-            goals: Vec::new(),
-            extent: 2.0 * HALF * self.scale,
-            far: self.offset.amax() + 2.0 * HALF * self.scale,
-        }
+        let (robot, extent) = (self.robot.body("robot", &Isometry3::identity(), 0), 2.0 * HALF * self.scale);
+        let far = self.offset.amax() + extent;
+        Case { still, moving: moving.collect(), far, ..Case::new(moves, vec![robot], limits, extent) }
     }
 
     /// The clearance beyond which a start must be accepted.
@@ -338,17 +326,7 @@ pub(super) fn moving(draw: &mut Draw) -> World {
     };
     let (asked, goal) = goals(draw, &room.names(), &room.widths(), free);
     case.goals = asked;
-    let mut motion = vec![
-        format!("start = {}", list(&case.start[..case.start.len() - 1])),
-        goal,
-        format!("speed = {speed:?}"),
-        format!("start_time = {begin:?}"),
-        format!("horizon = {horizon:?}"),
-    ];
-    if first > begin {
-        motion.push(format!("goal_time = {}", list(&[first, last])));
-    }
-    let (text, mut files) = room.toml(&[], &motion);
+    let (text, mut files) = room.toml(&[], &timed_motion(&case, goal));
     files.insert("scene.toml".to_owned(), text.into_bytes());
     World { main: "scene.toml".to_owned(), files, case, margin }
 }
@@ -391,21 +369,9 @@ pub(super) fn flyer(draw: &mut Draw) -> World {
     };
     let speeds: Vec<f64> = (0..6).map(|i| limit(draw, i, far)).collect();
     let accelerations: Vec<f64> = (0..6).map(|i| 2.0 * limit(draw, i, far)).collect();
-    let mut robot = vec![
-        format!("kind = \"{}\"", if by_velocities { "velocities" } else { "accelerations" }),
-        format!("speeds = {}", list(&speeds)),
-        format!("duration = {time:?}"),
-    ];
-    let (kind, limits, velocities) = match by_velocities {
-        true => (DriveKind::Velocities, &speeds, Vec::new()),
-        false => {
-            robot.push(format!("accelerations = {}", list(&accelerations)));
-            (DriveKind::Accelerations, &accelerations, speeds.clone())
-        }
-    };
-    let resting = velocities.len();
-    let limits = limits.iter().map(|x| [-x, *x]).collect();
-    case.drive = Some(Drive { kind, limits, velocities, longest: time });
+    let (drive, robot) = by_rates(time, speeds, (!by_velocities).then_some(accelerations));
+    let resting = drive.velocities.len();
+    case.drive = Some(drive);
     case.timing = moves.then_some(Timing { speed: None, start: 0.0, goal: [0.0, horizon] });
     let whole = |mut q: Vec<f64>, time: f64| {
         if moves {
