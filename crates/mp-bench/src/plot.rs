@@ -1,6 +1,7 @@
 //! Charts of curves, as SVG.
 
 use crate::error::{IntoError, Result};
+use crate::experiment::Median;
 use crate::output::note;
 use mp_plan::{Error, write_file};
 use mp_render::Drawing;
@@ -30,6 +31,18 @@ impl ChartCurve {
     /// A curve without ranges.
     pub(crate) fn new(name: impl Into<String>, colour: usize, points: Vec<(f64, f64)>) -> Self {
         Self { name: name.into(), colour, points, ranges: Vec::new(), thin: false, pattern: 0 }
+    }
+
+    /// A curve of medians, with their intervals up to `most`.
+    pub(crate) fn of_medians(
+        name: impl Into<String>,
+        colour: usize,
+        medians: &[(f64, Median)],
+        most: f64,
+    ) -> Self {
+        let points = medians.iter().map(|(x, m)| (*x, m.median)).collect();
+        let ranges = medians.iter().map(|(x, m)| (*x, m.low, m.high.min(most))).collect();
+        Self { ranges, ..Self::new(name, colour, points) }
     }
 
     /// The same curve, drawn thin.

@@ -98,7 +98,7 @@ fn run_factorial(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
     if !factorial::measure(&plan, lab, &mut log)? {
         return Ok(false);
     }
-    let results = factorial_tables::Results::new(&log, &plan);
+    let results = factorial_tables::Results { log: &log, plan: &plan };
     let text = sections(3, &results.headline());
     let details = results
         .by_problem()
@@ -121,7 +121,7 @@ fn run_restarts(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
     if !restarts::measure(&plan, lab, &mut log)? {
         return Ok(false);
     }
-    let results = restarts_tables::Results::new(&log, &plan);
+    let results = restarts_tables::Results { log: &log, plan: &plan };
     let text = results.summary().markdown() + "\n";
     lab.report(&name, &text, &log.table(&plan.cases())?)?;
     lab.charts(&name, results.charts())?;
@@ -138,7 +138,7 @@ fn run_clutter(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
     let name = lab.name("rsrt");
     let mut log = lab.log(&name, cap)?;
     let complete = series::measure(&plan, lab, &mut log)?;
-    let results = tables::Results::new(&log, &plan);
+    let results = tables::Results { log: &log, plan: &plan };
     lab.text(&name, &results.markdown())?;
     lab.charts(&name, results.charts())?;
     lab.report(&format!("{name}-summary"), &results.summary().markdown(), &log.table(&plan.cases())?)?;

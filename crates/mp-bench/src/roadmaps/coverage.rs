@@ -171,8 +171,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
 fn table(groups: Vec<Group<'_, &str, Case, Measured>>) -> Table {
     type Scene<'a> = Group<'a, &'a str, Case, Measured>;
     let median = |scene: &Scene<'_>, value: &dyn Fn(&Measured) -> f64| {
-        let none = Median { median: 0.0, low: 0.0, high: 0.0 };
-        Median::of(scene.values(value)).unwrap_or(none)
+        Median::of(scene.values(value)).unwrap_or_default()
     };
     let few = |scene: &Scene<'_>, value: fn(&Measured) -> f64| median(scene, &value).median;
     let many = |scene: &Scene<'_>, i: usize, value: fn(&Needed) -> f64| {

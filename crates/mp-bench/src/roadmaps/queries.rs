@@ -94,9 +94,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
         "RRT-Connect : this, medians",
         "means",
     ]);
-    let of = |times: &[f64]| {
-        Median::of(times.iter().copied()).unwrap_or(Median { median: 0.0, low: 0.0, high: 0.0 })
-    };
+    let of = |times: &[f64]| Median::of(times.iter().copied()).unwrap_or_default();
     let mean = |times: &[f64]| mean(times.iter().copied().filter(|t| t.is_finite())).unwrap_or(0.0);
     let connect = (of(&alone), mean(&alone));
     let mut row = |what: &str, map: [String; 3], times: &[f64]| {

@@ -9,8 +9,8 @@ use mp_experiments::clutter::{METRICS, MODELS, MOVERS, Run};
 /// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Results<'a> {
-    log: &'a Log<Case, Run>,
-    plan: &'a Plan,
+    pub(super) log: &'a Log<Case, Run>,
+    pub(super) plan: &'a Plan,
 }
 
 /// The runs of one series at one level.
@@ -26,10 +26,6 @@ struct SeriesAtLevel {
 }
 
 impl<'a> Results<'a> {
-    pub(super) fn new(log: &'a Log<Case, Run>, plan: &'a Plan) -> Self {
-        Self { log, plan }
-    }
-
     fn runs(&self, series: &Series, level: usize) -> Vec<&Run> {
         self.log.runs(series.cases(self.plan, level))
     }
@@ -243,13 +239,8 @@ impl<'a> Results<'a> {
                         if groups.is_empty() {
                             continue;
                         }
-                        let mut curve = ChartCurve::new(
-                            format!("{planner}, {metric}"),
-                            p,
-                            groups.iter().map(|(l, m)| (*l, m.median)).collect(),
-                        );
-                        curve.ranges =
-                            groups.iter().map(|(l, m)| (*l, m.low, m.high.min(self.plan.cap))).collect();
+                        let name = format!("{planner}, {metric}");
+                        let curve = ChartCurve::of_medians(name, p, &groups, self.plan.cap);
                         curves.push(curve.pattern(m));
                     }
                 }
@@ -291,17 +282,14 @@ mod tests {
                 let run = Run {
                     solved: !(level == 4 && series.planner == "rrt" && instance > 0),
                     seconds: slow * (1.0 + instance as f64),
-                    iterations: 10,
-                    nodes: 9,
                     checks: if series.planner == "rrt" { 120 } else { 40 },
                     expansions: 10,
-                    rejected: 0,
-                    edges: 3,
+                    ..Run::default()
                 };
                 log.learn([(series.case(level, instance), run)]);
             }
         }
-        let results = Results::new(&log, &plan);
+        let results = Results { log: &log, plan: &plan };
         let summary = results.summary();
         assert_eq!(summary.rows.len(), 2 * 2 * 2 * 3);
         assert_eq!(

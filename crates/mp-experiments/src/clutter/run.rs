@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 /// The result of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Whether it has found a path.
     pub solved: bool,
@@ -95,13 +95,13 @@ impl<S, V: Validity<S>> Validity<S> for CountingValidity<V> {
 }
 
 /// When a run began, and when it ends at the latest.
-struct Began {
+struct Timer {
     at: Duration,
     deadline: Deadline,
 }
 
-impl Began {
-    fn now(settings: &RunSettings) -> Result<Self> {
+impl Timer {
+    fn start(settings: &RunSettings) -> Result<Self> {
         let limit = Duration::try_from_secs_f64(settings.cap)?;
         Ok(Self { at: settings.clock.now(), deadline: Deadline::by(settings.clock, limit) })
     }
@@ -111,12 +111,12 @@ impl Began {
 fn run<S, E: Clone>(
     planner: std::result::Result<impl Planner<S, Edge = E>, BuildError>,
     settings: &RunSettings,
-    began: Began,
+    timer: Timer,
 ) -> Result<Option<Run>> {
     let mut planner = planner?;
-    let mut stop = began.deadline.or(settings.cancel.clone());
+    let mut stop = timer.deadline.or(settings.cancel.clone());
     let outcome = planner.solve(&mut Rng::seed(settings.seed), &mut stop, &mut ());
-    let seconds = settings.clock.now().saturating_sub(began.at).as_secs_f64();
+    let seconds = settings.clock.now().saturating_sub(timer.at).as_secs_f64();
     let progress = planner.progress();
     let (solved, edges) = match outcome {
         Outcome::Solved(path) => (true, path.edges.len()),
@@ -178,7 +178,7 @@ where
     let space = WithMetric::new(test_robot.space().clone(), metric);
     let verifier = test_robot.verifier(&robot)?;
     let count = Arc::new(AtomicU64::new(0));
-    let began = Began::now(settings)?;
+    let timer = Timer::start(settings)?;
     let valid = CountingValidity { valid: robot, count: count.clone() };
     let resolution = Length::Absolute(test_robot.resolution());
     let check = Discrete::new(test_robot.space(), valid, resolution)?;
@@ -187,7 +187,7 @@ where
     let done = match settings.planner {
         ComparedPlanner::Connect => {
             let problem = Problem::new(&space, straight, verifier, start, goal)?;
-            run(RrtConnect::new(problem, tuning), settings, began)
+            run(RrtConnect::new(problem, tuning), settings, timer)
         }
         ComparedPlanner::Inputs(order, accept) => {
             let flow = Kinematic::new(&space)?;
@@ -197,8 +197,8 @@ where
             let goals = Goals::region(near).with_sampler(Exactly(goal));
             let problem = Problem::new(&space, local.ordered(order), verifier, start, goals)?;
             match accept {
-                Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, began),
-                Accept::Any => run(Rsrt::new(problem, tuning), settings, began),
+                Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, timer),
+                Accept::Any => run(Rsrt::new(problem, tuning), settings, timer),
             }
         }
     }?;
@@ -229,7 +229,7 @@ where
     let fine = Length::Absolute(0.1 * test_robot.resolution());
     let verifier = ReplayFinely::new(&places, flow, proved, fine)?;
     let count = Arc::new(AtomicU64::new(0));
-    let began = Began::now(settings)?;
+    let timer = Timer::start(settings)?;
     let valid = OnPosition(CountingValidity { valid: robot, count: count.clone() });
     let resolution = Length::Absolute(test_robot.resolution());
     let check = DiscreteFlowCheck::new(&places, valid, resolution)?;
@@ -245,8 +245,8 @@ where
     let problem = Problem::new(&space, local, verifier, start, goals)?;
     let tuning = tuning();
     let done = match accept {
-        Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, began),
-        Accept::Any => run(Rsrt::new(problem, tuning), settings, began),
+        Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, timer),
+        Accept::Any => run(Rsrt::new(problem, tuning), settings, timer),
     }?;
     Ok(done.map(|run| Run { checks: count.load(Ordering::Relaxed), ..run }))
 }
