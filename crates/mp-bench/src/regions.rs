@@ -20,7 +20,7 @@ const ROADMAPS: [(&str, usize, usize); 6] = [
 ];
 /// The numbers of ranks that are simulated.
 const RANKS: [usize; 3] = [16, 64, 256];
-/// A collision query counts as so many seconds, a message takes so many, and the master so many for each.
+/// What the simulation takes as the seconds of a collision query, of a message on its way, and of the master's work for a message.
 const QUERY_S: f64 = 20e-6;
 const LATENCY_S: f64 = 20e-6;
 const MESSAGE_S: f64 = 10e-6;

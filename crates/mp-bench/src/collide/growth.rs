@@ -169,9 +169,12 @@ fn cost(m: &PairResults, set: &str, query: &str) -> Option<f64> {
     m.record(OURS, set, query).map(|r| r.least)
 }
 
+/// Costs by numbers of triangles.
+type Costs = Vec<(usize, f64)>;
+
 /// Costs relative to the smallest size: a straight line is logarithmic growth.
 fn curves(all: &[PairResults]) -> Vec<ChartCurve> {
-    let relative = |(i, (name, costs)): (usize, (&str, Vec<(usize, f64)>))| {
+    let relative = |(i, (name, costs)): (usize, (&str, Costs))| {
         let first = costs.first().map_or(1.0, |c| c.1);
         let points = costs.into_iter().map(|(triangles, cost)| (triangles as f64 / 2.0, cost / first));
         ChartCurve::new(name, i, points.collect())

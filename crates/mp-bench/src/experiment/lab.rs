@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// About so many groups of cases for each thread of a rank make them all end at about the same time.
+/// The number of groups of cases for each thread of a rank that makes all threads end at about the same time.
 const GROUPS: usize = 8;
 
 /// How often ranks tell how far they are.

@@ -74,7 +74,7 @@ pub(super) const WITH_TREES: [[&str; 2]; 5] = [
     [GEOMETRY, "obstacle geometry, trees"],
 ];
 
-/// Those of the factorial experiment: the first so many. Then so many variants of obstacle-geometry PRM.
+/// The numbers of those of the factorial experiment, which come first, and of the variants of obstacle-geometry PRM after them.
 const FACTORS: usize = 8;
 const PARTS: usize = 8;
 

@@ -29,7 +29,7 @@ const METRIC: &str = "scaled";
 /// What is planned for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
-    /// A robot and a model among so many boxes.
+    /// A robot and a model among a number of boxes.
     Boxes { mover: &'static str, model: &'static str, obstacles: usize },
     /// A shipped scene; inputs are velocities, one step of the planner's default long.
     Scene(&'static str),

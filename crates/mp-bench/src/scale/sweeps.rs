@@ -57,7 +57,7 @@ fn column_of(table: &str, column: &str) -> Option<Vec<f64>> {
     lines.map(|line| cells(line).get(at)?.parse().ok()).collect()
 }
 
-/// So many items, drawn from measured ones with a seed, in the order of the measured: what is alike lies together, as in a sweep.
+/// The costs of `items` items, drawn from measured ones with a seed, in the order of the measured: what is alike lies together, as in a sweep.
 fn drawn(costs: &[f64], items: usize, stream: u64) -> Vec<f64> {
     let mut rng = Rng::stream(1, stream);
     let mut rows: Vec<usize> = (0..items).map(|_| (rng.unit() * costs.len() as f64) as usize).collect();
