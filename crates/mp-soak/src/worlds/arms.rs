@@ -91,36 +91,46 @@ struct Made {
     reach: f64,
 }
 
-/// A random robot.
-fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
-    let count = if floats { draw.count(1, 3) } else { draw.count(1, 7) };
-    let mut files = BTreeMap::new();
-    let mut urdf = String::from("<?xml version=\"1.0\"?>\n<robot name=\"arm\">\n");
-    let mut joints: Vec<Joint> = Vec::new();
-    let mut bodies = Vec::new();
-    // The link of each body, and the links that each joint connects: link i is behind joint i - 1.
-    let mut of_link = Vec::new();
-    let mut limits: Vec<Option<[f64; 2]>> = Vec::new();
-    let mut names = Vec::new();
-    let mut reach = 0.0;
-    let lengths: Vec<f64> = (0..=count).map(|_| scale * draw.within(0.25, 0.9)).collect();
+/// Writes links about as long as `lengths`. Returns the bodies of the robot and the link of each; link i is behind joint i - 1.
+fn links(
+    draw: &mut Draw,
+    floats: bool,
+    lengths: &[f64],
+    urdf: &mut String,
+    files: &mut BTreeMap<String, Vec<u8>>,
+) -> (Vec<Body>, Vec<usize>) {
+    let (mut bodies, mut of_link) = (Vec::new(), Vec::new());
     for (link, length) in lengths.iter().enumerate() {
         let mut elements = String::new();
         let shapes = match link {
             0 if !floats => draw.below(2),
             0 => 1,
             // The last link has a shape: something has to move.
-            _ if link == count => draw.count(1, 2),
+            _ if link + 1 == lengths.len() => draw.count(1, 2),
             _ => *draw.one(&[0, 1, 1, 1, 2]),
         };
         for shape in 0..shapes {
-            let (element, pieces) = collision(draw, *length, &format!("part-{link}-{shape}"), &mut files);
+            let (element, pieces) = collision(draw, *length, &format!("part-{link}-{shape}"), files);
             elements += &element;
             bodies.push(Body::new(format!("link{link}"), Shape::Pieces(pieces), link));
             of_link.push(link);
         }
-        line(&mut urdf, format!("<link name=\"link{link}\">{elements}</link>"));
+        line(urdf, format!("<link name=\"link{link}\">{elements}</link>"));
     }
+    (bodies, of_link)
+}
+
+/// A random robot.
+fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
+    let count = if floats { draw.count(1, 3) } else { draw.count(1, 7) };
+    let mut files = BTreeMap::new();
+    let mut urdf = String::from("<?xml version=\"1.0\"?>\n<robot name=\"arm\">\n");
+    let mut joints: Vec<Joint> = Vec::new();
+    let mut limits: Vec<Option<[f64; 2]>> = Vec::new();
+    let mut names = Vec::new();
+    let mut reach = 0.0;
+    let lengths: Vec<f64> = (0..=count).map(|_| scale * draw.within(0.25, 0.9)).collect();
+    let (bodies, of_link) = links(draw, floats, &lengths, &mut urdf, &mut files);
     for j in 0..count {
         // Mostly a chain; rarely a branch.
         let above = if draw.chance(0.85) { j } else { draw.below(j + 1) };
@@ -260,6 +270,21 @@ impl Made {
         self.limits.iter().map(value).collect()
     }
 
+    /// The names of the numbers that goals may leave open, and the widths of intervals of them.
+    fn names_and_widths(&self, scale: f64) -> (Vec<String>, Vec<f64>) {
+        let (mut names, mut widths) = (Vec::new(), Vec::new());
+        if self.tree.floats {
+            names.extend(["x", "y", "z", "alpha", "beta", "gamma"].map(str::to_owned));
+            widths.extend([0.4 * scale, 0.4 * scale, 0.4 * scale, 0.5, 0.05, 0.5]);
+        }
+        names.extend(self.names.iter().cloned());
+        widths.extend(self.tree.joints.iter().filter_map(|joint| {
+            let first = joint.number.is_some_and(|(_, factor, shift)| factor == 1.0 && shift == 0.0);
+            first.then_some(if joint.slides { 0.1 * scale } else { 0.3 })
+        }));
+        (names, widths)
+    }
+
     fn case(&self) -> Case {
         let root: &[Option<[f64; 2]>] = if self.tree.floats { &[None; 6] } else { &[] };
         let limits = [root, &self.limits].concat();
@@ -276,6 +301,34 @@ pub(super) fn arm(draw: &mut Draw) -> World {
 /// A body with joints that flies among figures.
 pub(super) fn floating(draw: &mut Draw) -> World {
     jointed(draw, true)
+}
+
+/// A random pose at most `half` from the middle in each direction.
+fn placed(draw: &mut Draw, half: f64) -> [f64; 6] {
+    let [x, y, z] = [0; 3].map(|_| draw.within(-half, half));
+    [x, y, z, draw.within(-PI, PI), draw.within(-1.5, 1.5), draw.within(-PI, PI)]
+}
+
+/// Adds figures to a world. Returns their tables, and the radius of the largest round one.
+fn obstacles(
+    draw: &mut Draw,
+    scale: f64,
+    case: &mut Case,
+    files: &mut BTreeMap<String, Vec<u8>>,
+) -> (String, f64) {
+    let (mut text, mut round) = (String::new(), 0.0_f64);
+    for i in 0..draw.count(0, 7) {
+        let name = format!("obstacle-{}", i + 1);
+        let size = draw.within(0.2, 1.6);
+        let form = form(draw, size * scale, &name);
+        let six = placed(draw, scale * HALF);
+        let table = format!("\n[[obstacle]]\nname = \"{name}\"\n{}\npose = {}", form.toml(), list(&six));
+        line(&mut text, table);
+        form.write(files);
+        case.still.push(form.body(&name, &pose(six), 0));
+        round = round.max(form.round());
+    }
+    (text, round)
 }
 
 fn jointed(draw: &mut Draw, floats: bool) -> World {
@@ -306,50 +359,14 @@ fn jointed(draw: &mut Draw, floats: bool) -> World {
     } else {
         line(&mut text, format!("base = {}", list(&base)));
     }
-    let mut round: f64 = 0.3 * scale;
-    let mut obstacles = String::new();
-    for i in 0..draw.count(0, 7) {
-        let name = format!("obstacle-{}", i + 1);
-        let size = draw.within(0.2, 1.6);
-        let form = form(draw, size * scale, &name);
-        let at = |draw: &mut Draw| draw.within(-half, half);
-        let six = [
-            at(draw),
-            at(draw),
-            at(draw),
-            draw.within(-PI, PI),
-            draw.within(-1.5, 1.5),
-            draw.within(-PI, PI),
-        ];
-        line(
-            &mut obstacles,
-            format!("\n[[obstacle]]\nname = \"{name}\"\n{}\npose = {}", form.toml(), list(&six)),
-        );
-        form.write(&mut files);
-        case.still.push(form.body(&name, &pose(six), 0));
-        round = round.max(form.round());
-    }
-    let margin = 0.05 * round + 1e-3 * made.reach;
+    let (obstacles, round) = obstacles(draw, scale, &mut case, &mut files);
+    let margin = 0.05 * round.max(0.3 * scale) + 1e-3 * made.reach;
     let configuration = |draw: &mut Draw| {
-        let mut row = Vec::new();
-        if floats {
-            row.extend([0; 3].map(|_| draw.within(-half, half)));
-            row.extend([draw.within(-PI, PI), draw.within(-1.5, 1.5), draw.within(-PI, PI)]);
-        }
+        let mut row = if floats { placed(draw, half).to_vec() } else { Vec::new() };
         row.extend(made.joint_values(draw));
         row
     };
-    let mut names: Vec<String> = Vec::new();
-    let mut widths = Vec::new();
-    if floats {
-        names.extend(["x", "y", "z", "alpha", "beta", "gamma"].map(str::to_owned));
-        widths.extend([0.4 * scale, 0.4 * scale, 0.4 * scale, 0.5, 0.05, 0.5]);
-    }
-    names.extend(made.names.iter().cloned());
-    widths.extend(made.tree.joints.iter().filter_map(|joint| {
-        let first = joint.number.is_some_and(|(_, factor, shift)| factor == 1.0 && shift == 0.0);
-        first.then_some(if joint.slides { 0.1 * scale } else { 0.3 })
-    }));
+    let (names, widths) = made.names_and_widths(scale);
     let inputs = !floats && draw.chance(0.25);
     if !inputs {
         case.start = end(draw, &case, margin, configuration);
@@ -381,6 +398,5 @@ fn jointed(draw: &mut Draw, floats: bool) -> World {
         line(&mut text, format!("\n[motion]\nstart = {}\n{goal_text}", list(&case.start[..own])));
     }
     text += &obstacles;
-    files.insert("scene.toml".to_owned(), text.into_bytes());
-    World { main: "scene.toml".to_owned(), files, case, margin }
+    World::of_toml(text, files, case, margin)
 }

@@ -189,7 +189,7 @@ impl Room {
         if self.robot.is_ok() { names(&["x", "y"]) } else { names(&["x", "y", "yaw"]) }
     }
 
-    fn toml(&self, robot: &[String], motion: &[String]) -> BTreeMap<String, Vec<u8>> {
+    fn toml(&self, robot: &[String], motion: &[String]) -> String {
         let mut text = String::from("[world]\n");
         line(&mut text, format!("walls = {}", lists([&self.low[..], &self.high[..]])));
         if let Some([low, high]) = &self.bounds {
@@ -210,12 +210,12 @@ impl Room {
             line(&mut text, format!("\n[[moving]]\nname = \"mover {}\"\n{}", i + 1, outline.toml()));
             line(&mut text, format!("path = {}", lists(rows.iter().map(|row| &row[..]))));
         }
-        BTreeMap::from([("scene.toml".to_owned(), text.into_bytes())])
+        text
     }
 
     fn world(self, case: Case, robot: &[String], motion: &[String]) -> World {
         let margin = self.margin(&case);
-        World { main: "scene.toml".to_owned(), files: self.toml(robot, motion), case, margin }
+        World::of_toml(self.toml(robot, motion), BTreeMap::new(), case, margin)
     }
 }
 
