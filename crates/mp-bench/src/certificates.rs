@@ -52,7 +52,7 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
             ("edges replayed/s", &|(_, run)| format!("{:.0}", run.edges as f64 / run.replaying)),
         ],
     );
-    lab.report("certificates", &table, &table)?;
+    lab.report("certificates", &table.markdown(), &table)?;
     Ok(log.each(&cases).count() == cases.len())
 }
 

@@ -105,7 +105,7 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     if all.is_empty() {
         return Ok(complete);
     }
-    lab.report_text("collide", &text(&all, &costs), &tables::each(&all))?;
+    lab.report("collide", &text(&all, &costs), &tables::each(&all))?;
     Ok(complete && tables::consistent(&all) && costs.iter().all(Costs::consistent))
 }
 

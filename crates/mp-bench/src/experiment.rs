@@ -11,6 +11,6 @@ pub(crate) use lab::{Lab, interrupted};
 pub(crate) use log::{Group, Log};
 pub(crate) use stats::{
     Median, bootstrap, geometric_mean, mean, paired_ratio, ratio, restricted_mean, seconds, short, survival,
-    wilson,
+    wilson, wilson_percent,
 };
 pub(crate) use table::{Table, bit, sections};

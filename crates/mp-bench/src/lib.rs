@@ -13,6 +13,7 @@ mod experiment;
 mod killed;
 mod options;
 mod output;
+mod peer;
 mod planners;
 mod plot;
 mod regions;
@@ -100,7 +101,7 @@ impl Options {
 
 /// How a suite ended that all ranks ran.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ran {
+pub struct SuiteOutcome {
     /// Whether it was measured completely.
     pub complete: bool,
     /// What each rank did; on the first one. A piece of work is its processor time, seconds, also where that is counted.
@@ -116,12 +117,12 @@ pub fn run_on(
     options: &Options,
     link: std::rc::Rc<dyn mp_ranks::Link>,
     cancel: &mp_cspace::Cancel,
-) -> Result<Ran, Error> {
+) -> Result<SuiteOutcome, Error> {
     if !link.is_master() {
         output::silence();
     }
     let (complete, shares) = experiment::ranks::with(link, cancel.clone(), || run(options));
-    Ok(Ran { complete: complete?, shares })
+    Ok(SuiteOutcome { complete: complete?, shares })
 }
 
 /// Runs a suite. True when it was measured completely, and all of what it printed was read.

@@ -1,7 +1,7 @@
 //! Every planner on shipped scenes, to the first verified path: the source of the table in `docs/choosing-a-planner.md`.
 
 use crate::error::Result;
-use crate::experiment::{Lab, Table, bit};
+use crate::experiment::{Lab, Table};
 use crate::options::Common;
 use crate::scenes::{Planned, Rigid, bare};
 use mp_plan::median;
@@ -47,20 +47,6 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
     if !complete {
         return Ok(false);
     }
-    let by_planner: Vec<Case> =
-        planners().flat_map(|planner| scenes.iter().flat_map(move |scene| of(scene, planner))).collect();
-    let each = Table::of(
-        log.each(&by_planner),
-        &[
-            ("scene", &|(case, _)| case.scene.clone()),
-            ("planner", &|(case, _)| case.planner.clone()),
-            ("seed", &|(case, _)| case.seed.to_string()),
-            ("solved", &|(_, run)| bit(run.solved)),
-            ("s", &|(_, run)| format!("{:.6}", run.seconds)),
-            ("checks", &|(_, run)| run.queries.to_string()),
-            ("iterations", &|(_, run)| run.iterations.to_string()),
-        ],
-    );
     let cell = |scene: &String, planner: &str| {
         let runs: Vec<&Planned> = log.runs(of(scene, planner));
         let solved = runs.iter().filter(|run| run.solved).count();
@@ -74,6 +60,6 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
         let cells = scenes.iter().map(|scene| cell(scene, planner));
         summary.rows.push([planner.to_owned()].into_iter().chain(cells).collect());
     }
-    lab.report("planners", &summary, &each)?;
+    lab.report("planners", &summary.markdown(), &log.table(&cases)?)?;
     Ok(true)
 }

@@ -1,9 +1,10 @@
-//! Charts of curves, as SVG and as PNG.
+//! Charts of curves, as SVG.
 
 use crate::error::{IntoError, Result};
+use crate::experiment::Median;
 use crate::output::note;
 use mp_plan::{Error, write_file};
-use mp_render::{Drawing, Series};
+use mp_render::Drawing;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -30,6 +31,18 @@ impl ChartCurve {
     /// A curve without ranges.
     pub(crate) fn new(name: impl Into<String>, colour: usize, points: Vec<(f64, f64)>) -> Self {
         Self { name: name.into(), colour, points, ranges: Vec::new(), thin: false, pattern: 0 }
+    }
+
+    /// A curve of medians, with their intervals up to `most`.
+    pub(crate) fn of_medians(
+        name: impl Into<String>,
+        colour: usize,
+        medians: &[(f64, Median)],
+        most: f64,
+    ) -> Self {
+        let points = medians.iter().map(|(x, m)| (*x, m.median)).collect();
+        let ranges = medians.iter().map(|(x, m)| (*x, m.low, m.high.min(most))).collect();
+        Self { ranges, ..Self::new(name, colour, points) }
     }
 
     /// The same curve, drawn thin.
@@ -248,14 +261,6 @@ pub(crate) fn save_drawing(stem: &Path, drawing: &Drawing, size: (usize, usize))
     write_file(&stem.with_extension("svg"), drawing.svg(size).into_error()?.as_bytes())?;
     write_file(&stem.with_extension("png"), &drawing.pixels(size).into_error()?.to_png())?;
     note(&format!("written: {}.svg and .png", stem.display()));
-    Ok(())
-}
-
-/// Writes curves over a logarithmic axis as PNG.
-pub(crate) fn save_series(file: &Path, title: &str, axes: [&str; 2], series: &[Series]) -> Result<()> {
-    let picture = mp_render::plot(title, axes, series, (960, 600)).into_error()?;
-    write_file(file, &picture.to_png())?;
-    note(&format!("written: {}", file.display()));
     Ok(())
 }
 

@@ -3,12 +3,9 @@
 use crate::error::Result;
 use crate::experiment::{Lab, Table};
 use crate::options::Common;
-use crate::scenes::{Rigid, either};
-use mp_cspace::{Rng, Space, Validity};
-use mp_plan::{
-    Description, Finish, Interrupt, RegionalWork, Request, RigidScene, RigidSpace, Scene, SceneRoadmap,
-    TypedMotion,
-};
+use crate::scenes::{Rigid, either, free};
+use mp_cspace::Rng;
+use mp_plan::{Description, Finish, Interrupt, RegionalWork, Request, Scene, SceneRoadmap};
 use mp_ranks::{Policy, simulate};
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +20,7 @@ const ROADMAPS: [(&str, usize, usize); 6] = [
 ];
 /// The numbers of ranks that are simulated.
 const RANKS: [usize; 3] = [16, 64, 256];
-/// A collision query counts as so many seconds, a message takes so many, and the master so many for each.
+/// What the simulation takes as the seconds of a collision query, of a message on its way, and of the master's work for a message.
 const QUERY_S: f64 = 20e-6;
 const LATENCY_S: f64 = 20e-6;
 const MESSAGE_S: f64 = 10e-6;
@@ -164,13 +161,15 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
         }
     }
     let text = format!("{}\n\n{}\n", answers.markdown(), balance.markdown());
-    lab.report_text("regions", &text, &answers)?;
+    lab.report("regions", &text, &answers)?;
     Ok(log.each(&cases).count() == cases.len())
 }
 
 fn measure(case: &Case) -> Result<Option<Run>> {
-    let scene = Scene::find(&case.scene)?;
-    let ends = either!(Rigid::load(&case.scene)?, scene => free(&scene, ASKED + 1));
+    let (scene, rigid) = (Scene::find(&case.scene)?, Rigid::load(&case.scene)?);
+    let row = |q| either!(&rigid, scene => scene.row(&q));
+    let ends: Vec<_> =
+        either!(&rigid, scene => free(scene, Rng::stream(1, 99)).take(ASKED + 1).map(row).collect());
     let request = Request::new("regional-prm").seed(case.seed).finish(Finish::AsFound);
     let request = request.set("regions", case.regions).set("samples", case.samples);
     let (work, never) = (scene.regions(&request)?, Interrupt::never());
@@ -206,11 +205,4 @@ fn asked(mut roadmap: SceneRoadmap, ends: &[Vec<f64>]) -> Result<Built> {
         answered += usize::from(roadmap.query(&pair[0], &pair[1])?.solved);
     }
     Ok(Built { nodes: roadmap.nodes(), edges: roadmap.edges(), components: roadmap.components(), answered })
-}
-
-/// Free configurations, uniform in the space.
-fn free<M: RigidSpace>(scene: &RigidScene<M>, count: usize) -> Vec<Vec<f64>> {
-    let (mut robot, mut rng) = (scene.checker().clone(), Rng::stream(1, 99));
-    let samples = std::iter::repeat_with(|| scene.space().sample_uniform(&mut rng));
-    samples.filter(|q| robot.is_valid(q)).take(count).map(|q| scene.row(&q)).collect()
 }

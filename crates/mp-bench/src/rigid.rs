@@ -13,6 +13,7 @@
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table, bit, mean};
 use crate::options::Common;
+use crate::peer::json_lines;
 use crate::scenes::{Planned, Rigid, bare};
 use clap::Args;
 use mp_io::{OmplExport, export_ompl};
@@ -155,7 +156,7 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
             }),
         ],
     );
-    lab.report("rigid", &summary, &each)?;
+    lab.report("rigid", &summary.markdown(), &each)?;
     Ok(solved)
 }
 
@@ -170,11 +171,6 @@ fn ask(program: &Path, problem: &Path, seed: u64, time: f64, range: f64) -> Resu
     command.arg("--problem").arg(problem).args(["--planner", "rrtconnect", "--seeds", "1"]);
     command.args(["--seed0", &seed.to_string(), "--time", &time.to_string()]);
     command.args(["--range", &range.to_string()]);
-    let done = command.output().doing(|| format!("cannot run {}", program.display()))?;
-    let text = String::from_utf8_lossy(&done.stdout);
-    let line = text.lines().find(|l| l.starts_with('{')).ok_or_else(|| {
-        Error::new(format!("{} printed no line of JSON", program.display()))
-            .help(String::from_utf8_lossy(&done.stderr))
-    })?;
-    serde_json::from_str(line).doing(|| format!("cannot read what {} printed", program.display()))
+    let told = json_lines(&mut command)?.into_iter().next();
+    told.ok_or_else(|| Error::new(format!("{} printed no line of JSON", program.display())))
 }

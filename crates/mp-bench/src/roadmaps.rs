@@ -14,14 +14,14 @@ mod scenes;
 mod svg_drawing;
 mod tables;
 
-use crate::error::{IntoError, Result};
-use crate::experiment::{Lab, Log, Table, sections};
+use crate::error::Result;
+use crate::experiment::{Lab, Table, sections};
 use crate::options::Common;
-use crate::output::{note, print};
+use crate::output::note;
 use crate::scenes::Rigid;
 use claims::{EXPERIMENTS, Experiment};
 use clap::Args;
-use runs::{Case, Plan, Run};
+use runs::Plan;
 use scenes::CORRIDORS;
 use tables::Results;
 
@@ -78,7 +78,7 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let mut parts: Vec<(&str, Table)> = suites.iter().map(|c| (c.title, results.corridor(c))).collect();
     parts.push(("Shipped scenes", results.summary(&named)));
     if !whole {
-        save(&lab, &format!("{name}-scenes"), &parts, &log)?;
+        lab.report(&format!("{name}-scenes"), &sections(2, &parts), &log.table(&plan.all_cases(&named))?)?;
         return Ok(true);
     }
     let widths: Vec<String> = corridors.into_iter().flatten().map(|(name, _)| name).collect();
@@ -89,7 +89,8 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     parts.push(("Growth", growth::measure(common.quick)?));
     let Some(coverage) = coverage::measure(&lab, common.quick)? else { return Ok(false) };
     parts.push(("Coverage", coverage));
-    save(&lab, &name, &parts, &log)?;
+    let scenes = [named, widths].concat();
+    lab.report(&name, &sections(2, &parts), &log.table(&plan.all_cases(&scenes))?)?;
     for corridors in &CORRIDORS {
         lab.write(&format!("{name}-{}.svg", corridors.name), &results.chart(corridors)?)?;
     }
@@ -112,21 +113,7 @@ fn run_claims(lab: &Lab, common: &Common, options: &Options, wanted: &[Experimen
         let name = lab.name(experiment.name());
         let scenes = format!("{}\n\n{}\n", results.intervals(), results.by_scene().markdown());
         lab.write(&format!("{name}-by-scene.md"), &scenes)?;
-        lab.publish_runs(&name, &sections(3, &results.parts()), &log, |case| plan.has(case), Vec::new())?;
+        lab.report(&name, &sections(3, &results.parts()), &log.table(&plan.cases())?)?;
     }
     Ok(true)
-}
-
-/// Prints the tables, and writes them as Markdown, CSV and JSON, which has all runs as well.
-fn save(lab: &Lab, name: &str, parts: &[(&str, Table)], log: &Log<Case, Run>) -> Result<()> {
-    for (title, table) in parts {
-        lab.write(&format!("{name}-{}.csv", title.to_lowercase().replace(' ', "-")), &table.csv())?;
-    }
-    let text = sections(2, parts) + "\n";
-    print(&text)?;
-    lab.write(&format!("{name}.md"), &text)?;
-    let tables: serde_json::Map<_, _> =
-        parts.iter().map(|(title, table)| ((*title).to_owned(), table.json())).collect();
-    let json = serde_json::json!({ "tables": tables, "runs": log.all() });
-    lab.write(&format!("{name}.json"), &serde_json::to_string_pretty(&json).into_error()?)
 }

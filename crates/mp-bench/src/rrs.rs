@@ -49,9 +49,11 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let name = lab.name("rrs");
     let mut log = lab.log(&name, ITERATIONS as f64)?;
     let complete = measure(&plan, &lab, &mut log)?;
-    let results = Results::new(&log, &plan);
+    let results = Results { log: &log, plan: &plan };
     // An interrupted measurement may have nothing to draw.
     let charts = if complete { results.charts() } else { Vec::new() };
-    lab.publish(&name, &results.markdown(), [&results.summary(), &results.each()], charts)?;
+    lab.text(&name, &results.markdown())?;
+    lab.charts(&name, charts)?;
+    lab.report(&format!("{name}-summary"), &results.summary().markdown(), &results.each())?;
     Ok(complete)
 }

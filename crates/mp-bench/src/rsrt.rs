@@ -98,14 +98,15 @@ fn run_factorial(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
     if !factorial::measure(&plan, lab, &mut log)? {
         return Ok(false);
     }
-    let results = factorial_tables::Results::new(&log, &plan);
+    let results = factorial_tables::Results { log: &log, plan: &plan };
     let text = sections(3, &results.headline());
     let details = results
         .by_problem()
         .into_iter()
         .chain([("Solved runs and median times, s".into(), results.corners())]);
     lab.write(&format!("{name}-by-problem.md"), &sections(3, &details.collect::<Vec<_>>()))?;
-    lab.publish_runs(&name, &text, &log, |case| plan.has(case), results.charts())?;
+    lab.report(&name, &text, &log.table(&plan.cases())?)?;
+    lab.charts(&name, results.charts())?;
     Ok(true)
 }
 
@@ -120,9 +121,10 @@ fn run_restarts(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
     if !restarts::measure(&plan, lab, &mut log)? {
         return Ok(false);
     }
-    let results = restarts_tables::Results::new(&log, &plan);
+    let results = restarts_tables::Results { log: &log, plan: &plan };
     let text = results.summary().markdown() + "\n";
-    lab.publish_runs(&name, &text, &log, |case| case.seed <= plan.seeds, results.charts())?;
+    lab.report(&name, &text, &log.table(&plan.cases())?)?;
+    lab.charts(&name, results.charts())?;
     Ok(true)
 }
 
@@ -136,8 +138,10 @@ fn run_clutter(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
     let name = lab.name("rsrt");
     let mut log = lab.log(&name, cap)?;
     let complete = series::measure(&plan, lab, &mut log)?;
-    let results = tables::Results::new(&log, &plan);
-    lab.publish(&name, &results.markdown(), [&results.summary(), &results.each()], results.charts())?;
+    let results = tables::Results { log: &log, plan: &plan };
+    lab.text(&name, &results.markdown())?;
+    lab.charts(&name, results.charts())?;
+    lab.report(&format!("{name}-summary"), &results.summary().markdown(), &log.table(&plan.cases())?)?;
     note(&format!("{} runs of up to {:?} each", log.all().len(), Duration::from_secs_f64(cap)));
     Ok(complete)
 }

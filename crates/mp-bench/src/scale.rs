@@ -37,6 +37,6 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
     let mut each = Table::new(["experiment", "case", "seed", "solved", "seconds", "iterations"]);
     each.rows.extend(problems.rows());
     each.rows.extend(lengths.rows());
-    lab.report_text(&lab.name("scale"), &(text.join("\n\n") + "\n"), &each)?;
+    lab.report(&lab.name("scale"), &(text.join("\n\n") + "\n"), &each)?;
     Ok(true)
 }

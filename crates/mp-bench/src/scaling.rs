@@ -5,9 +5,10 @@
 
 mod growth;
 
-use crate::error::{IntoError, Result};
+use crate::error::Result;
 use crate::experiment::{Lab, Table};
 use crate::options::Common;
+use crate::peer::json_lines;
 use growth::{Growing, Row, SPACES};
 use mp_plan::Error;
 use serde::{Deserialize, Serialize};
@@ -53,7 +54,7 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
     }
     let cases: Vec<Case> = spaces.into_iter().map(case).collect();
     let complete = lab.measure(&mut log, "scaling", &cases, |case| {
-        let growing = Growing { sizes: &case.sizes, cap: common.time, repeats, ..Growing::default() };
+        let growing = Growing { sizes: &case.sizes, cap: common.time, repeats };
         let ours = growing.measure(&case.space)?;
         let ask = |peer: &PathBuf| ask(peer, &case.space, sizes[sizes.len() - 1], common.time);
         Ok(Some(Run { ours, theirs: case.peer.as_ref().map(ask).transpose()?.unwrap_or_default() }))
@@ -85,20 +86,12 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
             }),
         ],
     );
-    lab.report("scaling", &table, &table)?;
+    lab.report("scaling", &table.markdown(), &table)?;
     Ok(reached)
 }
 
 /// The results of the other program in one space; sizes that it does not reach in time are missing.
 fn ask(program: &Path, space: &str, nodes: usize, seconds: f64) -> Result<Vec<Theirs>> {
     let (nodes, seconds) = (nodes.to_string(), seconds.to_string());
-    let done = Command::new(program)
-        .args(["rrt", space, "gnat", &nodes, &seconds])
-        .output()
-        .doing(|| format!("cannot run {}", program.display()))?;
-    let text = String::from_utf8_lossy(&done.stdout);
-    let lines = text.lines().filter(|line| line.starts_with('{')).map(serde_json::from_str);
-    lines
-        .collect::<std::result::Result<_, _>>()
-        .doing(|| format!("cannot read what {} printed", program.display()))
+    json_lines(Command::new(program).args(["rrt", space, "gnat", &nodes, &seconds]))
 }

@@ -1,10 +1,13 @@
 //! Scenes of rigid bodies by name, and plain runs of planners on them.
 
+use crate::clock::processor_clock;
 use crate::error::Result;
 use crate::output::note;
-use mp_cspace::{Cancel, Outcome, Space, StopReason};
+use mp_cspace::{Cancel, Configuration, Outcome, Rng, Space, StopReason, Validity};
 use mp_io::{RigidProblem, SpaceKind};
-use mp_plan::{Budget, Control, Finish, Request, RigidScene, Robot, Scene, TypedMotion, search};
+use mp_plan::{
+    Budget, Control, Finish, Request, RigidScene, RigidSpace, Robot, Scene, Search, TypedMotion, search,
+};
 use mp_robot::{Planar, Spatial};
 use serde::{Deserialize, Serialize};
 
@@ -79,24 +82,55 @@ impl Rigid {
         either!(self, scene => scene.space().extent())
     }
 
+    pub(crate) fn robot(&self) -> &dyn Robot {
+        either!(self, scene => &**scene)
+    }
+
     /// A plain run; `None` when it was interrupted.
     pub(crate) fn plan(&self, request: &Request, cancel: &Cancel) -> Result<Option<Planned>> {
-        fn on<K: Robot>(scene: &K, request: &Request, cancel: &Cancel) -> Result<Option<Planned>> {
-            let mut control = Control { cancel: cancel.clone(), ..Control::default() };
-            let found = search(scene, request, &mut control)?;
-            Ok(Some(Planned {
-                solved: match found.outcome {
-                    Outcome::Solved(_) => true,
-                    Outcome::Stopped(StopReason::Cancelled) => return Ok(None),
-                    Outcome::Stopped(_) => false,
-                },
-                seconds: found.time.as_secs_f64(),
-                queries: found.queries,
-                iterations: found.progress.iterations,
-            }))
-        }
-        either!(self, scene => on(&**scene, request, cancel))
+        let found =
+            searched(self.robot(), request, Control { cancel: cancel.clone(), ..Control::default() })?;
+        Ok(found.map(|found| Planned {
+            solved: matches!(found.outcome, Outcome::Solved(_)),
+            seconds: found.time.as_secs_f64(),
+            queries: found.queries,
+            iterations: found.progress.iterations,
+        }))
     }
+
+    /// A search, timed by the processor, and whether it was solved within `queries` collision and distance queries; `None` when it was
+    /// interrupted.
+    pub(crate) fn search(
+        &self,
+        request: Request,
+        queries: u64,
+        cancel: &Cancel,
+    ) -> Result<Option<(Search, bool)>> {
+        let budget = Budget { queries: Some(queries), ..request.budget };
+        let (cancel, clock) = (cancel.clone(), processor_clock());
+        let control = Control { cancel, clock, keep_roadmap: true, ..Control::default() };
+        let found = searched(self.robot(), &Request { budget, ..request }, control)?;
+        Ok(found.map(|found| {
+            let solved = matches!(found.outcome, Outcome::Solved(_)) && found.queries <= queries;
+            (found, solved)
+        }))
+    }
+}
+
+fn searched(robot: &dyn Robot, request: &Request, mut control: Control<'_>) -> Result<Option<Search>> {
+    let found = search(robot, request, &mut control)?;
+    let interrupted = matches!(found.outcome, Outcome::Stopped(StopReason::Cancelled));
+    Ok((!interrupted).then_some(found))
+}
+
+/// Free configurations, uniform in the space.
+pub(crate) fn free<M: RigidSpace>(
+    scene: &RigidScene<M>,
+    mut rng: Rng,
+) -> impl Iterator<Item = Configuration> {
+    let mut robot = scene.checker().clone();
+    let samples = std::iter::repeat_with(move || scene.space().sample_uniform(&mut rng));
+    samples.filter(move |q| robot.is_valid(q))
 }
 
 #[cfg(test)]

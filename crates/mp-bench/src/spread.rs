@@ -24,7 +24,7 @@ const EXPERIMENTS: [&str; 3] = [
     "roadmaps --quick --runs 2 --experiment contact --queries 300",
 ];
 
-/// Runs `words` by another process on so many ranks; 0 for an ordinary run.
+/// Runs `words` by another process on `ranks` ranks; 0 for an ordinary run.
 fn run(words: &str, ranks: usize, out: &Path) -> Output {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(["spread::the_program", "--exact", "--ignored", "--nocapture"]);

@@ -266,7 +266,7 @@ pub(crate) struct Drawing {
     /// From where a scene in space is seen: `front`, `back`, `left`, `right`, `top`, `bottom`, `iso`, or
     /// `eye=x,y,z target=x,y,z fov=degrees` (of the height); with `ortho` after it in parallel projection
     /// [default: where the path is seen best].
-    #[arg(long, value_name = "VIEW", value_parser = view)]
+    #[arg(long, value_name = "VIEW", value_parser = parsed::<mp_plan::View>)]
     pub(crate) camera: Option<mp_plan::View>,
     /// All configurations of the path at once, or one at a time, with start and goal translucent [default: all; films step].
     #[arg(long, value_name = "HOW")]
@@ -389,11 +389,6 @@ fn relax_field(text: &str) -> Result<RelaxField, String> {
         let names = e.remedy().unwrap_or_default();
         format!("{e}; {names}. A scene stands before --relax")
     })
-}
-
-/// The text of `--camera`.
-fn view(text: &str) -> Result<mp_plan::View, String> {
-    mp_plan::View::from_str(text).map_err(|e| e.to_string())
 }
 
 /// A number from 0 to 1.

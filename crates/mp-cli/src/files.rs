@@ -83,7 +83,7 @@ impl Files {
     }
 
     /// Refuses files that cannot be written, have no known format, or are claimed already, before any work is done. With
-    /// `routes`, each of so many routes has files of its own.
+    /// `routes`, each of that number of routes has files of its own.
     pub(crate) fn claim(
         &self,
         claims: &mut Claims,

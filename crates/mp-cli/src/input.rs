@@ -32,11 +32,11 @@ pub(crate) fn scene(given: &Path) -> Result<Scene, Error> {
 /// As [`scene`], ready to plan in.
 ///
 /// # Errors
-/// Inside: what ended it, if `interrupt` said to end.
+/// Inside: what ended it, if it was interrupted.
 pub(crate) fn scene_until(given: &Path, interrupt: &Interrupt) -> Result<Result<Scene, StopReason>, Error> {
     let scene = read(given, interrupt);
     if let Ok(scene) = &scene {
-        // Whether it was told to end is asked below.
+        // Whether it was interrupted is asked below.
         let _ = scene.make_ready(interrupt);
     }
     if let Some(reason) = interrupt.raised() {

@@ -1,4 +1,4 @@
-//! The program `mp`: plan, many, merge, export, check, info, render, view on the command line.
+//! The program `mp`: plan, many, merge, check, info, render, view on the command line.
 //!
 //! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input, 141 when the reader of standard output has
 //! gone.

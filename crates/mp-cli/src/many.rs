@@ -1,4 +1,4 @@
-//! `many`, `merge` and `export`: lists of problems, and their results.
+//! `many` and `merge`: lists of problems, and their results.
 
 use crate::cli::{Many, Merge};
 use crate::input::is_standard;

@@ -21,7 +21,7 @@ pub(crate) enum Picture {
     Page(Option<PagePlanner>),
     /// `.mpv`: the scene as the viewer reads it.
     Scene,
-    /// `.glb`: meshes that move for so many seconds.
+    /// `.glb`: meshes that move for this many seconds.
     Meshes(f64),
 }
 

@@ -43,39 +43,8 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     )?;
     let last = request.seed.checked_add(u64::from(args.runs) - 1);
     let last = last.ok_or_else(|| Error::new(format!("the seeds from {} on are too large", request.seed)))?;
-    if named.iter().filter(|given| is_standard(given)).count() > 1 {
-        return Err(Error::new("standard input can be one scene only"));
-    }
-
-    if args.portfolio.is_some() && (named.len() > 1 || args.runs > 1) {
-        return Err(Error::new("--portfolio needs a single run").help("name one scene, without --runs"));
-    }
-    if args.routes.is_some() {
-        if named.len() > 1 || args.runs > 1 {
-            return Err(Error::new("--routes needs a single run").help("name one scene, without --runs"));
-        }
-        if args.out.as_deref().is_some_and(is_standard) {
-            return Err(Error::new("--out -: there is a file for each route").help("name a file"));
-        }
-    }
-    let (mut scenes, mut not_loaded) = (Vec::new(), Vec::new());
-    for given in &named {
-        // Each scene may take the whole time.
-        let (cancel, clock) = (cancel.clone(), mp_plan::Clock::default());
-        let began = clock.now();
-        let interrupt = match request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok()) {
-            None => Interrupt::new(cancel),
-            Some(time) => Interrupt::by(cancel, clock, began.saturating_add(time)),
-        };
-        match scene_until(given, &interrupt)? {
-            Ok(scene) => scenes.push(scene.for_request(&request)?),
-            Err(reason) => {
-                let name = given.file_stem().unwrap_or(given.as_os_str()).to_string_lossy();
-                let report = Report::not_loaded(&name, &request, reason, clock.now().saturating_sub(began));
-                not_loaded.push(Report { scene_file: Some(given.display().to_string()), ..report });
-            }
-        }
-    }
+    refuse_several(args, &named)?;
+    let (scenes, not_loaded) = load(&named, &request, &cancel)?;
     let requests =
         scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
     let jobs: Vec<(usize, u64)> =
@@ -98,8 +67,8 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     }
     // Runs have a thread each when there are several.
     let threads = if single { args.threads } else { 1 };
-    let how = How { args, files: &files, watched: single, threads };
-    let job = |(i, seed): (usize, u64)| one(&scenes[i], &requests[i], seed, (&cancel, spent), &how);
+    let settings = RunSettings { args, files: &files, watched: single, threads };
+    let job = |(i, seed): (usize, u64)| one(&scenes[i], &requests[i], seed, (&cancel, spent), &settings);
     let mut reports = match jobs.as_slice() {
         [] => Vec::new(),
         [only] => vec![job(*only)?],
@@ -124,6 +93,50 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
         note(&format!("{}: {missing} of {} runs were not started", ended_by(&cancel), jobs.len()));
     }
     Ok(missing == 0 && solved)
+}
+
+/// Refuses several scenes or runs where there can be one only.
+fn refuse_several(args: &Plan, named: &[PathBuf]) -> Result<(), Error> {
+    if named.iter().filter(|given| is_standard(given)).count() > 1 {
+        return Err(Error::new("standard input can be one scene only"));
+    }
+    for (option, given) in [("--portfolio", args.portfolio.is_some()), ("--routes", args.routes.is_some())] {
+        if given && (named.len() > 1 || args.runs > 1) {
+            let message = format!("{option} needs a single run");
+            return Err(Error::new(message).help("name one scene, without --runs"));
+        }
+    }
+    if args.routes.is_some() && args.out.as_deref().is_some_and(is_standard) {
+        return Err(Error::new("--out -: there is a file for each route").help("name a file"));
+    }
+    Ok(())
+}
+
+/// Loads the scenes. Returns those that are ready, and a report for each that was interrupted.
+fn load(named: &[PathBuf], request: &Request, cancel: &Cancel) -> Result<(Vec<Scene>, Vec<Report>), Error> {
+    let (mut scenes, mut not_loaded) = (Vec::new(), Vec::new());
+    for given in named {
+        // Each scene may take the whole time.
+        let clock = mp_plan::Clock::default();
+        let began = clock.now();
+        match scene_until(given, &time_limit(request, cancel, began))? {
+            Ok(scene) => scenes.push(scene.for_request(request)?),
+            Err(reason) => {
+                let name = given.file_stem().unwrap_or(given.as_os_str()).to_string_lossy();
+                let report = Report::not_loaded(&name, request, reason, clock.now().saturating_sub(began));
+                not_loaded.push(Report { scene_file: Some(given.display().to_string()), ..report });
+            }
+        }
+    }
+    Ok((scenes, not_loaded))
+}
+
+/// Interrupts work that began at a time when `cancel` is raised or the time of the request is up.
+fn time_limit(request: &Request, cancel: &Cancel, began: Duration) -> Interrupt {
+    match request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok()) {
+        None => Interrupt::new(cancel.clone()),
+        Some(time) => Interrupt::by(cancel.clone(), mp_plan::Clock::default(), began.saturating_add(time)),
+    }
 }
 
 /// Why the flag was raised, in a few words.
@@ -154,22 +167,11 @@ fn routes(
         if let Some(rows) = report.path.clone() {
             let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
             if let Some(file) = out {
-                write(&file, path.to_file(PathFileKind::of(&file)?).as_bytes())?;
-                report.path_file = Some(file.display().to_string());
+                write_path(&mut report, &path, &file)?;
             }
             if let Some(file) = file {
                 let picture = Picture::of(scene, &file, &drawing, true)?;
-                let shown = Shown {
-                    scene,
-                    path: Some(&path),
-                    verdict: None,
-                    report: Some(&report),
-                    caption: &caption(&report),
-                };
-                if let Some(bytes) = picture.bytes(&shown, None, cancel, &line)? {
-                    write(&file, &bytes)?;
-                    report.picture_file = Some(file.display().to_string());
-                }
+                write_picture(&mut report, scene, &path, (&picture, &file), None, (cancel, &line))?;
             }
         }
         reports.push(report);
@@ -212,14 +214,14 @@ fn check_files(args: &Plan, files: &Files, scenes: &[Scene], jobs: &[(usize, u64
 }
 
 /// How a run is made, and what is written.
-struct How<'a> {
+struct RunSettings<'a> {
     args: &'a Plan,
     files: &'a Files,
     watched: bool,
     threads: u16,
 }
 
-impl How<'_> {
+impl RunSettings<'_> {
     /// Plans: by one run, or by many that race.
     fn planned(&self, scene: &Scene, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
         let Plan { schedule, unit, round, checkpoint, .. } = self.args;
@@ -240,9 +242,9 @@ fn one(
     request: &Request,
     seed: u64,
     (cancel, spent): (&Cancel, Duration),
-    how: &How<'_>,
+    settings: &RunSettings<'_>,
 ) -> Result<Report, Error> {
-    let How { files, watched, threads, .. } = *how;
+    let RunSettings { files, watched, threads, .. } = *settings;
     let began = mp_plan::Clock::default().now();
     let request = Request { seed, ..request.clone() };
     let mut line = Line::new(scene.name(), request.budget.time_s, watched);
@@ -254,50 +256,59 @@ fn one(
     let grown = shows_search.then(|| GrownTrees::new(scene, &request));
     let mut watched = Watched { line: &mut line, grown };
     let mut control = Control { spent, ..Control::new(cancel.clone(), &mut watched) };
-    let mut report = how.planned(scene, &request, &mut control)?;
+    let mut report = settings.planned(scene, &request, &mut control)?;
     let grown = watched.grown;
     let Some(rows) = report.path.clone() else { return Ok(report) };
     let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
     if let Some(file) = out {
         line.say("writing the path");
-        let kind = if is_standard(&file) { PathFileKind::Text } else { PathFileKind::of(&file)? };
-        write(&file, path.to_file(kind).as_bytes())?;
-        report.path_file = Some(file.display().to_string());
+        write_path(&mut report, &path, &file)?;
     }
     if let Some(file) = files.certificate(scene.name(), seed) {
         line.say("writing the certificate");
-        let left = request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
-        let clock = mp_plan::Clock::default();
-        let interrupt = match left {
-            Some(left) => Interrupt::by(cancel.clone(), clock, (began + left).saturating_sub(spent)),
-            None => Interrupt::new(cancel.clone()),
-        };
+        let interrupt = time_limit(&request, cancel, began.saturating_sub(spent));
         let certificate = scene.certificate(&path, report.clearance.unwrap_or(0.0), &interrupt)?;
         write(&file, certificate.to_json().as_bytes())?;
         report.certificate_file = Some(file.display().to_string());
     }
-    if let Some((_, file)) = &picture
-        && let Some(StopReason::Memory) = cancel.reason()
-    {
-        note(&format!("{}: {} was not drawn", StoppedBy::Memory, file.display()));
-    } else if let Some((picture, file)) = picture {
-        line.say("drawing the picture");
-        let shown = Shown {
-            scene,
-            path: Some(&path),
-            verdict: None,
-            report: Some(&report),
-            caption: &caption(&report),
-        };
-        match picture.bytes(&shown, grown, cancel, &line)? {
-            Some(bytes) => {
-                write(&file, &bytes)?;
-                report.picture_file = Some(file.display().to_string());
-            }
-            None => note(&format!("{}: {} was not written", ended_by(cancel), file.display())),
-        }
+    if let Some((picture, file)) = &picture {
+        write_picture(&mut report, scene, &path, (picture, file), grown, (cancel, &line))?;
     }
     Ok(report)
+}
+
+/// Writes the path of a report.
+fn write_path(report: &mut Report, path: &PathRows, file: &Path) -> Result<(), Error> {
+    let kind = if is_standard(file) { PathFileKind::Text } else { PathFileKind::of(file)? };
+    write(file, path.to_file(kind).as_bytes())?;
+    report.path_file = Some(file.display().to_string());
+    Ok(())
+}
+
+/// Writes the picture of a report, unless the work was interrupted before it was complete.
+fn write_picture(
+    report: &mut Report,
+    scene: &Scene,
+    path: &PathRows,
+    (picture, file): (&Picture, &Path),
+    grown: Option<GrownTrees>,
+    (cancel, line): (&Cancel, &Line),
+) -> Result<(), Error> {
+    if let Some(StopReason::Memory) = cancel.reason() {
+        note(&format!("{}: {} was not drawn", StoppedBy::Memory, file.display()));
+        return Ok(());
+    }
+    line.say("drawing the picture");
+    let caption = caption(report);
+    let shown = Shown { scene, path: Some(path), verdict: None, report: Some(report), caption: &caption };
+    match picture.bytes(&shown, grown, cancel, line)? {
+        Some(bytes) => {
+            write(file, &bytes)?;
+            report.picture_file = Some(file.display().to_string());
+        }
+        None => note(&format!("{}: {} was not written", ended_by(cancel), file.display())),
+    }
+    Ok(())
 }
 
 /// How the picture of a run is drawn: with the field that has relaxed its path, if that can be drawn.

@@ -61,7 +61,7 @@ impl Mailbox {
     }
 }
 
-/// The links of so many ranks, each for a thread of this process; at least one.
+/// The links of `ranks` ranks, each for a thread of this process; at least one.
 #[must_use]
 pub fn threads(ranks: usize) -> Vec<ThreadLink> {
     let (senders, receivers): (Vec<_>, Vec<_>) = (0..ranks.max(1)).map(|_| channel()).unzip();

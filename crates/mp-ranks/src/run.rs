@@ -12,7 +12,7 @@ use std::time::Duration;
 
 /// How often it is asked at least whether the job is cancelled.
 const CANCEL: Duration = Duration::from_millis(5);
-/// While there are so many items for each thread, each rank has one more than it works on, and never waits for the next.
+/// While there are at least this number of items for each thread, each rank has one more than it works on, and never waits for the next.
 const PLENTY: u64 = 8;
 
 /// How a job is run.
@@ -150,7 +150,7 @@ enum Outcome {
 }
 
 /// Threads that work on items.
-struct Crew<'s> {
+struct Workers<'s> {
     queue: Sender<u64>,
     results: Receiver<(u64, Outcome)>,
     hand: &'s Hand,
@@ -158,9 +158,9 @@ struct Crew<'s> {
     busy: usize,
 }
 
-impl Crew<'_> {
+impl Workers<'_> {
     fn give(&mut self, item: u64) {
-        // The threads live as long as the crew.
+        // The threads live as long as this value.
         let _ = self.queue.send(item);
         self.busy += 1;
     }
@@ -198,8 +198,8 @@ impl Crew<'_> {
     }
 }
 
-/// Calls `with` with so many threads that `work`.
-fn with_crew<T>(options: &Options, work: &Work<'_>, with: impl FnOnce(Crew<'_>) -> T) -> T {
+/// Calls `with` with the workers: as many threads as the options say, which do `work`.
+fn with_workers<T>(options: &Options, work: &Work<'_>, with: impl FnOnce(Workers<'_>) -> T) -> T {
     let hand = Hand {
         cancel: options.cancel.clone(),
         bound: AtomicU64::new(u64::MAX),
@@ -227,7 +227,7 @@ fn with_crew<T>(options: &Options, work: &Work<'_>, with: impl FnOnce(Crew<'_>) 
             });
         }
         drop(sender);
-        with(Crew { queue, results, hand: &hand, busy: 0 })
+        with(Workers { queue, results, hand: &hand, busy: 0 })
     })
 }
 
@@ -260,13 +260,13 @@ pub fn run(
     job: Option<&mut dyn Job>,
     work: &Work<'_>,
 ) -> Result<Ran, Error> {
-    with_crew(options, work, |crew| match job {
+    with_workers(options, work, |workers| match job {
         Some(job) if link.is_master() => {
-            let mut master = Master::new(link, options, job, crew);
+            let mut master = Master::new(link, options, job, workers);
             let ran = master.hand_out();
             master.end(ran)
         }
-        _ => other(link, crew).map(|()| Ran::default()),
+        _ => other(link, workers).map(|()| Ran::default()),
     })
 }
 
@@ -274,7 +274,7 @@ struct Master<'a, 'c> {
     link: &'a dyn Link,
     options: &'a Options,
     job: &'a mut dyn Job,
-    crew: Crew<'c>,
+    workers: Workers<'c>,
     /// How many items each rank has that are not done.
     busy: Vec<usize>,
     done: Vec<u64>,
@@ -288,12 +288,12 @@ struct Master<'a, 'c> {
 }
 
 impl<'a, 'c> Master<'a, 'c> {
-    fn new(link: &'a dyn Link, options: &'a Options, job: &'a mut dyn Job, crew: Crew<'c>) -> Self {
+    fn new(link: &'a dyn Link, options: &'a Options, job: &'a mut dyn Job, workers: Workers<'c>) -> Self {
         let ranks = link.ranks();
         let (busy, done) = (vec![0; ranks], vec![0; ranks]);
         let reached = HashMap::new();
         let (bound, reported, least, dropped) = (u64::MAX, false, 0, false);
-        Self { link, options, job, crew, busy, done, bound, reached, reported, least, dropped }
+        Self { link, options, job, workers, busy, done, bound, reached, reported, least, dropped }
     }
 
     /// Hands out items until there are none. False when it was cancelled.
@@ -312,11 +312,11 @@ impl<'a, 'c> Master<'a, 'c> {
                 self.received(from, &message)?;
                 news = true;
             }
-            while let Some((item, result)) = self.crew.result() {
+            while let Some((item, result)) = self.workers.result() {
                 self.took(item, MASTER, result)?;
                 news = true;
             }
-            for (item, far) in self.crew.reports() {
+            for (item, far) in self.workers.reports() {
                 self.is_at(item, far);
                 news = true;
             }
@@ -340,7 +340,7 @@ impl<'a, 'c> Master<'a, 'c> {
         let least = if self.reported { self.reached.values().min().copied().unwrap_or(0) } else { 0 };
         if least != self.least {
             self.least = least;
-            self.crew.set_least(least);
+            self.workers.set_least(least);
             self.to_others(kind::LEAST, least)?;
         }
         Ok(())
@@ -360,7 +360,7 @@ impl<'a, 'c> Master<'a, 'c> {
                 self.busy[rank] += 1;
                 self.reached.insert(item, 0);
                 match rank {
-                    MASTER => self.crew.give(item),
+                    MASTER => self.workers.give(item),
                     rank => self.link.send(rank, message(kind::WORK, item, &[]))?,
                 }
             }
@@ -401,7 +401,7 @@ impl<'a, 'c> Master<'a, 'c> {
         let bound = self.job.bound();
         if bound < self.bound {
             self.bound = bound;
-            self.crew.lower(bound);
+            self.workers.lower(bound);
             self.to_others(kind::BOUND, bound)?;
         }
         Ok(())
@@ -414,13 +414,13 @@ impl<'a, 'c> Master<'a, 'c> {
     /// Ends the job on all ranks, and waits until none of them works any more.
     fn end(mut self, ran: Result<bool, Error>) -> Result<Ran, Error> {
         if let Err(e @ Error::Link(_)) = ran {
-            self.crew.stop();
+            self.workers.stop();
             return Err(e);
         }
         let complete = matches!(ran, Ok(true));
         self.to_others(if complete { kind::END } else { kind::STOP }, 0)?;
         if !complete {
-            self.crew.stop();
+            self.workers.stop();
         }
         let mut idle = 1;
         while idle < self.link.ranks() {
@@ -435,7 +435,7 @@ impl<'a, 'c> Master<'a, 'c> {
 }
 
 /// Works on what the master says.
-fn other(link: &dyn Link, mut crew: Crew<'_>) -> Result<(), Error> {
+fn other(link: &dyn Link, mut workers: Workers<'_>) -> Result<(), Error> {
     let send = |item, result: Outcome| match result {
         Outcome::Done(result) => link.send(MASTER, message(kind::DONE, item, &result)),
         Outcome::Failed(text) => link.send(MASTER, message(kind::FAILED, item, text.as_bytes())),
@@ -446,23 +446,23 @@ fn other(link: &dyn Link, mut crew: Crew<'_>) -> Result<(), Error> {
         while let Some((from, received)) = link.poll()? {
             news = true;
             match parts(from, &received)? {
-                (kind::WORK, item, _) => crew.give(item),
-                (kind::BOUND, bound, _) => crew.lower(bound),
-                (kind::LEAST, far, _) => crew.set_least(far),
+                (kind::WORK, item, _) => workers.give(item),
+                (kind::BOUND, bound, _) => workers.lower(bound),
+                (kind::LEAST, far, _) => workers.set_least(far),
                 (ended @ (kind::STOP | kind::END), ..) => {
                     if ended == kind::STOP {
-                        crew.stop();
+                        workers.stop();
                     }
                     return link.send(MASTER, message(kind::IDLE, 0, &[]));
                 }
                 _ => return Err(Error::OutOfStep { rank: from }),
             }
         }
-        while let Some((item, result)) = crew.result() {
+        while let Some((item, result)) = workers.result() {
             send(item, result)?;
             news = true;
         }
-        for (item, far) in crew.reports() {
+        for (item, far) in workers.reports() {
             link.send(MASTER, message(kind::REACHED, item, &far.to_le_bytes()))?;
             news = true;
         }

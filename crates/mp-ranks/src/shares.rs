@@ -21,7 +21,7 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// So many ranks that have done nothing yet.
+    /// The shares of `ranks` ranks that have done nothing yet.
     #[must_use]
     pub fn new(ranks: usize) -> Self {
         Self { items: vec![0; ranks], work: vec![0.0; ranks] }

@@ -42,7 +42,7 @@ impl Ord for At {
     }
 }
 
-/// Replays items of these costs (s) on so many ranks. A message takes `latency_s`, and the master `message_s` for a result and the item that it
+/// Replays items of these costs (s) on `ranks` ranks. A message takes `latency_s`, and the master `message_s` for a result and the item that it
 /// sends in return. The master works on no items: of ranks that do, there are `ranks`.
 ///
 /// Takes time in proportion to the number of items times the logarithm of the number of ranks.

@@ -19,45 +19,17 @@ pub(crate) fn thresholds(camera: &Camera, path: &[f32], slope: f32, slack: f32) 
     }
     let step = slope * camera.sample_size((sum / f64::from(n)) as f32);
     let diagonal = step * std::f32::consts::SQRT_2;
-    // Two sweeps of a chamfer distance transform, in the max-plus sense.
-    for y in 0..h {
-        for x in 0..w {
-            let i = y * w + x;
-            let mut z = depth[i];
-            if x > 0 {
-                z = z.max(depth[i - 1] - step);
+    // Two sweeps of a chamfer distance transform, in the max-plus sense: from the neighbours before each sample, and from those behind.
+    let mut spread = |i: usize, sign: isize| {
+        for (dx, dy, away) in [(-1, 0, step), (0, -1, step), (-1, -1, diagonal), (1, -1, diagonal)] {
+            let (x, y) = ((i % w).checked_add_signed(sign * dx), (i / w).checked_add_signed(sign * dy));
+            if let (Some(x), Some(y)) = (x.filter(|x| *x < w), y.filter(|y| *y < h)) {
+                depth[i] = depth[i].max(depth[y * w + x] - away);
             }
-            if y > 0 {
-                z = z.max(depth[i - w] - step);
-                if x > 0 {
-                    z = z.max(depth[i - w - 1] - diagonal);
-                }
-                if x + 1 < w {
-                    z = z.max(depth[i - w + 1] - diagonal);
-                }
-            }
-            depth[i] = z;
         }
-    }
-    for y in (0..h).rev() {
-        for x in (0..w).rev() {
-            let i = y * w + x;
-            let mut z = depth[i];
-            if x + 1 < w {
-                z = z.max(depth[i + 1] - step);
-            }
-            if y + 1 < h {
-                z = z.max(depth[i + w] - step);
-                if x + 1 < w {
-                    z = z.max(depth[i + w + 1] - diagonal);
-                }
-                if x > 0 {
-                    z = z.max(depth[i + w - 1] - diagonal);
-                }
-            }
-            depth[i] = z;
-        }
-    }
+    };
+    (0..w * h).for_each(|i| spread(i, 1));
+    (0..w * h).rev().for_each(|i| spread(i, -1));
     depth.iter().map(|&z| camera.key_of(z - slack)).collect()
 }
 

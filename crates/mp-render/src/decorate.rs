@@ -23,10 +23,15 @@ pub(crate) fn background(layer: &mut Layer, (width, height): (usize, usize)) {
     }
 }
 
+/// Lines of fine meshes would cover everything: their strength is less.
+fn fineness(edges: &[[u32; 2]]) -> f32 {
+    (4000.0 / edges.len().max(1) as f32).clamp(0.25, 1.0)
+}
+
 /// Draws dark lines along the edges of a body.
 pub(crate) fn outline(layer: &mut Layer, camera: &Camera, body: &Body, strength: f32) {
     let ink = srgb(INK);
-    body.model.edges(camera, &body.pose_wb, 0.6, |i, key, coverage| {
+    body.model.lines(&body.model.edges, camera, &body.pose_wb, 0.6, |i, key, coverage| {
         if nearer(key, layer.key[i]) {
             layer.colour[i] = mix(layer.colour[i], ink, strength * coverage);
         }
@@ -42,16 +47,14 @@ pub(crate) fn wires(
     colour: Colour,
     [seen, hidden]: [f32; 2],
 ) {
-    // Lines of fine meshes would cover everything: they are fainter.
     let model = &body.model;
-    let fineness = |edges: usize| (4000.0 / edges.max(1) as f32).clamp(0.25, 1.0);
-    let (sharp, flat) = (fineness(model.edge_count()), 0.3 * fineness(model.inner_edge_count()));
+    let (sharp, flat) = (fineness(&model.edges), 0.3 * fineness(&model.inner));
     let mut draw = |share: f32, i: usize, key: f32, coverage: f32| {
         let strength = if nearer(key, layer.key[i]) { seen } else { hidden };
         layer.colour[i] = mix(layer.colour[i], colour, share * strength * coverage);
     };
-    model.inner_edges(camera, &body.pose_wb, 0.6, |i, key, coverage| draw(flat, i, key, coverage));
-    model.edges(camera, &body.pose_wb, 0.8, |i, key, coverage| draw(sharp, i, key, coverage));
+    model.lines(&model.inner, camera, &body.pose_wb, 0.6, |i, key, coverage| draw(flat, i, key, coverage));
+    model.lines(&model.edges, camera, &body.pose_wb, 0.8, |i, key, coverage| draw(sharp, i, key, coverage));
 }
 
 /// Draws the edges of obstacles: dark where they are opaque, faint where they are translucent, which is before `cut`.
@@ -64,10 +67,9 @@ pub(crate) fn outlines(
 ) {
     let ink = srgb(INK);
     for (n, o) in obstacles.iter().enumerate() {
-        // Lines of fine meshes would cover everything: they are fainter.
-        let strength = 0.5 * (4000.0 / o.model.edge_count().max(1) as f32).clamp(0.25, 1.0);
+        let strength = 0.5 * fineness(&o.model.edges);
         let faint = scaled(srgb(OBSTACLES[n % OBSTACLES.len()]), 0.4);
-        o.model.edges(camera, &o.pose_wb, 0.6, |i, key, coverage| {
+        o.model.lines(&o.model.edges, camera, &o.pose_wb, 0.6, |i, key, coverage| {
             if key < cut[i] && (cut[i].is_finite() || nearer(key, layer.key[i])) {
                 ghosts.add(i, faint, 0.9 * strength * coverage, 3.0);
             } else if cut[i] < f32::INFINITY && nearer(key, layer.key[i]) {

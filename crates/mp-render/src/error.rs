@@ -64,18 +64,6 @@ pub enum RenderError {
         /// The most that is possible.
         most: f64,
     },
-    /// A point of a curve is not on the axes.
-    #[error(
-        "cannot draw ({x}, {y}) of the curve `{name}`: expected finite numbers, x above 0 and y not below 0"
-    )]
-    Point {
-        /// The curve.
-        name: String,
-        /// x of the point.
-        x: f64,
-        /// y of the point.
-        y: f64,
-    },
 }
 
 /// What a picture takes while it is drawn: bytes for each pixel, and for threads and their stacks. Measured, and a third more.

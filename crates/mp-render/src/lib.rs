@@ -2,7 +2,6 @@
 //!
 //! - [`Scene`]: bodies (meshes with poses), a robot at its start, at its goal and on its way; drawn as a [`Picture`].
 //! - [`Drawing`]: areas and lines in the plane, as SVG or as a [`Picture`].
-//! - [`plot()`]: curves over a logarithmic axis.
 //! - [`palette`]: the colours, for drawings in the same style.
 //! - [`Shot`]: a scene drawn at many moments, as the frames of a film; [`Gif`] puts frames into one file.
 //!
@@ -46,7 +45,6 @@ mod model;
 pub mod palette;
 mod path;
 mod picture;
-mod plot;
 mod quantize;
 mod raster;
 mod scene;
@@ -61,7 +59,6 @@ pub use error::{MAX_SIDE, RenderError};
 pub use gif::Gif;
 pub use mp_geom::evenly;
 pub use picture::Picture;
-pub use plot::{Series, plot};
 pub use scene::Scene;
 pub use shot::{Animation, Moment, Shot};
 pub use view::{Mode, View};

@@ -24,9 +24,9 @@ pub(crate) struct Model {
     /// Per corner of each triangle; none of a mesh that is large.
     normals: Vec<[Vector3<f64>; 3]>,
     /// Edges of one face, and edges where faces meet at an angle.
-    edges: Vec<[u32; 2]>,
+    pub(crate) edges: Vec<[u32; 2]>,
     /// The edges between faces that meet nearly flat.
-    inner: Vec<[u32; 2]>,
+    pub(crate) inner: Vec<[u32; 2]>,
     /// Distance of the farthest point from the origin, metres.
     pub(crate) radius: f64,
 }
@@ -79,16 +79,6 @@ impl Model {
         self.large.as_ref().map_or(&self.points, TriMesh::vertices)
     }
 
-    /// The number of edges that [`edges`](Model::edges) draws.
-    pub(crate) fn edge_count(&self) -> usize {
-        self.edges.len()
-    }
-
-    /// The number of edges that [`inner_edges`](Model::inner_edges) draws.
-    pub(crate) fn inner_edge_count(&self) -> usize {
-        self.inner.len()
-    }
-
     /// Calls `fragment(sample, key, light)` for its triangles at `pose` (in the world).
     pub(crate) fn faces(
         &self,
@@ -119,29 +109,8 @@ impl Model {
         }
     }
 
-    /// Calls `fragment(sample, key, coverage)` for its feature edges at `pose` (in the world).
-    pub(crate) fn edges(
-        &self,
-        camera: &Camera,
-        pose: &Isometry3<f64>,
-        half: f32,
-        fragment: impl FnMut(usize, f32, f32),
-    ) {
-        self.lines(&self.edges, camera, pose, half, fragment);
-    }
-
-    /// As [`edges`](Model::edges), for the other edges of its triangles.
-    pub(crate) fn inner_edges(
-        &self,
-        camera: &Camera,
-        pose: &Isometry3<f64>,
-        half: f32,
-        fragment: impl FnMut(usize, f32, f32),
-    ) {
-        self.lines(&self.inner, camera, pose, half, fragment);
-    }
-
-    fn lines(
+    /// Calls `fragment(sample, key, coverage)` for some of its edges at `pose` (in the world).
+    pub(crate) fn lines(
         &self,
         edges: &[[u32; 2]],
         camera: &Camera,
@@ -250,7 +219,7 @@ mod tests {
         };
         let (whole, flat) = (Model::new(&mesh), Model::flat(&mesh));
         assert_eq!((flat.points(), flat.radius), (mesh.vertices(), whole.radius));
-        assert_eq!((flat.edge_count(), flat.inner_edge_count()), (0, 0));
+        assert_eq!((flat.edges.len(), flat.inner.len()), (0, 0));
         let (whole, flat) = (drawn(&whole), drawn(&flat));
         assert!(whole.len() > 1000 && whole.len() == flat.len());
         for (a, b) in whole.iter().zip(&flat) {

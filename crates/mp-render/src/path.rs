@@ -55,7 +55,7 @@ pub(crate) fn draw_copies(layer: &mut Layer, camera: &Camera, lights: &Lights, c
             }
             one.put(i, key, scaled(colour, light));
         });
-        robot.edges(camera, pose_wb, 0.7, |i, key, coverage| {
+        robot.lines(&robot.edges, camera, pose_wb, 0.7, |i, key, coverage| {
             if one.key[i] < f32::INFINITY && nearer(key, one.key[i]) {
                 one.colour[i] = mix(one.colour[i], scaled(colour, 0.15), 0.9 * coverage);
             }

@@ -1,17 +1,15 @@
-//! The code that generates the shipped files, bit for bit: every scene and mesh is made here, from constants. `mp-bench
-//! assets` writes them.
+//! The code that generates the shipped files, bit for bit: every mesh, and the scenes of those meshes, are made here, from
+//! constants. `mp-bench assets` writes them. Scenes and robots without meshes are written by hand, where they are.
 //!
 //! Each family of scenes is one file here; `shape` has the solids of which they consist, `scene` turns them into files.
 
 mod alpha;
 mod apartment;
-mod arm;
 mod bugtrap;
 mod cubicles;
 pub mod disc_scenes;
 mod furniture;
 mod gempa;
-mod motions;
 mod piano;
 mod planar;
 mod scene;
@@ -44,6 +42,30 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+/// The files at these paths below the folder `assets`.
+macro_rules! by_hand {
+    ($($path:literal)*) => {
+        [$(($path, include_str!(concat!("../assets/", $path)))),*]
+    };
+}
+
+/// The files that are written by hand.
+const BY_HAND: [(&str, &str); 13] = by_hand! {
+    "robots/six.urdf"
+    "robots/wrench.urdf"
+    "scenes/accelerations.toml"
+    "scenes/arm.toml"
+    "scenes/blade.toml"
+    "scenes/crossing.toml"
+    "scenes/docks.toml"
+    "scenes/flyer.toml"
+    "scenes/parking.toml"
+    "scenes/unicycle.toml"
+    "scenes/velocities.toml"
+    "scenes/warehouse.toml"
+    "scenes/wrench.toml"
+};
+
 /// Every shipped file, by path relative to the folder of the scenes.
 #[must_use]
 pub fn generate() -> Files {
@@ -55,10 +77,9 @@ pub fn generate() -> Files {
     apartment::add(&mut files);
     alpha::add(&mut files);
     planar::add(&mut files);
-    arm::add(&mut files);
     wrench::add(&mut files);
     disc_scenes::add(&mut files);
-    motions::add(&mut files);
+    files.extend(BY_HAND.map(|(path, text)| (path.to_owned(), text.into())));
     files
 }
 

@@ -1,7 +1,7 @@
 //! `mp-soak`: random problems for every planner, judged by an oracle.
 
 use clap::Parser;
-use mp_plan::Request;
+use mp_plan::{Cancel, Request};
 use mp_soak::soak::{Options, read_tally, run, write_problem};
 use mp_soak::tally::{Tally, grouped};
 use mp_soak::trial::{Problem, Wanted};
@@ -9,8 +9,6 @@ use mp_soak::worlds::{KINDS, Kind};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Plans random problems with every planner, and has each path judged by an oracle that shares no code with the planners.
@@ -88,9 +86,9 @@ fn soak(arguments: &Arguments) -> Result<bool, String> {
     if let Some(number) = arguments.problem {
         return one(&options, number);
     }
-    let stop = Arc::new(AtomicBool::new(false));
-    let raised = Arc::clone(&stop);
-    ctrlc::set_handler(move || raised.store(true, Ordering::Relaxed)).map_err(|e| e.to_string())?;
+    let stop = Cancel::new();
+    let raised = stop.clone();
+    ctrlc::set_handler(move || raised.cancel()).map_err(|e| e.to_string())?;
     let live = std::io::stderr().is_terminal();
     let mut told = Instant::now();
     let mut progress = |tally: &Tally| {

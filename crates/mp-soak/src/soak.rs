@@ -2,13 +2,13 @@
 
 use crate::tally::Tally;
 use crate::trial::{Problem, Trial, Wanted};
+use mp_plan::{Cancel, in_parallel};
 use mp_store::Lock;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 
-/// The tally is written after so many problems.
+/// The tally is written after this many problems.
 const BLOCK: u64 = 200;
 /// A tally is small.
 const MAX_TALLY_BYTES: u64 = 1 << 24;
@@ -51,7 +51,7 @@ pub fn read_tally(out: &Path) -> Result<Option<Tally>, String> {
 ///
 /// # Errors
 /// When the folder cannot be read or written, another process grows it, or it is of another seed or other problems.
-pub fn run(options: &Options, stop: &AtomicBool, progress: &mut dyn FnMut(&Tally)) -> Result<Tally, String> {
+pub fn run(options: &Options, stop: &Cancel, progress: &mut dyn FnMut(&Tally)) -> Result<Tally, String> {
     let out = &options.out;
     mp_store::make_folder(out).map_err(|e| e.to_string())?;
     let _lock = Lock::of_folder(out).map_err(|e| e.to_string())?;
@@ -64,11 +64,11 @@ pub fn run(options: &Options, stop: &AtomicBool, progress: &mut dyn FnMut(&Tally
             tally.seed
         ));
     }
-    while tally.next < options.problems && !stop.load(Ordering::Relaxed) {
+    while tally.next < options.problems && !stop.is_raised() {
         let end = options.problems.min(tally.next + BLOCK);
-        for (i, done) in block(options, tally.next..end, stop)? {
+        for done in block(options, tally.next..end, stop)? {
             tally.add(&done.trial, done.extent, done.seconds);
-            tally.next = i + 1;
+            tally.next = done.number + 1;
         }
         mp_store::write(&tally_file(out), tally.to_json().as_bytes()).map_err(|e| e.to_string())?;
         progress(&tally);
@@ -78,49 +78,28 @@ pub fn run(options: &Options, stop: &AtomicBool, progress: &mut dyn FnMut(&Tally
 
 /// A problem that was run.
 struct Done {
+    number: u64,
     trial: Trial,
     extent: f64,
     seconds: f64,
 }
 
 /// Runs the problems of a block, in the order of their numbers. When `stop` is raised, those that have not begun are left out.
-fn block(
-    options: &Options,
-    numbers: std::ops::Range<u64>,
-    stop: &AtomicBool,
-) -> Result<Vec<(u64, Done)>, String> {
-    let next = AtomicU64::new(numbers.start);
-    let done = Mutex::new(Vec::new());
-    let work = || -> Result<(), String> {
-        while !stop.load(Ordering::Relaxed) {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= numbers.end {
-                break;
-            }
-            let began = Instant::now();
-            let problem = Problem::new(options.seed, number, &options.wanted);
-            let trial = problem.run(&options.wanted);
-            if !trial.findings.is_empty() || trial.out_of_time {
-                let sort = if trial.findings.is_empty() { "late" } else { "findings" };
-                let folder = options.out.join(sort).join(format!("{}-{number}", options.seed));
-                write_problem(&problem, &trial, &folder, options, number)?;
-            }
-            let (extent, seconds) = (problem.world.case.extent, began.elapsed().as_secs_f64());
-            let done = &mut *done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            done.push((number, Done { trial, extent, seconds }));
+fn block(options: &Options, numbers: Range<u64>, stop: &Cancel) -> Result<Vec<Done>, String> {
+    let one = |i: usize| {
+        let (number, began) = (numbers.start + i as u64, Instant::now());
+        let problem = Problem::new(options.seed, number, &options.wanted);
+        let trial = problem.run(&options.wanted);
+        if !trial.findings.is_empty() || trial.out_of_time {
+            let sort = if trial.findings.is_empty() { "late" } else { "findings" };
+            let folder = options.out.join(sort).join(format!("{}-{number}", options.seed));
+            write_problem(&problem, &trial, &folder, options, number)?;
         }
-        Ok(())
+        let (extent, seconds) = (problem.world.case.extent, began.elapsed().as_secs_f64());
+        Ok(Done { number, trial, extent, seconds })
     };
-    std::thread::scope(|scope| {
-        let threads: Vec<_> = (1..options.threads).map(|_| scope.spawn(work)).collect();
-        let own = work();
-        let others =
-            threads.into_iter().map(|thread| thread.join().unwrap_or_else(|_| Err("a thread failed".into())));
-        others.fold(own, Result::and)
-    })?;
-    let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    done.sort_by_key(|(number, _)| *number);
-    Ok(done)
+    let count = (numbers.end - numbers.start) as usize;
+    in_parallel(count, options.threads, stop, one).into_iter().flatten().collect()
 }
 
 /// Writes a problem to a folder: its files, request and path, and what was found with the commands that repeat it.

@@ -149,7 +149,7 @@ impl Tally {
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
-    /// Counts a problem in a world of this extent (m), which took so many seconds.
+    /// Counts a problem in a world of this extent (m), which took `seconds`.
     pub fn add(&mut self, trial: &Trial, extent: f64, seconds: f64) {
         self.all.add(trial, extent, seconds);
         self.kinds.entry(trial.kind.to_owned()).or_default().add(trial, extent, seconds);

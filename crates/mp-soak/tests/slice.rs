@@ -1,6 +1,6 @@
 //! A slice of the soak: all kinds of worlds and all planners, and the loop around them.
 
-use mp_plan::{PathFileKind, PathRows, Scene};
+use mp_plan::{Cancel, PathFileKind, PathRows, Scene};
 use mp_soak::draw::Draw;
 use mp_soak::oracle::{Fault, rows_of};
 use mp_soak::soak::{Options, read_tally, run, write_problem};
@@ -9,7 +9,6 @@ use mp_soak::trial::{Outcome, Problem, Wanted, damage};
 use mp_soak::worlds::KINDS;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 /// Problems of each kind.
 const EACH: u64 = 6;
@@ -110,7 +109,8 @@ fn a_run_goes_on_where_it_was_interrupted() {
         threads,
         wanted: of_kind("disc"),
     };
-    let (go, stop) = (AtomicBool::new(false), AtomicBool::new(true));
+    let (go, stop) = (Cancel::new(), Cancel::new());
+    stop.cancel();
     let whole = options("whole", 230, 1);
     let at_once = run(&whole, &go, &mut |_| {}).unwrap();
     let parts = options("parts", 120, 3);

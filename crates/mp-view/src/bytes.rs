@@ -28,8 +28,8 @@ struct Head {
     areas: Vec<AreaHead>,
     lines: Vec<LineHead>,
     bodies: Vec<BodyHead>,
-    start: ConfigurationHead,
-    goals: Vec<ConfigurationHead>,
+    start: Configuration,
+    goals: Vec<Configuration>,
     paths: Vec<PathHead>,
     trees: Vec<TreeHead>,
     roadmap: Option<RoadmapHead>,
@@ -55,34 +55,13 @@ struct LineHead {
 #[derive(Serialize, Deserialize)]
 struct BodyHead {
     name: String,
-    role: RoleHead,
+    role: Role,
     #[serde(flatten)]
-    shape: ShapeHead,
+    shape: Shape,
     #[serde(skip_serializing_if = "Option::is_none")]
     pose: Option<[f64; 7]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     color: Option<String>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum RoleHead {
-    Robot,
-    Obstacle,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum ShapeHead {
-    Mesh(usize),
-    Area(usize),
-    Lines(Vec<usize>),
-}
-
-#[derive(Serialize, Deserialize)]
-struct ConfigurationHead {
-    row: Vec<f64>,
-    poses: Vec<f64>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -164,19 +143,10 @@ impl SceneFile {
     }
 
     fn head(&self, data: &mut Vec<u8>) -> Head {
-        let configuration =
-            |q: &Configuration| ConfigurationHead { row: q.row.clone(), poses: q.poses.clone() };
         let body = |body: &Body| BodyHead {
             name: body.name.clone(),
-            role: match body.role {
-                Role::Robot => RoleHead::Robot,
-                Role::Obstacle => RoleHead::Obstacle,
-            },
-            shape: match &body.shape {
-                Shape::Mesh(mesh) => ShapeHead::Mesh(*mesh),
-                Shape::Area(area) => ShapeHead::Area(*area),
-                Shape::Lines(lines) => ShapeHead::Lines(lines.clone()),
-            },
+            role: body.role,
+            shape: body.shape.clone(),
             pose: body.pose,
             color: body.color.map(|[r, g, b]| format!("#{r:02x}{g:02x}{b:02x}")),
         };
@@ -200,8 +170,8 @@ impl SceneFile {
                 .collect(),
             lines: self.lines.iter().map(|line| LineHead { points: append(data, &line.points) }).collect(),
             bodies: self.bodies.iter().map(body).collect(),
-            start: configuration(&self.start),
-            goals: self.goals.iter().map(configuration).collect(),
+            start: self.start.clone(),
+            goals: self.goals.clone(),
             paths: self.paths.iter().map(|path| path_head(path, data)).collect(),
             trees: (self.trees.iter())
                 .map(|tree| TreeHead {
@@ -318,21 +288,15 @@ fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
         Ok(entries)
     }
     let data = &Data(data, Cell::new(data.len()));
-    let configuration = |q: ConfigurationHead| Configuration { row: q.row, poses: q.poses };
+    let no_color =
+        || ViewError::Array { what: "bodies".to_owned(), problem: "has a colour that is not #rrggbb" };
     let body = |body: BodyHead| {
         Ok(Body {
             name: body.name,
-            role: match body.role {
-                RoleHead::Robot => Role::Robot,
-                RoleHead::Obstacle => Role::Obstacle,
-            },
-            shape: match body.shape {
-                ShapeHead::Mesh(mesh) => Shape::Mesh(mesh),
-                ShapeHead::Area(area) => Shape::Area(area),
-                ShapeHead::Lines(lines) => Shape::Lines(lines),
-            },
+            role: body.role,
+            shape: body.shape,
             pose: body.pose,
-            color: body.color.map(|text| color(&text)).transpose()?,
+            color: body.color.map(|text| rgb(&text).ok_or_else(no_color)).transpose()?,
         })
     };
     let mesh = |mesh: &MeshHead| {
@@ -387,8 +351,8 @@ fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
         areas: head.areas.iter().map(area).collect::<Result<_, ViewError>>()?,
         lines: head.lines.iter().map(line).collect::<Result<_, ViewError>>()?,
         bodies: head.bodies.into_iter().map(body).collect::<Result<_, ViewError>>()?,
-        start: configuration(head.start),
-        goals: head.goals.into_iter().map(configuration).collect(),
+        start: head.start,
+        goals: head.goals,
         paths: head.paths.into_iter().map(path).collect::<Result<_, ViewError>>()?,
         trees: head.trees.into_iter().map(tree).collect::<Result<_, ViewError>>()?,
         roadmap: head.roadmap.map(roadmap).transpose()?,
@@ -397,11 +361,9 @@ fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
 }
 
 /// Red, green and blue of `#rrggbb`.
-fn color(text: &str) -> Result<[u8; 3], ViewError> {
-    let problem = "has a colour that is not #rrggbb";
-    let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()));
-    let number = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
-    let [_, r, g, b] =
-        number.ok_or_else(|| ViewError::Array { what: "bodies".to_owned(), problem })?.to_be_bytes();
-    Ok([r, g, b])
+pub(crate) fn rgb(text: &str) -> Option<[u8; 3]> {
+    let digits =
+        text.strip_prefix('#').filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()))?;
+    let [_, r, g, b] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
+    Some([r, g, b])
 }

@@ -4,7 +4,7 @@
 
 use crate::bytes::frame;
 use crate::message::Message;
-use crate::session::{AboutRun, Desk, Opening};
+use crate::session::{Opening, RunRequest, Workspace};
 use crate::{SceneFile, scene_of_mesh};
 use mp_io::InMemory;
 use mp_plan::{Error, Scene};
@@ -45,23 +45,23 @@ pub fn session(bytes: &[u8]) -> Result<(), Error> {
     });
     let end = bytes.windows(2).position(|two| two == b"\n\n").unwrap_or(bytes.len());
     let (requests, data) = (&bytes[..end], bytes.get(end + 2..).unwrap_or_default());
-    let mut desk = Desk::new(Opening { scene: Some(scene.clone()), ..Opening::default() });
+    let mut workspace = Workspace::new(Opening { scene: Some(scene.clone()), ..Opening::default() });
     let mut last = Ok(());
     for request in requests.split(|b| *b == b'\n') {
-        last = answer(&mut desk, &frame(request.to_vec(), data));
+        last = answer(&mut workspace, &frame(request.to_vec(), data));
     }
     last
 }
 
-fn answer(desk: &mut Desk, request: &[u8]) -> Result<(), Error> {
+fn answer(workspace: &mut Workspace, request: &[u8]) -> Result<(), Error> {
     let request = Message::parse(request).map_err(|e| Error::new(e.to_string()))?;
-    if AboutRun::of(&request)?.is_some() {
-        return desk.scene_to_plan(&request).map(drop);
+    if RunRequest::of(&request)?.is_some() {
+        return workspace.scene_to_plan(&request).map(drop);
     }
     if request.head.contains_key("scene") {
         return Ok(());
     }
-    let reply = desk.answer(&request)?.to_bytes();
+    let reply = workspace.answer(&request)?.to_bytes();
     assert!(Message::parse(&reply).is_ok(), "a reply is a message");
     Ok(())
 }

@@ -212,21 +212,12 @@ impl<'s> Glb<'s> {
     fn mesh(&mut self, name: &str, shape: &Shape, colour: u32, opacity: f64) -> Option<usize> {
         let mut primitives = Vec::new();
         match shape {
-            Shape::Mesh(i) => {
-                let [points, triangles] = self.surface(0, *i, |scene, _| {
-                    let mesh = &scene.meshes[*i];
-                    (mesh.positions.clone(), mesh.triangles.clone())
-                })?;
-                primitives.push(
-                    json!({ "attributes": { "POSITION": points }, "indices": triangles, "mode": TRIANGLES }),
-                );
-            }
+            Shape::Mesh(i) => primitives.push(self.surface(0, *i, |scene, _| {
+                let mesh = &scene.meshes[*i];
+                (mesh.positions.clone(), mesh.triangles.clone())
+            })?),
             Shape::Area(i) => {
-                let [points, triangles] =
-                    self.surface(1, *i, |scene, thickness| plate(&scene.areas[*i], thickness))?;
-                primitives.push(
-                    json!({ "attributes": { "POSITION": points }, "indices": triangles, "mode": TRIANGLES }),
-                );
+                primitives.push(self.surface(1, *i, |scene, thickness| plate(&scene.areas[*i], thickness))?)
             }
             Shape::Lines(lines) => {
                 for line in lines.iter().map(|i| &self.scene.lines[*i].points).collect::<Vec<_>>() {
@@ -253,23 +244,23 @@ impl<'s> Glb<'s> {
         json!({ "attributes": { "POSITION": points }, "mode": mode })
     }
 
-    /// The accessors of points and triangles, written when they are first used.
+    /// A surface as a primitive without a material; its points and triangles are written when they are first used.
     fn surface(
         &mut self,
         kind: usize,
         i: usize,
         make: impl FnOnce(&SceneFile, f64) -> (Vec<f32>, Vec<u32>),
-    ) -> Option<[usize; 2]> {
-        if let Some(known) = self.written[kind][i] {
-            return known;
-        }
-        let (points, triangles) = make(self.scene, self.thickness);
-        let accessors = (!triangles.is_empty()).then(|| {
-            let points: Vec<f32> = points.into_iter().map(finite).collect();
-            [self.accessor(&points, "VEC3", 3, Some(ARRAY_BUFFER)), self.indices(&triangles)]
+    ) -> Option<Value> {
+        let written = self.written[kind][i].unwrap_or_else(|| {
+            let (points, triangles) = make(self.scene, self.thickness);
+            (!triangles.is_empty()).then(|| {
+                let points: Vec<f32> = points.into_iter().map(finite).collect();
+                [self.accessor(&points, "VEC3", 3, Some(ARRAY_BUFFER)), self.indices(&triangles)]
+            })
         });
-        self.written[kind][i] = Some(accessors);
-        accessors
+        self.written[kind][i] = Some(written);
+        let [points, triangles] = written?;
+        Some(json!({ "attributes": { "POSITION": points }, "indices": triangles, "mode": TRIANGLES }))
     }
 
     /// A node at a pose.

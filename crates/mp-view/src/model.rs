@@ -1,6 +1,7 @@
 //! The model of a scene file.
 
 use mp_plan::Column;
+use serde::{Deserialize, Serialize};
 
 /// A scene with what is to be shown of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,7 +64,8 @@ pub struct Polyline {
 }
 
 /// Whether a body moves with the configuration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Role {
     /// It is a part of the robot.
     Robot,
@@ -72,7 +74,8 @@ pub enum Role {
 }
 
 /// What a body looks like.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Shape {
     /// One of the meshes.
     Mesh(usize),
@@ -99,7 +102,7 @@ pub struct Body {
 }
 
 /// A configuration, with the poses of the robot's bodies.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Configuration {
     /// Its numbers, as the columns say.
     pub row: Vec<f64>,

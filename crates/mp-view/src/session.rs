@@ -1,6 +1,5 @@
 //! A session of the viewer: what its page asks for, done by the libraries. docs/formats/session.md describes the messages.
 
-mod desk;
 mod files;
 mod mesh;
 mod messages;
@@ -10,13 +9,14 @@ mod tests;
 #[cfg(not(target_family = "wasm"))]
 mod threads;
 mod worker;
+mod workspace;
 
-pub(crate) use desk::Desk;
-pub use desk::Opening;
 pub use mesh::{is_mesh, scene_of_mesh};
 #[cfg(not(target_family = "wasm"))]
 pub use threads::Session;
 pub use worker::Worker;
+pub use workspace::Opening;
+pub(crate) use workspace::Workspace;
 
 pub(crate) use messages::{number_of, refusal, text_of};
 
@@ -25,7 +25,7 @@ use mp_plan::{Error, Request};
 use serde_json::Value;
 
 /// What a request about a run asks for.
-pub(crate) enum AboutRun {
+pub(crate) enum RunRequest {
     /// To begin it: with this request, paused or not.
     Plan { request: Box<Request>, paused: bool },
     /// To change what it does.
@@ -34,7 +34,7 @@ pub(crate) enum AboutRun {
     Cancel,
 }
 
-impl AboutRun {
+impl RunRequest {
     /// The run that a request is about, and what it asks for; `None` when it is about no run.
     pub(crate) fn of(message: &Message) -> Result<Option<(u64, Self)>, Error> {
         let head = &message.head;

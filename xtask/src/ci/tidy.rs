@@ -29,9 +29,8 @@ const FILE_CALLS: [&str; 7] = [
     "OpenOptions::new(",
 ];
 
-/// Sources with such calls: a temporary folder of its own, the shipped scenes, and the scheduler's count of processor time.
-const OWN_FILES: [&str; 3] =
-    ["mp-plan/src/picture/mp4.rs", "mp-scenes/src/source.rs", "mp-bench/src/scaling/growth.rs"];
+/// Sources with such calls: a temporary folder of its own, and the shipped scenes.
+const OWN_FILES: [&str; 2] = ["mp-plan/src/picture/mp4.rs", "mp-scenes/src/source.rs"];
 
 /// The oracle of `mp-soak`, and the crates that it may use: it judges paths without any code of the project.
 const ORACLE: &str = "crates/mp-soak/src/oracle";

@@ -11,9 +11,8 @@ use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table};
 use crate::options::Common;
 use crate::output::note;
-use crate::plot::save_series;
+use crate::plot::{Axis, ChartCurve, Labels, chart};
 use mp_collide::Query;
-use mp_render::Series;
 use nalgebra::Isometry3;
 use std::path::PathBuf;
 
@@ -46,10 +45,14 @@ pub(super) fn run(lab: &Lab, common: &Common, seed: u64, programs: &[PathBuf]) -
         opened.push(pairs);
     }
     let table = table(&all, &opened);
-    lab.report("collide-growth", &table, &table)?;
-    let title = "Cost against the number of triangles of each mesh";
-    let axes = ["triangles", "times the cost of the smallest"];
-    save_series(&lab.file("collide-growth.png"), title, axes, &curves(&all))?;
+    lab.report("collide-growth", &table.markdown(), &table)?;
+    let labels = Labels {
+        title: "Cost against the number of triangles of each mesh",
+        x: "triangles",
+        y: "times the cost of the smallest",
+    };
+    let axes = [Axis::Log, Axis::FromZero(None)];
+    lab.write("collide-growth.svg", &chart(labels, axes, &curves(&all))?)?;
     Ok(complete)
 }
 
@@ -166,27 +169,26 @@ fn cost(m: &PairResults, set: &str, query: &str) -> Option<f64> {
     m.record(OURS, set, query).map(|r| r.least)
 }
 
+/// Costs by numbers of triangles.
+type Costs = Vec<(usize, f64)>;
+
 /// Costs relative to the smallest size: a straight line is logarithmic growth.
-fn curves(all: &[PairResults]) -> Vec<Series> {
-    let mut curves: Vec<Series> = ASKED
-        .iter()
-        .map(|&(set, query, name)| {
-            let costs = all.iter().filter_map(|m| Some((m.triangles, cost(m, set, query)?)));
-            relative(name, costs.collect())
-        })
-        .collect();
+fn curves(all: &[PairResults]) -> Vec<ChartCurve> {
+    let relative = |(i, (name, costs)): (usize, (&str, Costs))| {
+        let first = costs.first().map_or(1.0, |c| c.1);
+        let points = costs.into_iter().map(|(triangles, cost)| (triangles as f64 / 2.0, cost / first));
+        ChartCurve::new(name, i, points.collect())
+    };
+    let asked = ASKED.map(|(set, query, name)| {
+        let costs = all.iter().filter_map(|m| Some((m.triangles, cost(m, set, query)?)));
+        (name, costs.collect())
+    });
     let per_triangle = |m: &PairResults| {
         let build = m.builds.iter().find(|b| b.lib == OURS)?;
         Some((m.triangles, build.ms / m.triangles as f64))
     };
-    curves.push(relative("building, per triangle", all.iter().filter_map(per_triangle).collect()));
-    curves
-}
-
-fn relative(name: &str, costs: Vec<(usize, f64)>) -> Series {
-    let first = costs.first().map_or(1.0, |c| c.1);
-    let points = costs.into_iter().map(|(triangles, cost)| (triangles as f64 / 2.0, cost / first));
-    Series { name: name.to_owned(), points: points.collect() }
+    let built = ("building, per triangle", all.iter().filter_map(per_triangle).collect());
+    asked.into_iter().chain([built]).enumerate().map(relative).collect()
 }
 
 #[cfg(test)]

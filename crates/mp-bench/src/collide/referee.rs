@@ -60,7 +60,7 @@ pub(super) fn run(lab: &Lab, common: &Common, options: &Options, pairs: &[&str])
         }
         note(&format!("{name}: compared in {:.0} s", seconds_since(begin)));
     }
-    lab.report("referee", &table, &table)?;
+    lab.report("referee", &table.markdown(), &table)?;
     Ok(all_right)
 }
 

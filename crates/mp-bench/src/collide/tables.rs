@@ -7,16 +7,9 @@ use crate::experiment::{Table, geometric_mean};
 
 /// Nanoseconds per query of each library, and the ratio to ours.
 pub(crate) fn speed(all: &[PairResults], query: &str, chosen: impl Fn(&str) -> bool) -> Table {
-    let records = all.iter().flat_map(|m| &m.records).filter(|r| r.what.query == query);
-    let (mut libs, mut sets): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
-    for what in records.map(|r| &r.what) {
-        if !libs.contains(&&*what.lib) && what.lib != OURS && chosen(&what.lib) {
-            libs.push(&what.lib);
-        }
-        if !sets.contains(&&*what.set) {
-            sets.push(&what.set);
-        }
-    }
+    let asked = || all.iter().flat_map(|m| &m.records).map(|r| &r.what).filter(|what| what.query == query);
+    let others = asked().map(|what| &*what.lib).filter(|lib| *lib != OURS && chosen(lib));
+    let (libs, sets) = (distinct(others), distinct(asked().map(|what| &*what.set)));
     let mut table = Table::new(["pair", "poses", OURS].into_iter().chain(libs.iter().copied()));
     let mut ratios = vec![Vec::new(); libs.len()];
     for m in all {
@@ -39,6 +32,17 @@ pub(crate) fn speed(all: &[PairResults], query: &str, chosen: impl Fn(&str) -> b
         table.rows.push(last_row("least", ratios.iter().map(|r| r.iter().copied().reduce(f64::min))));
     }
     table
+}
+
+/// The items without repetitions, in the order in which they first come.
+fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut all = Vec::new();
+    items.into_iter().for_each(|item| {
+        if !all.contains(&item) {
+            all.push(item)
+        }
+    });
+    all
 }
 
 fn last_row(name: &str, ratios: impl Iterator<Item = Option<f64>>) -> Vec<String> {
@@ -67,12 +71,8 @@ pub(crate) fn memory(all: &[PairResults]) -> Table {
 
 /// A table of the builds; `cell` takes the build of a library, ours, and the number of triangles.
 fn builds(all: &[PairResults], cell: impl Fn(&TreeBuild, &TreeBuild, usize) -> String) -> Table {
-    let mut libs: Vec<&str> = vec![OURS];
-    for build in all.iter().flat_map(|m| &m.builds) {
-        if !libs.contains(&&*build.lib) {
-            libs.push(&build.lib);
-        }
-    }
+    let built = all.iter().flat_map(|m| &m.builds).map(|build| &*build.lib);
+    let libs = distinct([OURS].into_iter().chain(built));
     let mut table = Table::new(["pair", "triangles"].into_iter().chain(libs.iter().copied()));
     for m in all {
         let of = |lib: &str| m.builds.iter().find(|b| b.lib == lib);
@@ -94,13 +94,8 @@ pub(crate) fn agreement(all: &[PairResults]) -> Table {
         "largest relative difference",
         "where",
     ]);
-    let mut kinds: Vec<(&str, &str)> = Vec::new();
-    for what in all.iter().flat_map(|m| &m.records).map(|r| &r.what) {
-        if what.lib != OURS && !kinds.contains(&(&what.lib, &what.query)) {
-            kinds.push((&what.lib, &what.query));
-        }
-    }
-    for (lib, query) in kinds {
+    let asked = all.iter().flat_map(|m| &m.records).map(|r| (&*r.what.lib, &*r.what.query));
+    for (lib, query) in distinct(asked.filter(|(lib, _)| *lib != OURS)) {
         let (mut count, mut differ, mut largest, mut places) = (0, 0, 0.0_f64, Vec::new());
         for m in all {
             for record in m.records.iter().filter(|r| r.what.lib == lib && r.what.query == query) {

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// About so many groups of cases for each thread of a rank make them all end at about the same time.
+/// The number of groups of cases for each thread of a rank that makes all threads end at about the same time.
 const GROUPS: usize = 8;
 
 /// How often ranks tell how far they are.
@@ -25,11 +25,8 @@ const TELL: Duration = Duration::from_secs(10);
 /// Runs experiments: the folder for results, the threads, and cancellation.
 #[derive(Debug)]
 pub(crate) struct Lab {
-    out: PathBuf,
-    quick: bool,
-    fresh: bool,
+    options: Common,
     pool: rayon::ThreadPool,
-    shard: Shard,
     /// Whether the first of several ranks measures, or there is one alone. Others write nothing.
     is_master: bool,
     /// Two processes that measure into one folder would overwrite each other's results.
@@ -60,22 +57,12 @@ impl Lab {
 
     fn with(options: &Common, threads: usize, is_master: bool, cancel: Cancel) -> Result<Self> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().into_error()?;
-        let (out, shard) = (options.out.clone(), options.shard);
-        let mut lab = Self {
-            out,
-            quick: options.quick,
-            fresh: options.fresh,
-            pool,
-            shard,
-            is_master,
-            _lock: None,
-            cancel,
+        let lock = || {
+            mp_store::make_folder(&options.out)?;
+            Lock::of_folder(&options.out)
         };
-        if is_master {
-            mp_store::make_folder(&lab.out)?;
-            lab._lock = Some(Lock::of_folder(&lab.out)?);
-        }
-        Ok(lab)
+        let _lock = is_master.then(lock).transpose()?;
+        Ok(Self { options: options.clone(), pool, is_master, _lock, cancel })
     }
 
     /// A lab for tests, without Ctrl-C.
@@ -88,21 +75,21 @@ impl Lab {
 
     /// The name of an experiment in files; a short run has its own.
     pub(crate) fn name(&self, name: &str) -> String {
-        if self.quick { format!("{name}-quick") } else { name.to_owned() }
+        if self.options.quick { format!("{name}-quick") } else { name.to_owned() }
     }
 
     /// The path of a file in the folder for results.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
-        self.out.join(name)
+        self.options.out.join(name)
     }
 
     /// The log of the experiment called `name`, whose runs have the limit `cap`.
     pub(crate) fn log<K: CaseKey, R: RunRecord>(&self, name: &str, cap: f64) -> Result<Log<K, R>> {
         let file = self.file(&format!("{name}-runs.jsonl"));
         match ranks::link() {
-            None => Log::open(&file, cap, self.fresh),
+            None => Log::open(&file, cap, self.options.fresh),
             Some(link) if self.is_master => {
-                let log = Log::open(&file, cap, self.fresh)?;
+                let log = Log::open(&file, cap, self.options.fresh)?;
                 ranks::shared(&*link, &log.all().into_iter().collect::<Vec<_>>())?;
                 Ok(log)
             }
@@ -116,6 +103,11 @@ impl Lab {
 
     fn interrupted(&self) -> bool {
         self.cancel.is_raised()
+    }
+
+    /// Whether all is measured here, not a shard.
+    fn is_whole(&self) -> bool {
+        self.options.shard == Shard::WHOLE
     }
 
     /// Does all jobs; returns their results in the same order. `None` when a job was interrupted or not started:
@@ -158,7 +150,8 @@ impl Lab {
         set_up: impl Fn(&K) -> Result<P> + Sync,
         run: impl Fn(&P, &K) -> Result<Option<R>> + Sync,
     ) -> Result<bool> {
-        let all = cases.chunk_by(&together).enumerate().filter(|(nth, _)| self.shard.has(*nth as u64));
+        let all =
+            cases.chunk_by(&together).enumerate().filter(|(nth, _)| self.options.shard.has(*nth as u64));
         let mine: Vec<&[K]> = all.map(|(_, group)| group).collect();
         let open = |group: &&[K]| group.iter().filter(|case| log.get(case).is_none()).cloned().collect();
         let groups: Vec<Vec<K>> = mine.iter().map(open).filter(|group: &Vec<K>| !group.is_empty()).collect();
@@ -222,7 +215,7 @@ impl Lab {
             note("interrupted: the same command goes on from here");
         }
         // A shard is complete without being all.
-        Ok(!self.interrupted() && self.shard == Shard::WHOLE)
+        Ok(!self.interrupted() && self.is_whole())
     }
 
     /// Does jobs in parallel; `None` for those that were interrupted or not started.
@@ -237,57 +230,35 @@ impl Lab {
 
     /// Writes a file in the folder for results.
     pub(crate) fn write(&self, name: &str, text: &str) -> Result<()> {
-        match self.is_master && self.shard == Shard::WHOLE {
+        match self.is_master && self.is_whole() {
             true => write_file(&self.file(name), text.as_bytes()),
             false => Ok(()),
         }
     }
 
-    /// Prints `text`, the comparison with the paper; writes it with a summary, all runs and charts.
-    pub(crate) fn publish(
-        &self,
-        name: &str,
-        text: &str,
-        [summary, each]: [&Table; 2],
-        charts: Vec<(String, Result<String>)>,
-    ) -> Result<()> {
-        if self.shard != Shard::WHOLE {
-            return Ok(());
-        }
-        print(text)?;
-        self.write(&format!("{name}.md"), text)?;
-        self.report(&format!("{name}-summary"), summary, each)?;
+    /// Writes charts, with the name of the experiment before their own.
+    pub(crate) fn charts(&self, name: &str, charts: Vec<(String, Result<String>)>) -> Result<()> {
         charts.into_iter().try_for_each(|(file, chart)| self.write(&format!("{name}-{file}.svg"), &chart?))
     }
 
-    /// Prints `text`, and writes it with charts and, as comma-separated values, the runs of `log` that `shown` selects.
-    pub(crate) fn publish_runs<K: CaseKey, R: RunRecord>(
-        &self,
-        name: &str,
-        text: &str,
-        log: &Log<K, R>,
-        shown: impl Fn(&K) -> bool,
-        charts: Vec<(String, Result<String>)>,
-    ) -> Result<()> {
-        self.report_text(name, text, &log.table(shown)?)?;
-        charts.into_iter().try_for_each(|(file, chart)| self.write(&format!("{name}-{file}.svg"), &chart?))
-    }
-
-    /// Prints `summary` and writes it with `each`, one line per run.
-    pub(crate) fn report(&self, name: &str, summary: &Table, each: &Table) -> Result<()> {
-        self.report_text(name, &(summary.markdown() + "\n"), each)
-    }
-
-    /// As [`report`](Self::report), with a summary that is a text.
-    pub(crate) fn report_text(&self, name: &str, text: &str, each: &Table) -> Result<()> {
-        if self.shard != Shard::WHOLE {
-            return Ok(());
+    /// Prints `text`, and writes it as Markdown.
+    pub(crate) fn text(&self, name: &str, text: &str) -> Result<()> {
+        let text = text.trim_end();
+        if self.is_whole() {
+            print(text)?;
         }
-        print(text.trim_end())?;
-        let (markdown, csv) = (format!("{name}.md"), format!("{name}.csv"));
-        self.write(&markdown, text)?;
+        self.write(&format!("{name}.md"), &format!("{text}\n"))
+    }
+
+    /// Prints `text` and writes it, with `each` as comma-separated values.
+    pub(crate) fn report(&self, name: &str, text: &str, each: &Table) -> Result<()> {
+        self.text(name, text)?;
+        let csv = format!("{name}.csv");
         self.write(&csv, &each.csv())?;
-        note(&format!("written: {}, {}", self.file(&markdown).display(), self.file(&csv).display()));
+        if self.is_whole() {
+            let file = |name: &str| self.file(name).display().to_string();
+            note(&format!("written: {}, {}", file(&format!("{name}.md")), file(&csv)));
+        }
         Ok(())
     }
 }

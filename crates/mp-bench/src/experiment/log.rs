@@ -141,9 +141,8 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
         cases.iter().filter_map(|case| Some((case, self.get(case)?)))
     }
 
-    /// The runs whose cases `shown` selects, sorted, a row for each: the members of the case and of its result, numbers with six
-    /// digits.
-    pub(crate) fn table(&self, shown: impl Fn(&K) -> bool) -> Result<Table> {
+    /// Those `cases` that were run, sorted, a row for each: the members of the case and of its result, numbers with six digits.
+    pub(crate) fn table(&self, cases: &[K]) -> Result<Table> {
         let members = |value: Value| match value {
             Value::Object(members) => members.into_iter().collect(),
             other => vec![("case".to_owned(), other)],
@@ -156,7 +155,9 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
             other => other.to_string(),
         };
         let mut table = Table::new(Vec::<String>::new());
-        for (case, run) in self.all().into_iter().filter(|(case, _)| shown(case)) {
+        let mut sorted = cases.to_vec();
+        sorted.sort();
+        for (case, run) in self.each(&sorted) {
             let mut row = members(serde_json::to_value(case).into_error()?);
             row.extend(members(serde_json::to_value(run).into_error()?));
             if table.head.is_empty() {
@@ -205,7 +206,8 @@ mod tests {
             let case = Named { scene: "maze, small".into(), seed };
             log.learn([(case, Took { solved: seed < 2, seconds, first: None })]);
         }
-        let table = log.table(|case| case.seed < 3).unwrap();
+        let case = |seed| Named { scene: "maze, small".into(), seed };
+        let table = log.table(&[case(2), case(1), case(7)]).unwrap();
         let mut head = table.head.clone();
         head.sort();
         assert_eq!(head, ["first", "scene", "seconds", "seed", "solved"]);

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 /// What a thread that measures has to do with other ranks.
-struct Among {
+struct RankContext {
     link: Rc<dyn Link>,
     cancel: Cancel,
     /// What each rank did so far; on the master.
@@ -17,25 +17,25 @@ struct Among {
 }
 
 thread_local! {
-    static AMONG: RefCell<Option<Among>> = const { RefCell::new(None) };
+    static CONTEXT: RefCell<Option<RankContext>> = const { RefCell::new(None) };
 }
 
 /// The link to the other ranks of the thread that measures, if there are any.
 pub(crate) fn link() -> Option<Rc<dyn Link>> {
-    AMONG.with_borrow(|among| among.as_ref().map(|among| among.link.clone()))
+    CONTEXT.with_borrow(|context| context.as_ref().map(|context| context.link.clone()))
 }
 
 /// What ends the work of the thread that measures, if there are other ranks.
 pub(crate) fn cancel() -> Option<Cancel> {
-    AMONG.with_borrow(|among| among.as_ref().map(|among| among.cancel.clone()))
+    CONTEXT.with_borrow(|context| context.as_ref().map(|context| context.cancel.clone()))
 }
 
 /// Does `job` with this link, until `cancel` is raised. Also returns what each rank did.
 pub(crate) fn with<T>(link: Rc<dyn Link>, cancel: Cancel, job: impl FnOnce() -> T) -> (T, Shares) {
     let shares = Shares::new(link.ranks());
-    AMONG.set(Some(Among { link, cancel, shares }));
+    CONTEXT.set(Some(RankContext { link, cancel, shares }));
     let result = job();
-    (result, AMONG.take().map(|among| among.shares).unwrap_or_default())
+    (result, CONTEXT.take().map(|context| context.shares).unwrap_or_default())
 }
 
 /// Tells all ranks what is known; the master calls it.
@@ -73,7 +73,7 @@ pub(crate) fn measured<K: CaseKey, R: RunRecord>(
     let mut all: Vec<(K, R)> = Vec::new();
     let take = |_, rank, result: Vec<u8>| {
         let (work, runs): (f64, Vec<(K, R)>) = serde_json::from_slice(&result).map_err(|e| e.to_string())?;
-        AMONG.with_borrow_mut(|among| among.as_mut().map(|among| among.shares.add(rank, work)));
+        CONTEXT.with_borrow_mut(|context| context.as_mut().map(|context| context.shares.add(rank, work)));
         runs.iter().try_for_each(|(case, run)| log.write(case, run)).map_err(|e| e.to_string())?;
         took(runs.len());
         all.extend(runs);

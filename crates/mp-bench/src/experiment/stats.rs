@@ -7,7 +7,7 @@ use mp_cspace::Rng;
 use rand::RngExt;
 
 /// A median with a confidence interval; each is infinite when it is beyond the cap.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Median {
     pub(crate) median: f64,
     /// The interval by order statistics that holds the true median with at least 95%, or as nearly as so few
@@ -117,6 +117,12 @@ pub(crate) fn wilson(k: usize, n: usize) -> (f64, f64) {
     let middle = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
     let half = Z / (1.0 + Z * Z / n) * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
     ((middle - half).max(0.0), (middle + half).min(1.0))
+}
+
+/// The 95% [interval](wilson) of a probability in percent, for a table cell.
+pub(crate) fn wilson_percent(k: usize, n: usize) -> String {
+    let (low, high) = wilson(k, n);
+    format!("{:.0}–{:.0}%", 100.0 * low, 100.0 * high)
 }
 
 /// The number with about three digits, for a table cell.

@@ -1,4 +1,4 @@
-//! Tables, as Markdown, as comma-separated values and as JSON.
+//! Tables, as Markdown and as comma-separated values.
 
 /// The heading of a column, and the function that gives its cell for an item.
 pub(crate) type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
@@ -43,20 +43,6 @@ impl Table {
         let lines = std::iter::once(&self.head).chain(&self.rows).map(|row| line(row) + "\n");
         lines.collect()
     }
-
-    /// The table as a list of objects, one for each row; cells that are numbers become numbers.
-    pub(crate) fn json(&self) -> serde_json::Value {
-        let value = |cell: &String| -> serde_json::Value {
-            match cell.parse::<f64>() {
-                Ok(number) if number.is_finite() => number.into(),
-                _ => cell.as_str().into(),
-            }
-        };
-        let row = |row: &Vec<String>| -> serde_json::Value {
-            self.head.iter().cloned().zip(row.iter().map(value)).collect()
-        };
-        self.rows.iter().map(row).collect()
-    }
 }
 
 /// A boolean as a table cell: 1 or 0.
@@ -82,7 +68,6 @@ mod tests {
         let same = Table::of(["1,5"], &[("a", &|v| (*v).to_owned()), ("b", &|_| "x".to_owned())]);
         assert_eq!((&same.head, &same.rows), (&table.head, &table.rows));
         assert_eq!(table.csv(), "a,b\n\"1,5\",x\n");
-        assert_eq!(table.json(), serde_json::json!([{ "a": "1,5", "b": "x" }]));
         assert_eq!(table.markdown(), "| a | b |\n| --- | --- |\n| 1,5 | x |");
         assert_eq!(sections(2, &[("T", table)]), "## T\n\n| a | b |\n| --- | --- |\n| 1,5 | x |\n");
     }

@@ -3,15 +3,13 @@
 //! obstacles under motion checks of both kinds. Every run has the same budget of collision and distance queries, and runs
 //! that are compared have the same scene and seed.
 
-use super::runs::Began;
 use super::scenes::CORRIDORS;
-use crate::clock::seconds_since;
 use crate::error::Result;
 use crate::experiment::{Lab, Log};
-use crate::scenes::{Rigid, bare, either};
+use crate::scenes::{Rigid, bare};
 use clap::ValueEnum;
-use mp_cspace::{Cancel, Outcome, StopReason};
-use mp_plan::{Control, Error, Request, RigidScene, RigidSpace, search};
+use mp_cspace::Cancel;
+use mp_plan::{Error, Request};
 use serde::{Deserialize, Serialize};
 
 /// An experiment on the paper's claims.
@@ -76,7 +74,7 @@ pub(super) const WITH_TREES: [[&str; 2]; 5] = [
     [GEOMETRY, "obstacle geometry, trees"],
 ];
 
-/// Those of the factorial experiment: the first so many. Then so many variants of obstacle-geometry PRM.
+/// The numbers of those of the factorial experiment, which come first, and of the variants of obstacle-geometry PRM after them.
 const FACTORS: usize = 8;
 const PARTS: usize = 8;
 
@@ -235,17 +233,10 @@ pub(super) struct Plan {
 
 impl Plan {
     /// All cases, seed by seed: what was interrupted has all cells for the seeds it has.
-    fn cases(&self) -> Vec<Case> {
+    pub(super) fn cases(&self) -> Vec<Case> {
         let cells = self.experiment.cells();
         let of = |seed: u64, scene: &str| cells.iter().map(|cell| cell.case(scene, seed)).collect::<Vec<_>>();
         (1..=self.seeds).flat_map(|seed| self.scenes.iter().flat_map(move |scene| of(seed, scene))).collect()
-    }
-
-    /// Whether a case of the log belongs to this measurement: the log has other experiments too, and maybe more seeds.
-    pub(super) fn has(&self, case: &Case) -> bool {
-        case.seed <= self.seeds
-            && self.scenes.contains(&case.scene)
-            && self.experiment.cells().iter().any(|cell| cell.case(&case.scene, case.seed) == *case)
     }
 }
 
@@ -270,42 +261,28 @@ pub(super) fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>) -> Resul
 }
 
 /// The request of a case.
-fn request(case: &Case, budget: u64) -> Result<Request> {
+fn request(case: &Case) -> Result<Request> {
     let unknown = |name: &str| Error::new(format!("there is no way `{name}` here"));
     let generation = GENERATIONS.iter().find(|g| g.0 == case.generation);
     let (_, planner, more) = generation.ok_or_else(|| unknown(&case.generation))?;
     let connection = CONNECTIONS.iter().find(|c| c.0 == case.connection);
     let (_, connected) = connection.ok_or_else(|| unknown(&case.connection))?;
     let request = bare(planner).seed(case.seed).metric(case.metric.parse()?).motion(case.checks.parse()?);
-    let mut request =
-        more.iter().chain(*connected).fold(request, |request, (key, value)| request.set(*key, value));
-    request.budget.queries = Some(budget);
-    Ok(request)
+    Ok(more.iter().chain(*connected).fold(request, |request, (key, value)| request.set(*key, value)))
 }
 
 /// One run; `None` when it was interrupted.
 fn run(rigid: &Rigid, case: &Case, budget: u64, cancel: &Cancel) -> Result<Option<Run>> {
-    fn one<M: RigidSpace>(scene: &RigidScene<M>, request: &Request, cancel: &Cancel) -> Result<Option<Run>> {
-        let mut began = Began::now();
-        let mut control = Control::new(cancel.clone(), &mut began);
-        let done = search(scene, request, &mut control)?;
-        let seconds = seconds_since(began.0);
-        if matches!(done.outcome, Outcome::Stopped(StopReason::Cancelled)) {
-            return Ok(None);
-        }
-        Ok(Some(Run {
-            solved: matches!(done.outcome, Outcome::Solved(_))
-                && request.budget.queries.is_none_or(|most| done.queries <= most),
-            seconds,
-            nodes: done.progress.nodes,
-            components: done.map.map_or(0, |[_, components]| components),
-            queries: done.queries,
-            motions: done.progress.motions,
-            rejected: done.progress.rejected,
-        }))
-    }
-    let request = request(case, budget)?;
-    either!(rigid, scene => one(scene, &request, cancel))
+    let found = rigid.search(request(case)?, budget, cancel)?;
+    Ok(found.map(|(found, solved)| Run {
+        solved,
+        seconds: found.time.as_secs_f64(),
+        nodes: found.progress.nodes,
+        components: found.map.map_or(0, |[_, components]| components),
+        queries: found.queries,
+        motions: found.progress.motions,
+        rejected: found.progress.rejected,
+    }))
 }
 
 #[cfg(test)]
@@ -319,7 +296,7 @@ mod tests {
             let cells = experiment.cells();
             assert_eq!(cells.iter().collect::<HashSet<_>>().len(), cells.len());
             let requests: Vec<Request> =
-                cells.iter().map(|cell| request(&cell.case("", 1), 10).unwrap()).collect();
+                cells.iter().map(|cell| request(&cell.case("", 1)).unwrap()).collect();
             for (i, request) in requests.iter().enumerate() {
                 request.check().unwrap();
                 assert!(!requests[..i].contains(request), "{request:?}");
@@ -342,13 +319,13 @@ mod tests {
         let mut log = lab.log("claims", 1_500.0).unwrap();
         assert!(measure(&plan, &lab, &mut log).unwrap());
         assert_eq!(log.all().len(), 15);
-        assert!(log.all().iter().all(|(case, _)| plan.has(case)));
+        assert_eq!(log.each(&plan.cases()).count(), 15);
         let (case, known) = log.all()[7];
         let again = run(&place(&case.scene).unwrap(), case, 1_500, &lab.cancel).unwrap().unwrap();
         assert_eq!(Run { seconds: known.seconds, ..again }, *known);
         assert!(if known.solved { known.queries <= 1_500 } else { known.queries >= 1_500 });
         let other = Plan { experiment: Experiment::Geometry, ..plan };
-        assert!(!other.has(case));
+        assert!(!other.cases().contains(case));
         assert!(place("rod 0.77").is_err() && place("nowhere").is_err());
     }
 }

@@ -4,7 +4,7 @@ use super::claims::{
     CERTIFIED, Case, Cell, Experiment, FAR, GEOMETRY, METRICS, NEAREST, Plan, Run, SALVAGED, UNIFORM,
     WITH_TREES, connections, generations,
 };
-use crate::experiment::{Log, Table, bootstrap, geometric_mean, mean, short, wilson};
+use crate::experiment::{Log, Table, bootstrap, geometric_mean, mean, short, wilson_percent};
 
 /// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]
@@ -41,8 +41,7 @@ fn share(k: usize, n: usize) -> String {
     if n == 0 {
         return "–".into();
     }
-    let (low, high) = wilson(k, n);
-    format!("{k} of {n} ({:.0}–{:.0}%)", 100.0 * low, 100.0 * high)
+    format!("{k} of {n} ({})", wilson_percent(k, n))
 }
 
 fn solved(runs: &[&Run]) -> usize {
@@ -330,11 +329,8 @@ impl<'a> Results<'a> {
     /// The Wilson intervals of counts, to read the other tables with.
     pub(super) fn intervals(&self) -> String {
         let n = self.plan.seeds as usize;
-        let of = |k: usize| {
-            let (low, high) = wilson(k, n);
-            format!("{k}: {:.0}–{:.0}%", 100.0 * low, 100.0 * high)
-        };
-        let counts = (0..=4).map(|i| of(i * n / 4)).collect::<Vec<_>>().join(", ");
+        let of = |i: usize| format!("{}: {}", i * n / 4, wilson_percent(i * n / 4, n));
+        let counts = (0..=4).map(of).collect::<Vec<_>>().join(", ");
         format!("Of {n} runs, with 95% Wilson intervals: {counts}.")
     }
 }

@@ -1,17 +1,16 @@
 //! How many nodes cover the same part of the free space: Visib-PRM against PRM.
 
-use super::queries::{checker, local};
+use super::queries::{checker, local, prm_builder};
 use crate::clock::{nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Group, Lab, Median, Table, short};
-use crate::scenes::{Rigid, either};
+use crate::scenes::{Rigid, either, free};
 use mp_cspace::{
     Configuration, Direction, Extension, Iterations, KdTree, LocalPlanner, NodeId, Nodes, Reach, Rng, Space,
-    Validity,
 };
 use mp_plan::{RigidScene, RigidSpace, TypedMotion};
-use mp_roadmap::algo::{prm, visibility_prm};
-use mp_roadmap::{Builder, Learning, Reachable, Roadmap};
+use mp_roadmap::algo::visibility_prm;
+use mp_roadmap::{Builder, Learning, Roadmap};
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
 
@@ -134,19 +133,10 @@ struct Measured {
 
 fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
     let space = scene.space();
-    let mut robot = scene.checker().clone();
-    let verifier = scene.verifier()?;
-    let mut rng = Rng::stream(seed, 7);
-    let mut samples = Vec::new();
-    while samples.len() < SAMPLES {
-        let q = space.sample_uniform(&mut rng);
-        if robot.is_valid(&q) {
-            samples.push(q);
-        }
-    }
+    let samples: Vec<_> = free(scene, Rng::stream(seed, 7)).take(SAMPLES).collect();
     let index = <KdTree>::default();
     let parts = visibility_prm::parts(space, FAILURES).into_error()?;
-    let mut few = Builder::new(checker(scene, verifier.clone())?, parts.generator, parts.connector, index);
+    let mut few = Builder::new(checker(scene, scene.verifier()?)?, parts.generator, parts.connector, index);
     let began = nanoseconds();
     few.build(&mut Rng::seed(seed), &mut Iterations(10_000_000), &mut ());
     let seconds = seconds_since(began);
@@ -155,11 +145,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
     let aim = seen(scene, few.map_mut(), &mut fresh(&samples))?;
     let (nodes, components) = (few.map().len() as f64, few.map_mut().components() as f64);
 
-    let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
-    let learning = Learning { expand: 0.0, ..Learning::default() };
-    let parts = prm::parts(space, reach, learning).into_error()?;
-    let index = <KdTree>::default();
-    let mut many = Builder::new(checker(scene, verifier)?, parts.generator, parts.connector, index);
+    let mut many = prm_builder(scene, Learning { expand: 0.0, ..Learning::default() })?;
     let (mut size, mut spent, mut rng) = (4, 0.0, Rng::seed(seed));
     let mut needed: [Option<Needed>; 2] = [None; 2];
     let mut samples = fresh(&samples);
@@ -185,8 +171,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
 fn table(groups: Vec<Group<'_, &str, Case, Measured>>) -> Table {
     type Scene<'a> = Group<'a, &'a str, Case, Measured>;
     let median = |scene: &Scene<'_>, value: &dyn Fn(&Measured) -> f64| {
-        let none = Median { median: 0.0, low: 0.0, high: 0.0 };
-        Median::of(scene.values(value)).unwrap_or(none)
+        Median::of(scene.values(value)).unwrap_or_default()
     };
     let few = |scene: &Scene<'_>, value: fn(&Measured) -> f64| median(scene, &value).median;
     let many = |scene: &Scene<'_>, i: usize, value: fn(&Needed) -> f64| {

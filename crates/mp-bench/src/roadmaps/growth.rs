@@ -1,15 +1,14 @@
 //! The time to build a roadmap, against its number of nodes.
 
-use super::queries::checker;
+use super::queries::prm_builder;
 use crate::clock::{nanoseconds, seconds_since};
-use crate::error::{IntoError, Result};
+use crate::error::Result;
 use crate::experiment::{Table, short};
 use crate::output::note;
 use crate::scenes::{Rigid, either};
-use mp_cspace::{KdTree, Nodes, Rng};
-use mp_plan::{RigidScene, RigidSpace, TypedMotion};
-use mp_roadmap::algo::prm;
-use mp_roadmap::{Builder, Learning, Reachable};
+use mp_cspace::{Nodes, Rng};
+use mp_plan::{RigidScene, RigidSpace};
+use mp_roadmap::Learning;
 
 const SIZES: [usize; 7] = [100, 316, 1_000, 3_162, 10_000, 31_623, 100_000];
 
@@ -19,12 +18,7 @@ pub(super) fn measure(quick: bool) -> Result<Table> {
 }
 
 fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
-    let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
-    let learning = Learning { expand: 0.0, ..Learning::default() };
-    let parts = prm::parts(scene.space(), reach, learning).into_error()?;
-    let index = <KdTree>::default();
-    let checker = checker(scene, scene.verifier()?)?;
-    let mut builder = Builder::new(checker, parts.generator, parts.connector, index);
+    let mut builder = prm_builder(scene, Learning { expand: 0.0, ..Learning::default() })?;
     let mut table = Table::new([
         "nodes",
         "build s",

@@ -1,22 +1,22 @@
 //! Pictures of roadmaps, as SVG: the coverage of whole scenes; the roadmap with which each algorithm solved a corridor; and
 //! the configurations around an obstacle that obstacle-geometry PRM and OBPRM propose.
 
-use super::queries::{Local, SpaceOf, checker};
+use super::queries::{Local, SpaceOf, checker, prm_builder};
 use super::scenes::CORRIDORS;
 use super::svg_drawing::{Projection, SvgDrawing};
 use crate::error::{IntoError, Result};
 use crate::experiment::Lab;
 use crate::output::note;
 use crate::scenes::{Rigid, bare, either};
-use mp_cspace::{Configuration, Iterations, KdTree, Nodes, Outcome, Rng, Stop, obstacles::ObstacleGeometry};
+use mp_cspace::{Configuration, Iterations, KdTree, Nodes, Outcome, Rng, obstacles::ObstacleGeometry};
 use mp_geom::Aabb;
 use mp_geom::primitives::cuboid;
 use mp_io::{Body, PlacedBody, RigidProblem, SpaceKind};
 use mp_plan::{Control, Error, RigidScene, RigidSpace, TypedMotion, search};
-use mp_roadmap::algo::{prm, visibility_prm};
+use mp_roadmap::algo::visibility_prm;
 use mp_roadmap::{
-    AroundObstacles, Builder, ByGeometry, Candidate, Connector, Learning, LinkState, MilestoneKind,
-    NodeGenerator, OnObstacles, OnSurfaces, Reachable, Roadmap, Strategy,
+    AroundObstacles, Builder, ByGeometry, Candidate, Learning, LinkState, MilestoneKind, NodeGenerator,
+    OnObstacles, OnSurfaces, Roadmap, Strategy,
 };
 use mp_robot::Spatial;
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -70,35 +70,19 @@ fn save(drawing: SvgDrawing, lab: &Lab, name: &str) -> Result<()> {
 /// Draws the roadmaps of PRM and Visib-PRM in a whole scene.
 fn covered<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     let (space, name) = (scene.space(), &scene.problem().name);
-    let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
-    let learning = Learning { learn: NODES * 2 / 3, ..Learning::default() };
-    let parts = prm::parts(space, reach, learning).into_error()?;
-    let prm = built(scene, parts.generator, parts.connector, Nodes(NODES))?;
+    let mut prm = prm_builder(scene, Learning { learn: NODES * 2 / 3, ..Learning::default() })?;
+    prm.build(&mut Rng::seed(1), &mut Nodes(NODES), &mut ());
     let parts = visibility_prm::parts(space, 1_000).into_error()?;
-    let visible = built(scene, parts.generator, parts.connector, Iterations(1_000_000))?;
-    for (planner, map) in [("prm", prm), ("visibility-prm", visible)] {
+    let checker = checker(scene, scene.verifier()?)?;
+    let mut visible = Builder::new(checker, parts.generator, parts.connector, <KdTree>::default());
+    visible.build(&mut Rng::seed(1), &mut Iterations(1_000_000), &mut ());
+    for (planner, map) in [("prm", prm.into_map()), ("visibility-prm", visible.into_map())] {
         let mut drawing = SvgDrawing::new(&scene.problem().position_bounds(), Projection::Above, 900.0, &[]);
         obstacles(&mut drawing, scene.problem());
         roadmap::<M>(&mut drawing, &map, 3.0);
         save(drawing, lab, &format!("{name}-{planner}"))?;
     }
     Ok(())
-}
-
-fn built<'c, M: RigidSpace, G, K>(
-    scene: &'c RigidScene<M>,
-    generator: G,
-    connector: K,
-    mut stop: impl Stop,
-) -> Result<Roadmap<Configuration>>
-where
-    G: NodeGenerator<SpaceOf<M>, Local<'c, M>>,
-    K: Connector<SpaceOf<M>, Local<'c, M>>,
-{
-    let index = <KdTree>::default();
-    let mut builder = Builder::new(checker(scene, scene.verifier()?)?, generator, connector, index);
-    builder.build(&mut Rng::seed(1), &mut stop, &mut ());
-    Ok(builder.into_map())
 }
 
 fn obstacles(drawing: &mut SvgDrawing, problem: &RigidProblem) {

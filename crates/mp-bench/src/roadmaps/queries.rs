@@ -4,13 +4,13 @@ use crate::clock::{nanoseconds, processor_clock, seconds_since};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Median, Table, mean, short};
 use crate::output::note;
-use crate::scenes::{Rigid, either};
-use mp_cspace::{
-    Certified, Deadline, KdTree, Nodes, Outcome, Planner, Problem, Rng, Space, Straight, Validity,
-};
+use crate::scenes::{Rigid, either, free};
+use mp_cspace::{Certified, Deadline, KdTree, Nodes, Outcome, Planner, Problem, Rng, Straight};
 use mp_plan::{Motion, RigidScene, RigidSpace, TypedMotion};
 use mp_roadmap::algo::prm;
-use mp_roadmap::{Builder, EdgeChecker, Learning, PATIENCE, Reachable, RoadmapQueries};
+use mp_roadmap::{
+    Builder, EdgeChecker, Learn, Learning, NearestConnector, PATIENCE, Reachable, RoadmapQueries,
+};
 use mp_tree::{RrtConnect, Tuning};
 use std::time::Duration;
 
@@ -41,6 +41,20 @@ pub(super) fn checker<'c, M: RigidSpace>(
     Ok(EdgeChecker::new(scene.space(), local(scene)?, verifier, PATIENCE))
 }
 
+type PrmBuilder<'c, M> =
+    Builder<'c, SpaceOf<M>, Local<'c, M>, Learn<'c, SpaceOf<M>>, NearestConnector, KdTree>;
+
+/// A roadmap of PRM that is to grow in a scene.
+pub(super) fn prm_builder<M: RigidSpace>(
+    scene: &RigidScene<M>,
+    learning: Learning,
+) -> Result<PrmBuilder<'_, M>> {
+    let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
+    let parts = prm::parts(scene.space(), reach, learning).into_error()?;
+    let checker = checker(scene, scene.verifier()?)?;
+    Ok(Builder::new(checker, parts.generator, parts.connector, KdTree::default()))
+}
+
 /// Measures on the scene `cubicles`.
 pub(super) fn measure(quick: bool) -> Result<Table> {
     either!(Rigid::load("cubicles")?, scene => on(&scene, quick))
@@ -49,19 +63,12 @@ pub(super) fn measure(quick: bool) -> Result<Table> {
 fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
     let (sizes, count) = if quick { (&SIZES[..1], 100) } else { (&SIZES[..], QUERIES) };
     let space = scene.space();
-    let mut robot = scene.checker().clone();
-    let mut rng = Rng::stream(1, 99);
-    let mut free = || loop {
-        let q = space.sample_uniform(&mut rng);
-        if robot.is_valid(&q) {
-            return q;
-        }
-    };
-    let pairs: Vec<_> = (0..count).map(|_| [free(), free()]).collect();
+    let ends: Vec<_> = free(scene, Rng::stream(1, 99)).take(2 * count).collect();
+    let pairs = ends.as_chunks::<2>().0;
     let verifier = scene.verifier()?;
 
     let mut alone = Vec::new();
-    for (seed, [start, goal]) in (1..).zip(&pairs) {
+    for (seed, [start, goal]) in (1..).zip(pairs) {
         let began = nanoseconds();
         let problem = Problem::new(space, local(scene)?, verifier.clone(), start.clone(), goal.clone());
         let solved = match problem {
@@ -87,9 +94,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
         "RRT-Connect : this, medians",
         "means",
     ]);
-    let of = |times: &[f64]| {
-        Median::of(times.iter().copied()).unwrap_or(Median { median: 0.0, low: 0.0, high: 0.0 })
-    };
+    let of = |times: &[f64]| Median::of(times.iter().copied()).unwrap_or_default();
     let mean = |times: &[f64]| mean(times.iter().copied().filter(|t| t.is_finite())).unwrap_or(0.0);
     let connect = (of(&alone), mean(&alone));
     let mut row = |what: &str, map: [String; 3], times: &[f64]| {
@@ -110,18 +115,14 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
     };
     row("RRT-Connect", [const { String::new() }; 3], &alone);
     for &size in sizes {
-        let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
-        let parts = prm::parts(space, reach, Learning::default()).into_error()?;
-        let index = <KdTree>::default();
-        let mut builder =
-            Builder::new(checker(scene, verifier.clone())?, parts.generator, parts.connector, index);
+        let mut builder = prm_builder(scene, Learning::default())?;
         let began = nanoseconds();
         builder.build(&mut Rng::seed(1), &mut Nodes(size), &mut ());
         let build = seconds_since(began);
         let components = builder.map_mut().components();
         let mut ask = |what: &str, build: f64, answers: &mut RoadmapQueries<'_, _, _, _>| {
             let mut times = Vec::new();
-            for [start, goal] in &pairs {
+            for [start, goal] in pairs {
                 let began = nanoseconds();
                 let solved = answers.answer(start, goal).is_ok();
                 let seconds = seconds_since(began);

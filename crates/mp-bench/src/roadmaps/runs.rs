@@ -6,9 +6,9 @@ use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Log};
 use crate::output::note;
 use crate::scenes::{Rigid, bare, either};
-use mp_cspace::{Cancel, KdTree, Outcome, StopReason};
-use mp_plan::{Control, Motion, Request, RigidScene, RigidSpace, Stage, TypedMotion, Watch, search};
-use mp_roadmap::RoadmapQueries;
+use mp_cspace::{Cancel, Configuration, KdTree};
+use mp_plan::{Motion, RigidScene, RigidSpace, TypedMotion};
+use mp_roadmap::{Roadmap, RoadmapQueries};
 use serde::{Deserialize, Serialize};
 
 /// The size of the measurement.
@@ -24,6 +24,12 @@ impl Plan {
     pub(super) fn cases(&self, scene: &str, planner: &str) -> Vec<Case> {
         let case = |seed| Case { scene: scene.to_owned(), planner: planner.to_owned(), seed };
         (1..=u64::from(self.seeds)).map(case).collect()
+    }
+
+    /// The cases of all planners on these scenes.
+    pub(super) fn all_cases(&self, scenes: &[String]) -> Vec<Case> {
+        let of = |scene| planners().into_iter().flat_map(move |planner| self.cases(scene, planner));
+        scenes.iter().map(String::as_str).flat_map(of).collect()
     }
 }
 
@@ -106,60 +112,33 @@ pub(super) fn measure(
 /// One run; `None` when it was interrupted.
 fn run(rigid: &Rigid, case: &Case, budget: u64, cancel: &Cancel) -> Result<Option<Run>> {
     let (name, nodes) = case.planner.split_once(' ').map_or((&*case.planner, None), |(a, b)| (a, Some(b)));
-    let mut request = bare(name).seed(case.seed);
-    if let Some(nodes) = nodes {
-        request = request.set("nodes", nodes);
-    }
-    request.budget.queries = Some(budget);
-    either!(rigid, scene => one(scene, &request, cancel))
-}
-
-/// Reads the clock when planning begins, so that preparations are not measured.
-pub(super) struct Began(pub(super) f64);
-
-impl Began {
-    pub(super) fn now() -> Self {
-        Self(nanoseconds())
-    }
-}
-
-impl Watch for Began {
-    fn stage(&mut self, stage: Stage) {
-        if stage == Stage::Planning {
-            self.0 = nanoseconds();
-        }
-    }
-}
-
-fn one<M: RigidSpace>(scene: &RigidScene<M>, request: &Request, cancel: &Cancel) -> Result<Option<Run>> {
-    let mut began = Began::now();
-    let mut control = Control { keep_roadmap: true, ..Control::new(cancel.clone(), &mut began) };
-    let done = search(scene, request, &mut control)?;
-    let seconds = seconds_since(began.0);
-    if matches!(done.outcome, Outcome::Stopped(StopReason::Cancelled)) {
-        return Ok(None);
-    }
-    let [edges, components] = done.map.unwrap_or_default();
-    let budget = request.budget.queries.unwrap_or(u64::MAX);
-    let mut run = Run {
-        solved: matches!(done.outcome, Outcome::Solved(_)) && done.queries <= budget,
-        seconds,
-        again: None,
-        nodes: done.progress.nodes,
+    let request = bare(name).seed(case.seed);
+    let request = nodes.into_iter().fold(request, |request, nodes| request.set("nodes", nodes));
+    let Some((found, solved)) = rigid.search(request, budget, cancel)? else { return Ok(None) };
+    let [edges, components] = found.map.unwrap_or_default();
+    let again = match found.roadmap.filter(|_| solved) {
+        Some(map) => either!(rigid, scene => again(scene, map)?),
+        None => None,
+    };
+    Ok(Some(Run {
+        solved,
+        seconds: found.time.as_secs_f64(),
+        again,
+        nodes: found.progress.nodes,
         edges,
         components,
-        checks: done.queries,
-        motions: done.progress.motions,
-    };
-    if let (true, Some(map)) = (run.solved, done.roadmap) {
-        let index = <KdTree>::default();
-        let checker = checker(scene, scene.verifier()?)?;
-        let mut answers = RoadmapQueries::new(checker, map, index, NEIGHBOURS).into_error()?;
-        let began = nanoseconds();
-        let answer = answers.answer(scene.start(), &scene.goals()[0]);
-        run.again = answer.is_ok().then(|| seconds_since(began));
-    }
-    Ok(Some(run))
+        checks: found.queries,
+        motions: found.progress.motions,
+    }))
+}
+
+/// The processor time of a query for the path from start to goal; `None` when there is none.
+fn again<M: RigidSpace>(scene: &RigidScene<M>, map: Roadmap<Configuration>) -> Result<Option<f64>> {
+    let checker = checker(scene, scene.verifier()?)?;
+    let mut answers = RoadmapQueries::new(checker, map, <KdTree>::default(), NEIGHBOURS).into_error()?;
+    let began = nanoseconds();
+    let answer = answers.answer(scene.start(), &scene.goals()[0]);
+    Ok(answer.is_ok().then(|| seconds_since(began)))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::runs::{BESIDE, Case, Plan, Run, planners};
 use super::scenes::Corridors;
 use crate::error::Result;
-use crate::experiment::{Log, Median, Table, short, wilson};
+use crate::experiment::{Log, Median, Table, short, wilson, wilson_percent};
 use crate::plot::{Axis, ChartCurve, Labels, chart};
 
 /// The runs, for summaries.
@@ -55,8 +55,7 @@ impl Results<'_> {
             planners().into_iter().map(move |planner| (scene, planner, self.runs(scene, planner)))
         });
         let median = |runs: &[&Run], value: fn(&Run) -> f64| {
-            let none = Median { median: 0.0, low: 0.0, high: 0.0 };
-            Median::of(runs.iter().map(|run| value(run))).unwrap_or(none)
+            Median::of(runs.iter().map(|run| value(run))).unwrap_or_default()
         };
         let count = |runs: &[&Run], value: fn(&Run) -> f64| format!("{:.0}", median(runs, value).median);
         let of_map = |planner: &str, cell: String| if planner == BESIDE { "–".to_owned() } else { cell };
@@ -71,8 +70,7 @@ impl Results<'_> {
                     format!("{}/{}", self.share(scene, planner, all).0, runs.len())
                 }),
                 ("95%", &|(scene, planner, runs)| {
-                    let (low, high) = wilson(self.share(scene, planner, all).0, runs.len());
-                    format!("{:.0}–{:.0}%", 100.0 * low, 100.0 * high)
+                    wilson_percent(self.share(scene, planner, all).0, runs.len())
                 }),
                 ("queries (95%)", &|(.., runs)| {
                     let queries =

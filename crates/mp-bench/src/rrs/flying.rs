@@ -1,7 +1,7 @@
 //! RRT against RRS for a body in space, with the same steps.
 
 use crate::error::Result;
-use crate::experiment::{Lab, Table, bit, mean};
+use crate::experiment::{Lab, Table, mean};
 use crate::options::Common;
 use crate::scenes::{Planned, Rigid, bare};
 use mp_plan::median;
@@ -58,19 +58,6 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     if !complete {
         return Ok(false);
     }
-    let each = Table::of(
-        log.each(&cases),
-        &[
-            ("scene", &|(case, _)| case.scene.clone()),
-            ("step", &|(case, _)| case.step.clone()),
-            ("planner", &|(case, _)| case.planner.clone()),
-            ("bend", &|(case, _)| case.bend.clone()),
-            ("seed", &|(case, _)| case.seed.to_string()),
-            ("solved", &|(_, run)| bit(run.solved)),
-            ("iterations", &|(_, run)| run.iterations.to_string()),
-            ("s", &|(_, run)| format!("{:.4}", run.seconds)),
-        ],
-    );
     // A run that was not solved took all iterations.
     let iterations = |run: &Planned| if run.solved { run.iterations as f64 } else { most as f64 };
     let summary = Table::of(
@@ -86,6 +73,6 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
             ("mean s", &|g| format!("{:.2}", mean(g.values(|run| run.seconds)).unwrap_or(f64::NAN))),
         ],
     );
-    lab.report(&name, &summary, &each)?;
+    lab.report(&name, &summary.markdown(), &log.table(&cases)?)?;
     Ok(true)
 }

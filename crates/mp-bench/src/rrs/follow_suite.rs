@@ -2,7 +2,7 @@
 
 use super::tables::interval;
 use crate::error::{IntoError, Result};
-use crate::experiment::{Lab, Table, bit, wilson};
+use crate::experiment::{Lab, Table, wilson};
 use crate::options::Common;
 use crate::plot::save_drawing;
 use mp_experiments::rrs::{Followed, Following, KINDS, MARGIN, planned_and_followed};
@@ -40,20 +40,6 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
         return Ok(false);
     }
     let found = || log.each(&cases).filter(|(_, run)| run.found);
-    let length = |v: f64| format!("{v:.4}");
-    let each = Table::of(
-        found(),
-        &[
-            ("path", &|(case, _)| case.path.clone()),
-            ("trial", &|(case, _)| case.trial.to_string()),
-            ("arrived", &|(_, run)| bit(run.arrived)),
-            ("length_m", &|(_, run)| length(run.length)),
-            ("planned_m", &|(_, run)| length(run.planned)),
-            ("executed_m", &|(_, run)| length(run.executed)),
-            ("error_m", &|(_, run)| length(run.error)),
-            ("uncertainty_m", &|(_, run)| length(run.uncertainty)),
-        ],
-    );
     let centimetres = |all: &[&Following], value: fn(&Following) -> f64| {
         let values: Vec<f64> = all.iter().map(|run| 100.0 * value(run)).collect();
         interval(&values)
@@ -81,7 +67,7 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
             ("uncertainty at the end, cm", &|(_, all)| centimetres(all, |run| run.uncertainty)),
         ],
     );
-    lab.report(&name, &summary, &each)?;
+    lab.report(&name, &summary.markdown(), &log.table(&cases)?)?;
     // The first trial in which all paths were found.
     let all = |trial: &u64| found().filter(|(case, _)| case.trial == *trial).count() == KINDS.len();
     if let Some(trial) = (0..trials).find(all) {

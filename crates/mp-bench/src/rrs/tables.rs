@@ -9,8 +9,8 @@ use mp_experiments::rrs::{Case, ITERATIONS, Run};
 /// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Results<'a> {
-    log: &'a Log<Case, Run>,
-    plan: &'a Plan,
+    pub(super) log: &'a Log<Case, Run>,
+    pub(super) plan: &'a Plan,
 }
 
 /// The measures of one planner in one world at one step; those of paths are over the solved trials.
@@ -89,10 +89,6 @@ fn finite_mean(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 impl<'a> Results<'a> {
-    pub(super) fn new(log: &'a Log<Case, Run>, plan: &'a Plan) -> Self {
-        Self { log, plan }
-    }
-
     fn measures(&self, world: &str, planner: &str, step: u32) -> Option<Measures> {
         let case = |trial| Case { world: world.into(), planner: planner.into(), step, trial };
         let runs = self.log.runs((0..self.plan.trials).map(case));
@@ -391,7 +387,7 @@ mod tests {
                 Run { solved, seconds, iterations, nodes: 501, length: 5.0, safety: 0.02, ..Run::default() };
             log.learn([(case, run)]);
         }
-        let results = Results::new(&log, &plan);
+        let results = Results { log: &log, plan: &plan };
         let measures = results.measures("low", "rrs", 30).unwrap();
         assert_eq!((measures.accepted, measures.iterations, measures.converged), (50.0, 20.0, 100.0));
         assert_eq!(

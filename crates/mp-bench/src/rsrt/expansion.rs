@@ -329,7 +329,7 @@ pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
     }
     let text =
         sections(3, &[("By step, from the centre", summary), ("By start, with 95% intervals", starts)]);
-    lab.report_text("rsrt-expansion", &text, &each)?;
+    lab.report("rsrt-expansion", &text, &each)?;
     Ok(true)
 }
 

@@ -29,7 +29,7 @@ const METRIC: &str = "scaled";
 /// What is planned for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
-    /// A robot and a model among so many boxes.
+    /// A robot and a model among a number of boxes.
     Boxes { mover: &'static str, model: &'static str, obstacles: usize },
     /// A shipped scene; inputs are velocities, one step of the planner's default long.
     Scene(&'static str),
@@ -97,13 +97,6 @@ impl Plan {
     pub(super) fn case(problem: &str, inputs: usize, [order, accept]: [&str; 2], seed: u64) -> Case {
         let [problem, order, accept] = [problem, order, accept].map(str::to_owned);
         Case { problem, inputs, order, accept, seed }
-    }
-
-    /// Whether a case of the log belongs to this measurement: an earlier one may have had more seeds.
-    pub(super) fn has(&self, case: &Case) -> bool {
-        case.seed <= self.seeds
-            && self.inputs.contains(&case.inputs)
-            && self.problems.iter().any(|problem| problem.name == case.problem)
     }
 
     /// All cases, seed by seed: what was interrupted has all cells for the seeds it has.

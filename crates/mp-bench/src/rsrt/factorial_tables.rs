@@ -38,15 +38,11 @@ const MEASURES: [Measure; 3] = [
 /// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Results<'a> {
-    log: &'a Log<Case, Run>,
-    plan: &'a Plan,
+    pub(super) log: &'a Log<Case, Run>,
+    pub(super) plan: &'a Plan,
 }
 
 impl<'a> Results<'a> {
-    pub(super) fn new(log: &'a Log<Case, Run>, plan: &'a Plan) -> Self {
-        Self { log, plan }
-    }
-
     fn problems(&self) -> impl Iterator<Item = &'a FactorialProblem> {
         self.plan.problems.iter().filter(|problem| !problem.empty)
     }
@@ -168,12 +164,9 @@ impl<'a> Results<'a> {
                         Some((inputs as f64, self.gain(&problems, inputs, *change, of)?.0))
                     });
                     let known: Vec<(f64, Median)> = known.collect();
-                    let points = known.iter().map(|(x, m)| (*x, m.median)).collect();
                     // Sorting, accepting and both have a colour each; what they start from has a pattern.
-                    let mut curve =
-                        ChartCurve::new(change.0, i / 2, points).pattern(i % 2 + 2 * usize::from(i == 4));
-                    curve.ranges = known.iter().map(|(x, m)| (*x, m.low, m.high)).collect();
-                    curve
+                    let curve = ChartCurve::of_medians(change.0, i / 2, &known, f64::INFINITY);
+                    curve.pattern(i % 2 + 2 * usize::from(i == 4))
                 })
                 .collect();
             let title = format!("Ratio of {name}, before : after a change, over all problems");
@@ -193,11 +186,7 @@ impl<'a> Results<'a> {
                         Some((inputs as f64, Median::of(time)?))
                     });
                     let known: Vec<(f64, Median)> = known.collect();
-                    let points = known.iter().map(|(x, m)| (*x, m.median)).collect();
-                    let mut curve = ChartCurve::new(corner.join(", "), i, points).pattern(i);
-                    curve.ranges =
-                        known.iter().map(|(x, m)| (*x, m.low, m.high.min(self.plan.cap))).collect();
-                    curve
+                    ChartCurve::of_medians(corner.join(", "), i, &known, self.plan.cap).pattern(i)
                 })
                 .collect();
             let title = format!("{}: time to a path", problem.name);
@@ -225,19 +214,10 @@ mod tests {
             let iterations = if any { 100 } else { 200 } * case.seed;
             let checks = iterations * if sorted { 3 } else { 12 };
             let solved = any || case.inputs == 12 || case.seed > 8;
-            let run = Run {
-                solved,
-                seconds: 1e-3 * checks as f64,
-                iterations,
-                nodes: 9,
-                checks,
-                expansions: iterations,
-                rejected: 0,
-                edges: 3,
-            };
+            let run = Run { solved, seconds: 1e-3 * checks as f64, iterations, checks, ..Run::default() };
             log.learn([(case, run)]);
         }
-        let results = Results::new(&log, &plan);
+        let results = Results { log: &log, plan: &plan };
         let headline = results.headline();
         let row = |table: usize, row: usize| headline[table].1.rows[row].join(" | ");
         // Two problems with obstacles, nine seeds each.

@@ -9,8 +9,8 @@ use mp_experiments::clutter::Run;
 /// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Results<'a> {
-    log: &'a Log<Case, Run>,
-    plan: &'a Plan,
+    pub(super) log: &'a Log<Case, Run>,
+    pub(super) plan: &'a Plan,
 }
 
 /// A run as survival analysis has it: its time, and whether it ended then.
@@ -19,10 +19,6 @@ fn timed(run: &Run, cap: f64) -> (f64, bool) {
 }
 
 impl<'a> Results<'a> {
-    pub(super) fn new(log: &'a Log<Case, Run>, plan: &'a Plan) -> Self {
-        Self { log, plan }
-    }
-
     /// The times of the runs, by seed.
     fn times(&self, problem: &str, schedule: &str) -> Vec<(f64, bool)> {
         self.log.runs(self.plan.runs(problem, schedule)).iter().map(|run| timed(run, self.plan.cap)).collect()
@@ -105,19 +101,10 @@ mod tests {
         for case in plan.cases() {
             // Without restarts every fourth run never ends.
             let lost = case.schedule == "none" && case.seed % 4 == 0;
-            let run = Run {
-                solved: !lost,
-                seconds: if lost { 6.01 } else { 0.5 },
-                iterations: 1,
-                nodes: 1,
-                checks: 1,
-                expansions: 1,
-                rejected: 0,
-                edges: 1,
-            };
+            let run = Run { solved: !lost, seconds: if lost { 6.01 } else { 0.5 }, ..Run::default() };
             log.learn([(case, run)]);
         }
-        let results = Results::new(&log, &plan);
+        let results = Results { log: &log, plan: &plan };
         let rows = results.summary().rows;
         assert_eq!(rows.len(), 5);
         assert_eq!(rows[0][2..4], ["15/20", "0.500 (0.500 – 0.500)"]);

@@ -17,6 +17,14 @@ pub(super) struct Plan {
     pub(super) levels: Vec<usize>,
 }
 
+impl Plan {
+    /// The cases of all series at all levels.
+    pub(super) fn cases(&self) -> Vec<Case> {
+        let of = |level: &usize| Series::all().iter().flat_map(|s| s.cases(self, *level)).collect::<Vec<_>>();
+        self.levels.iter().flat_map(of).collect()
+    }
+}
+
 /// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
@@ -64,9 +72,8 @@ impl Series {
     }
 
     /// The cases of one level.
-    pub(super) fn cases(&self, plan: &Plan, level: usize) -> impl Iterator<Item = Case> {
-        let series = *self;
-        (0..u64::from(plan.instances)).map(move |instance| series.case(level, instance))
+    pub(super) fn cases(&self, plan: &Plan, level: usize) -> Vec<Case> {
+        (0..u64::from(plan.instances)).map(|instance| self.case(level, instance)).collect()
     }
 }
 

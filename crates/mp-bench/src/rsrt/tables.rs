@@ -2,15 +2,15 @@
 
 use super::series::{Case, PLANNERS, Plan, Series};
 use crate::error::Result;
-use crate::experiment::{Log, Median, Table, bit, geometric_mean, ratio, seconds};
+use crate::experiment::{Log, Median, Table, geometric_mean, ratio, seconds};
 use crate::plot::{Axis, ChartCurve, Labels, chart};
 use mp_experiments::clutter::{METRICS, MODELS, MOVERS, Run};
 
 /// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Results<'a> {
-    log: &'a Log<Case, Run>,
-    plan: &'a Plan,
+    pub(super) log: &'a Log<Case, Run>,
+    pub(super) plan: &'a Plan,
 }
 
 /// The runs of one series at one level.
@@ -26,10 +26,6 @@ struct SeriesAtLevel {
 }
 
 impl<'a> Results<'a> {
-    pub(super) fn new(log: &'a Log<Case, Run>, plan: &'a Plan) -> Self {
-        Self { log, plan }
-    }
-
     fn runs(&self, series: &Series, level: usize) -> Vec<&Run> {
         self.log.runs(series.cases(self.plan, level))
     }
@@ -93,29 +89,6 @@ impl<'a> Results<'a> {
                 ("checks RRT : RSRT", &|(.., g)| both(g, &|a, b| finite(&a.checks, &b.checks))),
                 ("checks per expansion RRT", &|(.., g)| checks(&g[0])),
                 ("RSRT", &|(.., g)| checks(&g[1])),
-            ],
-        )
-    }
-
-    /// A row for each run.
-    pub(super) fn each(&self) -> Table {
-        Table::of(
-            self.log.all(),
-            &[
-                ("mover", &|(case, _)| case.mover.clone()),
-                ("model", &|(case, _)| case.model.clone()),
-                ("metric", &|(case, _)| case.metric.clone()),
-                ("planner", &|(case, _)| case.planner.clone()),
-                ("obstacles", &|(case, _)| case.obstacles.to_string()),
-                ("instance", &|(case, _)| case.instance.to_string()),
-                ("solved", &|(_, run)| bit(run.solved)),
-                ("s", &|(_, run)| format!("{:.6}", run.seconds)),
-                ("iterations", &|(_, run)| run.iterations.to_string()),
-                ("nodes", &|(_, run)| run.nodes.to_string()),
-                ("checks", &|(_, run)| run.checks.to_string()),
-                ("expansions", &|(_, run)| run.expansions.to_string()),
-                ("rejected", &|(_, run)| run.rejected.to_string()),
-                ("edges", &|(_, run)| run.edges.to_string()),
             ],
         )
     }
@@ -266,13 +239,8 @@ impl<'a> Results<'a> {
                         if groups.is_empty() {
                             continue;
                         }
-                        let mut curve = ChartCurve::new(
-                            format!("{planner}, {metric}"),
-                            p,
-                            groups.iter().map(|(l, m)| (*l, m.median)).collect(),
-                        );
-                        curve.ranges =
-                            groups.iter().map(|(l, m)| (*l, m.low, m.high.min(self.plan.cap))).collect();
+                        let name = format!("{planner}, {metric}");
+                        let curve = ChartCurve::of_medians(name, p, &groups, self.plan.cap);
                         curves.push(curve.pattern(m));
                     }
                 }
@@ -314,17 +282,14 @@ mod tests {
                 let run = Run {
                     solved: !(level == 4 && series.planner == "rrt" && instance > 0),
                     seconds: slow * (1.0 + instance as f64),
-                    iterations: 10,
-                    nodes: 9,
                     checks: if series.planner == "rrt" { 120 } else { 40 },
                     expansions: 10,
-                    rejected: 0,
-                    edges: 3,
+                    ..Run::default()
                 };
                 log.learn([(series.case(level, instance), run)]);
             }
         }
-        let results = Results::new(&log, &plan);
+        let results = Results { log: &log, plan: &plan };
         let summary = results.summary();
         assert_eq!(summary.rows.len(), 2 * 2 * 2 * 3);
         assert_eq!(
@@ -334,7 +299,7 @@ mod tests {
         assert_eq!(summary.rows[3][4..8], ["1/4", "4/4", "4/4", "> 6 (2.00 – > 6)"]);
         assert_eq!(summary.rows[3][10], "> 2.40");
         assert_eq!(summary.rows[0][11..], ["3.00", "12.0", "4.0"]);
-        assert_eq!(results.each().rows.len(), log.all().len());
+        assert_eq!(plan.cases().len(), log.all().len());
         let text = results.markdown();
         assert!(text.contains("euclidean 2.00 at 2") && text.contains("1/4 at 4 / 4/4 at 4"), "{text}");
         let charts = results.charts();

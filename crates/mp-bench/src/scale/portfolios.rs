@@ -17,7 +17,7 @@ const PROBLEMS: [(&str, &[(&str, &str)]); 2] =
     [("twisty, rrt-connect", &[]), ("easy, rsrt", &[("inputs", "12"), ("levels", "1")])];
 /// A unit of the schedule of Luby et al., iterations.
 const UNIT: u64 = 250;
-/// Of a round with that schedule, so many runs for each rank.
+/// The number of runs for each rank in a round with that schedule.
 const RUNS_OF_A_RANK: u64 = 4;
 /// The runs of the portfolios that are measured.
 const RUNS: u64 = 32;

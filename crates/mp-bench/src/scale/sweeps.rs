@@ -8,12 +8,12 @@ use mp_cspace::Rng;
 use mp_plan::Error;
 use mp_ranks::{Items, Link, Options, Policy, Simulated, run, simulate, threads};
 
-/// Measured runs of the papers' experiments, as the pages beside them publish them: name, table, and the column with their seconds.
-const TABLES: [(&str, &str, &str); 4] = [
-    ("RSRT, factorial", include_str!("../../../../docs/results/data/rsrt-factorial.csv"), "seconds"),
-    ("RSRT, restarts", include_str!("../../../../docs/results/data/rsrt-restarts.csv"), "seconds"),
-    ("roadmaps, factorial", include_str!("../../../../docs/results/data/roadmaps-factorial.csv"), "seconds"),
-    ("RRS, a flying body", include_str!("../../../../docs/results/data/rrs-flying.csv"), "s"),
+/// Measured runs of the papers' experiments, as the pages beside them publish them: name and table.
+const TABLES: [(&str, &str); 4] = [
+    ("RSRT, factorial", include_str!("../../../../docs/results/data/rsrt-factorial.csv")),
+    ("RSRT, restarts", include_str!("../../../../docs/results/data/rsrt-restarts.csv")),
+    ("roadmaps, factorial", include_str!("../../../../docs/results/data/roadmaps-factorial.csv")),
+    ("RRS, a flying body", include_str!("../../../../docs/results/data/rrs-flying.csv")),
 ];
 
 /// The policies, with their names in tables.
@@ -34,9 +34,9 @@ pub(super) struct SweepCosts {
 /// Those of the planning problems, and of the papers' experiments.
 pub(super) fn all_costs(problems: Vec<f64>) -> Result<Vec<SweepCosts>> {
     let mut all = vec![SweepCosts { name: "planning problems".into(), each: problems }];
-    for (name, table, column) in TABLES {
-        let each = column_of(table, column)
-            .ok_or_else(|| Error::new(format!("the table of {name} has no column `{column}` of numbers")))?;
+    for (name, table) in TABLES {
+        let each = column_of(table, "seconds")
+            .ok_or_else(|| Error::new(format!("the table of {name} has no column `seconds` of numbers")))?;
         all.push(SweepCosts { name: name.into(), each });
     }
     Ok(all)
@@ -57,7 +57,7 @@ fn column_of(table: &str, column: &str) -> Option<Vec<f64>> {
     lines.map(|line| cells(line).get(at)?.parse().ok()).collect()
 }
 
-/// So many items, drawn from measured ones with a seed, in the order of the measured: what is alike lies together, as in a sweep.
+/// The costs of `items` items, drawn from measured ones with a seed, in the order of the measured: what is alike lies together, as in a sweep.
 fn drawn(costs: &[f64], items: usize, stream: u64) -> Vec<f64> {
     let mut rng = Rng::stream(1, stream);
     let mut rows: Vec<usize> = (0..items).map(|_| (rng.unit() * costs.len() as f64) as usize).collect();

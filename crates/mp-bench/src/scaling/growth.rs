@@ -4,6 +4,7 @@
 //! always passes) and one insertion. For comparison, a bare loop does the same work
 //! without a planner, which shows the overhead of the engine.
 
+use crate::clock::{nanoseconds, seconds_since};
 use crate::error::Result;
 use mp_cspace::{
     DefaultNn, Direction, Discrete, Extension, FineDiscrete, Length, LocalPlanner, Motion, NearestNeighbors,
@@ -13,29 +14,22 @@ use mp_plan::Error;
 use mp_tree::{Goals, Problem, Rrt, Tuning};
 use nalgebra::{Isometry3, SVector};
 use serde::{Deserialize, Serialize};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-/// The settings of a measurement.
+/// Longest step, and resolution of the motion check, as fractions of the extent.
+const STEP: f64 = 0.2;
+const RESOLUTION: Length = Length::Fraction(0.01);
+const SEED: u64 = 1;
+
+/// What is measured.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Growing<'a> {
     /// The numbers of nodes at which the clock is read, ascending.
     pub(crate) sizes: &'a [usize],
-    /// Longest step, a fraction of the extent.
-    pub(crate) step: f64,
-    /// Resolution of the motion check, a fraction of the extent.
-    pub(crate) resolution: f64,
     /// Seconds after which the growth of one tree is stopped.
     pub(crate) cap: f64,
     /// The number of repetitions, of which the fastest counts.
     pub(crate) repeats: usize,
-    /// The seed.
-    pub(crate) seed: u64,
-}
-
-impl Default for Growing<'_> {
-    fn default() -> Self {
-        Self { sizes: &[], step: 0.2, resolution: 0.01, cap: 60.0, repeats: 3, seed: 1 }
-    }
 }
 
 /// Trees up to this size are grown ten times as often.
@@ -89,19 +83,18 @@ impl Growing<'_> {
 
     fn grow<C: DefaultNn>(&self, space: &C, start: &C::State) -> Result<Vec<Row>> {
         let free = |_: &C::State| true;
-        let resolution = Length::Fraction(self.resolution);
-        let local = || -> Result<_> { Ok(Straight::new(space, Discrete::new(space, free, resolution)?)) };
+        let local = || -> Result<_> { Ok(Straight::new(space, Discrete::new(space, free, RESOLUTION)?)) };
         let (mut planner, mut bare) = (Vec::new(), Vec::new());
         // Small trees grow very quickly: they are grown many times, so that the fastest time is undisturbed.
         let small = self.sizes.iter().filter(|&&size| size <= SMALL).count();
         let rounds = std::iter::repeat_n(&self.sizes[..small], 10 * self.repeats);
         for sizes in rounds.chain(std::iter::repeat_n(self.sizes, self.repeats)) {
-            let verifier = FineDiscrete::new(space, free, resolution)?;
+            let verifier = FineDiscrete::new(space, free, RESOLUTION)?;
             let nowhere = Goals::region(|_: &C::State| false);
             let problem = Problem::new(space, local()?, verifier, start.clone(), nowhere)?;
-            let tuning = Tuning { step: Length::Fraction(self.step), ..Tuning::default() };
+            let tuning = Tuning { step: Length::Fraction(STEP), ..Tuning::default() };
             let mut rrt = Rrt::new(problem, tuning)?;
-            let mut rng = Rng::seed(self.seed);
+            let mut rng = Rng::seed(SEED);
             let times = clocked(sizes, self.cap, || {
                 rrt.step(&mut rng, &mut ());
                 rrt.progress().nodes
@@ -109,8 +102,8 @@ impl Growing<'_> {
             best(&mut planner, &times);
             drop(rrt);
 
-            let mut plain = BareLoop::new(space, start.clone(), local()?, self.step * space.extent());
-            let mut rng = Rng::seed(self.seed);
+            let mut plain = BareLoop::new(space, start.clone(), local()?, STEP * space.extent());
+            let mut rng = Rng::seed(SEED);
             let times = clocked(sizes, self.cap, || plain.step(&mut rng));
             best(&mut bare, &times);
         }
@@ -158,34 +151,22 @@ impl<'c, C: DefaultNn, L: LocalPlanner<C::State>> BareLoop<'c, C, L> {
     }
 }
 
-/// Runs `step`, which returns the number of nodes, until the last size or the cap (s); returns the time at
+/// Runs `step`, which returns the number of nodes, until the last size or the cap (s); returns the processor time at
 /// which each size was reached.
 fn clocked(sizes: &[usize], cap: f64, mut step: impl FnMut() -> usize) -> Vec<f64> {
-    let (begun, cap) = (Instant::now(), Duration::try_from_secs_f64(cap).unwrap_or(Duration::MAX));
-    let used = processor_seconds();
+    let (begun, began) = (Instant::now(), nanoseconds());
     let mut times = Vec::new();
     for &size in sizes {
         let mut i = 0_u32;
         while step() < size {
             i = i.wrapping_add(1);
-            if i.is_multiple_of(1024) && begun.elapsed() > cap {
+            if i.is_multiple_of(1024) && begun.elapsed().as_secs_f64() > cap {
                 return times;
             }
         }
-        let clock = begun.elapsed().as_secs_f64();
-        // The system counts processor time in ticks of some milliseconds, which is too coarse for short times.
-        let fine = used.filter(|_| clock > 0.5).zip(processor_seconds()).map(|(a, b)| b - a);
-        times.push(fine.unwrap_or(clock).max(1e-9));
+        times.push(seconds_since(began).max(1e-9));
     }
     times
-}
-
-/// Processor time of this thread, which a busy machine disturbs less than wall-clock time, if the
-/// system reports it.
-fn processor_seconds() -> Option<f64> {
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: u64 = told.split(' ').next()?.parse().ok()?;
-    Some(nanoseconds as f64 * 1e-9)
 }
 
 /// Keeps the least time of each size.
@@ -204,7 +185,7 @@ mod tests {
 
     #[test]
     fn measures_every_space_at_every_size() {
-        let growing = Growing { sizes: &[10, 100], repeats: 1, ..Growing::default() };
+        let growing = Growing { sizes: &[10, 100], cap: 60.0, repeats: 1 };
         for space in SPACES {
             let rows = growing.measure(space).unwrap();
             assert_eq!(rows.iter().map(|row| row.nodes).collect::<Vec<_>>(), [10, 100]);
@@ -214,7 +195,7 @@ mod tests {
 
     #[test]
     fn refuses_spaces_it_does_not_know_and_keeps_the_cap() {
-        let growing = Growing { cap: 0.0, sizes: &[usize::MAX], repeats: 1, ..Growing::default() };
+        let growing = Growing { cap: 0.0, sizes: &[usize::MAX], repeats: 1 };
         assert!(growing.measure("r9").unwrap_err().to_string().contains("r9"));
         assert!(growing.measure("r2").unwrap().is_empty());
     }

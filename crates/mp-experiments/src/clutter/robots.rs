@@ -10,16 +10,36 @@ use nalgebra::{Isometry3, SVector, UnitQuaternion, Vector3};
 /// A number for each degree of freedom, of which both robots have six.
 pub(super) type Six = SVector<f64, 6>;
 
-/// A robot of the experiment, with its problems and inputs.
+/// What is planned for with a robot: its problem without obstacles, where obstacles are, and its inputs.
+#[derive(Clone, Debug)]
+pub(super) struct Setup<Sp: Space> {
+    pub(super) space: Sp,
+    pub(super) start: Sp::State,
+    pub(super) goal: Sp::State,
+    /// The region and sizes of the obstacles.
+    pub(super) region: Region,
+    /// The velocity of each degree of freedom that makes one step in a second.
+    pub(super) speeds: Six,
+    /// The greatest velocities, per second, of the model with velocities. With the accelerations such that the problem without
+    /// obstacles is solved with every set of inputs, so that obstacles are what is measured.
+    pub(super) velocities: Six,
+    /// The accelerations of that model, per second².
+    pub(super) accelerations: Six,
+    /// Weights of the factors of the space for the scaled metric: about how far each factor moves points.
+    pub(super) weights: Vec<f64>,
+    /// The resolution of discrete motion checks, in the space's own metric.
+    pub(super) resolution: f64,
+}
+
+/// A robot of the experiment.
 pub(super) trait TestRobot: Sync {
     /// The configuration space.
     type Space: Factored + Clone + Sync;
     /// The robot among obstacles.
     type Robot: Validity<<Self::Space as Space>::State> + Clone + Send;
 
-    fn space(&self) -> &Self::Space;
-    fn start(&self) -> &<Self::Space as Space>::State;
-    fn goal(&self) -> &<Self::Space as Space>::State;
+    /// Its problem and inputs.
+    fn setup(&self) -> &Setup<Self::Space>;
     /// Whether a configuration counts as the goal; the same for all metrics. With velocities the region is larger: in a small one
     /// a tree moved by accelerations stops only by luck, even without obstacles.
     fn arrived(&self, q: &<Self::Space as Space>::State, has_velocity: bool) -> bool;
@@ -29,33 +49,18 @@ pub(super) trait TestRobot: Sync {
         &'a self,
         robot: &Self::Robot,
     ) -> Result<impl MotionValidity<<Self::Space as Space>::State> + Send + use<'a, Self>>;
-    /// The region and sizes of the obstacles.
-    fn region(&self) -> Region;
     /// Whether an obstacle keeps some clearance from start and goal.
     fn spares(&self, obstacle: &Obstacle) -> Result<bool>;
-    /// The velocity of each degree of freedom that makes one step in a second.
-    fn speeds(&self) -> Six;
-    /// The greatest velocities, per second, and the accelerations, per second², of the model with velocities: such that the
-    /// problem without obstacles is solved with every set of inputs, so that obstacles are what is measured.
-    fn limits(&self) -> (Six, Six);
-    /// Weights of the factors of the space for the scaled metric: about how far each factor moves points.
-    fn weights(&self) -> Vec<f64>;
-    /// The resolution of discrete motion checks, in the space's own metric.
-    fn resolution(&self) -> f64;
 
     /// `count` obstacles of an instance; the first n are those of its problem with n obstacles.
     fn obstacles(&self, count: usize, instance: u64) -> Result<Vec<Obstacle>> {
-        boxes(&self.region(), count, instance, |o| self.spares(o))
+        boxes(&self.setup().region, count, instance, |o| self.spares(o))
     }
 }
 
 /// A bar that flies from one corner of a room of 10 m to the opposite one.
 #[derive(Clone, Debug)]
-pub(super) struct Flyer {
-    space: Se3,
-    start: Isometry3<f64>,
-    goal: Isometry3<f64>,
-}
+pub(super) struct Flyer(Setup<Se3>);
 
 /// Sides of the bar, metres.
 const BAR: [f64; 3] = [1.0, 0.5, 0.25];
@@ -65,11 +70,18 @@ const ROOM: f64 = 10.0;
 impl Flyer {
     pub(super) fn new() -> Result<Self> {
         let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, 1.5));
-        Ok(Self {
+        let radius = Vector3::from(BAR).norm() / 2.0;
+        Ok(Self(Setup {
             space: Se3::new([0.0; 3], [ROOM; 3])?,
             start: Isometry3::translation(1.0, 1.0, 1.0),
             goal: Isometry3::from_parts(Vector3::repeat(ROOM - 1.0).into(), turn),
-        })
+            region: Region { low: [0.0; 3], high: [ROOM; 3], sides: (0.4, 1.4) },
+            speeds: Six::from([0.5; 6]),
+            velocities: Six::from([1.0; 6]),
+            accelerations: Six::from([1.0; 6]),
+            weights: vec![1.0, 1.0, 1.0, radius],
+            resolution: 0.1,
+        }))
     }
 }
 
@@ -77,19 +89,14 @@ impl TestRobot for Flyer {
     type Space = Se3;
     type Robot = FreeFlyer;
 
-    fn space(&self) -> &Se3 {
-        &self.space
-    }
-    fn start(&self) -> &Isometry3<f64> {
-        &self.start
-    }
-    fn goal(&self) -> &Isometry3<f64> {
-        &self.goal
+    fn setup(&self) -> &Setup<Se3> {
+        &self.0
     }
     fn arrived(&self, q: &Isometry3<f64>, has_velocity: bool) -> bool {
         let within = if has_velocity { 1.5 } else { 0.75 };
-        (q.translation.vector - self.goal.translation.vector).norm() < within
-            && q.rotation.angle_to(&self.goal.rotation) < within
+        let goal = &self.0.goal;
+        (q.translation.vector - goal.translation.vector).norm() < within
+            && q.rotation.angle_to(&goal.rotation) < within
     }
     fn among(&self, obstacles: &[Obstacle]) -> Result<FreeFlyer> {
         let bar = cuboid(BAR[0], BAR[1], BAR[2])?;
@@ -99,27 +106,11 @@ impl TestRobot for Flyer {
         &'a self,
         robot: &FreeFlyer,
     ) -> Result<impl MotionValidity<Isometry3<f64>> + Send + use<'a>> {
-        Ok(Verifier::<_, Spatial>::new(&self.space, robot)?)
-    }
-    fn region(&self) -> Region {
-        Region { low: [0.0; 3], high: [ROOM; 3], sides: (0.4, 1.4) }
+        Ok(Verifier::<_, Spatial>::new(&self.0.space, robot)?)
     }
     fn spares(&self, obstacle: &Obstacle) -> Result<bool> {
         let mut robot = self.among(std::slice::from_ref(obstacle))?;
-        Ok([&self.start, &self.goal].into_iter().all(|q| robot.clearance(q, 0.3) >= 0.3))
-    }
-    fn speeds(&self) -> Six {
-        Six::from([0.5, 0.5, 0.5, 0.5, 0.5, 0.5])
-    }
-    fn limits(&self) -> (Six, Six) {
-        (Six::from([1.0; 6]), Six::from([1.0; 6]))
-    }
-    fn weights(&self) -> Vec<f64> {
-        let radius = Vector3::from(BAR).norm() / 2.0;
-        vec![1.0, 1.0, 1.0, radius]
-    }
-    fn resolution(&self) -> f64 {
-        0.1
+        Ok([&self.0.start, &self.0.goal].into_iter().all(|q| robot.clearance(q, 0.3) >= 0.3))
     }
 }
 
@@ -127,9 +118,7 @@ impl TestRobot for Flyer {
 #[derive(Clone, Debug)]
 pub(super) struct SixAxes {
     arm: Arm,
-    space: Rn<6>,
-    start: Six,
-    goal: Six,
+    setup: Setup<Rn<6>>,
 }
 
 /// The limit of each joint in both directions, radians.
@@ -140,9 +129,18 @@ const ARMS: [f64; 6] = [1.5, 1.5, 1.0, 0.3, 0.5, 0.15];
 impl SixAxes {
     pub(super) fn new() -> Result<Self> {
         let arm = Arm::new(&model()?, [])?;
-        let (start, goal) =
-            (Six::from([-1.2, 0.6, 0.9, 0.0, 0.6, 0.0]), Six::from([1.4, 0.3, 1.2, 1.0, -0.7, 1.0]));
-        Ok(Self { arm, space: Rn::new([-TURN; 6], [TURN; 6])?, start, goal })
+        let setup = Setup {
+            space: Rn::new([-TURN; 6], [TURN; 6])?,
+            start: Six::from([-1.2, 0.6, 0.9, 0.0, 0.6, 0.0]),
+            goal: Six::from([1.4, 0.3, 1.2, 1.0, -0.7, 1.0]),
+            region: Region { low: [-1.6, -1.6, 0.0], high: [1.6, 1.6, 1.8], sides: (0.05, 0.3) },
+            speeds: Six::from([0.2; 6]),
+            velocities: Six::from([0.4; 6]),
+            accelerations: Six::from([0.4; 6]),
+            weights: ARMS.to_vec(),
+            resolution: 0.05,
+        };
+        Ok(Self { arm, setup })
     }
 }
 
@@ -183,45 +181,24 @@ impl TestRobot for SixAxes {
     type Space = Rn<6>;
     type Robot = Arm;
 
-    fn space(&self) -> &Rn<6> {
-        &self.space
-    }
-    fn start(&self) -> &Six {
-        &self.start
-    }
-    fn goal(&self) -> &Six {
-        &self.goal
+    fn setup(&self) -> &Setup<Rn<6>> {
+        &self.setup
     }
     fn arrived(&self, q: &Six, has_velocity: bool) -> bool {
-        self.space.distance(q, &self.goal) < if has_velocity { 1.5 } else { 0.5 }
+        self.setup.space.distance(q, &self.setup.goal) < if has_velocity { 1.5 } else { 0.5 }
     }
     fn among(&self, obstacles: &[Obstacle]) -> Result<Arm> {
         Ok(self.arm.among(obstacles.iter().cloned())?)
     }
     fn verifier<'a>(&'a self, robot: &Arm) -> Result<impl MotionValidity<Six> + Send + use<'a>> {
-        Ok(ArmVerifier::new(&self.space, robot)?)
-    }
-    fn region(&self) -> Region {
-        Region { low: [-1.6, -1.6, 0.0], high: [1.6, 1.6, 1.8], sides: (0.05, 0.3) }
+        Ok(ArmVerifier::new(&self.setup.space, robot)?)
     }
     fn spares(&self, obstacle: &Obstacle) -> Result<bool> {
         let mut robot = self.among(std::slice::from_ref(obstacle))?;
-        let ends = [&self.start, &self.goal];
+        let ends = [&self.setup.start, &self.setup.goal];
         let clear = |robot: &mut Arm, q: &Six| robot.clearance(q, 0.04) >= 0.04;
         // No obstacle in the base and the turret, or no problem could be solved.
         let o = obstacle.2.translation.vector;
         Ok(!(o.xy().norm() < 0.35 && o.z < 0.5) && ends.into_iter().all(|q| clear(&mut robot, q)))
-    }
-    fn speeds(&self) -> Six {
-        Six::from([0.2; 6])
-    }
-    fn limits(&self) -> (Six, Six) {
-        (Six::from([0.4; 6]), Six::from([0.4; 6]))
-    }
-    fn weights(&self) -> Vec<f64> {
-        ARMS.to_vec()
-    }
-    fn resolution(&self) -> f64 {
-        0.05
     }
 }

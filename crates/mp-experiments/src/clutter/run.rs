@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 /// The result of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Whether it has found a path.
     pub solved: bool,
@@ -95,13 +95,13 @@ impl<S, V: Validity<S>> Validity<S> for CountingValidity<V> {
 }
 
 /// When a run began, and when it ends at the latest.
-struct Began {
+struct Timer {
     at: Duration,
     deadline: Deadline,
 }
 
-impl Began {
-    fn now(settings: &RunSettings) -> Result<Self> {
+impl Timer {
+    fn start(settings: &RunSettings) -> Result<Self> {
         let limit = Duration::try_from_secs_f64(settings.cap)?;
         Ok(Self { at: settings.clock.now(), deadline: Deadline::by(settings.clock, limit) })
     }
@@ -111,12 +111,12 @@ impl Began {
 fn run<S, E: Clone>(
     planner: std::result::Result<impl Planner<S, Edge = E>, BuildError>,
     settings: &RunSettings,
-    began: Began,
+    timer: Timer,
 ) -> Result<Option<Run>> {
     let mut planner = planner?;
-    let mut stop = began.deadline.or(settings.cancel.clone());
+    let mut stop = timer.deadline.or(settings.cancel.clone());
     let outcome = planner.solve(&mut Rng::seed(settings.seed), &mut stop, &mut ());
-    let seconds = settings.clock.now().saturating_sub(began.at).as_secs_f64();
+    let seconds = settings.clock.now().saturating_sub(timer.at).as_secs_f64();
     let progress = planner.progress();
     let (solved, edges) = match outcome {
         Outcome::Solved(path) => (true, path.edges.len()),
@@ -145,19 +145,19 @@ pub(super) fn among<M: TestRobot>(
     settings: &RunSettings,
 ) -> Result<Option<Run>> {
     let robot = test_robot.among(obstacles)?;
-    let weights = test_robot.weights();
+    let setup = test_robot.setup();
     match (model, metric) {
         ("positions", "euclidean") => positions(test_robot, robot, Euclidean, settings),
         ("positions", "manhattan") => positions(test_robot, robot, Manhattan, settings),
         ("positions", "scaled") => {
-            let scaled = ScaledEuclidean::new(test_robot.space(), weights)?;
+            let scaled = ScaledEuclidean::new(&setup.space, setup.weights.clone())?;
             positions(test_robot, robot, scaled, settings)
         }
         ("velocities", "euclidean") => velocities(test_robot, robot, Euclidean, settings),
         ("velocities", "manhattan") => velocities(test_robot, robot, Manhattan, settings),
         ("velocities", "scaled") => {
-            let (most, _) = test_robot.limits();
-            let space = Product::with_velocity(test_robot.space().clone(), most)?;
+            let space = Product::with_velocity(setup.space.clone(), setup.velocities)?;
+            let weights = &setup.weights;
             // A radian per second gets the weight of a radian; the rotation of a body has three velocities.
             let last = weights.last().copied().unwrap_or(1.0);
             let six = weights.iter().copied().chain(std::iter::repeat(last)).take(6);
@@ -175,30 +175,31 @@ where
     M: TestRobot,
     D: Metric<M::Space>,
 {
-    let space = WithMetric::new(test_robot.space().clone(), metric);
+    let setup = test_robot.setup();
+    let space = WithMetric::new(setup.space.clone(), metric);
     let verifier = test_robot.verifier(&robot)?;
     let count = Arc::new(AtomicU64::new(0));
-    let began = Began::now(settings)?;
+    let timer = Timer::start(settings)?;
     let valid = CountingValidity { valid: robot, count: count.clone() };
-    let resolution = Length::Absolute(test_robot.resolution());
-    let check = Discrete::new(test_robot.space(), valid, resolution)?;
+    let resolution = Length::Absolute(setup.resolution);
+    let check = Discrete::new(&setup.space, valid, resolution)?;
     let straight = Straight::new(&space, check);
-    let (start, goal, tuning) = (test_robot.start().clone(), test_robot.goal().clone(), tuning());
+    let (start, goal, tuning) = (setup.start.clone(), setup.goal.clone(), tuning());
     let done = match settings.planner {
         ComparedPlanner::Connect => {
             let problem = Problem::new(&space, straight, verifier, start, goal)?;
-            run(RrtConnect::new(problem, tuning), settings, began)
+            run(RrtConnect::new(problem, tuning), settings, timer)
         }
         ComparedPlanner::Inputs(order, accept) => {
             let flow = Kinematic::new(&space)?;
-            let inputs = InputSet::directions(test_robot.speeds(), settings.inputs)?;
+            let inputs = InputSet::directions(setup.speeds, settings.inputs)?;
             let local = InputPlanner::new(&space, flow, inputs, MOVED, LocalFlowCheck(straight))?;
             let near = |q: &State<M>| test_robot.arrived(q, false);
             let goals = Goals::region(near).with_sampler(Exactly(goal));
             let problem = Problem::new(&space, local.ordered(order), verifier, start, goals)?;
             match accept {
-                Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, began),
-                Accept::Any => run(Rsrt::new(problem, tuning), settings, began),
+                Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, timer),
+                Accept::Any => run(Rsrt::new(problem, tuning), settings, timer),
             }
         }
     }?;
@@ -217,36 +218,37 @@ where
     M: TestRobot,
     D: Metric<Product<M::Space, Rn<6>>>,
 {
-    let (most, accelerations) = test_robot.limits();
-    let moving = Product::with_velocity(test_robot.space().clone(), most)?;
+    let setup = test_robot.setup();
+    let most = setup.velocities;
+    let moving = Product::with_velocity(setup.space.clone(), most)?;
     // The length of a motion is measured by positions, not by velocities.
     let speeds = Rn::new(-most, most)?;
-    let places = Product::new(test_robot.space().clone(), 1.0, speeds, 1e-6)?;
-    let flow = DoubleIntegrator::new(test_robot.space())?;
+    let places = Product::new(setup.space.clone(), 1.0, speeds, 1e-6)?;
+    let flow = DoubleIntegrator::new(&setup.space)?;
     let space = WithMetric::new(moving.clone(), metric);
     let mut proof = test_robot.verifier(&robot)?;
     let proved = OnPosition(move |q: &State<M>| proof.check_motion(q, q).is_free());
-    let fine = Length::Absolute(0.1 * test_robot.resolution());
+    let fine = Length::Absolute(0.1 * setup.resolution);
     let verifier = ReplayFinely::new(&places, flow, proved, fine)?;
     let count = Arc::new(AtomicU64::new(0));
-    let began = Began::now(settings)?;
+    let timer = Timer::start(settings)?;
     let valid = OnPosition(CountingValidity { valid: robot, count: count.clone() });
-    let resolution = Length::Absolute(test_robot.resolution());
+    let resolution = Length::Absolute(setup.resolution);
     let check = DiscreteFlowCheck::new(&places, valid, resolution)?;
     let ComparedPlanner::Inputs(order, accept) = settings.planner else {
         return Err("two trees grown by accelerations do not meet".into());
     };
-    let inputs = InputSet::directions(accelerations, settings.inputs)?;
+    let inputs = InputSet::directions(setup.accelerations, settings.inputs)?;
     let local = InputPlanner::new(&space, flow, inputs, ACCELERATED, check)?.ordered(order);
     let rest = Six::zeros();
     let goals = Goals::region(|q: &Moving<M>| test_robot.arrived(&q.0, true))
-        .with_sampler(Exactly((test_robot.goal().clone(), rest)));
-    let start = (test_robot.start().clone(), rest);
+        .with_sampler(Exactly((setup.goal.clone(), rest)));
+    let start = (setup.start.clone(), rest);
     let problem = Problem::new(&space, local, verifier, start, goals)?;
     let tuning = tuning();
     let done = match accept {
-        Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, began),
-        Accept::Any => run(Rsrt::new(problem, tuning), settings, began),
+        Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, timer),
+        Accept::Any => run(Rsrt::new(problem, tuning), settings, timer),
     }?;
     Ok(done.map(|run| Run { checks: count.load(Ordering::Relaxed), ..run }))
 }

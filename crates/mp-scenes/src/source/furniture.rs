@@ -1,6 +1,6 @@
 //! Furniture of the apartment. Each piece stands on z = 0 at the z axis and faces -y.
 
-use super::shape::{block, cells, cushion, cylinder, lathe, mapped, shifted, tube, turned, union};
+use super::shape::{block, cells, cushion, cylinder, lathe, mapped, shifted, tube, union};
 use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -336,6 +336,6 @@ pub(super) fn refrigerator() -> TriMesh {
 /// A stool for the piano.
 pub(super) fn stool() -> TriMesh {
     let mut parts = vec![shifted(&cushion([0.3, 0.17, 0.045], 0.04, 4), [0.0, 0.0, 0.44])];
-    parts.extend(four(&turned(&leg(0.03, 0.42, 16), 0.0, [0.0; 3]), 0.24, 0.11));
+    parts.extend(four(&leg(0.03, 0.42, 16), 0.24, 0.11));
     union(parts)
 }

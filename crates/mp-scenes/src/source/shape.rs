@@ -2,7 +2,7 @@
 //! manifolds with outward normals.
 
 use mp_geom::TriMesh;
-use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Coordinates are written to this many parts of a metre.
@@ -29,18 +29,7 @@ pub(super) fn union(parts: impl IntoIterator<Item = TriMesh>) -> TriMesh {
 
 /// `mesh` moved by a vector.
 pub(super) fn shifted(mesh: &TriMesh, by: [f64; 3]) -> TriMesh {
-    mesh.transformed(&Isometry3::from_parts(
-        Translation3::from(Vector3::from(by)),
-        UnitQuaternion::identity(),
-    ))
-}
-
-/// `mesh` turned about the z axis through the origin by `angle` radians, then shifted.
-pub(super) fn turned(mesh: &TriMesh, angle: f64, by: [f64; 3]) -> TriMesh {
-    mesh.transformed(&Isometry3::from_parts(
-        Translation3::from(Vector3::from(by)),
-        UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle),
-    ))
+    mesh.transformed(&Isometry3::translation(by[0], by[1], by[2]))
 }
 
 /// `mesh` with every vertex moved by `f`, which must preserve orientation.

@@ -10,9 +10,9 @@ use nalgebra::{Isometry3, Point3, Vector3};
 const SMALLEST: f64 = 1e-9;
 /// Distances below this part of the greatest coordinate are contact: rounding.
 const TOUCHING: f64 = 1e-13;
-/// The oracle gives up after so many comparisons of two bodies.
+/// The oracle gives up after this many comparisons of two bodies.
 const MOST_TESTS: u64 = 20_000_000;
-/// At so many places along a curved edge it is looked at whether the robot is within its limits.
+/// At this many places along a curved edge it is looked at whether the robot is within its limits.
 const PLACES: usize = 16;
 
 /// What is wrong with a path.

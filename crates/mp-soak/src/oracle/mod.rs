@@ -135,3 +135,24 @@ pub struct Case {
     /// The greatest coordinate of anything (m): what rounding is compared with.
     pub far: f64,
 }
+
+impl Case {
+    /// A robot of these bodies and limits in a place of the size `extent` (m), without obstacles, start and goals.
+    #[must_use]
+    pub fn new(moves: Moves, robot: Vec<Body>, limits: Vec<Option<[f64; 2]>>, extent: f64) -> Self {
+        Self {
+            moves,
+            robot,
+            pairs: Vec::new(),
+            still: Vec::new(),
+            moving: Vec::new(),
+            timing: None,
+            drive: None,
+            limits,
+            start: Vec::new(),
+            goals: Vec::new(),
+            extent,
+            far: extent,
+        }
+    }
+}

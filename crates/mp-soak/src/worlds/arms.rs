@@ -1,9 +1,9 @@
 //! Arms and bodies with joints that fly, written as URDF.
 
 use super::bodies::{Form, form, loose, mesh_file, pose};
-use super::{World, end, goals, line, list, lists, wide_goal};
+use super::{World, by_rates, end, goals, line, list, lists, wide_goal};
 use crate::draw::Draw;
-use crate::oracle::{Body, Case, Drive, DriveKind, Joint, Moves, Piece, Shape, Tree};
+use crate::oracle::{Body, Case, Joint, Moves, Piece, Shape, Tree};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -46,14 +46,11 @@ fn collision(
     let (element, pieces) = match draw.below(6) {
         0 => {
             let radius = thick + 0.1 * length;
-            let Shape::Pieces(pieces) = Form::Ball(radius).shape(&at) else { return Default::default() };
-            (format!("<sphere radius=\"{radius}\"/>"), pieces)
+            (format!("<sphere radius=\"{radius}\"/>"), Form::Ball(radius).pieces(&at))
         }
         1 => {
-            let Shape::Pieces(pieces) = Form::Cylinder([thick, tall]).shape(&at) else {
-                return Default::default();
-            };
-            (format!("<cylinder radius=\"{thick}\" length=\"{tall}\"/>"), pieces)
+            let element = format!("<cylinder radius=\"{thick}\" length=\"{tall}\"/>");
+            (element, Form::Cylinder([thick, tall]).pieces(&at))
         }
         2 => {
             let end = |z: f64| at * Point3::new(0.0, 0.0, z);
@@ -64,20 +61,17 @@ fn collision(
             let file = mesh_file(draw, name);
             let file = file.replace(".txt", ".off");
             let count = draw.count(2, 8);
-            let form = Form::Mesh(loose(draw, count, 0.4 * length), file.clone());
-            form.write(files);
+            let triangles = loose(draw, count, 0.4 * length);
+            Form::Mesh(triangles.clone(), file.clone()).write(files);
             let scale = draw.within(0.2, 1.0);
-            let Form::Mesh(triangles, _) = form else { return Default::default() };
             let scaled = triangles.iter().map(|t| t.map(|p| p.map(|x| scale * x))).collect();
-            let Shape::Pieces(pieces) = Form::Mesh(scaled, String::new()).shape(&at) else {
-                return Default::default();
-            };
-            (format!("<mesh filename=\"{file}\" scale=\"{scale} {scale} {scale}\"/>"), pieces)
+            let element = format!("<mesh filename=\"{file}\" scale=\"{scale} {scale} {scale}\"/>");
+            (element, Form::Mesh(scaled, file).pieces(&at))
         }
         _ => {
             let sides = [2.0 * thick, 2.0 * thick * draw.within(0.3, 1.0), tall];
-            let Shape::Pieces(pieces) = Form::Box(sides).shape(&at) else { return Default::default() };
-            (format!("<box size=\"{} {} {}\"/>", sides[0], sides[1], sides[2]), pieces)
+            let element = format!("<box size=\"{} {} {}\"/>", sides[0], sides[1], sides[2]);
+            (element, Form::Box(sides).pieces(&at))
         }
     };
     (format!("<collision>{}<geometry>{element}</geometry></collision>", origin(&six)), pieces)
@@ -97,36 +91,46 @@ struct Made {
     reach: f64,
 }
 
-/// A random robot.
-fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
-    let count = if floats { draw.count(1, 3) } else { draw.count(1, 7) };
-    let mut files = BTreeMap::new();
-    let mut urdf = String::from("<?xml version=\"1.0\"?>\n<robot name=\"arm\">\n");
-    let mut joints: Vec<Joint> = Vec::new();
-    let mut bodies = Vec::new();
-    // The link of each body, and the links that each joint connects: link i is behind joint i - 1.
-    let mut of_link = Vec::new();
-    let mut limits: Vec<Option<[f64; 2]>> = Vec::new();
-    let mut names = Vec::new();
-    let mut reach = 0.0;
-    let lengths: Vec<f64> = (0..=count).map(|_| scale * draw.within(0.25, 0.9)).collect();
+/// Writes links about as long as `lengths`. Returns the bodies of the robot and the link of each; link i is behind joint i - 1.
+fn links(
+    draw: &mut Draw,
+    floats: bool,
+    lengths: &[f64],
+    urdf: &mut String,
+    files: &mut BTreeMap<String, Vec<u8>>,
+) -> (Vec<Body>, Vec<usize>) {
+    let (mut bodies, mut of_link) = (Vec::new(), Vec::new());
     for (link, length) in lengths.iter().enumerate() {
         let mut elements = String::new();
         let shapes = match link {
             0 if !floats => draw.below(2),
             0 => 1,
             // The last link has a shape: something has to move.
-            _ if link == count => draw.count(1, 2),
+            _ if link + 1 == lengths.len() => draw.count(1, 2),
             _ => *draw.one(&[0, 1, 1, 1, 2]),
         };
         for shape in 0..shapes {
-            let (element, pieces) = collision(draw, *length, &format!("part-{link}-{shape}"), &mut files);
+            let (element, pieces) = collision(draw, *length, &format!("part-{link}-{shape}"), files);
             elements += &element;
             bodies.push(Body::new(format!("link{link}"), Shape::Pieces(pieces), link));
             of_link.push(link);
         }
-        line(&mut urdf, format!("<link name=\"link{link}\">{elements}</link>"));
+        line(urdf, format!("<link name=\"link{link}\">{elements}</link>"));
     }
+    (bodies, of_link)
+}
+
+/// A random robot.
+fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
+    let count = if floats { draw.count(1, 3) } else { draw.count(1, 7) };
+    let mut files = BTreeMap::new();
+    let mut urdf = String::from("<?xml version=\"1.0\"?>\n<robot name=\"arm\">\n");
+    let mut joints: Vec<Joint> = Vec::new();
+    let mut limits: Vec<Option<[f64; 2]>> = Vec::new();
+    let mut names = Vec::new();
+    let mut reach = 0.0;
+    let lengths: Vec<f64> = (0..=count).map(|_| scale * draw.within(0.25, 0.9)).collect();
+    let (bodies, of_link) = links(draw, floats, &lengths, &mut urdf, &mut files);
     for j in 0..count {
         // Mostly a chain; rarely a branch.
         let above = if draw.chance(0.85) { j } else { draw.below(j + 1) };
@@ -266,24 +270,26 @@ impl Made {
         self.limits.iter().map(value).collect()
     }
 
-    fn case(&self) -> Case {
-        Case {
-            moves: Moves::Tree(self.tree.clone()),
-            robot: self.bodies.clone(),
-            pairs: self.pairs.clone(),
-            still: Vec::new(),
-            moving: Vec::new(),
-            timing: None,
-            drive: None,
-            limits: match self.tree.floats {
-                true => [None; 6].into_iter().chain(self.limits.iter().copied()).collect(),
-                false => self.limits.clone(),
-            },
-            start: Vec::new(),
-            goals: Vec::new(),
-            extent: 2.0 * self.reach,
-            far: 2.0 * self.reach,
+    /// The names of the numbers that goals may leave open, and the widths of intervals of them.
+    fn names_and_widths(&self, scale: f64) -> (Vec<String>, Vec<f64>) {
+        let (mut names, mut widths) = (Vec::new(), Vec::new());
+        if self.tree.floats {
+            names.extend(["x", "y", "z", "alpha", "beta", "gamma"].map(str::to_owned));
+            widths.extend([0.4 * scale, 0.4 * scale, 0.4 * scale, 0.5, 0.05, 0.5]);
         }
+        names.extend(self.names.iter().cloned());
+        widths.extend(self.tree.joints.iter().filter_map(|joint| {
+            let first = joint.number.is_some_and(|(_, factor, shift)| factor == 1.0 && shift == 0.0);
+            first.then_some(if joint.slides { 0.1 * scale } else { 0.3 })
+        }));
+        (names, widths)
+    }
+
+    fn case(&self) -> Case {
+        let root: &[Option<[f64; 2]>] = if self.tree.floats { &[None; 6] } else { &[] };
+        let limits = [root, &self.limits].concat();
+        let case = Case::new(Moves::Tree(self.tree.clone()), self.bodies.clone(), limits, 2.0 * self.reach);
+        Case { pairs: self.pairs.clone(), ..case }
     }
 }
 
@@ -295,6 +301,34 @@ pub(super) fn arm(draw: &mut Draw) -> World {
 /// A body with joints that flies among figures.
 pub(super) fn floating(draw: &mut Draw) -> World {
     jointed(draw, true)
+}
+
+/// A random pose at most `half` from the middle in each direction.
+fn placed(draw: &mut Draw, half: f64) -> [f64; 6] {
+    let [x, y, z] = [0; 3].map(|_| draw.within(-half, half));
+    [x, y, z, draw.within(-PI, PI), draw.within(-1.5, 1.5), draw.within(-PI, PI)]
+}
+
+/// Adds figures to a world. Returns their tables, and the radius of the largest round one.
+fn obstacles(
+    draw: &mut Draw,
+    scale: f64,
+    case: &mut Case,
+    files: &mut BTreeMap<String, Vec<u8>>,
+) -> (String, f64) {
+    let (mut text, mut round) = (String::new(), 0.0_f64);
+    for i in 0..draw.count(0, 7) {
+        let name = format!("obstacle-{}", i + 1);
+        let size = draw.within(0.2, 1.6);
+        let form = form(draw, size * scale, &name);
+        let six = placed(draw, scale * HALF);
+        let table = format!("\n[[obstacle]]\nname = \"{name}\"\n{}\npose = {}", form.toml(), list(&six));
+        line(&mut text, table);
+        form.write(files);
+        case.still.push(form.body(&name, &pose(six), 0));
+        round = round.max(form.round());
+    }
+    (text, round)
 }
 
 fn jointed(draw: &mut Draw, floats: bool) -> World {
@@ -325,50 +359,14 @@ fn jointed(draw: &mut Draw, floats: bool) -> World {
     } else {
         line(&mut text, format!("base = {}", list(&base)));
     }
-    let mut round: f64 = 0.3 * scale;
-    let mut obstacles = String::new();
-    for i in 0..draw.count(0, 7) {
-        let name = format!("obstacle-{}", i + 1);
-        let size = draw.within(0.2, 1.6);
-        let form = form(draw, size * scale, &name);
-        let at = |draw: &mut Draw| draw.within(-half, half);
-        let six = [
-            at(draw),
-            at(draw),
-            at(draw),
-            draw.within(-PI, PI),
-            draw.within(-1.5, 1.5),
-            draw.within(-PI, PI),
-        ];
-        line(
-            &mut obstacles,
-            format!("\n[[obstacle]]\nname = \"{name}\"\n{}\npose = {}", form.toml(), list(&six)),
-        );
-        form.write(&mut files);
-        case.still.push(form.body(&name, &pose(six), 0));
-        round = round.max(form.round());
-    }
-    let margin = 0.05 * round + 1e-3 * made.reach;
+    let (obstacles, round) = obstacles(draw, scale, &mut case, &mut files);
+    let margin = 0.05 * round.max(0.3 * scale) + 1e-3 * made.reach;
     let configuration = |draw: &mut Draw| {
-        let mut row = Vec::new();
-        if floats {
-            row.extend([0; 3].map(|_| draw.within(-half, half)));
-            row.extend([draw.within(-PI, PI), draw.within(-1.5, 1.5), draw.within(-PI, PI)]);
-        }
+        let mut row = if floats { placed(draw, half).to_vec() } else { Vec::new() };
         row.extend(made.joint_values(draw));
         row
     };
-    let mut names: Vec<String> = Vec::new();
-    let mut widths = Vec::new();
-    if floats {
-        names.extend(["x", "y", "z", "alpha", "beta", "gamma"].map(str::to_owned));
-        widths.extend([0.4 * scale, 0.4 * scale, 0.4 * scale, 0.5, 0.05, 0.5]);
-    }
-    names.extend(made.names.iter().cloned());
-    widths.extend(made.tree.joints.iter().filter_map(|joint| {
-        let first = joint.number.is_some_and(|(_, factor, shift)| factor == 1.0 && shift == 0.0);
-        first.then_some(if joint.slides { 0.1 * scale } else { 0.3 })
-    }));
+    let (names, widths) = made.names_and_widths(scale);
     let inputs = !floats && draw.chance(0.25);
     if !inputs {
         case.start = end(draw, &case, margin, configuration);
@@ -379,26 +377,13 @@ fn jointed(draw: &mut Draw, floats: bool) -> World {
     } else {
         let time = draw.logarithmic(0.05, 1.5);
         let by_velocities = draw.chance(0.5);
-        let rates =
+        let drawn =
             |draw: &mut Draw| widths.iter().map(|width| width * draw.within(2.0, 8.0)).collect::<Vec<f64>>();
-        let (speeds, accelerations) = (rates(draw), rates(draw));
-        line(&mut text, format!("speeds = {}\nduration = {time:?}", list(&speeds)));
-        let (kind, limits, velocities) = match by_velocities {
-            true => {
-                line(&mut text, "kind = \"velocities\"");
-                (DriveKind::Velocities, &speeds, Vec::new())
-            }
-            false => {
-                line(
-                    &mut text,
-                    format!("kind = \"accelerations\"\naccelerations = {}", list(&accelerations)),
-                );
-                (DriveKind::Accelerations, &accelerations, speeds.clone())
-            }
-        };
-        let resting = velocities.len();
-        let limits = limits.iter().map(|x| [-x, *x]).collect();
-        case.drive = Some(Drive { kind, limits, velocities, longest: time });
+        let (speeds, accelerations) = (drawn(draw), drawn(draw));
+        let (drive, lines) = by_rates(time, speeds, (!by_velocities).then_some(accelerations));
+        lines.iter().for_each(|extra| line(&mut text, extra));
+        let resting = drive.velocities.len();
+        case.drive = Some(drive);
         let whole = |draw: &mut Draw| {
             let mut row = configuration(draw);
             row.extend(std::iter::repeat_n(0.0, resting));
@@ -413,6 +398,5 @@ fn jointed(draw: &mut Draw, floats: bool) -> World {
         line(&mut text, format!("\n[motion]\nstart = {}\n{goal_text}", list(&case.start[..own])));
     }
     text += &obstacles;
-    files.insert("scene.toml".to_owned(), text.into_bytes());
-    World { main: "scene.toml".to_owned(), files, case, margin }
+    World::of_toml(text, files, case, margin)
 }

@@ -27,9 +27,9 @@ pub(super) fn pose(six: [f64; 6]) -> Isometry3<f64> {
 }
 
 impl Form {
-    /// The shape moved by `pose`, as the oracle has it.
-    pub(super) fn shape(&self, pose: &Isometry3<f64>) -> Shape {
-        Shape::Pieces(match self {
+    /// The pieces of the shape moved by `pose`, as the oracle has it.
+    pub(super) fn pieces(&self, pose: &Isometry3<f64>) -> Vec<Piece> {
+        match self {
             Self::Box(sides) => box_pieces(*sides, pose),
             Self::Ball(radius) => {
                 let middle = Point3::from(pose.translation.vector);
@@ -41,12 +41,12 @@ impl Form {
             Self::Mesh(triangles, _) => {
                 triangles.iter().map(|t| Piece::Triangle(t.map(|p| pose * Point3::from(p)))).collect()
             }
-        })
+        }
     }
 
     /// As a body of the oracle.
     pub(super) fn body(&self, name: &str, pose: &Isometry3<f64>, frame: usize) -> Body {
-        Body::new(name, self.shape(pose), frame)
+        Body::new(name, Shape::Pieces(self.pieces(pose)), frame)
     }
 
     /// Its key and value in TOML.
@@ -78,21 +78,21 @@ impl Form {
     /// The same shape as a mesh, if it is one already or is a box.
     pub(super) fn meshed(self, file: String) -> Self {
         match self {
-            Self::Box(sides) => {
-                let Shape::Pieces(pieces) = Self::Box(sides).shape(&Isometry3::identity()) else {
-                    return Self::Box(sides);
-                };
-                let corners = |piece: &Piece| match piece {
-                    Piece::Triangle(corners) => Some(corners.map(|p| [p.x, p.y, p.z])),
-                    _ => None,
-                };
-                Self::Mesh(pieces.iter().filter_map(corners).collect(), file)
-            }
+            Self::Box(sides) => Self::Mesh(corners(&box_pieces(sides, &Isometry3::identity())), file),
             Self::Ball(radius) => Self::Mesh(octahedron(radius), file),
             Self::Cylinder([radius, height]) => Self::Mesh(octahedron(radius.min(0.5 * height)), file),
             Self::Mesh(triangles, _) => Self::Mesh(triangles, file),
         }
     }
+}
+
+/// The triangles among pieces.
+fn corners(pieces: &[Piece]) -> Vec<Triangle> {
+    let corners = |piece: &Piece| match piece {
+        Piece::Triangle(corners) => Some(corners.map(|p| [p.x, p.y, p.z])),
+        _ => None,
+    };
+    pieces.iter().filter_map(corners).collect()
 }
 
 /// The faces of an octahedron with corners at this distance from its middle.
@@ -161,7 +161,7 @@ pub(super) fn form(draw: &mut Draw, size: f64, name: &str) -> Form {
             let file = mesh_file(draw, name);
             Form::Box(sides).meshed(file)
         }
-        4 => Form::Mesh(corner(size, sides), mesh_file(draw, name)),
+        4 => Form::Mesh(angle(size, sides), mesh_file(draw, name)),
         5 => {
             let count = draw.count(1, 6);
             Form::Mesh(loose(draw, count, 0.5 * size), mesh_file(draw, name))
@@ -171,20 +171,11 @@ pub(super) fn form(draw: &mut Draw, size: f64, name: &str) -> Form {
 }
 
 /// Two boxes that form an L.
-fn corner(size: f64, sides: [f64; 3]) -> Vec<Triangle> {
+fn angle(size: f64, sides: [f64; 3]) -> Vec<Triangle> {
     let wide = 0.3 * size.min(sides[2]);
-    let mut all = Vec::new();
-    for (sides, at) in [
-        ([size, wide, wide], Translation3::new(0.0, -0.3 * size, 0.0)),
-        ([wide, 0.8 * size, wide], Translation3::new(-0.35 * size, 0.0, 0.0)),
-    ] {
-        for piece in box_pieces(sides, &Isometry3::from(at)) {
-            if let Piece::Triangle(corners) = piece {
-                all.push(corners.map(|p| [p.x, p.y, p.z]));
-            }
-        }
-    }
-    all
+    let one = box_pieces([size, wide, wide], &Isometry3::translation(0.0, -0.3 * size, 0.0));
+    let other = box_pieces([wide, 0.8 * size, wide], &Isometry3::translation(-0.35 * size, 0.0, 0.0));
+    [corners(&one), corners(&other)].concat()
 }
 
 /// Loose triangles within `half` of the origin: wild ones, slivers, coplanar ones and ones that touch.

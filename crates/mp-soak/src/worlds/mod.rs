@@ -7,7 +7,7 @@ mod rigid;
 mod shipped;
 
 use crate::draw::Draw;
-use crate::oracle::{Ask, Case};
+use crate::oracle::{Ask, Case, Drive, DriveKind, Timing};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -25,6 +25,15 @@ pub struct World {
     pub margin: f64,
 }
 
+impl World {
+    /// The world of a problem in TOML, beside other files.
+    fn of_toml(text: String, mut files: BTreeMap<String, Vec<u8>>, case: Case, margin: f64) -> Self {
+        let main = "scene.toml".to_owned();
+        files.insert(main.clone(), text.into_bytes());
+        Self { main, files, case, margin }
+    }
+}
+
 /// A kind of world.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
@@ -38,6 +47,15 @@ pub struct Kind {
 }
 
 impl Kind {
+    const fn new(
+        name: &'static str,
+        summary: &'static str,
+        weight: u32,
+        make: fn(&mut Draw) -> World,
+    ) -> Self {
+        Self { name, summary, weight, make }
+    }
+
     /// A random world of this kind.
     #[must_use]
     pub fn make(&self, draw: &mut Draw) -> World {
@@ -65,34 +83,19 @@ impl Kind {
 
 /// All kinds of worlds.
 pub const KINDS: [Kind; 13] = [
-    Kind { name: "space", summary: "rigid body in space among figures", weight: 4, make: rigid::space },
-    Kind { name: "soup", summary: "rigid body among loose triangles", weight: 4, make: rigid::soup },
-    Kind { name: "flat-mesh", summary: "mesh that stays in the plane", weight: 2, make: rigid::flat },
-    Kind { name: "space-moving", summary: "rigid body, obstacles move", weight: 2, make: rigid::moving },
-    Kind {
-        name: "flyer",
-        summary: "rigid body by inputs, obstacles may move",
-        weight: 1,
-        make: rigid::flyer,
-    },
-    Kind { name: "disc", summary: "disc in the plane", weight: 4, make: plane::disc },
-    Kind { name: "polygon", summary: "polygon in the plane", weight: 4, make: plane::polygon },
-    Kind { name: "plane-moving", summary: "disc or polygon, obstacles move", weight: 3, make: plane::moving },
-    Kind { name: "driven", summary: "car, unicycle, … in the plane", weight: 3, make: plane::driven },
-    Kind {
-        name: "driven-moving",
-        summary: "car, unicycle, …, obstacles move",
-        weight: 2,
-        make: plane::driven_moving,
-    },
-    Kind { name: "arm", summary: "arm, also by inputs", weight: 4, make: arms::arm },
-    Kind { name: "floating", summary: "body with joints that flies", weight: 2, make: arms::floating },
-    Kind {
-        name: "shipped",
-        summary: "shipped scenes, other starts and goals",
-        weight: 1,
-        make: shipped::shipped,
-    },
+    Kind::new("space", "rigid body in space among figures", 4, rigid::space),
+    Kind::new("soup", "rigid body among loose triangles", 4, rigid::soup),
+    Kind::new("flat-mesh", "mesh that stays in the plane", 2, rigid::flat),
+    Kind::new("space-moving", "rigid body, obstacles move", 2, rigid::moving),
+    Kind::new("flyer", "rigid body by inputs, obstacles may move", 1, rigid::flyer),
+    Kind::new("disc", "disc in the plane", 4, plane::disc),
+    Kind::new("polygon", "polygon in the plane", 4, plane::polygon),
+    Kind::new("plane-moving", "disc or polygon, obstacles move", 3, plane::moving),
+    Kind::new("driven", "car, unicycle, … in the plane", 3, plane::driven),
+    Kind::new("driven-moving", "car, unicycle, …, obstacles move", 2, plane::driven_moving),
+    Kind::new("arm", "arm, also by inputs", 4, arms::arm),
+    Kind::new("floating", "body with joints that flies", 2, arms::floating),
+    Kind::new("shipped", "shipped scenes, other starts and goals", 1, shipped::shipped),
 ];
 
 /// A list of numbers as TOML writes it.
@@ -182,6 +185,39 @@ fn wide_goal(draw: &mut Draw, names: &[String], row: &[f64], widths: &[f64]) -> 
         }
     }
     (goal, format!("goal = {{ {} }}", parts.join(", ")))
+}
+
+/// How a robot moves by velocities, or by accelerations if there are any: as the oracle has it, and as TOML writes it.
+fn by_rates(longest: f64, speeds: Vec<f64>, accelerations: Option<Vec<f64>>) -> (Drive, Vec<String>) {
+    let mut lines = vec![format!("speeds = {}", list(&speeds)), format!("duration = {longest:?}")];
+    let limits = |most: &[f64]| most.iter().map(|x| [-x, *x]).collect();
+    let drive = match accelerations {
+        None => {
+            lines.push("kind = \"velocities\"".to_owned());
+            let limits = limits(&speeds);
+            Drive { kind: DriveKind::Velocities, limits, velocities: Vec::new(), longest }
+        }
+        Some(most) => {
+            lines.push(format!("kind = \"accelerations\"\naccelerations = {}", list(&most)));
+            let limits = limits(&most);
+            Drive { kind: DriveKind::Accelerations, limits, velocities: speeds, longest }
+        }
+    };
+    (drive, lines)
+}
+
+/// The motion of a robot among obstacles that move, as TOML writes it.
+fn timed_motion(case: &Case, goal: String) -> Vec<String> {
+    let configuration = &case.start[..case.start.len() - 1];
+    let mut lines = vec![format!("start = {}", list(configuration)), goal];
+    if let Some(Timing { speed, start, goal: [first, last] }) = case.timing {
+        lines.extend(speed.map(|speed| format!("speed = {speed:?}")));
+        lines.push(format!("start_time = {start:?}\nhorizon = {last:?}"));
+        if first > start {
+            lines.push(format!("goal_time = {}", list(&[first, last])));
+        }
+    }
+    lines
 }
 
 /// Writes a line.

@@ -1,6 +1,6 @@
 //! Worlds of the plane: discs, polygons, and robots that move by inputs.
 
-use super::{World, end, goals, line, list, lists, names, wide_goal};
+use super::{World, by_rates, end, goals, line, list, lists, names, timed_motion, wide_goal};
 use crate::draw::Draw;
 use crate::oracle::{Body, Case, Drive, DriveKind, Mover, Moves, Shape, Timing};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -176,20 +176,8 @@ impl Room {
         };
         let extent = self.scale * SIDE;
         let far = [self.low, self.high].as_flattened().iter().fold(extent, |far, x| far.max(x.abs()));
-        Case {
-            moves,
-            robot: vec![Body::new("robot", shape, 0)],
-            pairs: Vec::new(),
-            still,
-            moving: moving.collect(),
-            timing: None,
-            drive: None,
-            limits,
-            start: Vec::new(),
-            goals: Vec::new(),
-            extent,
-            far,
-        }
+        let case = Case::new(moves, vec![Body::new("robot", shape, 0)], limits, extent);
+        Case { still, moving: moving.collect(), far, ..case }
     }
 
     fn margin(&self, case: &Case) -> f64 {
@@ -201,7 +189,7 @@ impl Room {
         if self.robot.is_ok() { names(&["x", "y"]) } else { names(&["x", "y", "yaw"]) }
     }
 
-    fn toml(&self, robot: &[String], motion: &[String]) -> BTreeMap<String, Vec<u8>> {
+    fn toml(&self, robot: &[String], motion: &[String]) -> String {
         let mut text = String::from("[world]\n");
         line(&mut text, format!("walls = {}", lists([&self.low[..], &self.high[..]])));
         if let Some([low, high]) = &self.bounds {
@@ -222,12 +210,12 @@ impl Room {
             line(&mut text, format!("\n[[moving]]\nname = \"mover {}\"\n{}", i + 1, outline.toml()));
             line(&mut text, format!("path = {}", lists(rows.iter().map(|row| &row[..]))));
         }
-        BTreeMap::from([("scene.toml".to_owned(), text.into_bytes())])
+        text
     }
 
     fn world(self, case: Case, robot: &[String], motion: &[String]) -> World {
         let margin = self.margin(&case);
-        World { main: "scene.toml".to_owned(), files: self.toml(robot, motion), case, margin }
+        World::of_toml(self.toml(robot, motion), BTreeMap::new(), case, margin)
     }
 }
 
@@ -307,16 +295,7 @@ pub(super) fn moving(draw: &mut Draw) -> World {
     };
     let (asked, goal) = goals(draw, &room.names(), &[length, length, 0.7], free);
     case.goals = asked;
-    let mut motion = vec![
-        format!("start = {}", list(&case.start[..case.start.len() - 1])),
-        goal,
-        format!("speed = {speed:?}"),
-        format!("start_time = {begin:?}"),
-        format!("horizon = {horizon:?}"),
-    ];
-    if first > begin {
-        motion.push(format!("goal_time = {}", list(&[first, horizon])));
-    }
+    let motion = timed_motion(&case, goal);
     room.world(case, &[], &motion)
 }
 
@@ -348,39 +327,27 @@ fn by_inputs(draw: &mut Draw, moves: bool) -> World {
         if i < 2 { scale * draw.logarithmic(0.3, 6.0) } else { draw.within(0.3, 4.0) }
     };
     let speeds: Vec<f64> = (0..degrees).map(|i| rate(draw, i)).collect();
-    let mut robot = vec![format!("duration = {time:?}")];
-    let (kind, limits, velocities) = match which {
+    let on_wheels = |kind: DriveKind, turn: f64, own: String| {
+        let limits = vec![[back, speed], [-turn, turn]];
+        let lines = format!("{own}\nspeed = {speed:?}\nreverse = {reverse}\nduration = {time:?}");
+        (Drive { kind, limits, velocities: Vec::new(), longest: time }, vec![lines])
+    };
+    let (drive, robot) = match which {
         0 => {
             let wheelbase = scale * draw.logarithmic(0.1, 3.0);
             let steering = draw.within(0.1, 1.2);
-            robot.push("kind = \"car\"".to_owned());
-            robot.extend([format!("speed = {speed:?}"), format!("wheelbase = {wheelbase:?}")]);
-            robot.extend([format!("steering = {steering:?}"), format!("reverse = {reverse}")]);
-            (DriveKind::Car(wheelbase), vec![[back, speed], [-steering, steering]], Vec::new())
+            let own = format!("kind = \"car\"\nwheelbase = {wheelbase:?}\nsteering = {steering:?}");
+            on_wheels(DriveKind::Car(wheelbase), steering, own)
         }
         1 => {
             let turn = draw.within(0.2, 4.0);
-            robot.push("kind = \"unicycle\"".to_owned());
-            robot.extend([
-                format!("speed = {speed:?}"),
-                format!("turning = {turn:?}"),
-                format!("reverse = {reverse}"),
-            ]);
-            (DriveKind::Unicycle, vec![[back, speed], [-turn, turn]], Vec::new())
+            on_wheels(DriveKind::Unicycle, turn, format!("kind = \"unicycle\"\nturning = {turn:?}"))
         }
-        2 => {
-            robot.extend(["kind = \"velocities\"".to_owned(), format!("speeds = {}", list(&speeds))]);
-            (DriveKind::Velocities, speeds.iter().map(|x| [-x, *x]).collect(), Vec::new())
-        }
-        _ => {
-            let accelerations: Vec<f64> = (0..degrees).map(|i| 2.0 * rate(draw, i)).collect();
-            robot.extend(["kind = \"accelerations\"".to_owned(), format!("speeds = {}", list(&speeds))]);
-            robot.push(format!("accelerations = {}", list(&accelerations)));
-            (DriveKind::Accelerations, accelerations.iter().map(|x| [-x, *x]).collect(), speeds)
-        }
+        2 => by_rates(time, speeds, None),
+        _ => by_rates(time, speeds, Some((0..degrees).map(|i| 2.0 * rate(draw, i)).collect())),
     };
-    let resting = velocities.len();
-    case.drive = Some(Drive { kind, limits, velocities, longest: time });
+    let resting = drive.velocities.len();
+    case.drive = Some(drive);
     case.timing = moves.then_some(Timing { speed: None, start: 0.0, goal: [0.0, horizon] });
     let whole = |draw: &mut Draw, time: f64| {
         let mut row = room.configuration(draw);

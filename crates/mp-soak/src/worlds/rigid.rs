@@ -1,9 +1,9 @@
 //! Rigid bodies among figures and loose triangles.
 
 use super::bodies::{Form, form, loose, mesh_file, pose};
-use super::{World, end, goals, line, list, lists, names, wide_goal};
+use super::{World, by_rates, end, goals, line, list, lists, names, timed_motion, wide_goal};
 use crate::draw::Draw;
-use crate::oracle::{Ask, Body, Case, Drive, DriveKind, Mover, Moves, Timing};
+use crate::oracle::{Ask, Body, Case, Mover, Moves, Timing};
 use nalgebra::{Isometry3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -68,6 +68,27 @@ impl Room {
         Self { scale, offset, low, high, robot, obstacles: Vec::new(), moving: Vec::new(), flat: false }
     }
 
+    /// Makes it a room of robots that stay in the plane, which is z = 0.
+    fn flatten(&mut self) {
+        self.flat = true;
+        self.offset.z = 0.0;
+        (self.low[2], self.high[2]) = (-HALF * self.scale, HALF * self.scale);
+    }
+
+    /// Adds obstacles, of which each is up to `largest` wide before it is scaled; `meshes` if all are meshes.
+    fn furnish(&mut self, draw: &mut Draw, [least, most]: [usize; 2], largest: f64, meshes: bool) {
+        for i in 0..draw.count(least, most) {
+            let name = format!("obstacle-{}", i + 1);
+            let size = draw.within(0.5, largest);
+            let mut form = form(draw, size * self.scale, &name);
+            if meshes {
+                form = form.meshed(mesh_file(draw, &name));
+            }
+            let six = self.somewhere(draw);
+            self.obstacles.push((form, six));
+        }
+    }
+
     /// A place in the room.
     fn place(&self, draw: &mut Draw) -> [f64; 3] {
         [0, 1, 2].map(|i| draw.within(self.low[i], self.high[i]))
@@ -103,21 +124,9 @@ impl Room {
             true => (Moves::Plane, own.take(2).chain([None]).collect()),
             false => (Moves::Space, own.chain([None, None, None]).collect()),
         };
-        let moving: Vec<_> = moving.collect();
-        Case {
-            moves,
-            robot: vec![self.robot.body("robot", &Isometry3::identity(), 0)],
-            pairs: Vec::new(),
-            still,
-            moving,
-            timing: None,
-            drive: None,
-            limits,
-            start: Vec::new(),
-            goals: Vec::new(),
-            extent: 2.0 * HALF * self.scale,
-            far: self.offset.amax() + 2.0 * HALF * self.scale,
-        }
+        let (robot, extent) = (self.robot.body("robot", &Isometry3::identity(), 0), 2.0 * HALF * self.scale);
+        let far = self.offset.amax() + extent;
+        Case { still, moving: moving.collect(), far, ..Case::new(moves, vec![robot], limits, extent) }
     }
 
     /// The clearance beyond which a start must be accepted.
@@ -208,12 +217,14 @@ impl Room {
         let all_meshes = meshes.into_iter().all(|form| matches!(form, Form::Mesh(..)));
         let one_goal =
             case.goals.len() == 1 && case.goals[0].iter().all(|ask| matches!(ask, Ask::Exactly(_)));
-        let (main, (text, mut files)) = match all_meshes && one_goal && draw.chance(0.7) {
-            true => ("scene.env", self.environment(&case)),
-            false => ("scene.toml", self.toml(&[], &[format!("start = {}", list(&case.start)), goal])),
-        };
-        files.insert(main.to_owned(), text.into_bytes());
-        World { main: main.to_owned(), files, case, margin }
+        if all_meshes && one_goal && draw.chance(0.7) {
+            let (text, mut files) = self.environment(&case);
+            let main = "scene.env".to_owned();
+            files.insert(main.clone(), text.into_bytes());
+            return World { main, files, case, margin };
+        }
+        let (text, files) = self.toml(&[], &[format!("start = {}", list(&case.start)), goal]);
+        World::of_toml(text, files, case, margin)
     }
 }
 
@@ -222,12 +233,7 @@ pub(super) fn space(draw: &mut Draw) -> World {
     let mut room = Room::new(draw);
     let size = draw.within(0.3, 2.5);
     room.robot = form(draw, size * room.scale, "robot");
-    for i in 0..draw.count(1, 10) {
-        let size = draw.within(0.5, 6.0);
-        let form = form(draw, size * room.scale, &format!("obstacle-{}", i + 1));
-        let six = room.somewhere(draw);
-        room.obstacles.push((form, six));
-    }
+    room.furnish(draw, [1, 10], 6.0, false);
     if draw.chance(0.3) {
         // All of it as meshes, for environments.
         let robot = mesh_file(draw, "robot");
@@ -267,10 +273,7 @@ pub(super) fn soup(draw: &mut Draw) -> World {
 /// A mesh that stays in the plane.
 pub(super) fn flat(draw: &mut Draw) -> World {
     let mut room = Room::new(draw);
-    room.flat = true;
-    // The plane is z = 0.
-    room.offset.z = 0.0;
-    (room.low[2], room.high[2]) = (-HALF * room.scale, HALF * room.scale);
+    room.flatten();
     let size = draw.within(0.3, 2.0);
     room.robot = form(draw, size * room.scale, "robot");
     let meshes = draw.chance(0.4);
@@ -278,16 +281,7 @@ pub(super) fn flat(draw: &mut Draw) -> World {
         let file = mesh_file(draw, "robot");
         room.robot = room.robot.meshed(file);
     }
-    for i in 0..draw.count(1, 8) {
-        let name = format!("obstacle-{}", i + 1);
-        let size = draw.within(0.5, 4.0);
-        let mut form = form(draw, size * room.scale, &name);
-        if meshes {
-            form = form.meshed(mesh_file(draw, &name));
-        }
-        let six = room.somewhere(draw);
-        room.obstacles.push((form, six));
-    }
+    room.furnish(draw, [1, 8], 4.0, meshes);
     room.finish(draw)
 }
 
@@ -314,9 +308,7 @@ fn trajectory(draw: &mut Draw, room: &Room, horizon: f64) -> Vec<[f64; 7]> {
 pub(super) fn moving(draw: &mut Draw) -> World {
     let mut room = Room::new(draw);
     if draw.chance(0.3) {
-        room.flat = true;
-        room.offset.z = 0.0;
-        (room.low[2], room.high[2]) = (-HALF * room.scale, HALF * room.scale);
+        room.flatten();
     }
     let (mut case, horizon) = timed(draw, &mut room);
     let speed = room.scale * draw.logarithmic(0.3, 30.0);
@@ -338,31 +330,15 @@ pub(super) fn moving(draw: &mut Draw) -> World {
     };
     let (asked, goal) = goals(draw, &room.names(), &room.widths(), free);
     case.goals = asked;
-    let mut motion = vec![
-        format!("start = {}", list(&case.start[..case.start.len() - 1])),
-        goal,
-        format!("speed = {speed:?}"),
-        format!("start_time = {begin:?}"),
-        format!("horizon = {horizon:?}"),
-    ];
-    if first > begin {
-        motion.push(format!("goal_time = {}", list(&[first, last])));
-    }
-    let (text, mut files) = room.toml(&[], &motion);
-    files.insert("scene.toml".to_owned(), text.into_bytes());
-    World { main: "scene.toml".to_owned(), files, case, margin }
+    let (text, files) = room.toml(&[], &timed_motion(&case, goal));
+    World::of_toml(text, files, case, margin)
 }
 
 /// Fills a room with what stands still and what moves. Returns the case and for how long the robot has time.
 fn timed(draw: &mut Draw, room: &mut Room) -> (Case, f64) {
     let size = draw.within(0.3, 1.5);
     room.robot = form(draw, size * room.scale, "robot");
-    for i in 0..draw.count(0, 4) {
-        let size = draw.within(0.5, 4.0);
-        let form = form(draw, size * room.scale, &format!("obstacle-{}", i + 1));
-        let six = room.somewhere(draw);
-        room.obstacles.push((form, six));
-    }
+    room.furnish(draw, [0, 4], 4.0, false);
     let horizon = draw.within(5.0, 60.0);
     for i in 0..draw.count(1, 3) {
         let size = draw.within(0.3, 2.0);
@@ -391,21 +367,9 @@ pub(super) fn flyer(draw: &mut Draw) -> World {
     };
     let speeds: Vec<f64> = (0..6).map(|i| limit(draw, i, far)).collect();
     let accelerations: Vec<f64> = (0..6).map(|i| 2.0 * limit(draw, i, far)).collect();
-    let mut robot = vec![
-        format!("kind = \"{}\"", if by_velocities { "velocities" } else { "accelerations" }),
-        format!("speeds = {}", list(&speeds)),
-        format!("duration = {time:?}"),
-    ];
-    let (kind, limits, velocities) = match by_velocities {
-        true => (DriveKind::Velocities, &speeds, Vec::new()),
-        false => {
-            robot.push(format!("accelerations = {}", list(&accelerations)));
-            (DriveKind::Accelerations, &accelerations, speeds.clone())
-        }
-    };
-    let resting = velocities.len();
-    let limits = limits.iter().map(|x| [-x, *x]).collect();
-    case.drive = Some(Drive { kind, limits, velocities, longest: time });
+    let (drive, robot) = by_rates(time, speeds, (!by_velocities).then_some(accelerations));
+    let resting = drive.velocities.len();
+    case.drive = Some(drive);
     case.timing = moves.then_some(Timing { speed: None, start: 0.0, goal: [0.0, horizon] });
     let whole = |mut q: Vec<f64>, time: f64| {
         if moves {
@@ -423,7 +387,6 @@ pub(super) fn flyer(draw: &mut Draw) -> World {
     if moves {
         motion.push(format!("horizon = {horizon:?}"));
     }
-    let (text, mut files) = room.toml(&robot, &motion);
-    files.insert("scene.toml".to_owned(), text.into_bytes());
-    World { main: "scene.toml".to_owned(), files, case, margin }
+    let (text, files) = room.toml(&robot, &motion);
+    World::of_toml(text, files, case, margin)
 }

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 const ENVIRONMENTS: [&str; 9] =
     ["easy", "twisty", "maze", "planar-bugtrap", "cubicles", "gempa-1", "gempa-2", "gempa-3", "gempa-4"];
 
-/// So many triangles of an obstacle are one body of the oracle, which compares bodies by balls around them first.
+/// This many triangles of an obstacle are one body of the oracle, which compares bodies by balls around them first.
 const CHUNK: usize = 16;
 
 /// The bytes of a shipped file.
@@ -100,20 +100,8 @@ fn environment(draw: &mut Draw) -> World {
     };
     let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
     let surface = robot.iter().map(|t| Piece::Triangle(*t)).collect();
-    let mut case = Case {
-        moves,
-        robot: vec![Body::new("robot", Shape::Pieces(surface), 0)],
-        pairs: Vec::new(),
-        still,
-        moving: Vec::new(),
-        timing: None,
-        drive: None,
-        limits,
-        start: Vec::new(),
-        goals: Vec::new(),
-        extent,
-        far: extent + 10.0,
-    };
+    let body = Body::new("robot", Shape::Pieces(surface), 0);
+    let mut case = Case { still, far: extent + 10.0, ..Case::new(moves, vec![body], limits, extent) };
     let margin = 1e-3 * case.robot[0].reach;
     let any = |draw: &mut Draw| {
         let mut six: [f64; 6] =
@@ -172,20 +160,8 @@ fn wrench(draw: &mut Draw) -> World {
     still.push(Form::Cylinder([0.07, 0.8]).body("bolt", &bolt, 0));
     let mut limits: Vec<_> = (0..3).map(|i| Some([low[i], high[i]])).collect();
     limits.extend([None, None, None, Some([0.04, 0.38])]);
-    let mut case = Case {
-        moves: Moves::Tree(tree),
-        robot: vec![Body::new("handle", Shape::Pieces(handle), 0), Body::new("jaw", Shape::Pieces(jaw), 1)],
-        pairs: Vec::new(),
-        still,
-        moving: Vec::new(),
-        timing: None,
-        drive: None,
-        limits,
-        start: Vec::new(),
-        goals: Vec::new(),
-        extent: 3.2,
-        far: 3.2,
-    };
+    let robot = vec![Body::new("handle", Shape::Pieces(handle), 0), Body::new("jaw", Shape::Pieces(jaw), 1)];
+    let mut case = Case { still, ..Case::new(Moves::Tree(tree), robot, limits, 3.2) };
     let margin = 0.01;
     let any = |draw: &mut Draw| {
         let mut row: Vec<f64> = (0..3).map(|i| draw.within(low[i], high[i])).collect();

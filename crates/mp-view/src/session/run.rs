@@ -17,7 +17,7 @@ pub(crate) enum Order {
     Go,
     /// To wait.
     Pause,
-    /// To do so many more iterations and then to wait.
+    /// To do this number of iterations more, and then to wait.
     Step(u64),
 }
 

@@ -1,8 +1,8 @@
 //! A session whose runs have threads: behind a server.
 
-use super::desk::{Desk, Opening};
 use super::run::{Driver, Order, Outbox, SharedOutbox, locked};
-use super::{AboutRun, first_order, refusal};
+use super::workspace::{Opening, Workspace};
+use super::{RunRequest, first_order, refusal};
 use crate::message::Message;
 use mp_cspace::{Cancel, Clock, Progress, Stop, StopReason};
 use mp_plan::{Control, Error, Request, Scene};
@@ -24,7 +24,7 @@ use std::thread::JoinHandle;
 /// assert!(session.take_event().is_none());
 /// ```
 pub struct Session {
-    desk: Mutex<Desk>,
+    workspace: Mutex<Workspace>,
     runs: Mutex<Runs>,
     wake: Arc<dyn Fn() + Send + Sync>,
 }
@@ -104,7 +104,7 @@ fn unpoisoned<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Session {
     /// A session. `wake` is called from any thread when there are events; it must return at once.
     pub fn new(opening: Opening, wake: impl Fn() + Send + Sync + 'static) -> Self {
-        Self { desk: Mutex::new(Desk::new(opening)), runs: Mutex::default(), wake: Arc::new(wake) }
+        Self { workspace: Mutex::new(Workspace::new(opening)), runs: Mutex::default(), wake: Arc::new(wake) }
     }
 
     /// The reply to a request.
@@ -117,16 +117,16 @@ impl Session {
     }
 
     fn reply(&self, message: &Message) -> Result<Message, Error> {
-        let Some((run, about)) = AboutRun::of(message)? else {
-            return unpoisoned(&self.desk).answer(message);
+        let Some((run, about)) = RunRequest::of(message)? else {
+            return unpoisoned(&self.workspace).answer(message);
         };
         let scene = match &about {
-            AboutRun::Plan { .. } => Some(unpoisoned(&self.desk).scene_to_plan(message)?),
+            RunRequest::Plan { .. } => Some(unpoisoned(&self.workspace).scene_to_plan(message)?),
             _ => None,
         };
         let mut runs = unpoisoned(&self.runs);
         match (about, scene) {
-            (AboutRun::Plan { request, paused }, Some(scene)) => {
+            (RunRequest::Plan { request, paused }, Some(scene)) => {
                 if runs.contains_key(&run) {
                     return Err(Error::new(format!("run {run} goes on already")));
                 }
@@ -136,9 +136,9 @@ impl Session {
                 runs.insert(run, begin(run, scene, *request, paused, Arc::clone(&self.wake)));
             }
             // A run that has ended meanwhile needs no order.
-            (AboutRun::Order(order), _) => runs.get(&run).iter().for_each(|run| run.orders.give(order)),
-            (AboutRun::Cancel, _) => runs.get(&run).iter().for_each(|run| run.orders.cancel()),
-            (AboutRun::Plan { .. }, None) => {}
+            (RunRequest::Order(order), _) => runs.get(&run).iter().for_each(|run| run.orders.give(order)),
+            (RunRequest::Cancel, _) => runs.get(&run).iter().for_each(|run| run.orders.cancel()),
+            (RunRequest::Plan { .. }, None) => {}
         }
         Ok(Message::default())
     }

@@ -1,8 +1,8 @@
 //! A session without threads: its runs are advanced by calls, as a worker of a page needs it.
 
-use super::desk::{Desk, Opening};
 use super::run::{Driver, Order, Outbox, SharedOutbox, locked};
-use super::{AboutRun, first_order, refusal};
+use super::workspace::{Opening, Workspace};
+use super::{RunRequest, first_order, refusal};
 use crate::message::Message;
 use mp_cspace::{Cancel, Clock, Deadline};
 use mp_plan::{Control, Error};
@@ -14,7 +14,7 @@ use std::time::Duration;
 ///
 /// The data of a run stays in memory after its end: whoever has many runs takes a worker for each, as the page does.
 pub struct Worker {
-    desk: Desk,
+    workspace: Workspace,
     run: Option<Planning>,
     replies: VecDeque<Message>,
     last: Option<SharedOutbox>,
@@ -40,8 +40,8 @@ impl Worker {
     /// A session with nothing open, which reads the time from `clock`.
     #[must_use]
     pub fn new(clock: Clock) -> Self {
-        let desk = Desk::new(Opening::default());
-        Self { desk, run: None, replies: VecDeque::new(), last: None, clock }
+        let workspace = Workspace::new(Opening::default());
+        Self { workspace, run: None, replies: VecDeque::new(), last: None, clock }
     }
 
     /// Handles a request. [`take`](Self::take) gives its reply.
@@ -53,19 +53,19 @@ impl Worker {
     }
 
     fn reply(&mut self, message: &Message) -> Result<Message, Error> {
-        let Some((number, about)) = AboutRun::of(message)? else {
-            return self.desk.answer(message);
+        let Some((number, about)) = RunRequest::of(message)? else {
+            return self.workspace.answer(message);
         };
         let own = self.run.as_mut().filter(|run| run.number == number);
         match (about, own) {
-            (AboutRun::Plan { request, paused }, _) => {
+            (RunRequest::Plan { request, paused }, _) => {
                 if self.run.is_some() {
                     return Err(Error::new("a run goes on already").help("one worker has one run"));
                 }
                 if request.threads > 1 {
                     return Err(Error::new("a page has one thread").help("take `threads` = 1"));
                 }
-                let scene = self.desk.scene_to_plan(message)?.for_request(&request)?;
+                let scene = self.workspace.scene_to_plan(message)?.for_request(&request)?;
                 let outbox = Outbox::new(number, scene.clone(), &request);
                 // A run borrows these, and outlives this call.
                 let (scene, request) = (&*Box::leak(Box::new(scene)), &*Box::leak(request));
@@ -78,13 +78,13 @@ impl Worker {
                 self.run = Some(Planning { number, driver, order: first_order(paused), cancel, over: false });
                 self.last = Some(outbox);
             }
-            (AboutRun::Order(order), Some(run)) => {
+            (RunRequest::Order(order), Some(run)) => {
                 run.order = order;
                 if order == Order::Pause {
                     run.driver.tell("paused", &|| {});
                 }
             }
-            (AboutRun::Cancel, Some(run)) => {
+            (RunRequest::Cancel, Some(run)) => {
                 run.cancel.cancel();
                 run.order = Order::Go;
             }

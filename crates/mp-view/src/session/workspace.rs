@@ -3,7 +3,7 @@
 use super::files::{Named, format_of, plain_name};
 use super::mesh::{is_mesh, scene_of_mesh};
 use super::{number_of, text_of};
-use crate::bytes::path_head;
+use crate::bytes::{path_head, rgb};
 use crate::message::{Message, json};
 use crate::{PathTrack, SceneFile};
 use mp_geom::TriMesh;
@@ -37,7 +37,7 @@ pub(crate) struct Open {
 
 /// What a session has open.
 #[derive(Debug, Default)]
-pub(crate) struct Desk {
+pub(crate) struct Workspace {
     pub(crate) open: Option<Open>,
     /// Meshes by the names that documents call them.
     meshes: BTreeMap<String, TriMesh>,
@@ -48,13 +48,13 @@ pub(crate) struct Desk {
 
 type Answer = Result<Message, Error>;
 
-impl Desk {
+impl Workspace {
     pub(crate) fn new(opening: Opening) -> Self {
-        let mut desk = Self { folder: opening.folder, shown: opening.shown, ..Self::default() };
+        let mut workspace = Self { folder: opening.folder, shown: opening.shown, ..Self::default() };
         if let Some(scene) = opening.scene {
-            desk.adopt(scene, opening.path);
+            workspace.adopt(scene, opening.path);
         }
-        desk
+        workspace
     }
 
     /// The reply to a request.
@@ -393,13 +393,6 @@ fn known_mesh(meshes: &BTreeMap<String, TriMesh>, name: &str) -> Result<TriMesh,
         mp_io::Error::new(mp_io::ErrorKind::Io, name, "this mesh has not been opened")
             .help("open its file first")
     })
-}
-
-/// Red, green and blue of a colour `#rrggbb`.
-fn rgb(color: &str) -> Option<[u8; 3]> {
-    let number = u32::from_str_radix(color.strip_prefix('#')?, 16).ok()?;
-    let [_, r, g, b] = number.to_be_bytes();
-    Some([r, g, b])
 }
 
 /// A configuration in a request.
