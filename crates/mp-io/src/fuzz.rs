@@ -5,7 +5,7 @@
 //! most readers do. `cargo xtask fuzz` calls them guided by coverage, and the test `fuzz` of this crate with the files that
 //! were found so, and with mutated ones (`docs/fuzzing.md`).
 
-use crate::collada::Scene;
+use crate::formats::collada::Scene;
 use crate::mesh::Axes;
 use crate::{Column, csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
 use crate::{

@@ -5,6 +5,7 @@
 //! - [`RobotProblem::load`] reads a problem for an arm, [`JointPath`] its paths.
 //! - [`PlanarProblem::load`] reads a world in the plane.
 //! - [`SceneDocument`] is a scene as an editor keeps it.
+//! - [`FORMATS`] is the table of all formats: what files with which endings hold.
 //! - [`read_mesh`] reads a mesh, whatever the format.
 //! - [`Environment`], [`PathFile`]: GEMPA environment and configuration files.
 //! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: single mesh formats.
@@ -14,7 +15,6 @@
 //! proportion to its size. Files are written whole or not at all. Lengths are metres and
 //! angles radians. The formats are documented in `docs/formats/`.
 
-mod collada;
 mod columns;
 mod csv;
 mod document;
@@ -22,13 +22,12 @@ mod drive;
 mod encoding;
 mod error;
 mod files;
+mod formats;
 pub mod fuzz;
 mod gempa;
 mod json;
 mod mesh;
 mod number;
-mod obj;
-mod off;
 mod ompl;
 mod path;
 mod planar;
@@ -36,22 +35,23 @@ mod problem;
 mod problem_file;
 mod rigid_toml;
 mod robot;
-mod stl;
 mod text;
 mod toml_problem;
 mod xml;
 
-pub use collada::parse_collada;
 pub use columns::{Column, matched};
 pub use csv::{csv_text, parse_csv};
 pub use document::{DocumentBody, DocumentShape, SceneDocument};
 pub use drive::{Drive, Driven};
 pub use error::{Error, ErrorKind, one_line, shortened};
 pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, Until, read_text};
+pub use formats::collada::parse_collada;
+pub use formats::obj::parse_obj;
+pub use formats::off::{OffColor, OffDocument, OffFace, off_text, write_off};
+pub use formats::stl::{parse_stl, stl_text, write_stl};
+pub use formats::{Content, FORMATS, Format};
 pub use gempa::{Environment, Obstacle, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
-pub use mesh::{Axes, MAX_CORNERS, MeshFormat, read_mesh, read_mesh_of, read_mesh_with};
-pub use obj::parse_obj;
-pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
+pub use mesh::{Axes, MAX_CORNERS, read_mesh, read_mesh_of, read_mesh_with};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl, exported_files};
 pub use path::{JointPath, PathFile};
 pub use planar::{
@@ -62,5 +62,4 @@ pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
 pub use problem_file::ProblemFile;
 pub use rigid_toml::{RigidMoving, RigidTask};
 pub use robot::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem, read_robot_text};
-pub use stl::{parse_stl, stl_text, write_stl};
 pub use toml_problem::{GoalEntry, GoalPart, Timing};

@@ -2,7 +2,7 @@
 
 use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
-use crate::mesh::{LEFT_OUT, build};
+use crate::mesh::{LEFT_OUT, Reading, build, parse};
 use crate::text::{Text, Token, clipped};
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
@@ -43,21 +43,15 @@ const CURVED: [&str; 13] =
 /// # Errors
 /// [`Error`] when it is not OBJ or has curved surfaces, with the line and column.
 pub fn parse_obj(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
-    parse_obj_until(file, bytes, &Interrupt::never(), &mut |_| ())
+    parse(file, bytes, read)
 }
 
-/// As [`parse_obj`], until `interrupt` says to end; `remark` takes what was passed over.
-pub(crate) fn parse_obj_until(
-    file: &str,
-    bytes: &[u8],
-    interrupt: &Interrupt,
-    remark: &mut dyn FnMut(&str),
-) -> Result<TriMesh, Error> {
-    let mut interrupt = interrupt.clone();
+pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {
+    let interrupt = &mut reading.interrupt;
     let decoded = decode_mesh(file, bytes)?;
     let text = Text { file, text: &decoded, guide: "meshes.md" };
     // Faces may name vertices of later lines.
-    let total = vertices_of(&text, &mut interrupt);
+    let total = vertices_of(&text, interrupt);
     let mut vertices = Vec::with_capacity(total);
     let mut corners: Vec<u32> = Vec::new();
     let mut ends: Vec<usize> = Vec::new();
@@ -103,7 +97,7 @@ pub(crate) fn parse_obj_until(
         }
     }
     if left_out {
-        remark(LEFT_OUT);
+        (reading.remark)(LEFT_OUT);
     }
     let faces = ends.iter().enumerate().map(|(i, &end)| &corners[if i == 0 { 0 } else { ends[i - 1] }..end]);
     build(file, vertices, faces)
@@ -215,7 +209,7 @@ mod tests {
     /// What is read, in how many triangles, and what is remarked.
     fn remarks(bytes: &[u8]) -> (Result<usize, String>, Vec<String>) {
         let mut remarks = Vec::new();
-        let mesh = parse_obj_until("t.obj", bytes, &Interrupt::never(), &mut |r| remarks.push(r.to_owned()));
+        let mesh = read("t.obj", bytes, &mut Reading::noting(&mut |remark| remarks.push(remark.to_owned())));
         (mesh.map(|mesh| mesh.triangles().len()).map_err(|e| e.to_string()), remarks)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
-use crate::mesh::mesh_error;
+use crate::mesh::{Reading, mesh_error, parse};
 use crate::number::Row;
 use crate::text::{Lexer, Text, Token, clipped, is_not_a_number};
 use mp_geom::TriMesh;
@@ -21,27 +21,27 @@ const TRIANGLE: usize = 50;
 /// # Errors
 /// [`Error`] when it is not STL: for text with line and column, for binary with the triangle.
 pub fn parse_stl(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
-    parse_stl_until(file, bytes, &Interrupt::never(), &mut |_| ())
+    parse(file, bytes, read)
 }
 
-/// As [`parse_stl`], until `interrupt` says to end; `remark` takes what was passed over.
-pub(crate) fn parse_stl_until(
-    file: &str,
-    bytes: &[u8],
-    interrupt: &Interrupt,
-    remark: &mut dyn FnMut(&str),
-) -> Result<TriMesh, Error> {
-    let mut interrupt = interrupt.clone();
+/// Whether bytes begin like STL in text; binary files begin with anything.
+pub(crate) fn begins(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(4096)];
+    head.trim_ascii_start().starts_with(b"solid") && head.windows(5).any(|word| word == b"facet")
+}
+
+pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {
+    let Reading { interrupt, remark, .. } = reading;
     let soup = if is_binary(bytes) {
         if begins_with_solid(bytes) {
             remark("binary STL, although its header begins with `solid`");
         }
-        binary(file, bytes, &mut interrupt, remark)?
+        binary(file, bytes, interrupt, remark)?
     } else {
         let decoded = decode_mesh(file, bytes)?;
-        text(&Text { file, text: &decoded, guide: "meshes.md" }, (file, &mut interrupt))?
+        text(&Text { file, text: &decoded, guide: "meshes.md" }, (file, &mut *interrupt))?
     };
-    let mesh = TriMesh::from_soup_until(&soup, &interrupt).map_err(|_| Error::interrupted(file))?;
+    let mesh = TriMesh::from_soup_until(&soup, interrupt).map_err(|_| Error::interrupted(file))?;
     mesh.map_err(|e| mesh_error(file, &e))
 }
 
@@ -275,7 +275,7 @@ mod tests {
     /// What is read, in how many triangles, and what is remarked.
     fn remarks(bytes: &[u8]) -> (Result<usize, String>, Vec<String>) {
         let mut remarks = Vec::new();
-        let mesh = parse_stl_until("t.stl", bytes, &Interrupt::never(), &mut |r| remarks.push(r.to_owned()));
+        let mesh = read("t.stl", bytes, &mut Reading::noting(&mut |remark| remarks.push(remark.to_owned())));
         (mesh.map(|mesh| mesh.triangles().len()).map_err(|e| e.to_string()), remarks)
     }
 
