@@ -13,52 +13,6 @@ use crate::gempa::mesh as gempa;
 use crate::mesh::ReadMesh;
 use std::path::Path;
 
-/// What a file holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Content {
-    /// A GEMPA environment.
-    Environment,
-    /// A problem of OMPL.app.
-    OmplApp,
-    /// A problem in TOML, for any robot.
-    Toml,
-    /// A scene as an editor keeps it.
-    Document,
-    /// A robot.
-    Robot,
-    /// A robot with macros, which are to be expanded first.
-    RobotMacros,
-    /// Groups of links, and the pairs of links that may touch.
-    RobotSemantics,
-    /// A map of ROS, which names its image.
-    Map,
-    /// The image of a map.
-    MapImage,
-    /// A triangle mesh.
-    Mesh,
-    /// A path in the text form of the robot.
-    TextPath,
-    /// A path in JSON.
-    JsonPath,
-    /// A path as comma-separated values.
-    CsvPath,
-    /// A picture made of pixels.
-    Png,
-    /// A picture made of lines and areas.
-    Svg,
-    /// A film in few colours.
-    Gif,
-    /// A film by ffmpeg.
-    Mp4,
-    /// The page of the viewer with the scene inside.
-    Page,
-    /// The scene as the viewer reads it.
-    ViewerScene,
-    /// Meshes that move, for other programs.
-    Gltf,
-}
-
 /// A row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Format {
@@ -72,98 +26,92 @@ pub struct Format {
     pub read: bool,
     /// Whether such files are written.
     pub written: bool,
-    /// Whether these bytes begin like such a mesh, and what reads it.
+    /// If it is a mesh: whether these bytes begin like one, and what reads it.
     mesh: Option<(fn(&[u8]) -> bool, ReadMesh)>,
 }
 
+macro_rules! formats {
+    ($($content:ident, $name:literal, $endings:expr, $read:literal, $written:literal, $mesh:expr;)*) => {
+        /// What a file holds: a value for each row of the table.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[non_exhaustive]
+        pub enum Content { $(#[doc = $name] $content),* }
+        /// All formats whose files are told by their endings. Where several have an ending, the likeliest comes first.
+        pub const FORMATS: &[Format] = &[$(Format {
+            content: Content::$content, name: $name, endings: &$endings, read: $read, written: $written, mesh: $mesh,
+        }),*];
+    };
+}
+
+formats! {
+    Environment, "GEMPA environment", ["env", "txt"], true, true, None;
+    OmplApp, "problem of OMPL.app", ["cfg"], true, false, None;
+    Toml, "robot, rigid body or world in the plane", ["toml"], true, false, None;
+    Document, "scene of the editor", ["mp.json"], true, true, None;
+    Robot, "robot: URDF, or what its content says", ["urdf", "xml", "sdf", "world", "mjcf"], true, false, None;
+    RobotMacros, "robot with macros, to be expanded first", ["xacro"], false, false, None;
+    RobotSemantics, "links that may touch: SRDF", ["srdf"], true, false, None;
+    Map, "map of ROS", ["yaml", "yml"], true, false, None;
+    MapImage, "image of a map", ["png", "pgm", "pbm", "ppm"], true, false, None;
+    Off, "mesh in OFF", ["off"], true, true, Some((off::begins, off::read));
+    Triangles, "mesh in GEMPA's triangles", ["txt"], true, true, Some((|_| false, gempa::read));
+    Stl, "mesh in STL", ["stl", "stla", "stlb"], true, true, Some((stl::begins, stl::read));
+    Obj, "mesh in OBJ", ["obj"], true, false, Some((|_| false, obj::read));
+    Collada, "mesh in COLLADA", ["dae"], true, false, Some((collada::begins, collada::read));
+    TextPath, "path as text of the robot", ["txt", "path"], true, true, None;
+    JsonPath, "path as JSON", ["json"], true, true, None;
+    CsvPath, "path as comma-separated values", ["csv"], true, true, None;
+    Png, "picture in pixels", ["png"], false, true, None;
+    Svg, "picture in lines and areas", ["svg"], false, true, None;
+    Gif, "film in few colours", ["gif"], false, true, None;
+    Mp4, "film", ["mp4"], false, true, None;
+    Page, "page of the viewer", ["html", "htm"], false, true, None;
+    ViewerScene, "scene of the viewer", ["mpv"], true, true, None;
+    Gltf, "moving meshes in binary glTF", ["glb"], false, true, None;
+}
+
 use Content::{
-    CsvPath, Document, Environment, Gif, Gltf, JsonPath, Map, MapImage, Mesh, Mp4, OmplApp, Page, Png,
+    CsvPath, Document, Environment, Gif, Gltf, JsonPath, Mp4, OmplApp, Page, Png, Svg, TextPath, Toml,
+    ViewerScene,
 };
-use Content::{Robot, RobotMacros, RobotSemantics, Svg, TextPath, Toml, ViewerScene};
-
-/// All formats whose files are told by their endings. Where an ending has several, the likeliest comes first.
-#[rustfmt::skip]
-pub const FORMATS: [Format; 24] = [
-    row(Environment, "GEMPA environment", &["env", "txt"], true, true),
-    row(OmplApp, "OMPL.app problem", &["cfg"], true, false),
-    row(Toml, "robot, rigid body or world in the plane", &["toml"], true, false),
-    row(Document, "scene of the editor", &["mp.json"], true, true),
-    // Robots of other formats than URDF are told by their content what they are.
-    row(Robot, "URDF", &["urdf", "xml", "sdf", "world", "mjcf"], true, false),
-    row(RobotMacros, "robot description with macros", &["xacro"], false, false),
-    row(RobotSemantics, "SRDF", &["srdf"], true, false),
-    row(Map, "map of ROS", &["yaml", "yml"], true, false),
-    row(MapImage, "image of a map", &["png", "pgm", "pbm", "ppm"], true, false),
-    mesh("OFF", &["off"], true, off::begins, off::read),
-    mesh("GEMPA triangles", &["txt"], true, |_| false, |file, bytes, _| gempa::parse_gempa_mesh(file, bytes)),
-    mesh("STL", &["stl", "stla", "stlb"], true, stl::begins, stl::read),
-    mesh("OBJ", &["obj"], false, |_| false, obj::read),
-    mesh("COLLADA", &["dae"], false, collada::begins, collada::read),
-    row(TextPath, "path as text", &["txt", "path"], true, true),
-    row(JsonPath, "path as JSON", &["json"], true, true),
-    row(CsvPath, "path as comma-separated values", &["csv"], true, true),
-    row(Png, "picture in pixels", &["png"], false, true),
-    row(Svg, "picture in lines and areas", &["svg"], false, true),
-    row(Gif, "film in few colours", &["gif"], false, true),
-    row(Mp4, "film", &["mp4"], false, true),
-    row(Page, "page of the viewer", &["html", "htm"], false, true),
-    row(ViewerScene, "scene of the viewer", &["mpv"], true, true),
-    row(Gltf, "binary glTF", &["glb"], false, true),
-];
-
-const fn row(
-    content: Content,
-    name: &'static str,
-    endings: &'static [&'static str],
-    read: bool,
-    written: bool,
-) -> Format {
-    Format { content, name, endings, read, written, mesh: None }
-}
-
-const fn mesh(
-    name: &'static str,
-    endings: &'static [&'static str],
-    written: bool,
-    begins: fn(&[u8]) -> bool,
-    read: ReadMesh,
-) -> Format {
-    Format { mesh: Some((begins, read)), ..row(Mesh, name, endings, true, written) }
-}
-
-impl Format {
-    /// The formats of files with this name, the likeliest first.
-    pub fn named(file: &Path) -> impl Iterator<Item = &'static Self> {
-        let name = file.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        let ends = move |ending: &&str| {
-            name.strip_suffix(*ending)
-                .and_then(|rest| rest.strip_suffix('.'))
-                .is_some_and(|stem| !stem.is_empty())
-        };
-        FORMATS.iter().filter(move |format| format.endings.iter().any(&ends))
-    }
-
-    /// The format of a mesh, by the name of its file if that can be nothing else, or else by its content.
-    #[must_use]
-    pub fn of_mesh(file: &Path, bytes: &[u8]) -> Option<&'static Self> {
-        let mut named = Self::named(file).filter(|format| format.mesh.is_some());
-        let begins = |format: &&Self| format.mesh.is_some_and(|(begins, _)| begins(bytes));
-        match Content::of(file).all(|content| content == Mesh) {
-            true => named.next().or_else(|| FORMATS.iter().find(begins)),
-            false => FORMATS.iter().find(begins).or_else(|| named.next()),
-        }
-    }
-
-    /// What reads a mesh of this format.
-    pub(crate) fn mesh_reader(&self) -> Option<ReadMesh> {
-        self.mesh.map(|(_, read)| read)
-    }
-}
 
 impl Content {
     /// What a file with this name may hold, the likeliest first.
     pub fn of(file: &Path) -> impl Iterator<Item = Self> {
-        Format::named(file).map(|format| format.content)
+        let name = file.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let ends = move |ending: &&str| {
+            let stem = name.strip_suffix(*ending).and_then(|rest| rest.strip_suffix('.'));
+            stem.is_some_and(|stem| !stem.is_empty())
+        };
+        let named = FORMATS.iter().filter(move |format| format.endings.iter().any(&ends));
+        named.map(|format| format.content)
+    }
+
+    /// The format of a mesh, by the name of its file if that can be nothing else, or else by its content.
+    #[must_use]
+    pub fn of_mesh(file: &Path, bytes: &[u8]) -> Option<Self> {
+        let named = Self::of(file).find(|content| content.is_mesh());
+        let begins = |format: &&Format| format.mesh.is_some_and(|(begins, _)| begins(bytes));
+        let told = || FORMATS.iter().find(begins).map(|format| format.content);
+        let sure = named.filter(|_| Self::of(file).all(Self::is_mesh));
+        sure.or_else(told).or(named)
+    }
+
+    /// Its row of the table.
+    #[must_use]
+    pub fn format(self) -> &'static Format {
+        &FORMATS[self as usize]
+    }
+
+    /// What reads it, if it is a mesh.
+    pub(crate) fn mesh_reader(self) -> Option<ReadMesh> {
+        self.format().mesh.map(|(_, read)| read)
+    }
+
+    /// Whether it is a mesh.
+    #[must_use]
+    pub fn is_mesh(self) -> bool {
+        self.format().mesh.is_some()
     }
 
     /// Whether it is a whole problem: robot, obstacles, start and goal.
@@ -184,20 +132,19 @@ impl Content {
         matches!(self, Png | Svg | Gif | Mp4 | Page | ViewerScene | Gltf)
     }
 
-    /// The usual ending of such files: the first of its row.
+    /// The usual ending of such files.
     #[must_use]
     pub fn ending(self) -> &'static str {
-        FORMATS.iter().find(|format| format.content == self).map_or("", |format| format.endings[0])
+        self.format().endings[0]
     }
 
-    /// The usual endings of all formats that hold what is `wanted`, for people: `.txt, .json or .csv`.
+    /// The usual endings of what is `wanted`, for people: `.txt, .json or .csv`.
     pub fn endings(wanted: impl Fn(Self) -> bool) -> String {
         let wanted = FORMATS.iter().filter(|format| wanted(format.content));
         let endings: Vec<_> = wanted.map(|format| format!(".{}", format.endings[0])).collect();
         match endings.split_last() {
-            Some((last, [])) => last.clone(),
-            Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
-            None => String::new(),
+            Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+            _ => endings.concat(),
         }
     }
 
@@ -220,23 +167,23 @@ mod tests {
 
     #[test]
     fn meshes_are_told_by_name_or_content() {
-        let of = |name: &str, bytes: &[u8]| Format::of_mesh(Path::new(name), bytes).map(|format| format.name);
-        assert_eq!(of("a.OFF", b""), Some("OFF"));
-        assert_eq!(of("a.txt", b"12\n"), Some("GEMPA triangles"));
-        assert_eq!(of("a.txt", b"\n COFF # x"), Some("OFF"));
-        assert_eq!(of("a", b"OFF 1 2 3"), Some("OFF"));
-        assert_eq!(of("a", b"solid x\n facet normal 0 0 1"), Some("STL"));
-        assert_eq!(of("a.stl", b"OFF in the header of a binary file"), Some("STL"));
-        assert_eq!(of("a.xml", b"<?xml?><COLLADA"), Some("COLLADA"));
+        let of = |name: &str, bytes: &[u8]| Content::of_mesh(Path::new(name), bytes);
+        assert_eq!(of("a.OFF", b""), Some(Content::Off));
+        assert_eq!(of("a.txt", b"12\n"), Some(Content::Triangles));
+        assert_eq!(of("a.txt", b"\n COFF # x"), Some(Content::Off));
+        assert_eq!(of("a", b"OFF 1 2 3"), Some(Content::Off));
+        assert_eq!(of("a", b"solid x\n facet normal 0 0 1"), Some(Content::Stl));
+        assert_eq!(of("a.stl", b"OFF in the header of a binary file"), Some(Content::Stl));
+        assert_eq!(of("a.xml", b"<?xml?><COLLADA"), Some(Content::Collada));
         assert_eq!(of("a.step", b"ISO-10303-21;"), None);
     }
 
     #[test]
     fn names_say_what_files_may_hold() {
         let of = |name: &str| Content::of(Path::new(name)).collect::<Vec<_>>();
-        assert_eq!(of("room.txt"), [Environment, Mesh, TextPath]);
+        assert_eq!(of("room.txt"), [Environment, Content::Triangles, TextPath]);
         assert_eq!(of("room.mp.json"), [Document, JsonPath]);
-        assert_eq!(of("folder.off/Map.PNG"), [MapImage, Png]);
+        assert_eq!(of("folder.off/Map.PNG"), [Content::MapImage, Png]);
         for other in ["off", ".off", "a.off/b", "a.offs", ""] {
             assert!(of(other).is_empty(), "{other}");
         }

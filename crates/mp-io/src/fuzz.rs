@@ -7,7 +7,7 @@
 
 use crate::formats::collada::Scene;
 use crate::mesh::Axes;
-use crate::{Column, csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
+use crate::{Column, csv_text, gempa_mesh_text, parse_csv, parse_mesh, stl_text};
 use crate::{
     Environment, Error, ErrorKind, GridMap, JointPath, OffDocument, OmplProblem, PathFile, PlanarFile,
     RobotFile, RosMap, SceneDocument,
@@ -55,8 +55,8 @@ pub fn off(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn gempa_mesh(bytes: &[u8]) -> Result<(), Error> {
-    let mesh = parse_gempa_mesh("f.txt", bytes)?;
-    same_triangles(&mesh, &parse_gempa_mesh("f.txt", gempa_mesh_text(&mesh).as_bytes()));
+    let mesh = parse_mesh("f.txt", bytes)?;
+    same_triangles(&mesh, &parse_mesh("f.txt", gempa_mesh_text(&mesh).as_bytes()));
     Ok(())
 }
 
@@ -89,8 +89,8 @@ pub fn json_path(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn stl(bytes: &[u8]) -> Result<(), Error> {
-    let mesh = parse_stl("f.stl", bytes)?;
-    same_triangles(&mesh, &parse_stl("f.stl", stl_text(&mesh).as_bytes()));
+    let mesh = parse_mesh("f.stl", bytes)?;
+    same_triangles(&mesh, &parse_mesh("f.stl", stl_text(&mesh).as_bytes()));
     Ok(())
 }
 
@@ -99,7 +99,7 @@ pub fn stl(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn obj(bytes: &[u8]) -> Result<(), Error> {
-    parse_obj("f.obj", bytes).map(drop)
+    parse_mesh("f.obj", bytes).map(drop)
 }
 
 /// COLLADA.

@@ -8,7 +8,7 @@
 //! - [`FORMATS`] is the table of all formats: what files with which endings hold.
 //! - [`read_mesh`] reads a mesh, whatever the format.
 //! - [`Environment`], [`PathFile`]: GEMPA environment and configuration files.
-//! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: single mesh formats.
+//! - [`OffDocument`], [`write_off`], [`write_gempa_mesh`], [`write_stl`]: single mesh formats.
 //!
 //! Every reader takes a path, or bytes and the name that errors call them. Errors ([`Error`]) say file, line,
 //! column, what was expected and what to do; no input makes a reader panic, hang or use memory out of
@@ -45,13 +45,11 @@ pub use document::{DocumentBody, DocumentShape, SceneDocument};
 pub use drive::{Drive, Driven};
 pub use error::{Error, ErrorKind, one_line, shortened};
 pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, Until, read_text};
-pub use formats::collada::parse_collada;
-pub use formats::obj::parse_obj;
 pub use formats::off::{OffColor, OffDocument, OffFace, off_text, write_off};
-pub use formats::stl::{parse_stl, stl_text, write_stl};
+pub use formats::stl::{stl_text, write_stl};
 pub use formats::{Content, FORMATS, Format};
-pub use gempa::{Environment, Obstacle, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
-pub use mesh::{Axes, MAX_CORNERS, read_mesh, read_mesh_of, read_mesh_with};
+pub use gempa::{Environment, Obstacle, gempa_mesh_text, write_gempa_mesh};
+pub use mesh::{Axes, MAX_CORNERS, parse_mesh, read_mesh, read_mesh_of, read_mesh_with};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl, exported_files};
 pub use path::{JointPath, PathFile};
 pub use planar::{

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::files::{Disk, Files, MAX_MESH_BYTES};
-use crate::formats::{Content, Format};
+use crate::formats::Content;
 use mp_geom::{MeshError, TriMesh};
 use mp_stop::Interrupt;
 use nalgebra::Point3;
@@ -60,19 +60,30 @@ pub(crate) struct Reading<'a> {
     pub(crate) remark: &'a mut dyn FnMut(&str),
 }
 
-impl<'a> Reading<'a> {
-    /// To the end.
-    pub(crate) fn noting(remark: &'a mut dyn FnMut(&str)) -> Self {
-        Self { axes: Axes::YUp, interrupt: Interrupt::never(), remark }
-    }
-}
-
 /// Reads the bytes of a mesh whose file errors call so.
 pub(crate) type ReadMesh = fn(&str, &[u8], &mut Reading<'_>) -> Result<TriMesh, Error>;
 
-/// Reads bytes by themselves, to the end.
-pub(crate) fn parse(file: &str, bytes: &[u8], read: ReadMesh) -> Result<TriMesh, Error> {
-    read(file, bytes, &mut Reading::noting(&mut |_| ()))
+/// Reads `bytes`, the content of a mesh in the format that the name `file`, or else the content, says. Errors call it `file`.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn parse_mesh(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
+    parse_noting(file, bytes, &mut |_| ())
+}
+
+/// As [`parse_mesh`]; `remark` takes what was decided or passed over.
+pub(crate) fn parse_noting(file: &str, bytes: &[u8], remark: &mut dyn FnMut(&str)) -> Result<TriMesh, Error> {
+    let interrupt = Interrupt::never();
+    reader(file, bytes)?(file, bytes, &mut Reading { axes: Axes::YUp, interrupt, remark })
+}
+
+/// What reads the mesh in a file.
+fn reader(file: &str, bytes: &[u8]) -> Result<ReadMesh, Error> {
+    Content::of_mesh(Path::new(file), bytes).and_then(Content::mesh_reader).ok_or_else(|| {
+        Error::new(ErrorKind::Unsupported, file, "this is not a mesh format that is read here")
+            .expected(format!("a file {}", Content::endings(Content::is_mesh)))
+            .help("convert the mesh to one of these")
+    })
 }
 
 /// As [`read_mesh_of`], with these axes if it is a COLLADA mesh.
@@ -84,13 +95,8 @@ pub fn read_mesh_with(files: &dyn Files, path: &Path, axes: Axes) -> Result<TriM
     if files.only_reads() {
         return stand_in(&file);
     }
-    let Some(read) = Format::of_mesh(path, &bytes).and_then(Format::mesh_reader) else {
-        return Err(Error::new(ErrorKind::Unsupported, file, "this is not a mesh format that is read here")
-            .expected(format!("a file {}", Content::endings(|content| content == Content::Mesh)))
-            .help("convert the mesh to one of these"));
-    };
     let remark = &mut |remark: &str| files.note(path, remark);
-    read(&file, &bytes, &mut Reading { axes, interrupt: files.interrupt(), remark })
+    reader(&file, &bytes)?(&file, &bytes, &mut Reading { axes, interrupt: files.interrupt(), remark })
 }
 
 /// The triangle mesh of polygons with at least three corners each, read from `file`.

@@ -112,7 +112,7 @@ impl RigidProblem {
         let text = decode(&file, &bytes)?;
         let is_rigid =
             |content| matches!(content, Content::Environment | Content::OmplApp | Content::Document);
-        match named.filter(|content| is_rigid(*content) || *content == Content::Mesh).or_else(|| told(text)) {
+        match named.filter(|content| is_rigid(*content) || content.is_mesh()).or_else(|| told(text)) {
             Some(Content::Environment) => {
                 Self::from_environment(files, path, &Text { file: &file, text, guide: environment::GUIDE })
             }

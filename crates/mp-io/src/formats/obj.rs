@@ -2,7 +2,7 @@
 
 use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
-use crate::mesh::{LEFT_OUT, Reading, build, parse};
+use crate::mesh::{LEFT_OUT, Reading, build};
 use crate::text::{Text, Token, clipped};
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
@@ -39,13 +39,6 @@ const CURVED: [&str; 13] =
 
 /// Reads `bytes`, the content of an OBJ file that errors call `file`: its vertices and polygons. All groups
 /// and objects become one mesh; texture, normals, materials, points and lines are skipped.
-///
-/// # Errors
-/// [`Error`] when it is not OBJ or has curved surfaces, with the line and column.
-pub fn parse_obj(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
-    parse(file, bytes, read)
-}
-
 pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {
     let interrupt = &mut reading.interrupt;
     let decoded = decode_mesh(file, bytes)?;
@@ -168,9 +161,10 @@ fn corner(text: &Text<'_>, word: Token<'_>, so_far: usize, total: usize) -> Resu
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::{parse_mesh, parse_noting};
 
     fn parse(text: &str) -> TriMesh {
-        parse_obj("t.obj", text.as_bytes()).unwrap()
+        parse_mesh("t.obj", text.as_bytes()).unwrap()
     }
 
     #[test]
@@ -202,14 +196,14 @@ mod tests {
         );
         assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (3, 2));
         // The group takes the next line: what is missing then is said with its line.
-        let e = parse_obj("t.obj", b"v 0 0 0\ng a\\\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap_err();
+        let e = parse_mesh("t.obj", b"v 0 0 0\ng a\\\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(5), Some(7)), "{e}");
     }
 
     /// What is read, in how many triangles, and what is remarked.
     fn remarks(bytes: &[u8]) -> (Result<usize, String>, Vec<String>) {
         let mut remarks = Vec::new();
-        let mesh = read("t.obj", bytes, &mut Reading::noting(&mut |remark| remarks.push(remark.to_owned())));
+        let mesh = parse_noting("t.obj", bytes, &mut |remark| remarks.push(remark.to_owned()));
         (mesh.map(|mesh| mesh.triangles().len()).map_err(|e| e.to_string()), remarks)
     }
 
@@ -230,14 +224,14 @@ mod tests {
     fn names_and_comments_in_any_encoding() {
         let text = b"# Gr\xfc\xdfe\nmtllib M\xf6bel.mtl\ng Geh\xe4use\nusemtl \x83n\nv 0 0 0 # \xb0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
         assert_eq!(remarks(text), (Ok(1), Vec::new()));
-        let e = parse_obj("t.obj", b"# \xe4\nv 0 \xe4 0\n").unwrap_err();
+        let e = parse_mesh("t.obj", b"# \xe4\nv 0 \xe4 0\n").unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(2), Some(5)), "{e}");
     }
 
     #[test]
     fn bad_corners() {
         for bad in ["0", "4", "-4", "1/x", "1/1/1/1", "a", "99999999999999999999", "-9223372036854775808"] {
-            let e = parse_obj("t.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {bad}\n").as_bytes())
+            let e = parse_mesh("t.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {bad}\n").as_bytes())
                 .unwrap_err();
             assert_eq!((e.line(), e.column()), (Some(4), Some(7)), "{e}");
         }

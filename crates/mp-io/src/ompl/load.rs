@@ -3,7 +3,7 @@
 use super::config;
 use crate::error::{Error, ErrorKind};
 use crate::files::{Files, MAX_MESH_BYTES, stem};
-use crate::formats::Format;
+use crate::formats::Content;
 use crate::formats::collada::{Scene, center::center_of_mesh};
 use crate::mesh::{Axes, read_mesh_of};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind, check_mesh, check_size, cited};
@@ -77,7 +77,7 @@ pub(crate) fn load(files: &dyn Files, path: &Path, text: &Text<'_>) -> Result<Ri
 /// A mesh and the mean of its vertices.
 fn mesh_and_center(files: &dyn Files, path: &Path) -> Result<(TriMesh, Vector3<f64>), Error> {
     let bytes = files.read(path, MAX_MESH_BYTES)?;
-    if Format::of_mesh(path, &bytes).is_some_and(|format| format.name == "COLLADA") {
+    if Content::of_mesh(path, &bytes) == Some(Content::Collada) {
         let file = path.display().to_string();
         let scene = Scene::parse(&file, &bytes, Axes::YUp)?;
         scene.remarks(Axes::YUp).iter().for_each(|remark| files.note(path, remark));

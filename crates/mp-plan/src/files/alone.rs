@@ -5,7 +5,7 @@
 
 use crate::files::load::OneText;
 use crate::{Error, Scene};
-use mp_io::{Content, FORMATS, Files};
+use mp_io::{Content, Files};
 use std::path::{Path, PathBuf};
 
 /// The scene of a file that is no scene but can be made one; `None` for all other files. `named` is what its name says that it holds.
@@ -31,8 +31,7 @@ pub(crate) fn scene(files: &dyn Files, file: &Path, named: Option<Content>) -> R
 
 /// The map file of ROS that gives the image `file` its scale.
 fn beside(files: &dyn Files, file: &Path) -> Result<PathBuf, Error> {
-    let maps = FORMATS.iter().filter(|format| format.content == Content::Map);
-    let mut places = maps.flat_map(|format| format.endings).map(|ending| file.with_extension(ending));
+    let mut places = Content::Map.format().endings.iter().map(|ending| file.with_extension(ending));
     places.find(|place| files.holds(place)).ok_or_else(|| {
         let name = name_of(file).unwrap_or_default();
         let stem = file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();

@@ -63,7 +63,7 @@ enum FileContent {
 
 /// The content of a file, by its ending; for `.txt` by its first lines.
 fn content(file: &Path) -> Result<FileContent, Error> {
-    use Content::{CsvPath, JsonPath, Map, MapImage, Mesh, Robot, RobotMacros, RobotSemantics, TextPath};
+    use Content::{CsvPath, JsonPath, Map, MapImage, Robot, RobotMacros, RobotSemantics, TextPath};
     let is_text = Content::of(file).any(|content| content == TextPath);
     match Content::of(file).next().filter(|_| !is_text) {
         Some(Robot | RobotMacros | RobotSemantics | Map | MapImage) => return Ok(FileContent::Scene),
@@ -73,7 +73,7 @@ fn content(file: &Path) -> Result<FileContent, Error> {
             let poses = PathRows::read(file, PathFormat::Poses, &[]).is_ok();
             return Ok(FileContent::Path(if poses { PathFormat::Poses } else { PathFormat::Joints }));
         }
-        Some(Mesh) => return Ok(FileContent::Mesh),
+        Some(mesh) if mesh.is_mesh() => return Ok(FileContent::Mesh),
         _ => {}
     }
     let (_, bytes) = mp_io::read_text(file)?;

@@ -17,8 +17,8 @@ pub(crate) fn endings() -> Vec<(String, &'static str)> {
             Content::Document => (0, "scene"),
             content if content.is_problem() => (1, "scene"),
             Content::Robot | Content::Map | Content::MapImage => (3, "scene"),
-            Content::Mesh => (3, "mesh"),
             Content::ViewerScene => (3, "viewer"),
+            content if content.is_mesh() => (3, "mesh"),
             content if content.is_path() => (3, "path"),
             _ => continue,
         };
