@@ -6,6 +6,7 @@
 pub(crate) mod collada;
 pub(crate) mod obj;
 pub(crate) mod off;
+mod ply;
 pub(crate) mod stl;
 
 use crate::error::{Error, ErrorKind};
@@ -58,6 +59,7 @@ formats! {
     Stl, "mesh in STL", ["stl", "stla", "stlb"], true, true, Some((stl::begins, stl::read));
     Obj, "mesh in OBJ", ["obj"], true, false, Some((|_| false, obj::read));
     Collada, "mesh in COLLADA", ["dae"], true, false, Some((collada::begins, collada::read));
+    Ply, "mesh in PLY", ["ply"], true, false, Some((ply::begins, ply::read));
     TextPath, "path as text of the robot", ["txt", "path"], true, true, None;
     JsonPath, "path as JSON", ["json"], true, true, None;
     CsvPath, "path as comma-separated values", ["csv"], true, true, None;

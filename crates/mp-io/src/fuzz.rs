@@ -19,7 +19,7 @@ use std::fmt::Debug;
 pub type Target = fn(&[u8]) -> Result<(), Error>;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 18] = [
+pub const TARGETS: [(&str, Target); 19] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -28,6 +28,7 @@ pub const TARGETS: [(&str, Target); 18] = [
     ("stl", stl),
     ("obj", obj),
     ("collada", collada),
+    ("ply", ply),
     ("ompl-app", ompl_app),
     ("robot-problem", robot_problem),
     ("joint-path", joint_path),
@@ -100,6 +101,14 @@ pub fn stl(bytes: &[u8]) -> Result<(), Error> {
 /// When the bytes are refused.
 pub fn obj(bytes: &[u8]) -> Result<(), Error> {
     parse_mesh("f.obj", bytes).map(drop)
+}
+
+/// PLY, text and binary.
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn ply(bytes: &[u8]) -> Result<(), Error> {
+    parse_mesh("f.ply", bytes).map(drop)
 }
 
 /// COLLADA.

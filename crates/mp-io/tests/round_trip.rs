@@ -130,7 +130,7 @@ proptest! {
             let corners: Vec<String> = f.corners.iter().map(|c| (c + 1).to_string()).collect();
             text += &format!("f {}\n", corners.join(" "));
         }
-        let (off, obj) = (document.to_mesh("t"), parse_mesh("t.obj", text.as_bytes()));
+        let (off, obj) = (document.to_mesh("t.obj"), parse_mesh("t.obj", text.as_bytes()));
         prop_assert_eq!(off.map_err(|e| e.to_string()), obj.map_err(|e| e.to_string()));
     }
 }
