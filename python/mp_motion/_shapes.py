@@ -193,7 +193,7 @@ class Mesh:
 
     @classmethod
     def load(cls, file: str | os.PathLike[str], *, solid: bool = False) -> Mesh:
-        """Read a mesh: OFF, OBJ, STL, COLLADA or GEMPA text, by the ending of the file.
+        """Read a mesh: OFF, OBJ, STL, COLLADA, PLY or GEMPA text, by the ending of the file.
 
         Parameters
         ----------

@@ -3,6 +3,7 @@
 use crate::cli::{Animation, Drawing};
 use crate::page_planner::PagePlanner;
 use crate::progress::Line;
+use mp_io::Content;
 use mp_plan::{
     Cancel, Error, Film, FilmKind, GrownRoadmap, Look, PICTURE_SIZE, PathRows, PictureKind, Progress, Report,
     Scene, SearchEvent, Stage, Verdict, Watch,
@@ -13,15 +14,15 @@ use std::path::Path;
 /// What goes into the file of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Picture {
-    /// A picture, `.png` or `.svg`.
+    /// A picture in pixels or lines.
     Drawn(PictureKind, Look),
-    /// A film, `.gif` or `.mp4`.
+    /// A film.
     Film(Film),
-    /// `.html`: the viewer with the scene inside, for a browser; with a planner inside when there is one.
+    /// The viewer with the scene inside, for a browser; with a planner inside when there is one.
     Page(Option<PagePlanner>),
-    /// `.mpv`: the scene as the viewer reads it.
+    /// The scene as the viewer reads it.
     Scene,
-    /// `.glb`: meshes that move for this many seconds.
+    /// Meshes that move for this many seconds.
     Meshes(f64),
 }
 
@@ -77,7 +78,7 @@ impl Picture {
     /// # Errors
     /// When this scene cannot be written as such a file, or an option has no meaning for it.
     pub(crate) fn of(scene: &Scene, file: &Path, drawing: &Drawing, path: bool) -> Result<Self, Error> {
-        let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        let content = Content::of(file).find(|content| content.is_shown());
         let seconds = drawing.seconds.unwrap_or(SECONDS);
         let look = |size, at| Look {
             size: drawing.size.unwrap_or(size),
@@ -86,12 +87,12 @@ impl Picture {
             at,
             field: drawing.field.clone(),
         };
-        let picture = match (ending.as_str(), FilmKind::of(file)) {
-            ("html" | "htm", _) => {
+        let picture = match (content, FilmKind::of(file)) {
+            (Some(Content::Page), _) => {
                 Self::Page(drawing.with_planner.then(|| PagePlanner::of(scene)).transpose()?)
             }
-            ("mpv", _) => Self::Scene,
-            ("glb", _) => Self::Meshes(seconds),
+            (Some(Content::ViewerScene), _) => Self::Scene,
+            (Some(Content::Gltf), _) => Self::Meshes(seconds),
             (_, Some(kind)) => {
                 let mut film = Film::new(kind);
                 film.look = look(film.look.size, None);
@@ -103,6 +104,7 @@ impl Picture {
                 scene.check_film(&film, path)?;
                 Self::Film(film)
             }
+            (None, _) => return Err(Content::not_named(file, "a picture", Content::is_shown).into()),
             _ => {
                 let kind = scene.picture_kind(file)?;
                 let step = (drawing.animation == Some(Animation::Step)).then_some(0.5);
@@ -116,7 +118,7 @@ impl Picture {
                 Self::Drawn(kind, look)
             }
         };
-        picture.refuse_useless(drawing, &ending)?;
+        picture.refuse_useless(drawing, content.map_or("", Content::ending))?;
         Ok(picture)
     }
 
@@ -126,22 +128,25 @@ impl Picture {
         let still = matches!(self, Self::Drawn(..));
         let meshes = matches!(self, Self::Meshes(_));
         let page = matches!(self, Self::Page(_));
+        let (pictures, films) = (&[Content::Png, Content::Svg][..], &[Content::Gif, Content::Mp4][..]);
+        let drawn = &[pictures, films].concat()[..];
         let options = [
-            ("--with-planner", drawing.with_planner, page, "pages (.html)"),
-            ("--size", drawing.size.is_some(), film || still, "pictures and films"),
-            ("--mode", drawing.mode.is_some(), film || still, "pictures and films"),
-            ("--camera", drawing.camera.is_some(), film || still, "pictures and films"),
-            ("--field", drawing.field.is_some(), film || still, "pictures and films"),
-            ("--animation", drawing.animation.is_some(), film || still, "pictures and films"),
-            ("--at", drawing.at.is_some(), still, "pictures (.png, .svg)"),
-            ("--turntable", drawing.turntable, film, "films (.gif, .mp4)"),
-            ("--follow", drawing.follow, film, "films (.gif, .mp4)"),
-            ("--seconds", drawing.seconds.is_some(), film || meshes, "films (.gif, .mp4) and .glb"),
-            ("--fps", drawing.fps.is_some(), film, "films (.gif, .mp4)"),
+            ("--with-planner", drawing.with_planner, page, &[Content::Page][..]),
+            ("--size", drawing.size.is_some(), film || still, drawn),
+            ("--mode", drawing.mode.is_some(), film || still, drawn),
+            ("--camera", drawing.camera.is_some(), film || still, drawn),
+            ("--field", drawing.field.is_some(), film || still, drawn),
+            ("--animation", drawing.animation.is_some(), film || still, drawn),
+            ("--at", drawing.at.is_some(), still, pictures),
+            ("--turntable", drawing.turntable, film, films),
+            ("--follow", drawing.follow, film, films),
+            ("--seconds", drawing.seconds.is_some(), film || meshes, &[films, &[Content::Gltf]].concat()),
+            ("--fps", drawing.fps.is_some(), film, films),
         ];
         match options.into_iter().find(|(_, given, used, _)| *given && !used) {
             None => Ok(()),
             Some((name, _, _, of)) => {
+                let of = Content::endings(|content| of.contains(&content));
                 let what = format!("{name} has no meaning for a .{ending} file: it is for {of}");
                 Err(Error::new(what).help("leave it out, or end the name of the file otherwise"))
             }

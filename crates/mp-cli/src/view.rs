@@ -5,7 +5,7 @@ use crate::cli::View;
 use crate::input::{is_standard, judged_path, refuse_two_standard_inputs, scene};
 use crate::interrupt;
 use crate::output::{note, print};
-use mp_io::Files as _;
+use mp_io::{Content, Files as _};
 use mp_plan::Error;
 use mp_serve::{Limits, Server, Wake};
 use mp_store::folder_of;
@@ -88,7 +88,7 @@ fn opening(args: &View) -> Result<Opening, Error> {
 
 /// The scene file of the viewer at `given`, if it is one.
 fn scene_file(given: &Path) -> Result<Option<SceneFile>, Error> {
-    if !given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mpv")) {
+    if !Content::of(given).any(|content| content == Content::ViewerScene) {
         return Ok(None);
     }
     let bytes = mp_io::Disk.read(given, mp_io::MAX_MESH_BYTES)?;

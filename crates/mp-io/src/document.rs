@@ -2,9 +2,9 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::files::{Files, MAX_TEXT_BYTES, decode};
+use crate::formats::off::{OffDocument, off_text};
 use crate::gempa::{Environment, Obstacle, gempa_mesh_text};
 use crate::mesh::{mesh_error, read_mesh_of, solid_mesh};
-use crate::off::{OffDocument, off_text};
 use crate::problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind, vertex_beyond};
 use mp_geom::{Aabb, PrimitiveError, Shape, TriMesh, pose_from_six, short_six_from_pose};
 use nalgebra::{Isometry3, Point3};

@@ -5,9 +5,9 @@
 //! most readers do. `cargo xtask fuzz` calls them guided by coverage, and the test `fuzz` of this crate with the files that
 //! were found so, and with mutated ones (`docs/fuzzing.md`).
 
-use crate::collada::Scene;
+use crate::formats::collada::Scene;
 use crate::mesh::Axes;
-use crate::{Column, csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
+use crate::{Column, csv_text, gempa_mesh_text, parse_csv, parse_mesh, stl_text};
 use crate::{
     Environment, Error, ErrorKind, GridMap, JointPath, OffDocument, OmplProblem, PathFile, PlanarFile,
     RobotFile, RosMap, SceneDocument,
@@ -19,7 +19,7 @@ use std::fmt::Debug;
 pub type Target = fn(&[u8]) -> Result<(), Error>;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 18] = [
+pub const TARGETS: [(&str, Target); 19] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -28,6 +28,7 @@ pub const TARGETS: [(&str, Target); 18] = [
     ("stl", stl),
     ("obj", obj),
     ("collada", collada),
+    ("ply", ply),
     ("ompl-app", ompl_app),
     ("robot-problem", robot_problem),
     ("joint-path", joint_path),
@@ -55,8 +56,8 @@ pub fn off(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn gempa_mesh(bytes: &[u8]) -> Result<(), Error> {
-    let mesh = parse_gempa_mesh("f.txt", bytes)?;
-    same_triangles(&mesh, &parse_gempa_mesh("f.txt", gempa_mesh_text(&mesh).as_bytes()));
+    let mesh = parse_mesh("f.txt", bytes)?;
+    same_triangles(&mesh, &parse_mesh("f.txt", gempa_mesh_text(&mesh).as_bytes()));
     Ok(())
 }
 
@@ -89,8 +90,8 @@ pub fn json_path(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn stl(bytes: &[u8]) -> Result<(), Error> {
-    let mesh = parse_stl("f.stl", bytes)?;
-    same_triangles(&mesh, &parse_stl("f.stl", stl_text(&mesh).as_bytes()));
+    let mesh = parse_mesh("f.stl", bytes)?;
+    same_triangles(&mesh, &parse_mesh("f.stl", stl_text(&mesh).as_bytes()));
     Ok(())
 }
 
@@ -99,7 +100,15 @@ pub fn stl(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn obj(bytes: &[u8]) -> Result<(), Error> {
-    parse_obj("f.obj", bytes).map(drop)
+    parse_mesh("f.obj", bytes).map(drop)
+}
+
+/// PLY, text and binary.
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn ply(bytes: &[u8]) -> Result<(), Error> {
+    parse_mesh("f.ply", bytes).map(drop)
 }
 
 /// COLLADA.

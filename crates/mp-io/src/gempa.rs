@@ -5,4 +5,4 @@ pub(crate) mod environment;
 pub(crate) mod mesh;
 
 pub use environment::{Environment, Obstacle};
-pub use mesh::{gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
+pub use mesh::{gempa_mesh_text, write_gempa_mesh};

@@ -5,16 +5,16 @@
 //! - [`RobotProblem::load`] reads a problem for an arm, [`JointPath`] its paths.
 //! - [`PlanarProblem::load`] reads a world in the plane.
 //! - [`SceneDocument`] is a scene as an editor keeps it.
+//! - [`FORMATS`] is the table of all formats: what files with which endings hold.
 //! - [`read_mesh`] reads a mesh, whatever the format.
 //! - [`Environment`], [`PathFile`]: GEMPA environment and configuration files.
-//! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: single mesh formats.
+//! - [`OffDocument`], [`write_off`], [`write_gempa_mesh`], [`write_stl`]: single mesh formats.
 //!
 //! Every reader takes a path, or bytes and the name that errors call them. Errors ([`Error`]) say file, line,
 //! column, what was expected and what to do; no input makes a reader panic, hang or use memory out of
 //! proportion to its size. Files are written whole or not at all. Lengths are metres and
 //! angles radians. The formats are documented in `docs/formats/`.
 
-mod collada;
 mod columns;
 mod csv;
 mod document;
@@ -22,13 +22,12 @@ mod drive;
 mod encoding;
 mod error;
 mod files;
+mod formats;
 pub mod fuzz;
 mod gempa;
 mod json;
 mod mesh;
 mod number;
-mod obj;
-mod off;
 mod ompl;
 mod path;
 mod planar;
@@ -37,22 +36,21 @@ mod problem_file;
 mod rigid_toml;
 mod robot;
 mod shape;
-mod stl;
 mod text;
 mod toml_problem;
 mod xml;
 
-pub use collada::parse_collada;
 pub use columns::{Column, matched};
 pub use csv::{csv_text, parse_csv};
 pub use document::{DocumentBody, DocumentShape, SceneDocument};
 pub use drive::{Drive, Driven};
 pub use error::{Error, ErrorKind, one_line, shortened};
 pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, Until, read_text};
-pub use gempa::{Environment, Obstacle, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
-pub use mesh::{Axes, MAX_CORNERS, MeshFormat, read_mesh, read_mesh_of, read_mesh_with};
-pub use obj::parse_obj;
-pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
+pub use formats::off::{OffColor, OffDocument, OffFace, off_text, write_off};
+pub use formats::stl::{stl_text, write_stl};
+pub use formats::{Content, FORMATS, Format};
+pub use gempa::{Environment, Obstacle, gempa_mesh_text, write_gempa_mesh};
+pub use mesh::{Axes, MAX_CORNERS, parse_mesh, read_mesh, read_mesh_of, read_mesh_with};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl, exported_files};
 pub use path::{JointPath, PathFile};
 pub use planar::{
@@ -64,5 +62,4 @@ pub use problem_file::ProblemFile;
 pub use rigid_toml::{RigidMoving, RigidTask};
 pub use robot::{ObstacleEntry, RobotFile, RobotPart, RobotProblem, read_robot_text};
 pub use shape::ShapeEntry;
-pub use stl::{parse_stl, stl_text, write_stl};
 pub use toml_problem::{GoalEntry, GoalPart, Timing};

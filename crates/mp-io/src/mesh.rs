@@ -1,13 +1,10 @@
 //! Reading a mesh of any format, and making triangles of polygons.
 
-use crate::collada::Scene;
 use crate::error::{Error, ErrorKind};
 use crate::files::{Disk, Files, MAX_MESH_BYTES};
-use crate::gempa::parse_gempa_mesh;
-use crate::obj::parse_obj_until;
-use crate::off::OffDocument;
-use crate::stl::parse_stl_until;
+use crate::formats::Content;
 use mp_geom::{MeshError, TriMesh};
+use mp_stop::Interrupt;
 use nalgebra::Point3;
 use std::path::Path;
 
@@ -20,7 +17,7 @@ const MAX_CUTTING: usize = 1_000_000_000;
 /// The remark on a mesh with points and segments among its faces.
 pub(crate) const LEFT_OUT: &str = "faces of fewer than three corners are left out";
 
-/// Reads the mesh `path`: OFF, GEMPA `.txt`, STL, OBJ or COLLADA. The extension of the name decides, or,
+/// Reads the mesh `path`, of any format for meshes in the [table](crate::FORMATS). The ending of the name decides, or,
 /// when it is not known, the content.
 ///
 /// # Errors
@@ -53,92 +50,53 @@ pub enum Axes {
     YUp,
 }
 
+/// What readers of meshes are given besides the bytes.
+pub(crate) struct Reading<'a> {
+    /// What becomes of the axes, for formats that say which is up.
+    pub(crate) axes: Axes,
+    /// What is asked whether to end.
+    pub(crate) interrupt: Interrupt,
+    /// Takes what was decided or passed over.
+    pub(crate) remark: &'a mut dyn FnMut(&str),
+}
+
+/// Reads the bytes of a mesh whose file errors call so.
+pub(crate) type ReadMesh = fn(&str, &[u8], &mut Reading<'_>) -> Result<TriMesh, Error>;
+
+/// Reads `bytes`, the content of a mesh in the format that the name `file`, or else the content, says. Errors call it `file`.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn parse_mesh(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
+    parse_noting(file, bytes, &mut |_| ())
+}
+
+/// As [`parse_mesh`]; `remark` takes what was decided or passed over.
+pub(crate) fn parse_noting(file: &str, bytes: &[u8], remark: &mut dyn FnMut(&str)) -> Result<TriMesh, Error> {
+    let interrupt = Interrupt::never();
+    reader(file, bytes)?(file, bytes, &mut Reading { axes: Axes::YUp, interrupt, remark })
+}
+
+/// What reads the mesh in a file.
+fn reader(file: &str, bytes: &[u8]) -> Result<ReadMesh, Error> {
+    Content::of_mesh(Path::new(file), bytes).and_then(Content::mesh_reader).ok_or_else(|| {
+        Error::new(ErrorKind::Unsupported, file, "this is not a mesh format that is read here")
+            .expected(format!("a file {}", Content::endings(Content::is_mesh)))
+            .help("convert the mesh to one of these")
+    })
+}
+
 /// As [`read_mesh_of`], with these axes if it is a COLLADA mesh.
 ///
 /// # Errors
 /// As [`read_mesh`].
 pub fn read_mesh_with(files: &dyn Files, path: &Path, axes: Axes) -> Result<TriMesh, Error> {
-    let (bytes, interrupt) = (files.read(path, MAX_MESH_BYTES)?, files.interrupt());
-    let (file, bytes, interrupt) = (path.display().to_string(), bytes.as_slice(), &interrupt);
-    let file = file.as_str();
+    let (file, bytes) = (path.display().to_string(), files.read(path, MAX_MESH_BYTES)?);
     if files.only_reads() {
-        return stand_in(file);
+        return stand_in(&file);
     }
-    match MeshFormat::of(path, bytes) {
-        Some(MeshFormat::Off) => {
-            let document = OffDocument::parse_until(file, bytes, interrupt)?;
-            if document.faces.iter().any(|face| face.corners.len() < 3) {
-                files.note(path, LEFT_OUT);
-            }
-            document.to_mesh(file)
-        }
-        Some(MeshFormat::Gempa) => parse_gempa_mesh(file, bytes),
-        Some(MeshFormat::Stl) => {
-            parse_stl_until(file, bytes, interrupt, &mut |remark| files.note(path, remark))
-        }
-        Some(MeshFormat::Obj) => {
-            parse_obj_until(file, bytes, interrupt, &mut |remark| files.note(path, remark))
-        }
-        Some(MeshFormat::Collada) => {
-            let scene = Scene::parse(file, bytes, axes)?;
-            scene.remarks(axes).iter().for_each(|remark| files.note(path, remark));
-            scene.to_mesh(file)
-        }
-        None => Err(Error::new(ErrorKind::Unsupported, file, "this is not a mesh format that is read here")
-            .expected("a file .off, .txt (GEMPA), .stl, .obj or .dae")
-            .help("convert the mesh to one of these")),
-    }
-}
-
-/// A format of meshes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum MeshFormat {
-    /// Object file format, `.off`.
-    Off,
-    /// GEMPA's triangle soup, `.txt`.
-    Gempa,
-    /// Stereolithography, `.stl`, text or binary.
-    Stl,
-    /// Wavefront, `.obj`.
-    Obj,
-    /// COLLADA, `.dae`.
-    Collada,
-}
-
-impl MeshFormat {
-    /// The format of a file, by the extension of its name, or else by its content.
-    #[must_use]
-    pub fn of(path: &Path, bytes: &[u8]) -> Option<Self> {
-        let extension =
-            path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-        match extension.as_str() {
-            "off" => Some(Self::Off),
-            "stl" | "stla" | "stlb" => Some(Self::Stl),
-            "obj" => Some(Self::Obj),
-            "dae" => Some(Self::Collada),
-            "txt" => Some(if looks_like_off(bytes) { Self::Off } else { Self::Gempa }),
-            _ if looks_like_off(bytes) => Some(Self::Off),
-            _ => {
-                let head = &bytes[..bytes.len().min(4096)];
-                let has = |what: &[u8]| head.windows(what.len()).any(|w| w == what);
-                if has(b"<COLLADA") {
-                    Some(Self::Collada)
-                } else if head.trim_ascii_start().starts_with(b"solid") && has(b"facet") {
-                    Some(Self::Stl)
-                } else {
-                    None
-                }
-            }
-        }
-    }
-}
-
-/// Whether the first word is a keyword of OFF.
-fn looks_like_off(bytes: &[u8]) -> bool {
-    let head = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
-    let end = head.iter().position(|b| b.is_ascii_whitespace() || *b == b'#').unwrap_or(head.len());
-    (3..=8).contains(&end) && head[..end].ends_with(b"OFF")
+    let remark = &mut |remark: &str| files.note(path, remark);
+    reader(&file, &bytes)?(&file, &bytes, &mut Reading { axes, interrupt: files.interrupt(), remark })
 }
 
 /// The triangle mesh of polygons with at least three corners each, read from `file`.
@@ -200,17 +158,5 @@ mod tests {
         assert_eq!(some.triangles().len(), 3 * 198);
         let e = build("m", circle(200), std::iter::repeat_n(face.as_slice(), 1_000_000)).unwrap_err();
         assert_eq!(e.kind(), ErrorKind::TooLarge);
-    }
-
-    #[test]
-    fn formats_are_told_by_name_or_content() {
-        let of = |name: &str, bytes: &[u8]| MeshFormat::of(Path::new(name), bytes);
-        assert_eq!(of("a.OFF", b""), Some(MeshFormat::Off));
-        assert_eq!(of("a.txt", b"12\n"), Some(MeshFormat::Gempa));
-        assert_eq!(of("a.txt", b"\n COFF # x"), Some(MeshFormat::Off));
-        assert_eq!(of("a", b"OFF 1 2 3"), Some(MeshFormat::Off));
-        assert_eq!(of("a", b"solid x\n facet normal 0 0 1"), Some(MeshFormat::Stl));
-        assert_eq!(of("a.xml", b"<?xml?><COLLADA"), Some(MeshFormat::Collada));
-        assert_eq!(of("a.step", b"ISO-10303-21;"), None);
     }
 }

@@ -3,6 +3,7 @@
 use crate::columns::{Column, matched};
 use crate::error::{Error, ErrorKind};
 use crate::files::{decode, read_text};
+use crate::formats::Content;
 use crate::gempa::environment::six;
 use crate::json::{names, parse_rows, rows_text};
 use crate::number::Row;
@@ -271,7 +272,7 @@ fn write<C: AsRef<[f64]> + Serialize>(
 }
 
 fn is_json(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
+    Content::of(path).any(|content| content == Content::JsonPath)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::document;
 use crate::error::{Error, ErrorKind};
 use crate::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
+use crate::formats::Content;
 use crate::gempa::environment::{self, Environment};
 use crate::mesh::read_mesh_of;
 use crate::ompl;
@@ -79,26 +80,13 @@ pub struct RigidProblem {
     pub bounds: Option<Aabb>,
 }
 
-/// A format of problems.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum ProblemFormat {
-    Gempa,
-    OmplApp,
-}
-
-impl ProblemFormat {
-    /// The format of a file, by the extension of its name, or else by its content.
-    fn of(path: &Path, text: &str) -> Option<Self> {
-        let extension =
-            path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-        match extension.as_str() {
-            "env" | "txt" => Some(Self::Gempa),
-            "cfg" => Some(Self::OmplApp),
-            "off" | "stl" | "obj" | "dae" => None,
-            _ if text.lines().any(|l| l.trim() == "[problem]") => Some(Self::OmplApp),
-            _ => text.trim_start().get(..5).filter(|w| w.eq_ignore_ascii_case("Robot")).map(|_| Self::Gempa),
-        }
+/// What kind of problem is in a file that is not one by its name.
+fn told(text: &str) -> Option<Content> {
+    if text.lines().any(|l| l.trim() == "[problem]") {
+        return Some(Content::OmplApp);
     }
+    let first = text.trim_start().get(..5);
+    first.filter(|word| word.eq_ignore_ascii_case("Robot")).map(|_| Content::Environment)
 }
 
 impl RigidProblem {
@@ -116,20 +104,23 @@ impl RigidProblem {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
-        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+        let named = Content::of(path).next();
+        if let Some(Content::Document | Content::JsonPath) = named {
             return document::load(files, path);
         }
         let (file, bytes) = (path.display().to_string(), files.read(path, MAX_TEXT_BYTES)?);
         let text = decode(&file, &bytes)?;
-        match ProblemFormat::of(path, text) {
-            Some(ProblemFormat::Gempa) => {
+        let is_rigid =
+            |content| matches!(content, Content::Environment | Content::OmplApp | Content::Document);
+        match named.filter(|content| is_rigid(*content) || content.is_mesh()).or_else(|| told(text)) {
+            Some(Content::Environment) => {
                 Self::from_environment(files, path, &Text { file: &file, text, guide: environment::GUIDE })
             }
-            Some(ProblemFormat::OmplApp) => {
+            Some(Content::OmplApp) => {
                 ompl::load(files, path, &Text { file: &file, text, guide: ompl::GUIDE })
             }
-            None => Err(Error::new(ErrorKind::Unsupported, &file, "this is not a problem that is read here")
-                .expected("a GEMPA environment (.env, .txt), an OMPL.app problem (.cfg) or a scene of the editor (.mp.json)")
+            _ => Err(Error::new(ErrorKind::Unsupported, &file, "this is not a problem that is read here")
+                .expected(format!("the problem of a rigid body: {}", Content::endings(is_rigid)))
                 .help(
                     "a mesh or a path is not a problem: give the file that names the robot and the obstacles",
                 )),

@@ -25,12 +25,6 @@ pub enum ProblemFile {
 }
 
 impl ProblemFile {
-    /// Whether the name of a file is that of such a problem: it ends in `.toml`.
-    #[must_use]
-    pub fn is_named(path: &Path) -> bool {
-        path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
-    }
-
     /// Reads the problem at `path`. File names in it are relative to it.
     ///
     /// # Errors

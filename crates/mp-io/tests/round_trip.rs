@@ -3,7 +3,7 @@
 use mp_geom::TriMesh;
 use mp_io::{
     Environment, Obstacle, OffColor, OffDocument, OffFace, PathFile, SpaceKind, gempa_mesh_text, off_text,
-    parse_gempa_mesh, parse_obj, parse_stl, stl_text,
+    parse_mesh, stl_text,
 };
 use nalgebra::{Point3, Vector3};
 use proptest::collection::vec;
@@ -116,8 +116,8 @@ proptest! {
     #[test]
     fn meshes(mesh in soup()) {
         prop_assert_eq!(&OffDocument::parse("t.off", off_text(&mesh).as_bytes()).unwrap().to_mesh("t.off").unwrap(), &mesh);
-        prop_assert_eq!(triangles(&parse_gempa_mesh("t.txt", gempa_mesh_text(&mesh).as_bytes()).unwrap()), triangles(&mesh));
-        prop_assert_eq!(triangles(&parse_stl("t.stl", stl_text(&mesh).as_bytes()).unwrap()), triangles(&mesh));
+        prop_assert_eq!(triangles(&parse_mesh("t.txt", gempa_mesh_text(&mesh).as_bytes()).unwrap()), triangles(&mesh));
+        prop_assert_eq!(triangles(&parse_mesh("t.stl", stl_text(&mesh).as_bytes()).unwrap()), triangles(&mesh));
     }
 
     #[test]
@@ -130,7 +130,7 @@ proptest! {
             let corners: Vec<String> = f.corners.iter().map(|c| (c + 1).to_string()).collect();
             text += &format!("f {}\n", corners.join(" "));
         }
-        let (off, obj) = (document.to_mesh("t"), parse_obj("t", text.as_bytes()));
+        let (off, obj) = (document.to_mesh("t.obj"), parse_mesh("t.obj", text.as_bytes()));
         prop_assert_eq!(off.map_err(|e| e.to_string()), obj.map_err(|e| e.to_string()));
     }
 }

@@ -66,9 +66,17 @@ fn meshes_and_maps() {
         binary.extend([0; 2]);
     }
     let rows = squares.len() as u64;
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         element face {rows}\nproperty list uchar int vertex_indices\nend_header\n{}\n{}",
+        vertices.len(),
+        vertices.join("\n"),
+        faces(0, "3 ")
+    );
     for (name, bytes) in [
         ("a.obj", obj.into_bytes()),
         ("a.off", off.into_bytes()),
+        ("a.ply", ply.into_bytes()),
         ("a.stl", stl.into_bytes()),
         ("b.stl", binary),
     ] {

@@ -3,7 +3,7 @@
 use crate::{Column, Error, PathFormat, Robot};
 use mp_cspace::Configuration;
 use mp_cspace::angle::angle_difference;
-use mp_io::{JointPath, PathFile};
+use mp_io::{Content, JointPath, PathFile};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -24,11 +24,11 @@ pub struct PathRows {
 /// A kind of file for paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PathFileKind {
-    /// `.txt`, `.path`: the text form of the robot.
+    /// The text form of the robot.
     Text,
-    /// `.json`.
+    /// JSON.
     Json,
-    /// `.csv`: a line of names with units, then one configuration on each line.
+    /// Comma-separated values: a line of names with units, then one configuration on each line.
     Csv,
 }
 
@@ -38,17 +38,11 @@ impl PathFileKind {
     /// # Errors
     /// When the name has another ending, or none.
     pub fn of(file: &Path) -> Result<Self, Error> {
-        let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-        match ending.as_str() {
-            "txt" | "path" => Ok(Self::Text),
-            "json" => Ok(Self::Json),
-            "csv" => Ok(Self::Csv),
-            "" => {
-                Err(Error::new(format!("{} has no ending, which says how to write a path", file.display()))
-                    .help("end its name in .txt, .json or .csv"))
-            }
-            _ => Err(Error::new(format!("cannot write a path as .{ending}: {}", file.display()))
-                .help("end its name in .txt, .json or .csv")),
+        match Content::of(file).find(|content| content.is_path()) {
+            Some(Content::TextPath) => Ok(Self::Text),
+            Some(Content::JsonPath) => Ok(Self::Json),
+            Some(Content::CsvPath) => Ok(Self::Csv),
+            _ => Err(Content::not_named(file, "a path", Content::is_path).into()),
         }
     }
 }

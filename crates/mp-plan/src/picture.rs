@@ -7,6 +7,7 @@ pub(crate) mod mp4;
 
 use crate::{BodyShape, Error, PathRows, RelaxField, Scene, Sweep};
 use mp_geom::TriMesh;
+use mp_io::Content;
 use mp_render::palette::{GOAL, INK, MIDDLE, OBSTACLE, PATH, START};
 use mp_render::{Animation, Drawing, Item, Mode, Moment, View};
 use nalgebra::{Isometry3, Point2, Point3};
@@ -55,14 +56,15 @@ impl Scene {
     /// # Errors
     /// When this scene cannot be drawn as such a file.
     pub fn picture_kind(&self, file: &Path) -> Result<PictureKind, Error> {
-        let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-        let wrong = |what: String| Err(Error::new(what).help("end its name in .png"));
-        match ending.as_str() {
-            "png" => Ok(PictureKind::Png),
-            "svg" if self.is_planar_world() => Ok(PictureKind::Svg),
-            "svg" => wrong(format!("only worlds in the plane are drawn as .svg, not for {}", file.display())),
-            "" => wrong(format!("{} has no ending, which says what kind of picture it is", file.display())),
-            _ => wrong(format!("cannot write a picture as .{ending}: {}", file.display())),
+        let fits = |content| content == Content::Png || content == Content::Svg && self.is_planar_world();
+        match Content::of(file).find(|content| content.is_shown()) {
+            Some(Content::Png) => Ok(PictureKind::Png),
+            Some(Content::Svg) if self.is_planar_world() => Ok(PictureKind::Svg),
+            Some(Content::Svg) => {
+                let what = format!("only worlds in the plane are drawn as .svg, not for {}", file.display());
+                Err(Error::new(what).help(format!("end its name in {}", Content::endings(fits))))
+            }
+            _ => Err(Content::not_named(file, "a picture", fits).into()),
         }
     }
 

@@ -4,22 +4,18 @@ import { el } from "mp/dom.js";
 
 /** @typedef {{name: string, bytes: Uint8Array<ArrayBuffer>}} NamedFile */
 /** @typedef {"viewer" | "scene" | "mesh" | "path" | "other"} FileKind `viewer`: a scene file of the viewer; `other`: what a scene may need */
+/** @typedef {[ending: string, kind: FileKind | "text"][]} Endings the `endings` of the reply to `hello` */
 
-/** The endings that are offered when files are chosen. */
-export const ENDINGS = ".mpv,.mp.json,.env,.cfg,.toml,.urdf,.png,.pgm,.yaml,.yml,.txt,.off,.stl,.obj,.dae,.json,.csv";
-export const MESH_ENDINGS = ".off,.txt,.stl,.obj,.dae";
+/** The endings to offer when files are chosen. @param {Endings} endings @param {string[]} kinds */
+export const offered = (endings, kinds = ["viewer", "scene", "mesh", "path", "text"]) => endings.filter(([, kind]) => kinds.includes(kind)).map(([ending]) => ending).join(",");
 
-/** @type {[RegExp, FileKind][]} */
-const KINDS = [
-  [/\.mpv$/i, "viewer"], [/\.mp\.json$/i, "scene"], [/\.(env|cfg|toml|urdf|png|pgm|yaml|yml)$/i, "scene"],
-  [/\.(off|stl|obj|dae)$/i, "mesh"], [/\.(json|csv)$/i, "path"],
-];
+/** The place of a file's ending among all. @param {string} name @param {Endings} endings */
+const placeOf = (name, endings) => endings.findIndex(([ending]) => name.toLowerCase().endsWith(ending));
 
-/** What a file is for, by its ending; of .txt by its first lines (docs/formats). @param {NamedFile} file @returns {FileKind} */
-export function kindOf({ name, bytes }) {
-  const known = KINDS.find(([ending]) => ending.test(name));
-  if (known) return known[1];
-  if (!/\.txt$/i.test(name)) return "other";
+/** What a file is for, by its ending; of .txt by its first lines (docs/formats). @param {NamedFile} file @param {Endings} endings @returns {FileKind} */
+export function kindOf({ name, bytes }, endings) {
+  const kind = endings[placeOf(name, endings)]?.[1] ?? "other";
+  if (kind !== "text") return kind;
   const text = new TextDecoder().decode(bytes.subarray(0, 4000));
   const lines = text.split(/[\r\n]+/).map((line) => line.replace(/#.*/, "").trim()).filter((line) => line);
   const [first = "", second = ""] = lines;
@@ -30,14 +26,10 @@ export function kindOf({ name, bytes }) {
   return count === 2 || (count === 1 && numbers === 6) ? "path" : "mesh";
 }
 
-/** Endings of scenes: first what is a scene for sure, last what a scene may name. */
-const SCENES = [".mp.json", ".env", ".cfg", ".toml", ".txt", ".urdf", ".yaml", ".yml", ".png", ".pgm"];
-
-/** The name of the file that is the scene, among files of this kind. @param {NamedFile[]} scenes @returns {string} */
-export function mainOf(scenes) {
-  const rank = (/** @type {string} */ name) => SCENES.findIndex((ending) => name.toLowerCase().endsWith(ending));
-  const best = Math.min(...scenes.map(({ name }) => rank(name)));
-  const first = scenes.filter(({ name }) => rank(name) === best);
+/** The name of the file that is the scene, among files of this kind. @param {NamedFile[]} scenes @param {Endings} endings @returns {string} */
+export function mainOf(scenes, endings) {
+  const best = Math.min(...scenes.map(({ name }) => placeOf(name, endings)));
+  const first = scenes.filter(({ name }) => placeOf(name, endings) === best);
   if (first.length > 1) throw new Error(`These are several scenes: ${first.map(({ name }) => name).join(", ")}. Open one at a time, with the files that it names.`);
   return first[0].name;
 }

@@ -2,12 +2,12 @@
 
 import { button, showError } from "mp/dom.js";
 import { askRole, HELP } from "mp/editor.js";
-import { ENDINGS, MESH_ENDINGS, chooseFiles, kindOf, mainOf, readFiles } from "mp/files.js";
+import { chooseFiles, kindOf, mainOf, offered, readFiles } from "mp/files.js";
 import { readPath, readScene } from "mp/scene.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 
 /** @import { Editor } from "mp/editor.js" */
-/** @import { NamedFile } from "mp/files.js" */
+/** @import { Endings, NamedFile } from "mp/files.js" */
 /** @import { Document } from "mp/document.js" */
 /** @import { SaveDialog } from "mp/saving.js" */
 
@@ -18,6 +18,7 @@ export class Opening {
     this.workbench = editor.workbench;
     this.viewer = editor.viewer;
     this.session = editor.workbench.session;
+    /** @type {Endings} */ this.endings = editor.workbench.hello.endings;
     this.undo = button("↶", () => editor.undo(), { "aria-label": "Undo" });
     this.redo = button("↷", () => editor.redo(), { "aria-label": "Redo" });
     this.viewer.addMenu(button("New", () => editor.create(), { title: "New environment" }));
@@ -69,20 +70,20 @@ export class Opening {
       this.workbench.attempt(async () => this.take(await readFiles(files)));
     });
   }
-  choose() { return this.workbench.attempt(async () => this.take(await chooseFiles(ENDINGS, true))); }
+  choose() { return this.workbench.attempt(async () => this.take(await chooseFiles(offered(this.endings), true))); }
 
-  chooseMesh() { return this.workbench.attempt(async () => this.addMeshes(await chooseFiles(MESH_ENDINGS, true))); }
+  chooseMesh() { return this.workbench.attempt(async () => this.addMeshes(await chooseFiles(offered(this.endings, ["mesh", "text"]), true))); }
 
   /** Does with files what they are for. @param {NamedFile[]} files */
   async take(files) {
-    const of = (/** @type {string} */ kind) => files.filter((file) => kindOf(file) === kind);
+    const of = (/** @type {string} */ kind) => files.filter((file) => kindOf(file, this.endings) === kind);
     const [viewer, scenes, meshes, paths] = [of("viewer"), of("scene"), of("mesh"), of("path")];
     if (viewer.length) return this.showOnly(viewer[0]);
     if (scenes.length) {
-      const needed = files.filter((file) => kindOf(file) !== "path");
-      if (!(await this.workbench.openScene({ files: needed, main: mainOf(scenes) }))) return;
+      const needed = files.filter((file) => kindOf(file, this.endings) !== "path");
+      if (!(await this.workbench.openScene({ files: needed, main: mainOf(scenes, this.endings) }))) return;
     } else if (meshes.length) await this.addMeshes(meshes);
-    else if (!paths.length && files.length) throw new Error(`“${files[0].name}” is no file that is read here. Scenes, meshes and paths end in ${ENDINGS.replaceAll(",", " ")}.`);
+    else if (!paths.length && files.length) throw new Error(`“${files[0].name}” is no file that is read here. Scenes, meshes and paths end in ${offered(this.endings).replaceAll(",", " ")}.`);
     if (paths.length) await this.addPaths(paths);
   }
   /** A scene file of the viewer is shown without the session: there is nothing to plan in it. @param {NamedFile} file */

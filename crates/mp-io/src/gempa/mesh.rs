@@ -4,7 +4,7 @@
 //! number of triangles, then nine numbers for each, the corners x y z one after the other.
 
 use crate::error::Error;
-use crate::mesh::mesh_error;
+use crate::mesh::{Reading, mesh_error};
 use crate::number::Row;
 use crate::text::{Lexer, Text, clipped};
 use mp_geom::TriMesh;
@@ -16,7 +16,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`Error`] when it is not such a mesh, with the line and column.
-pub fn parse_gempa_mesh(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
+pub(crate) fn read(file: &str, bytes: &[u8], _: &mut Reading<'_>) -> Result<TriMesh, Error> {
     let text = Text::new(file, bytes, "gempa-mesh.md")?;
     let mut lexer = Lexer::new(&text);
     let what = "the number of triangles";

@@ -1,7 +1,7 @@
 //! A problem as one JSON and two OFF files, for running other planners on the same problem.
 
 use crate::error::{Error, ErrorKind};
-use crate::off::off_text;
+use crate::formats::off::off_text;
 use crate::problem::{RigidProblem, SpaceKind};
 use mp_geom::TriMesh;
 use nalgebra::Isometry3;

@@ -1,10 +1,11 @@
 //! OMPL.app problems and the meshes they name.
 
 use super::config;
-use crate::collada::{Scene, center::center_of_mesh};
 use crate::error::{Error, ErrorKind};
 use crate::files::{Files, MAX_MESH_BYTES, stem};
-use crate::mesh::{Axes, MeshFormat, read_mesh_of};
+use crate::formats::Content;
+use crate::formats::collada::{Scene, center::center_of_mesh};
+use crate::mesh::{Axes, read_mesh_of};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind, check_mesh, check_size, cited};
 use crate::text::Text;
 use mp_geom::{Aabb, TriMesh};
@@ -76,7 +77,7 @@ pub(crate) fn load(files: &dyn Files, path: &Path, text: &Text<'_>) -> Result<Ri
 /// A mesh and the mean of its vertices.
 fn mesh_and_center(files: &dyn Files, path: &Path) -> Result<(TriMesh, Vector3<f64>), Error> {
     let bytes = files.read(path, MAX_MESH_BYTES)?;
-    if MeshFormat::of(path, &bytes) == Some(MeshFormat::Collada) {
+    if Content::of_mesh(path, &bytes) == Some(Content::Collada) {
         let file = path.display().to_string();
         let scene = Scene::parse(&file, &bytes, Axes::YUp)?;
         scene.remarks(Axes::YUp).iter().for_each(|remark| files.note(path, remark));

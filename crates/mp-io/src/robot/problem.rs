@@ -3,6 +3,7 @@
 use super::{RobotFile, RobotPart};
 use crate::error::Error;
 use crate::files::{Disk, Files, MAX_TEXT_BYTES, stem};
+use crate::formats::Content;
 use crate::problem::PlacedBody;
 use crate::shape::Meshes;
 use mp_geom::pose_from_six;
@@ -105,12 +106,13 @@ pub fn read_robot_text(files: &dyn Files, path: &Path) -> Result<String, Error> 
 
 /// The name of an SRDF in the folder of a URDF: the one of the same name, or else the first.
 fn srdf_beside(files: &dyn Files, urdf: &Path) -> Option<String> {
-    let own = urdf.with_extension("srdf");
+    let own = urdf.with_extension(Content::RobotSemantics.ending());
     if files.holds(&own) {
         return own.file_name().map(|name| name.to_string_lossy().into_owned());
     }
     let names = files.names_in(urdf.parent().unwrap_or(Path::new("")));
-    let is_one = |name: &String| Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("srdf"));
+    let is_one =
+        |name: &String| Content::of(Path::new(name)).any(|content| content == Content::RobotSemantics);
     names.into_iter().find(is_one)
 }
 

@@ -285,7 +285,7 @@ fn other_meshes() {
             Mesh,
             "m.wrl",
             "#VRML V2.0 utf8\n",
-            "m.wrl: this is not a mesh format that is read here; expected a file .off, .txt (GEMPA), .stl, .obj or .dae",
+            "m.wrl: this is not a mesh format that is read here; expected a file .off, .txt, .stl, .obj, .dae or .ply",
             "convert the mesh to one of these",
         ),
     ]);

@@ -34,7 +34,7 @@ fn environments() {
         env("5 0 0 0 0 0\n\nObstacle #1\nw.off\n2 0 0 0 0 0\nEnd", "5 0 0 0 0.1 0\nEnd\nSpace SE2", "s.env:4:1: the goal configuration leaves the plane; expected z, β and γ equal to 0, as the file says `Space SE2`", "write x y 0 α 0 0, or remove the line `Space SE2`"),
         env("w.off", "nowhere.off", "s.env:7:1: the mesh of Obstacle #1 is not readable: nowhere.off: cannot read the file: no such file", "check the spelling; it is looked for in the folder DIR"),
         env("w.off", "meshes\\w.off", "s.env:7:1: the mesh of Obstacle #1 is not readable: meshes\\w.off: cannot read the file: no such file", "folders in file names are separated by `/`"),
-        env("r.off", "r.step", "r.step: this is not a mesh format that is read here; expected a file .off, .txt (GEMPA), .stl, .obj or .dae (named at s.env:2:1)", "convert the mesh to one of these").with("r.step", "ISO-10303-21;"),
+        env("r.off", "r.step", "r.step: this is not a mesh format that is read here; expected a file .off, .txt, .stl, .obj, .dae or .ply (named at s.env:2:1)", "convert the mesh to one of these").with("r.step", "ISO-10303-21;"),
         case(Scene, "s.env", ENV, "w.off:6:7: vertex 3 does not exist; expected an index from 0 to 2 (named at s.env:7:1)", "indices of OFF count from 0")
             .with("r.off", TRIANGLE)
             .with("w.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
@@ -46,7 +46,7 @@ fn environments() {
             .with("w.off", TRIANGLE),
         case(Scene, "s.env", b"Robot\nr\xf6bot.off\n", "s.env:2:2: byte 0xf6 is not UTF-8 text; expected a text file", "save the file as UTF-8; a binary or UTF-16 file cannot be read here"),
         case(Scene, "s.env", b"R\0o\0b\0o\0t\0", "s.env:1:2: a zero byte: this is not UTF-8 text; expected a text file", "save the file as UTF-8; a binary or UTF-16 file cannot be read here"),
-        case(Scene, "scene.xml", "<scene/>", "scene.xml: this is not a problem that is read here; expected a GEMPA environment (.env, .txt), an OMPL.app problem (.cfg) or a scene of the editor (.mp.json)", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
-        case(Scene, "s.off", TRIANGLE, "s.off: this is not a problem that is read here; expected a GEMPA environment (.env, .txt), an OMPL.app problem (.cfg) or a scene of the editor (.mp.json)", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
+        case(Scene, "scene.xml", "<scene/>", "scene.xml: this is not a problem that is read here; expected the problem of a rigid body: .env, .cfg or .mp.json", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
+        case(Scene, "s.off", TRIANGLE, "s.off: this is not a problem that is read here; expected the problem of a rigid body: .env, .cfg or .mp.json", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
     ]);
 }

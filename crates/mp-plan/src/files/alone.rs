@@ -5,32 +5,34 @@
 
 use crate::files::load::OneText;
 use crate::{Error, Scene};
-use mp_io::Files;
+use mp_io::{Content, Files};
 use std::path::{Path, PathBuf};
 
-/// The scene of a file that is no scene but can be made one; `None` for all other files. `ending` is the ending of its name,
-/// in small letters.
+/// The scene of a file that is no scene but can be made one; `None` for all other files. `named` is what its name says that it holds.
 ///
 /// # Errors
 /// When the file is such a file and cannot be read, or there is no free configuration.
-pub(crate) fn scene(files: &dyn Files, file: &Path, ending: &str) -> Result<Option<Scene>, Error> {
-    match ending {
-        // Robots of other formats are told by their content what they are.
-        "urdf" | "xml" | "sdf" | "world" | "mjcf" => robot(files, file).map(Some),
-        "yaml" | "yml" => map(files, file).map(Some),
-        "png" | "pgm" | "pbm" | "ppm" => map(files, &beside(files, file)?).map(Some),
-        "xacro" => Err(Error::new(format!("{} is a robot description with macros", file.display()))
-            .help("expand it first: `xacro FILE > robot.urdf`")),
-        "srdf" => Err(Error::new(format!("{} is an SRDF, not a scene", file.display()))
-            .help("name it in a robot problem: docs/formats/robot-problem.md")),
+pub(crate) fn scene(files: &dyn Files, file: &Path, named: Option<Content>) -> Result<Option<Scene>, Error> {
+    match named {
+        Some(Content::Robot) => robot(files, file).map(Some),
+        Some(Content::Map) => map(files, file).map(Some),
+        Some(Content::MapImage) => map(files, &beside(files, file)?).map(Some),
+        Some(Content::RobotMacros) => {
+            Err(Error::new(format!("{} is a robot description with macros", file.display()))
+                .help("expand it first: `xacro FILE > robot.urdf`"))
+        }
+        Some(Content::RobotSemantics) => {
+            Err(Error::new(format!("{} is an SRDF, not a scene", file.display()))
+                .help("name it in a robot problem: docs/formats/robot-problem.md"))
+        }
         _ => Ok(None),
     }
 }
 
 /// The map file of ROS that gives the image `file` its scale.
 fn beside(files: &dyn Files, file: &Path) -> Result<PathBuf, Error> {
-    let places = ["yaml", "yml"].map(|ending| file.with_extension(ending));
-    places.into_iter().find(|place| files.holds(place)).ok_or_else(|| {
+    let mut places = Content::Map.format().endings.iter().map(|ending| file.with_extension(ending));
+    places.find(|place| files.holds(place)).ok_or_else(|| {
         let name = name_of(file).unwrap_or_default();
         let stem = file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         Error::new(format!("{} is an image: nothing says how large its pixels are", file.display())).help(format!(

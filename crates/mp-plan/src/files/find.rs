@@ -2,13 +2,15 @@
 
 use crate::{Error, Scene};
 use mp_cspace::Interrupt;
-use mp_io::{Disk, Files, Until};
+use mp_io::{Content, Disk, FORMATS, Files, Until};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Endings of scene files, in the order in which they are tried.
-const ENDINGS: [&str; 5] = ["env", "txt", "cfg", "toml", "mp.json"];
+fn endings() -> impl Iterator<Item = &'static str> {
+    FORMATS.iter().filter(|format| format.content.is_problem()).flat_map(|format| format.endings).copied()
+}
 
 impl Scene {
     /// The scene that `given` names: a file, a file without its ending, or a shipped scene. A file comes first. Without its ending
@@ -108,7 +110,7 @@ fn unknown(folder: &Path, given: &Path) -> Error {
     let shipped = Scene::shipped();
     let beside = scenes_in(given.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")));
     let names = shipped.iter().copied().chain(beside.iter().map(String::as_str));
-    let text = given.with_extension("txt");
+    let text = given.with_extension(Content::TextPath.ending());
     let help = match similar(&stem, names) {
         _ if given.extension().is_none() && is_path(&text) => {
             format!("{} is a path: name the scene that it leads through", text.display())
@@ -124,19 +126,19 @@ fn file_of(folder: &Path, given: &Path) -> Option<PathBuf> {
     if folder.join(given).is_file() {
         return Some(given.to_owned());
     }
-    let with = |ending: &&str| {
+    let with = |ending: &str| {
         let mut name = given.as_os_str().to_owned();
         name.push(".");
         name.push(ending);
         PathBuf::from(name)
     };
     let is_scene = |path: &Path| path.is_file() && !is_path(path);
-    ENDINGS.iter().map(with).find(|path| is_scene(&folder.join(path)))
+    endings().map(with).find(|path| is_scene(&folder.join(path)))
 }
 
 /// Whether a text file holds a path: its first line has only numbers, and that of a scene has not.
 fn is_path(file: &Path) -> bool {
-    let named = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("txt"));
+    let named = Content::of(file).any(|content| content == Content::TextPath);
     let read = || mp_store::open(file, mp_io::MAX_TEXT_BYTES).ok();
     named
         && read().is_some_and(|file| {
@@ -152,7 +154,7 @@ const HEAD: u64 = 4096;
 /// The names of the scenes in `folder`, sorted.
 fn scenes_in(folder: &Path) -> Vec<String> {
     let files = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    let scenes = files.filter(|p| p.extension().is_some_and(|e| ENDINGS.iter().any(|x| e == *x)));
+    let scenes = files.filter(|p| p.extension().is_some_and(|e| endings().any(|x| e == x)));
     let mut names: Vec<String> =
         scenes.filter_map(|p| p.file_stem().map(|s| s.to_string_lossy().into_owned())).collect();
     names.sort();

@@ -8,7 +8,8 @@ pub use mesh::{MeshInfo, Surface};
 pub use path::PathInfo;
 pub use scene::{BodyInfo, ColumnInfo, SceneInfo};
 
-use crate::{Error, PathFileKind, PathFormat, PathRows, Scene};
+use crate::{Error, PathFormat, PathRows, Scene};
+use mp_io::Content;
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -62,24 +63,26 @@ enum FileContent {
 
 /// The content of a file, by its ending; for `.txt` by its first lines.
 fn content(file: &Path) -> Result<FileContent, Error> {
-    let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    match ending.as_str() {
-        "env" | "cfg" | "toml" | "urdf" | "xml" | "sdf" | "world" | "mjcf" | "yaml" | "yml" | "png"
-        | "pgm" | "pbm" | "ppm" | "xacro" | "srdf" => {
-            return Ok(FileContent::Scene);
-        }
-        "csv" => return Ok(FileContent::Path(PathFormat::Joints)),
-        "json" => {
+    use Content::{CsvPath, JsonPath, Map, MapImage, Robot, RobotMacros, RobotSemantics, TextPath};
+    let is_text = Content::of(file).any(|content| content == TextPath);
+    match Content::of(file).next().filter(|_| !is_text) {
+        Some(Robot | RobotMacros | RobotSemantics | Map | MapImage) => return Ok(FileContent::Scene),
+        Some(problem) if problem.is_problem() => return Ok(FileContent::Scene),
+        Some(CsvPath) => return Ok(FileContent::Path(PathFormat::Joints)),
+        Some(JsonPath) => {
             let poses = PathRows::read(file, PathFormat::Poses, &[]).is_ok();
             return Ok(FileContent::Path(if poses { PathFormat::Poses } else { PathFormat::Joints }));
         }
-        "off" | "stl" | "obj" | "dae" => return Ok(FileContent::Mesh),
+        Some(mesh) if mesh.is_mesh() => return Ok(FileContent::Mesh),
         _ => {}
     }
     let (_, bytes) = mp_io::read_text(file)?;
-    if PathFileKind::of(file).is_err() && bytes.starts_with(b"<?xml") {
-        return Err(Error::new(format!("{} is an XML file, not a scene", file.display()))
-            .help("name a scene: .env, .cfg or .toml; or a robot: .urdf"));
+    if !is_text && bytes.starts_with(b"<?xml") {
+        return Err(Error::new(format!("{} is an XML file, not a scene", file.display())).help(format!(
+            "name a scene: {}; or a robot: {}",
+            Content::endings(Content::is_problem),
+            Content::endings(|content| content == Robot)
+        )));
     }
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(1 << 16)]);
     let mut lines = head.lines().map(str::trim).filter(|l| !l.is_empty());

@@ -3,7 +3,7 @@
 use super::alone;
 use crate::files::inputs::Recording;
 use crate::{Error, Scene, SceneFiles};
-use mp_io::{Disk, Files, ProblemFile, RigidProblem, RobotProblem, SceneDocument};
+use mp_io::{Content, Disk, Files, ProblemFile, RigidProblem, RobotProblem, SceneDocument};
 use std::path::Path;
 use std::sync::{Arc, PoisonError};
 
@@ -40,23 +40,23 @@ impl Scene {
 
     fn load_after(files: &dyn Files, file: &Path, before: Option<&Self>) -> Result<Self, Error> {
         let _span = tracing::info_span!("load", file = %file.display()).entered();
-        let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        let named = Content::of(file).next();
         let of = |e: Error| match e.file() {
             Some(_) => e,
             None => e.context(format!("cannot plan in {}", file.display())),
         };
         let recording = Recording::new(files);
         let files: &dyn Files = &recording;
-        let scene = match alone::scene(files, file, &ending).map_err(of)? {
+        let scene = match alone::scene(files, file, named).map_err(of)? {
             Some(scene) => scene,
-            None if ProblemFile::is_named(file) => match ProblemFile::load_from(files, file)? {
+            None if named == Some(Content::Toml) => match ProblemFile::load_from(files, file)? {
                 ProblemFile::World(problem) => {
                     Self::from_world_until(*problem, &files.interrupt()).map_err(of)?
                 }
                 ProblemFile::Body(task) => Self::from_task_until(*task, &files.interrupt()).map_err(of)?,
                 ProblemFile::Links(problem) => arm(files, *problem, before)?,
             },
-            None if ending == "json" => {
+            None if matches!(named, Some(Content::Document | Content::JsonPath)) => {
                 let folder = file.parent().unwrap_or(Path::new(""));
                 let mesh = |name: &str| mp_io::read_mesh_of(files, &folder.join(name));
                 let document = SceneDocument::load_from(files, file)?;
@@ -101,16 +101,16 @@ impl Scene {
     ) -> Result<Self, Error> {
         let begins = |what: &str| text.lines().any(|line| line.trim_start().starts_with(what));
         let first = text.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default();
-        let ending = match first {
-            _ if begins("[problem]") => "cfg",
-            _ if first.eq_ignore_ascii_case("robot") => "env",
-            _ if first.starts_with('{') => "json",
-            _ if first.starts_with('<') => "urdf",
-            _ if begins("image:") => "yaml",
-            _ if first.starts_with(['[', '#']) || first.contains('=') => "toml",
-            _ => "env",
+        let content = match first {
+            _ if begins("[problem]") => Content::OmplApp,
+            _ if first.eq_ignore_ascii_case("robot") => Content::Environment,
+            _ if first.starts_with('{') => Content::JsonPath,
+            _ if first.starts_with('<') => Content::Robot,
+            _ if begins("image:") => Content::Map,
+            _ if first.starts_with(['[', '#']) || first.contains('=') => Content::Toml,
+            _ => Content::Environment,
         };
-        let file = folder.join(format!("{name}.{ending}"));
+        let file = folder.join(format!("{name}.{}", content.ending()));
         let files = mp_io::Until { files: &Disk, interrupt: interrupt.clone() };
         Self::load_from(&OneText { file: &file, text, files: &files }, &file)
     }

@@ -3,6 +3,7 @@
 use crate::picture::mp4::Mp4;
 use crate::picture::{World, failed, placed_bodies};
 use crate::{Cancel, Error, Look, PathRows, Scene, Track, in_parallel};
+use mp_io::Content;
 use mp_render::{Animation, Gif, Moment, Picture, Shot};
 use nalgebra::Point3;
 use std::f64::consts::TAU;
@@ -26,11 +27,11 @@ impl FilmKind {
     /// The kind of film for a file, by the ending of its name; `None` when it is not a film.
     #[must_use]
     pub fn of(file: &Path) -> Option<Self> {
-        match file.extension()?.to_string_lossy().to_ascii_lowercase().as_str() {
-            "gif" => Some(Self::Gif),
-            "mp4" => Some(Self::Mp4),
+        Content::of(file).find_map(|content| match content {
+            Content::Gif => Some(Self::Gif),
+            Content::Mp4 => Some(Self::Mp4),
             _ => None,
-        }
+        })
     }
 }
 

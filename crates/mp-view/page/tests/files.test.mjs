@@ -2,9 +2,14 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { kindOf, mainOf } from "mp/files.js";
+import { kindOf, mainOf, offered } from "mp/files.js";
 
-const kind = (name, text = "") => kindOf({ name, bytes: new TextEncoder().encode(text) });
+const endings = [
+  [".mp.json", "scene"], [".env", "scene"], [".cfg", "scene"], [".toml", "scene"], [".txt", "text"], [".urdf", "scene"],
+  [".yaml", "scene"], [".png", "scene"], [".pgm", "scene"], [".off", "mesh"], [".stl", "mesh"], [".obj", "mesh"], [".dae", "mesh"],
+  [".json", "path"], [".csv", "path"], [".mpv", "viewer"],
+];
+const kind = (name, text = "") => kindOf({ name, bytes: new TextEncoder().encode(text) }, endings);
 
 test("endings say what a file is for", () => {
   assert.equal(kind("a.mpv"), "viewer");
@@ -12,6 +17,11 @@ test("endings say what a file is for", () => {
   for (const name of ["a.off", "a.STL", "a.obj", "a.dae"]) assert.equal(kind(name), "mesh", name);
   for (const name of ["a.json", "a.csv"]) assert.equal(kind(name), "path", name);
   assert.equal(kind("readme.md"), "other");
+});
+
+test("the endings of some kinds are offered", () => {
+  assert.equal(offered(endings, ["mesh", "text"]), ".txt,.off,.stl,.obj,.dae");
+  assert.equal(offered(endings).split(",").length, endings.length);
 });
 
 test("text files are told apart by their first lines", () => {
@@ -25,7 +35,7 @@ test("text files are told apart by their first lines", () => {
 });
 
 test("the scene among several files is found", () => {
-  const main = (...names) => mainOf(names.map((name) => ({ name, bytes: new Uint8Array(0) })));
+  const main = (...names) => mainOf(names.map((name) => ({ name, bytes: new Uint8Array(0) })), endings);
   assert.equal(main("map.pgm", "map.yaml", "world.TOML"), "world.TOML");
   assert.equal(main("map.pgm", "map.yaml"), "map.yaml");
   assert.equal(main("arm.urdf", "problem.toml"), "problem.toml");

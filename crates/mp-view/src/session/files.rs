@@ -2,15 +2,36 @@
 
 use super::text_of;
 use crate::message::Message;
-use mp_io::Files;
+use mp_io::{Content, FORMATS, Files};
 use mp_plan::Error;
 use serde_json::Value;
 use std::fmt;
 use std::path::Path;
 
-/// Endings of scene files, those that are surely scenes first, last what a scene may name.
-const SCENES: [&str; 10] =
-    [".mp.json", ".env", ".cfg", ".toml", ".txt", ".urdf", ".yaml", ".yml", ".png", ".pgm"];
+/// The endings of files that a page opens, and what such a file is for: `scene`, `mesh`, `path`, `viewer` (a scene file of the
+/// viewer) or `text`, whose first lines tell. What is surely a scene comes first, then what a scene may name.
+pub(crate) fn endings() -> Vec<(String, &'static str)> {
+    let mut all: Vec<(u8, String, &str)> = Vec::new();
+    for format in FORMATS.iter().filter(|format| format.read) {
+        let (rank, kind) = match format.content {
+            Content::Document => (0, "scene"),
+            content if content.is_problem() => (1, "scene"),
+            Content::Robot | Content::Map | Content::MapImage => (3, "scene"),
+            Content::ViewerScene => (3, "viewer"),
+            content if content.is_mesh() => (3, "mesh"),
+            content if content.is_path() => (3, "path"),
+            _ => continue,
+        };
+        for ending in format.endings.iter().map(|ending| format!(".{ending}")) {
+            match all.iter_mut().find(|known| known.1 == ending) {
+                Some(known) => (known.0, known.2) = (2, "text"),
+                None => all.push((rank, ending, kind)),
+            }
+        }
+    }
+    all.sort_by_key(|ending| ending.0);
+    all.into_iter().map(|(_, ending, kind)| (ending, kind)).collect()
+}
 
 /// Files by name.
 pub(crate) struct Named(Vec<(String, Vec<u8>)>);
@@ -54,13 +75,18 @@ impl Named {
 
     /// The name of the file that is a scene, by its ending.
     pub(crate) fn scene(&self) -> Result<&str, Error> {
-        let ends = |name: &str, ending: &str| name.to_ascii_lowercase().ends_with(ending);
-        let scene = SCENES.iter().find_map(|ending| self.0.iter().find(|file| ends(&file.0, ending)));
+        let scenes = endings().into_iter().filter(|(_, kind)| ["scene", "text"].contains(kind));
+        let ends = |ending: &str| self.0.iter().find(|file| file.0.to_ascii_lowercase().ends_with(ending));
+        let scene = scenes.filter_map(|(ending, _)| ends(&ending)).next();
         // One file of another ending is tried: its error says what it is.
         match (scene, self.0.as_slice()) {
             (Some((name, _)), _) | (None, [(name, _)]) => Ok(name),
-            _ => Err(Error::new("none of these files is a scene")
-                .help("add the scene itself: .env, .txt, .cfg, .toml or .mp.json; or a robot (.urdf) or a map (.yaml)")),
+            _ => Err(Error::new("none of these files is a scene").help(format!(
+                "add the scene itself: {}; or a robot ({}) or a map ({})",
+                Content::endings(Content::is_problem),
+                Content::endings(|content| content == Content::Robot),
+                Content::endings(|content| content == Content::Map)
+            ))),
         }
     }
 }

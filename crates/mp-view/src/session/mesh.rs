@@ -39,5 +39,5 @@ pub fn scene_of_mesh(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
 #[must_use]
 pub fn is_mesh(file: &Path, bytes: &[u8]) -> bool {
     let scene = bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"robot"));
-    !scene && mp_io::MeshFormat::of(file, bytes).is_some()
+    !scene && mp_io::Content::of_mesh(file, bytes).is_some()
 }

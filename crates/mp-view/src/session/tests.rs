@@ -93,6 +93,17 @@ fn says_what_there_is() {
     assert!(planners.iter().any(|p| p["name"] == "prm" && p["family"] == "roadmap"));
     assert!(planners.iter().any(|p| p["name"] == "rsrt" && p["family"] == "tree"));
     assert!(reply.head["scenes"].as_array().unwrap().iter().any(|s| s == "cubicles"));
+    let endings = reply.head["endings"].as_array().unwrap();
+    let place = |ending: &str, kind: &str| endings.iter().position(|e| *e == json!([ending, kind])).unwrap();
+    // A scene as the page saves it is that, beside its form for GEMPA; a text may be a mesh that a scene names.
+    let scenes =
+        [place(".mp.json", "scene"), place(".env", "scene"), place(".toml", "scene"), place(".txt", "text")];
+    assert!(scenes.is_sorted() && scenes[3] < place(".urdf", "scene"), "{endings:?}");
+    assert!(
+        place(".urdf", "scene") < place(".yaml", "scene") && place(".yaml", "scene") < place(".png", "scene")
+    );
+    assert!(place(".stl", "mesh") > 0 && place(".csv", "path") > 0 && place(".mpv", "viewer") > 0);
+    assert!(endings.iter().all(|e| e[0] != ".svg" && e[0] != ".xacro"), "{endings:?}");
     let scene = reply.bytes(&reply.head["opened"]["scene"], "scene").unwrap();
     assert_eq!(SceneFile::parse(&scene).unwrap().name, "easy");
 }

@@ -1,13 +1,13 @@
 //! What a session has open, and the requests about it.
 
-use super::files::{Named, format_of, plain_name};
+use super::files::{Named, endings, format_of, plain_name};
 use super::mesh::{is_mesh, scene_of_mesh};
 use super::{number_of, text_of};
 use crate::bytes::{path_head, rgb};
 use crate::message::{Message, json};
 use crate::{PathTrack, SceneFile};
 use mp_geom::TriMesh;
-use mp_io::{DocumentShape, SceneDocument};
+use mp_io::{Content, DocumentShape, FORMATS, SceneDocument};
 use mp_plan::{EditedScene, Error, MetricName, PathFileKind, PathRows, Request, Scene};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -106,6 +106,7 @@ impl Workspace {
             .with("metrics", metrics.collect::<Vec<_>>())
             .with("request", json(&Request::default()))
             .with("scenes", Scene::shipped())
+            .with("endings", json(&endings()))
             .with("folder", self.folder.as_ref().map(|folder| folder.display().to_string()));
         let opened = match (&self.open, &self.shown) {
             (Some(open), _) => Value::Object(self.described(open, &mut reply)?),
@@ -327,16 +328,15 @@ impl Workspace {
     fn save_path(&self, request: &Message) -> Answer {
         let scene = &self.opened()?.scene;
         let name = plain_name(request)?;
-        let (ending, kind) = match format_of(request, &["txt", "json", "csv"], "paths")? {
-            "json" => ("json", PathFileKind::Json),
-            "csv" => ("csv", PathFileKind::Csv),
-            _ => ("txt", PathFileKind::Text),
-        };
+        let paths = FORMATS.iter().filter(|format| format.content.is_path());
+        let usual: Vec<&str> = paths.map(|format| format.endings[0]).collect();
+        let file = format!("{name}.{}", format_of(request, &usual, "paths")?);
+        let kind = PathFileKind::of(Path::new(&file))?;
         let rows = rows_of(&request.head, "rows")?;
         let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
         // The same checks as for a path from a file: of this robot, and finite.
         scene.track(&path)?;
-        self.written(request, vec![(format!("{name}.{ending}"), path.to_file(kind).into_bytes())])
+        self.written(request, vec![(file, path.to_file(kind).into_bytes())])
     }
 
     fn export(&self, request: &Message) -> Answer {
@@ -350,10 +350,9 @@ impl Workspace {
             let path = PathRows { format, columns: open.scene.columns(), rows };
             file.add_path(&open.scene, text_of(&members, "name")?, &path)?;
         }
-        let (ending, bytes) = match format_of(request, &["html", "mpv"], "exports")? {
-            "html" => ("html", file.to_html().into_bytes()),
-            _ => ("mpv", file.to_bytes()),
-        };
+        let formats = [Content::Page, Content::ViewerScene].map(Content::ending);
+        let ending = format_of(request, &formats, "exports")?;
+        let bytes = if ending == formats[0] { file.to_html().into_bytes() } else { file.to_bytes() };
         self.written(request, vec![(format!("{name}.{ending}"), bytes)])
     }
 

@@ -1,8 +1,9 @@
 //! Small files of our own, each a feature of the format.
 
-use super::{Scene, parse_collada};
+use super::Scene;
 use crate::error::ErrorKind;
 use crate::mesh::Axes;
+use crate::mesh::parse_mesh;
 use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
 
@@ -31,7 +32,7 @@ fn dae(asset: &str, primitives: &str, nodes: &str) -> String {
 const PLAIN: &str = "<node><instance_geometry url=\"#g\"/></node>";
 
 fn parse(text: &str) -> TriMesh {
-    parse_collada("t.dae", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"))
+    parse_mesh("t.dae", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn area(mesh: &TriMesh) -> f64 {
@@ -90,10 +91,10 @@ fn normals_may_be_no_numbers_but_positions_may_not() {
             Scene::parse("t.dae", text.as_bytes(), Axes::YUp).unwrap().center().iter().all(|v| v.is_finite())
         );
         let text = dae(ASSET, TRIANGLE, PLAIN).replace("0 0 0  1 0 0", &format!("0 0 0  1 {word} 0"));
-        let e = parse_collada("t.dae", text.as_bytes()).unwrap_err();
+        let e = parse_mesh("t.dae", text.as_bytes()).unwrap_err();
         assert!(e.to_string().contains(word) && e.line() == Some(5), "{e}");
     }
-    assert!(parse_collada("t.dae", dae(ASSET, &primitives("north"), PLAIN).as_bytes()).is_err());
+    assert!(parse_mesh("t.dae", dae(ASSET, &primitives("north"), PLAIN).as_bytes()).is_err());
 }
 
 #[test]
@@ -108,7 +109,7 @@ fn polygons_of_fewer_than_three_corners_are_left_out() {
         assert_eq!((mesh.triangles().len(), mesh.vertices().len()), (1, 3), "{primitives}");
     }
     let none = format!("<polygons>{input}<p>4 5</p></polygons>");
-    assert!(parse_collada("t.dae", dae(ASSET, &none, PLAIN).as_bytes()).is_err());
+    assert!(parse_mesh("t.dae", dae(ASSET, &none, PLAIN).as_bytes()).is_err());
 }
 
 #[test]
@@ -122,16 +123,13 @@ fn a_file_is_read_in_the_encoding_that_it_declares() {
         let mut bytes = declared(encoding).into_bytes();
         let comment = bytes.iter().position(|b| *b == b'#').unwrap();
         bytes[comment] = 0xe4;
-        assert_eq!(parse_collada("t.dae", &bytes).unwrap().triangles().len(), 1, "{encoding}");
+        assert_eq!(parse_mesh("t.dae", &bytes).unwrap().triangles().len(), 1, "{encoding}");
     }
     let wide: Vec<u8> = declared("UTF-16").encode_utf16().flat_map(u16::to_le_bytes).collect();
-    assert_eq!(
-        parse_collada("t.dae", &[b"\xff\xfe".as_slice(), &wide].concat()).unwrap().triangles().len(),
-        1
-    );
+    assert_eq!(parse_mesh("t.dae", &[b"\xff\xfe".as_slice(), &wide].concat()).unwrap().triangles().len(), 1);
     let undeclared =
         [b"<!-- \xe4 -->", text.trim_start_matches("<?xml version=\"1.0\"?>").as_bytes()].concat();
-    let e = parse_collada("t.dae", &undeclared).unwrap_err();
+    let e = parse_mesh("t.dae", &undeclared).unwrap_err();
     assert!(e.report().contains("declare its encoding"), "{}", e.report());
 }
 
@@ -213,7 +211,7 @@ fn normals_of_vertices_count_too() {
 
 #[test]
 fn floods_are_refused() {
-    let fails = |text: &str| parse_collada("t.dae", text.as_bytes()).unwrap_err();
+    let fails = |text: &str| parse_mesh("t.dae", text.as_bytes()).unwrap_err();
     let bomb = "<!DOCTYPE a [<!ENTITY b \"x\">]>\n<COLLADA>&b;</COLLADA>";
     let e = fails(bomb);
     assert!(e.remedy().unwrap().contains("DOCTYPE"), "{e}");
@@ -243,7 +241,7 @@ fn floods_are_refused() {
 fn places_are_right_whatever_the_line_ends() {
     for ends in ["\n", "\r\n"] {
         let text = dae(ASSET, &TRIANGLE.replace("<p>0 1 2</p>", "<p>0\n 1 8</p>"), PLAIN).replace('\n', ends);
-        let e = parse_collada("t.dae", text.as_bytes()).unwrap_err();
+        let e = parse_mesh("t.dae", text.as_bytes()).unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(9), Some(4)), "{e}");
         assert_eq!(e.message(), "index 8 is out of range");
     }
@@ -322,7 +320,7 @@ fn strips_of_lines_and_empty_lines() {
 #[test]
 fn lines_of_an_odd_number_of_ends_are_refused() {
     for (lines, message) in [("0 1 2", "<p> has 3 ends of lines"), ("0 8", "index 8 is out of range")] {
-        let e = parse_collada("t.dae", sketchup(lines).as_bytes()).unwrap_err();
+        let e = parse_mesh("t.dae", sketchup(lines).as_bytes()).unwrap_err();
         assert_eq!(e.message(), message);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
-use crate::mesh::mesh_error;
+use crate::mesh::{Reading, mesh_error};
 use crate::number::Row;
 use crate::text::{Lexer, Text, Token, clipped, is_not_a_number};
 use mp_geom::TriMesh;
@@ -15,33 +15,26 @@ use std::path::Path;
 const HEAD: usize = 84;
 const TRIANGLE: usize = 50;
 
-/// Reads `bytes`, the content of an STL file, text or binary, that errors call `file`. All solids of a file
-/// become one mesh; identical vertices become one; the normals are skipped.
-///
-/// # Errors
-/// [`Error`] when it is not STL: for text with line and column, for binary with the triangle.
-pub fn parse_stl(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
-    parse_stl_until(file, bytes, &Interrupt::never(), &mut |_| ())
+/// Whether bytes begin like STL in text; binary files begin with anything.
+pub(crate) fn begins(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(4096)];
+    head.trim_ascii_start().starts_with(b"solid") && head.windows(5).any(|word| word == b"facet")
 }
 
-/// As [`parse_stl`], until `interrupt` says to end; `remark` takes what was passed over.
-pub(crate) fn parse_stl_until(
-    file: &str,
-    bytes: &[u8],
-    interrupt: &Interrupt,
-    remark: &mut dyn FnMut(&str),
-) -> Result<TriMesh, Error> {
-    let mut interrupt = interrupt.clone();
+/// Reads `bytes`, the content of an STL file, text or binary, that errors call `file`. All solids of a file
+/// become one mesh; identical vertices become one; the normals are skipped.
+pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {
+    let Reading { interrupt, remark, .. } = reading;
     let soup = if is_binary(bytes) {
         if begins_with_solid(bytes) {
             remark("binary STL, although its header begins with `solid`");
         }
-        binary(file, bytes, &mut interrupt, remark)?
+        binary(file, bytes, interrupt, remark)?
     } else {
         let decoded = decode_mesh(file, bytes)?;
-        text(&Text { file, text: &decoded, guide: "meshes.md" }, (file, &mut interrupt))?
+        text(&Text { file, text: &decoded, guide: "meshes.md" }, (file, &mut *interrupt))?
     };
-    let mesh = TriMesh::from_soup_until(&soup, &interrupt).map_err(|_| Error::interrupted(file))?;
+    let mesh = TriMesh::from_soup_until(&soup, interrupt).map_err(|_| Error::interrupted(file))?;
     mesh.map_err(|e| mesh_error(file, &e))
 }
 
@@ -229,6 +222,7 @@ pub fn stl_text(mesh: &TriMesh) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::{parse_mesh, parse_noting};
 
     fn tetrahedron() -> TriMesh {
         mp_geom::primitives::tetrahedron(1.0).unwrap()
@@ -251,7 +245,7 @@ mod tests {
     #[test]
     fn text_round_trips() {
         let mesh = tetrahedron();
-        let again = parse_stl("t.stl", stl_text(&mesh).as_bytes()).unwrap();
+        let again = parse_mesh("t.stl", stl_text(&mesh).as_bytes()).unwrap();
         assert_eq!(again.vertices().len(), 4);
         for i in 0..4 {
             assert_eq!(again.triangle(i), mesh.triangle(i));
@@ -260,12 +254,12 @@ mod tests {
 
     #[test]
     fn binary_even_when_it_begins_with_solid() {
-        let mesh = parse_stl("t.stl", &as_binary(&tetrahedron())).unwrap();
+        let mesh = parse_mesh("t.stl", &as_binary(&tetrahedron())).unwrap();
         assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (4, 4));
         let mut cut = as_binary(&tetrahedron());
         cut[0] = b'S' + 1;
         cut.pop();
-        let e = parse_stl("t.stl", &cut).unwrap_err();
+        let e = parse_mesh("t.stl", &cut).unwrap_err();
         assert_eq!(
             e.to_string(),
             "t.stl: the file has 283 bytes; expected 284 bytes of binary STL for the 4 triangles its header announces"
@@ -275,7 +269,7 @@ mod tests {
     /// What is read, in how many triangles, and what is remarked.
     fn remarks(bytes: &[u8]) -> (Result<usize, String>, Vec<String>) {
         let mut remarks = Vec::new();
-        let mesh = parse_stl_until("t.stl", bytes, &Interrupt::never(), &mut |r| remarks.push(r.to_owned()));
+        let mesh = parse_noting("t.stl", bytes, &mut |remark| remarks.push(remark.to_owned()));
         (mesh.map(|mesh| mesh.triangles().len()).map_err(|e| e.to_string()), remarks)
     }
 
@@ -368,6 +362,6 @@ mod tests {
     #[test]
     fn several_solids_and_odd_layout() {
         let one = "SOLID a b\nfacet normal nan 0 0 outer loop vertex 0 0 0 vertex 1 0 0\nvertex 0 1 0 endloop endfacet\nEndSolid a b\n";
-        assert_eq!(parse_stl("t.stl", one.repeat(2).as_bytes()).unwrap().triangles().len(), 2);
+        assert_eq!(parse_mesh("t.stl", one.repeat(2).as_bytes()).unwrap().triangles().len(), 2);
     }
 }

@@ -5,8 +5,25 @@ mod write;
 
 pub use write::{off_text, write_off};
 
+use crate::error::Error;
+use crate::mesh::{LEFT_OUT, Reading};
 use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
+
+/// Whether the first word is a keyword of OFF.
+pub(crate) fn begins(bytes: &[u8]) -> bool {
+    let head = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    let end = head.iter().position(|b| b.is_ascii_whitespace() || *b == b'#').unwrap_or(head.len());
+    (3..=8).contains(&end) && head[..end].ends_with(b"OFF")
+}
+
+pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {
+    let document = OffDocument::parse_until(file, bytes, &reading.interrupt)?;
+    if document.faces.iter().any(|face| face.corners.len() < 3) {
+        (reading.remark)(LEFT_OUT);
+    }
+    document.to_mesh(file)
+}
 
 /// A colour, in the form in which an OFF file has it.
 #[derive(Clone, Copy, Debug, PartialEq)]

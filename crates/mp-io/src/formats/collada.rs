@@ -12,7 +12,7 @@ mod scene;
 mod tests;
 
 use crate::error::{Error, ErrorKind};
-use crate::mesh::{Axes, build, mesh_error};
+use crate::mesh::{Axes, Reading, build, mesh_error};
 use document::Document;
 use geometry::Geometry;
 use mp_geom::TriMesh;
@@ -38,13 +38,18 @@ pub(crate) struct Scene {
     pub(crate) asset: scene::Asset,
 }
 
+pub(crate) fn begins(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(4096)];
+    let body = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
+    body.trim_ascii_start().starts_with(b"<") && head.windows(8).any(|word| word == b"<COLLADA")
+}
+
 /// Reads `bytes`, the content of a COLLADA file that errors call `file`: all meshes of its visual scene, in
 /// metres, Y up, as one mesh.
-///
-/// # Errors
-/// [`Error`] when it is not COLLADA or uses a feature that is not read here, with the line and column.
-pub fn parse_collada(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
-    Scene::parse(file, bytes, Axes::YUp)?.to_mesh(file)
+pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {
+    let scene = Scene::parse(file, bytes, reading.axes)?;
+    scene.remarks(reading.axes).iter().for_each(|remark| (reading.remark)(remark));
+    scene.to_mesh(file)
 }
 
 impl Scene {

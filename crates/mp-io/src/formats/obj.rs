@@ -2,7 +2,7 @@
 
 use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
-use crate::mesh::{LEFT_OUT, build};
+use crate::mesh::{LEFT_OUT, Reading, build};
 use crate::text::{Text, Token, clipped};
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
@@ -39,25 +39,12 @@ const CURVED: [&str; 13] =
 
 /// Reads `bytes`, the content of an OBJ file that errors call `file`: its vertices and polygons. All groups
 /// and objects become one mesh; texture, normals, materials, points and lines are skipped.
-///
-/// # Errors
-/// [`Error`] when it is not OBJ or has curved surfaces, with the line and column.
-pub fn parse_obj(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
-    parse_obj_until(file, bytes, &Interrupt::never(), &mut |_| ())
-}
-
-/// As [`parse_obj`], until `interrupt` says to end; `remark` takes what was passed over.
-pub(crate) fn parse_obj_until(
-    file: &str,
-    bytes: &[u8],
-    interrupt: &Interrupt,
-    remark: &mut dyn FnMut(&str),
-) -> Result<TriMesh, Error> {
-    let mut interrupt = interrupt.clone();
+pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {
+    let interrupt = &mut reading.interrupt;
     let decoded = decode_mesh(file, bytes)?;
     let text = Text { file, text: &decoded, guide: "meshes.md" };
     // Faces may name vertices of later lines.
-    let total = vertices_of(&text, &mut interrupt);
+    let total = vertices_of(&text, interrupt);
     let mut vertices = Vec::with_capacity(total);
     let mut corners: Vec<u32> = Vec::new();
     let mut ends: Vec<usize> = Vec::new();
@@ -103,7 +90,7 @@ pub(crate) fn parse_obj_until(
         }
     }
     if left_out {
-        remark(LEFT_OUT);
+        (reading.remark)(LEFT_OUT);
     }
     let faces = ends.iter().enumerate().map(|(i, &end)| &corners[if i == 0 { 0 } else { ends[i - 1] }..end]);
     build(file, vertices, faces)
@@ -174,9 +161,10 @@ fn corner(text: &Text<'_>, word: Token<'_>, so_far: usize, total: usize) -> Resu
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::{parse_mesh, parse_noting};
 
     fn parse(text: &str) -> TriMesh {
-        parse_obj("t.obj", text.as_bytes()).unwrap()
+        parse_mesh("t.obj", text.as_bytes()).unwrap()
     }
 
     #[test]
@@ -208,14 +196,14 @@ mod tests {
         );
         assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (3, 2));
         // The group takes the next line: what is missing then is said with its line.
-        let e = parse_obj("t.obj", b"v 0 0 0\ng a\\\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap_err();
+        let e = parse_mesh("t.obj", b"v 0 0 0\ng a\\\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(5), Some(7)), "{e}");
     }
 
     /// What is read, in how many triangles, and what is remarked.
     fn remarks(bytes: &[u8]) -> (Result<usize, String>, Vec<String>) {
         let mut remarks = Vec::new();
-        let mesh = parse_obj_until("t.obj", bytes, &Interrupt::never(), &mut |r| remarks.push(r.to_owned()));
+        let mesh = parse_noting("t.obj", bytes, &mut |remark| remarks.push(remark.to_owned()));
         (mesh.map(|mesh| mesh.triangles().len()).map_err(|e| e.to_string()), remarks)
     }
 
@@ -236,14 +224,14 @@ mod tests {
     fn names_and_comments_in_any_encoding() {
         let text = b"# Gr\xfc\xdfe\nmtllib M\xf6bel.mtl\ng Geh\xe4use\nusemtl \x83n\nv 0 0 0 # \xb0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
         assert_eq!(remarks(text), (Ok(1), Vec::new()));
-        let e = parse_obj("t.obj", b"# \xe4\nv 0 \xe4 0\n").unwrap_err();
+        let e = parse_mesh("t.obj", b"# \xe4\nv 0 \xe4 0\n").unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(2), Some(5)), "{e}");
     }
 
     #[test]
     fn bad_corners() {
         for bad in ["0", "4", "-4", "1/x", "1/1/1/1", "a", "99999999999999999999", "-9223372036854775808"] {
-            let e = parse_obj("t.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {bad}\n").as_bytes())
+            let e = parse_mesh("t.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {bad}\n").as_bytes())
                 .unwrap_err();
             assert_eq!((e.line(), e.column()), (Some(4), Some(7)), "{e}");
         }
