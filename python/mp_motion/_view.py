@@ -28,23 +28,22 @@ SMALL: Wanted = ((720, 480), None, None, None, None)
 def content(scene: Scene, file: File, path: PathRows | None, wanted: Wanted) -> bytes:
     """Return the bytes of a file whose kind is that of its ending."""
     file = os.fspath(file)
-    ending = Path(file).suffix.lower().removeprefix(".")
+    kind = scene._native.kind_of_file(file)
     found = path is not None and not (isinstance(path, Report) and path.path is None)
     rows = scene._path(path) if found and path is not None else None
-    if ending in ("txt", "csv", "json"):
+    if kind == "path":
         if rows is None:
             raise Error("there is no path to write", remedy="give a path, or a report of a run that was solved")
         return scene._native.path_text(file, rows).encode()
     if scene._robot is not None:
         raise Error("a robot of your own has no picture", remedy="plot `report.path`, or save it as .txt, .csv or .json")
-    if ending in ("html", "htm", "mpv", "glb"):
+    if kind == "view":
         report = None
         if isinstance(path, Report):
             members = path.to_dict()
             members["path"] = members["first_path"] = None
             report = json.dumps(members)
-        kind = "html" if ending == "htm" else ending
-        return scene._native.view(kind, report, rows, 8.0 if wanted[4] is None else wanted[4])
+        return scene._native.view(file, report, rows, 8.0 if wanted[4] is None else wanted[4])
     caption = str(path) if isinstance(path, Report) else ""
     caption = caption.removeprefix(f"{scene.name}: ")
     drawn = scene._native.draw(file, rows, caption, wanted)

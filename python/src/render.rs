@@ -3,6 +3,7 @@
 use crate::error::ToPython;
 use crate::report::rows;
 use crate::scene::Scene;
+use mp_io::Content;
 use mp_plan::{Film, FilmKind, Look, PICTURE_SIZE, PathRows};
 use mp_view::{Planner, SceneFile};
 use numpy::PyReadonlyArray2;
@@ -63,16 +64,17 @@ impl Scene {
         bytes.to_python()
     }
 
-    /// The scene for viewers, as `html`, `mpv` or `glb`; with a report (its JSON form and its path) or a path alone.
+    /// The scene for viewers, in the format of the ending of `file`; with a report (its JSON form and its path) or a path alone.
     pub(crate) fn viewed(
         &self,
         py: Python<'_>,
-        ending: &str,
+        file: &Path,
         report: Option<&str>,
         path: Option<PyReadonlyArray2<'_, f64>>,
         seconds: f64,
     ) -> PyResult<Vec<u8>> {
         let path = path.map(|path| rows(&path));
+        let content = Content::of(file).next();
         let report = report.map(mp_plan::Report::from_json).transpose().to_python()?;
         let scene = &self.scene;
         let cancel = mp_plan::Cancel::new();
@@ -85,9 +87,9 @@ impl Scene {
                 (None, Some(path)) => file.add_path(scene, "path", &self.rows(path))?,
                 (None, None) => {}
             }
-            Ok::<_, mp_plan::Error>(match ending {
-                "mpv" => file.to_bytes(),
-                "glb" => file.to_glb(seconds),
+            Ok::<_, mp_plan::Error>(match content {
+                Some(Content::ViewerScene) => file.to_bytes(),
+                Some(Content::Gltf) => file.to_glb(seconds),
                 _ => mp_view::page(Some(&file), Planner::None).into_bytes(),
             })
         })?;

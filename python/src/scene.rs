@@ -8,7 +8,7 @@ use crate::render::Wanted;
 use crate::report::{ReportParts, array, parts, rows};
 use crate::roadmap::Roadmap;
 use mp_geom::TriMesh;
-use mp_io::{Disk, Files, Until};
+use mp_io::{Content, Disk, Files, Until};
 use mp_plan::{Control, Interrupt, Length, PathFileKind, Request};
 use mp_store::FileId;
 use nalgebra::Point3;
@@ -396,16 +396,26 @@ impl Scene {
         self.drawn(py, &file, path, caption, &wanted)
     }
 
+    /// What goes into a file of this name: a `path`, what viewers `view`, or something `drawn`.
+    #[staticmethod]
+    fn kind_of_file(file: PathBuf) -> &'static str {
+        match Content::of(&file).find(|content| content.is_path() || content.is_shown()) {
+            Some(Content::Page | Content::ViewerScene | Content::Gltf) => "view",
+            Some(path) if path.is_path() => "path",
+            _ => "drawn",
+        }
+    }
+
     /// The scene for viewers.
     fn view(
         &self,
         py: Python<'_>,
-        ending: &str,
+        file: PathBuf,
         report: Option<&str>,
         path: Option<PyReadonlyArray2<'_, f64>>,
         seconds: f64,
     ) -> PyResult<Vec<u8>> {
-        self.viewed(py, ending, report, path, seconds)
+        self.viewed(py, &file, report, path, seconds)
     }
 
     /// Writes a file whole or not at all. It must be none of the files of the scene.
