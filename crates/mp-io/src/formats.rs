@@ -14,6 +14,9 @@ use crate::gempa::mesh as gempa;
 use crate::mesh::ReadMesh;
 use std::path::Path;
 
+/// Whether bytes begin like a format.
+type Begins = fn(&[u8]) -> bool;
+
 /// A row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Format {
@@ -28,7 +31,7 @@ pub struct Format {
     /// Whether such files are written.
     pub written: bool,
     /// If it is a mesh: whether these bytes begin like one, and what reads it.
-    mesh: Option<(fn(&[u8]) -> bool, ReadMesh)>,
+    mesh: Option<(Begins, ReadMesh)>,
 }
 
 macro_rules! formats {
