@@ -165,7 +165,10 @@ fn few_of_many_scenes_are_there_at_a_time() {
     let mut list = String::new();
     for i in 0..40 {
         let motion = "[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = [-1]\ngoal = [1]\n[[obstacle]]\n";
-        dir.write(&format!("s{i}.toml"), format!("{motion}box = [0.2, 0.2, 0.2]\npose = [{i}, 2, 0, 0, 0, 0]\n"));
+        dir.write(
+            &format!("s{i}.toml"),
+            format!("{motion}box = [0.2, 0.2, 0.2]\npose = [{i}, 2, 0, 0, 0, 0]\n"),
+        );
         list += &format!("{{\"scene\": \"s{i}\", \"seeds\": [1, 2]}}\n");
     }
     dir.write("problems.jsonl", &list);

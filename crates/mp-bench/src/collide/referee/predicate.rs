@@ -154,9 +154,6 @@ mod tests {
             (apart_count, meet_count) = (apart_count + usize::from(no), meet_count + usize::from(yes));
             close += usize::from(round % 2 == 1 && !no && !yes);
         }
-        assert!(
-            apart_count > 1_250 && meet_count > 500 && close < 20,
-            "{apart_count} {meet_count} {close}"
-        );
+        assert!(apart_count > 1_250 && meet_count > 500 && close < 20, "{apart_count} {meet_count} {close}");
     }
 }
