@@ -3,7 +3,7 @@
 //! `cargo run -p mp-roadmap --example roadmaps bridge_prm [SEED]`
 
 use crate::shared;
-use mp_roadmap::{BridgePrm, Reachable, algo::pairs_prm::bridge::MIXING};
+use mp_roadmap::{BridgePrm, Reachable, algo::bridge_prm::MIXING};
 
 pub(crate) fn main() -> shared::Result {
     let space = shared::square()?;

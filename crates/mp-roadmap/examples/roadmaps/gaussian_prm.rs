@@ -3,7 +3,7 @@
 //! `cargo run -p mp-roadmap --example roadmaps gaussian_prm [SEED]`
 
 use crate::shared;
-use mp_roadmap::{GaussianPrm, Reachable, algo::pairs_prm::gaussian::MIXING};
+use mp_roadmap::{GaussianPrm, Reachable, algo::gaussian_prm::MIXING};
 
 pub(crate) fn main() -> shared::Result {
     let space = shared::square()?;
