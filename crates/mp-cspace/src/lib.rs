@@ -93,7 +93,9 @@ pub use edge_checker::EdgeChecker;
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use length::{Length, LengthError};
-pub use local::{Direction, Extension, LocalPlanner, Motion, PolylineEdge, Reach, Reversible, Straight};
+pub use local::{
+    Direction, Extension, LocalPlanner, Motion, PathOf, PolylineEdge, Reach, Reversible, Straight,
+};
 pub use metric::{
     Euclidean, Manhattan, MaxDisplacement, Metric, MetricFn, ScaledEuclidean, SweptVolume, WithMetric,
 };
@@ -102,7 +104,7 @@ pub use mp_stop::{Cancel, Clock, Interrupt, Interrupted, SparseClock, StopReason
 pub use nn::{DefaultNn, Embed, Hit, KdTree, Linear, MetricTree, NearestNeighbors, NodeId};
 pub use numbers::StateVector;
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
-pub use path::{Path, PathOf, least_clearance, verify_path};
+pub use path::{Path, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
 pub use problem::{
     AnyFlow, AnyProblem, BoxedHints, BoxedVerify, BuildError, Endpoint, Goals, InputSystem,

@@ -4,7 +4,7 @@ mod polyline;
 
 pub use polyline::PolylineEdge;
 
-use crate::{KnownFree, MotionCheck, MotionValidity, Space};
+use crate::{KnownFree, MotionCheck, MotionValidity, Path, Space};
 use std::fmt::Debug;
 
 /// Which end of an edge is the parent. Edges are always stored in forward time.
@@ -16,6 +16,9 @@ pub enum Direction {
     /// The tree grows from the goal: child first.
     Backward,
 }
+
+/// A path in a space, along the edges of a local planner.
+pub type PathOf<C, L> = Path<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>;
 
 /// How far an extension may go.
 #[derive(Clone, Copy, Debug, PartialEq)]

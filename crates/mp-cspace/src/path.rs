@@ -6,7 +6,7 @@ mod verify;
 pub use clearance::{Tightest, least_clearance};
 pub use verify::{PathFault, PathReport, verify_path};
 
-use crate::{LocalPlanner, MotionCheck, MotionValidity, ParameterError, Space};
+use crate::{MotionCheck, MotionValidity, ParameterError, Space};
 use thiserror::Error;
 
 /// A sequence of states and the edges between them (`edges.len() + 1 == states.len()`).
@@ -27,9 +27,6 @@ pub struct Path<S, E = ()> {
     /// `edges[i]` leads from `states[i]` to `states[i + 1]`.
     pub edges: Vec<E>,
 }
-
-/// A path in a space, along the edges of a local planner.
-pub type PathOf<C, L> = Path<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>;
 
 /// A path as read, before the numbers of its states and edges are checked.
 #[cfg(feature = "serde")]

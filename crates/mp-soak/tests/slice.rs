@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Problems of each kind.
-const EACH: u64 = 6;
+const EACH: u64 = 10;
 
 fn of_kind(kind: &str) -> Wanted {
     Wanted { kind: Some(kind.to_owned()), planner: None }

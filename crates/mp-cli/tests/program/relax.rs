@@ -71,7 +71,7 @@ fn bad_fields_are_explained() {
         ),
         (
             vec!["render", "rrs-follow", "--field", "clearance", "--picture", "x.html"],
-            ["--field has no meaning", "pictures and films"],
+            ["--field has no meaning", ".png, .svg, .gif or .mp4"],
         ),
     ] {
         let run = mp(&dir, &arguments);

@@ -122,7 +122,7 @@ fn names_must_be_known() {
     let space = square();
     let build = |name: &str, settings: &str| {
         let ready = problem(&space, [0.1, 0.1], point(0.9, 0.1)).unwrap();
-        build_with(name, ready, Linear::new(), &Settings::parse([settings]).unwrap()).map(|_| ())
+        build_with(name, ready, KdTree::<2>::new(), &Settings::parse([settings]).unwrap()).map(|_| ())
     };
     let message = build("rrt-conect", "step=0.1").unwrap_err().to_string();
     let expected =

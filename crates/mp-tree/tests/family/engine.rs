@@ -28,7 +28,7 @@ fn short() -> Tuning {
 }
 
 fn any<'c>(name: &str, problem: Problem<'c, Rn<2>, Local<'c>>) -> AnyPlanner<'c, Point, ()> {
-    build_with(name, problem, Linear::new(), &Settings::parse(["step=0.05"]).unwrap()).unwrap()
+    build_with(name, problem, KdTree::<2>::new(), &Settings::parse(["step=0.05"]).unwrap()).unwrap()
 }
 
 fn goal() -> Point {

@@ -116,8 +116,7 @@ fn four_corners() {
     for seed in 0..6 {
         let come = |name: &str, settings: &[&str]| {
             let all = ["step=0.1", "inputs=12"].iter().chain(settings).copied();
-            let check = Certified::new(&space, boxes.clone(), 1e-3).unwrap();
-            let local = Straight::new(&space, check);
+            let local = certified(&space, boxes.clone(), 1e-3);
             let (start, goal) = (Point::new(0.1, 0.2), Point::new(0.93, 0.27));
             let problem = Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap();
             let mut planner = build(name, problem, &Settings::parse(all).unwrap()).unwrap();
@@ -173,7 +172,7 @@ fn by_name_goals_are_reached_exactly_and_settings_checked() {
     let boxes: Boxes<2> = slit(0.2, 0.8, 0.1);
     let (start, goal) = (Point::new(0.1, 0.2), Point::new(0.93, 0.27));
     let problem = || {
-        let local = Straight::new(&space, Certified::new(&space, boxes.clone(), 1e-3).unwrap());
+        let local = certified(&space, boxes.clone(), 1e-3);
         Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap()
     };
     for name in ["rsrt", "rrt-inputs"] {

@@ -44,7 +44,9 @@ impl Observer<Point> for Fuse {
 
 fn planner<'c>(name: &str, space: &'c Rn<2>, boxes: &Boxes<2>, fuse: &Fuse) -> AnyPlanner<'c, Point, ()> {
     let coarse = Discrete::new(space, boxes.clone(), Length::Absolute(0.05)).unwrap();
-    let local = Straight::new(space, Fragile(coarse, fuse.clone()));
+    // Of the type that other tests have, too.
+    let check: mp_cspace::erased::AnyCheck<'c, Point> = Box::new(Fragile(coarse, fuse.clone()));
+    let local = Straight::new(space, check);
     let verifier = Fragile(Exact(boxes.clone()), fuse.clone());
     let goals = Goals::states([Point::new(0.9, 0.2), Point::new(0.9, 0.9)]);
     let problem = Problem::new(space, local, verifier, Point::new(0.1, 0.2), goals).unwrap();

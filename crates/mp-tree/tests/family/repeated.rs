@@ -285,7 +285,7 @@ fn bad_numbers_and_names_are_refused() {
     let build = |name: &str, setting: &str| {
         let settings = Settings::parse([setting]).unwrap();
         let make = || problem(&space, &boxes);
-        build_from(name, make, Linear::new(), &settings, &Workers::single()).map(|_| ())
+        build_from(name, make, KdTree::<2>::new(), &settings, &Workers::single()).map(|_| ())
     };
     for meta in meta_planners() {
         let inner = meta.around.map_or("rrt-connect", |names| names[0]);
@@ -311,6 +311,6 @@ fn bad_numbers_and_names_are_refused() {
         assert!(matches!(Workers::new(threads), Err(BuildError::OutOfRange { name: "threads", .. })));
     }
     let fails = || Made::Err(BuildError::Unmade { reason: "no robot".into() });
-    let made = build_from("or-rrt", fails, Linear::new(), &Settings::default(), &Workers::single());
+    let made = build_from("or-rrt", fails, KdTree::<2>::new(), &Settings::default(), &Workers::single());
     assert_eq!(made.map(|_| ()), Err(BuildError::Unmade { reason: "no robot".into() }));
 }
