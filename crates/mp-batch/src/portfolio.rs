@@ -27,7 +27,7 @@ const MAX_UNIT: u64 = 1_000_000_000_000;
 /// Which runs are made.
 ///
 /// A portfolio is a fixed list of runs, numbered from 1. Run i draws from stream *(seed, i)*, and its *cap*, the most iterations it may
-/// make, is that of the [schedule](PortfolioSchedule). The runs are made in *rounds* of so many; a round begins when the one before has no
+/// make, is that of the [schedule](PortfolioSchedule). The runs are made in *rounds* of a fixed number; a round begins when the one before has no
 /// path. The winner is the run of the first round with a path that has the fewest iterations, and of several such the one with the
 /// least number. So it depends on the request and the portfolio alone, whoever finished first, and on how many machines.
 ///
@@ -380,7 +380,7 @@ impl RunOutcome {
         self.path.as_ref().map(|_| (self.iterations, self.run))
     }
 
-    /// Whether more of it changes nothing, if the best run has so many iterations.
+    /// Whether more of it changes nothing, if the best run has this many iterations.
     fn is_settled(&self, best: Option<u64>) -> bool {
         self.path.is_some() || self.stopped_by.is_some() || best.is_some_and(|best| best <= self.iterations)
     }

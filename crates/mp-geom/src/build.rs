@@ -46,7 +46,7 @@ impl TriMesh {
     /// As [`from_soup`](Self::from_soup), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// When it was told to end. Inside, as [`TriMesh::new`].
+    /// When it was interrupted. Inside, as [`TriMesh::new`].
     pub fn from_soup_until(
         soup: &[[Point3<f64>; 3]],
         interrupt: &Interrupt,

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display};
 
-/// A report has at most so many characters, and its parts so many: errors cite files, which may hold anything.
+/// The most characters of a report, and of its parts: errors cite files, which may hold anything.
 const MAX_REPORT: usize = 499;
 const MAX_FILE: usize = 120;
 const MAX_MESSAGE: usize = 300;
@@ -23,7 +23,7 @@ pub enum ErrorKind {
     Content,
     /// Larger than this crate reads.
     TooLarge,
-    /// The reader was told to end: see [`Until`](crate::Until).
+    /// The reader was interrupted: see [`Until`](crate::Until).
     Interrupted,
 }
 
@@ -72,7 +72,7 @@ impl Error {
         }))
     }
 
-    /// The error of a reader that was told to end.
+    /// The error of a reader that was interrupted.
     pub(crate) fn interrupted(file: impl Display) -> Self {
         Self::new(
             ErrorKind::Interrupted,
@@ -221,7 +221,7 @@ impl Error {
         text + &help
     }
 
-    /// The error in one line of at most so many characters.
+    /// The error in one line of at most `most` characters.
     fn line_of(&self, most: usize) -> String {
         let mut text = format!("{}:", shortened(&self.0.file, MAX_FILE));
         if let Some((line, column)) = self.0.position {
@@ -238,7 +238,7 @@ impl Error {
     }
 }
 
-/// At most so many characters of `text`: of a longer one its beginning and its end.
+/// At most `most` characters of `text`: of a longer one its beginning and its end.
 #[must_use]
 pub fn shortened(text: &str, most: usize) -> String {
     let count = text.chars().count();
@@ -250,7 +250,7 @@ pub fn shortened(text: &str, most: usize) -> String {
     beginning.chain(['…']).chain(text.chars().skip(count - end)).collect()
 }
 
-/// A text that may cite anything as one line of at most so many characters: [`shortened`], without control characters.
+/// A text that may cite anything as one line of at most `most` characters: [`shortened`], without control characters.
 #[must_use]
 pub fn one_line(text: &str, most: usize) -> String {
     let text = shortened(text, most);

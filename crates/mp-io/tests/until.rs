@@ -17,7 +17,7 @@ fn at(n: u64) -> Interrupt {
     Interrupt::by(Cancel::new(), clock, STEP * u32::try_from(n).unwrap())
 }
 
-/// Reads to the end, which takes at least a question for 1024 `rows`; then is told to end at some of the questions.
+/// Reads to the end, which takes at least a question for 1024 `rows`; then is interrupted at some of the questions.
 fn ends<T>(what: &str, rows: u64, read: impl Fn(Interrupt) -> Result<T, mp_io::Error>) {
     assert!(read(at(u64::from(u32::MAX))).is_ok(), "{what}");
     let questions = READ.load(Ordering::SeqCst);

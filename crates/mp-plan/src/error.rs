@@ -4,7 +4,7 @@ use crate::End;
 use mp_cspace::{BuildError, Endpoint};
 use std::fmt;
 
-/// A message has at most so many characters: it may cite what somebody gave.
+/// The most characters of a message: it may cite what somebody gave.
 const MAX_MESSAGE: usize = 400;
 
 /// An error about bad input: what is wrong, in which scene or file, and what to do.

@@ -106,7 +106,7 @@ pub(crate) fn refused(kind: &dyn Robot, name: &str, q: &Configuration) -> Option
     Some((format!("{name} is {fault}"), help))
 }
 
-/// At most so many are listed.
+/// The most that are listed.
 const LISTED: usize = 3;
 
 /// A warning of what is inside of closed surfaces, if anything is.

@@ -46,7 +46,7 @@ impl Deadlines {
     }
 }
 
-/// A check that finds no motion free that the robot cannot make, and none at all once it is told to end.
+/// A check that finds no motion free that the robot cannot make, and none at all once it is interrupted.
 pub(crate) struct Possible<'k> {
     pub(crate) kind: &'k dyn Robot,
     pub(crate) check: AnyCheck<'k, Configuration>,

@@ -230,7 +230,7 @@ pub trait Motion: AnyMotion {
     /// part of loading. By default nothing.
     ///
     /// # Errors
-    /// When it was told to end.
+    /// When it was interrupted.
     fn make_ready(&self, _interrupt: &Interrupt) -> Result<(), Interrupted> {
         Ok(())
     }

@@ -232,7 +232,7 @@ impl<'p, 'k> RobotRun<'p, 'k> {
         let mut found = Found { best: None, first: None, over: None };
         let made = match (made, interrupt.raised()) {
             (Ok(made), _) => Some(made),
-            // What was told to end is no error.
+            // What was interrupted is no error.
             (Err(_), Some(reason)) => {
                 found.over = Some(Some(reason));
                 None

@@ -624,7 +624,7 @@ impl Scene {
     /// Makes what planning in large meshes needs and would make at its beginning otherwise, unless `interrupt` says to end. Clones share it.
     ///
     /// # Errors
-    /// When it was told to end.
+    /// When it was interrupted.
     pub fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         self.robot.make_ready(interrupt)
     }

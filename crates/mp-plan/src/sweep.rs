@@ -21,7 +21,7 @@ pub struct Sweep {
 
 /// A path of more configurations is thinned for pictures and films.
 const MOST_SHOWN: usize = 10_000;
-/// Thinned, it has at most so many parts.
+/// The most parts that it has once thinned.
 const PARTS: f64 = 5_000.0;
 
 /// The configurations of a path that are shown.

@@ -1,4 +1,4 @@
-//! A run that is told to end does little more, and comes to what a run comes to that stopped after its last whole iteration.
+//! A run that is interrupted does little more, and comes to what a run comes to that stopped after its last whole iteration.
 //!
 //! Time is counted by a clock of the tests, which goes on by a step whenever it is read. So a budget of time ends a run at a
 //! question that the test chooses, on every machine at the same one.

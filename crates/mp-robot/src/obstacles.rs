@@ -171,7 +171,7 @@ impl Obstacles {
     /// Makes the [`reference`](Self::reference), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// When it was told to end.
+    /// When it was interrupted.
     pub(crate) fn make_reference(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         make_once(&self.reference, interrupt, || {
             let reference = |mesh: TriMesh| RefMesh::new_until(&mesh, interrupt).map(Arc::new);
@@ -194,7 +194,7 @@ fn memory(mesh: &TriMesh) -> [usize; 3] {
 /// Makes what `cell` holds, if it holds nothing yet, unless `interrupt` says to end.
 ///
 /// # Errors
-/// When it was told to end.
+/// When it was interrupted.
 pub(crate) fn make_once<T>(
     cell: &OnceLock<T>,
     interrupt: &Interrupt,

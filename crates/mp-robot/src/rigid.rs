@@ -34,7 +34,7 @@ pub enum RobotError {
         /// How many there may be.
         max: usize,
     },
-    /// The work was told to end.
+    /// The work was interrupted.
     #[error("preparing the meshes was ended")]
     Interrupted,
     /// The robot is too large to compute with.
@@ -182,7 +182,7 @@ impl<P: Placement> RigidBody<P> {
     /// As [`among_after`](Self::among_after), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`among`](Self::among), and [`Interrupted`](RobotError::Interrupted) when it was told to end.
+    /// As [`among`](Self::among), and [`Interrupted`](RobotError::Interrupted) when it was interrupted.
     pub fn among_until(
         before: Option<&Self>,
         robot: &TriMesh,
@@ -235,7 +235,7 @@ impl<P: Placement> RigidBody<P> {
     /// says to end. Clones share it.
     ///
     /// # Errors
-    /// When it was told to end.
+    /// When it was interrupted.
     pub fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         let shared = &*self.shared;
         make_once(&shared.reference, interrupt, || {

@@ -165,10 +165,10 @@ impl SparseClock {
 
 /// The token that long work asks whether to end: when a [`Cancel`] is raised, or at a time of a clock.
 ///
-/// Clones are for the parts of one piece of work, on any thread: once one of them was told to end, all are. Asking costs two atomic
+/// Clones are for the parts of one piece of work, on any thread: once one of them was interrupted, all are. Asking costs two atomic
 /// loads; with a deadline the clock is read as by a [`SparseClock`]. The default never ends anything.
 ///
-/// Work that was told to end returns as soon as it can, with any answer. Whoever started it asks [`raised`](Self::raised)
+/// Work that was interrupted returns as soon as it can, with any answer. Whoever started it asks [`raised`](Self::raised)
 /// afterwards, and drops the answer if so.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt {
@@ -176,7 +176,7 @@ pub struct Interrupt {
     clock: Option<SparseClock>,
 }
 
-/// Work was told to end by an [`Interrupt`].
+/// Work was interrupted by an [`Interrupt`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Interrupted;
 
@@ -272,7 +272,7 @@ impl Interrupt {
         if self.ask() { Err(Interrupted) } else { Ok(()) }
     }
 
-    /// Why work was told to end, if any of the clones was. Looks neither at the flag nor at the clock.
+    /// Why work was interrupted, if any of the clones was. Looks neither at the flag nor at the clock.
     #[must_use]
     pub fn raised(&self) -> Option<StopReason> {
         reason(self.shared.as_ref()?.told.load(Ordering::Relaxed))

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 const BEGINNING: &str = ".mp-";
 const ENDING: &str = ".tmp";
 
-/// At most so many entries of a folder are looked at for left-over files.
+/// The most entries of a folder that are looked at for left-over files.
 const LISTED: usize = 10_000;
 
 /// A temporary file. It is locked as long as it is open, which says that it is in use, and removed when it is dropped.

@@ -47,7 +47,7 @@ pub extern "C" fn send(length: usize) {
     WORKER.with_borrow_mut(|worker| worker.send(&request[..length.min(request.len())]));
 }
 
-/// Plans for about so many milliseconds. Returns 1 while a run goes on that is not paused.
+/// Plans for about this many milliseconds. Returns 1 while a run goes on that is not paused.
 #[unsafe(no_mangle)]
 pub extern "C" fn advance(milliseconds: f64) -> u32 {
     WORKER.with_borrow_mut(|worker| worker.advance(duration(milliseconds)).into())

@@ -103,7 +103,7 @@ impl Costs {
 }
 
 impl<'l> Order<'l> {
-    /// From the place `begin` on, in blocks of so many items; `left` of them are to be handed out.
+    /// From the place `begin` on, in blocks of this many items; `left` of them are to be handed out.
     pub(super) fn new(list: &'l ProblemList, shard: Shard, begin: u64, left: u64, block: u64) -> Self {
         let count = shard.count(list.items);
         let (runs, costs) = (BinaryHeap::new(), Costs::new(list));
@@ -131,7 +131,7 @@ impl<'l> Order<'l> {
         }
     }
 
-    /// An item took so many seconds.
+    /// An item took this many seconds.
     pub(super) fn learn(&mut self, place: u64, seconds: f64) {
         let line = self.line(place);
         self.costs.lines.entry(line).or_default().add(seconds);

@@ -233,7 +233,7 @@ impl Kept {
                 Ok(scene)
             }
             Err((message, remedy)) => {
-                // It may have been told to end.
+                // It may have been interrupted.
                 slots.retain(|(other, _)| *other != index);
                 Err(error(message, remedy))
             }

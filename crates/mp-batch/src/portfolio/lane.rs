@@ -126,7 +126,7 @@ impl Lane<'_> {
         }
         let mut outcomes: Vec<RunOutcome> = Vec::new();
         let mut best: Option<(u64, u64)> = None;
-        // Runs with so many iterations cannot win.
+        // Runs with as many iterations cannot win.
         let bound = |best: Option<(u64, u64)>| {
             let known = self.start.best.unwrap_or(u64::MAX).min(hand.bound());
             best.map_or(known, |(iterations, _)| iterations.min(known))

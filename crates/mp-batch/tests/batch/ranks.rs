@@ -86,7 +86,7 @@ fn ranks_do_not_matter() {
     assert!(dir.read("s.jsonl") == dir.read("shard.jsonl"));
 }
 
-/// Whichever rank is told to end, and wherever the file is cut.
+/// Whichever rank is interrupted, and wherever the file is cut.
 #[test]
 fn what_ended_early_goes_on_on_other_ranks() {
     let dir = Dir::new();

@@ -262,7 +262,7 @@ fn what_was_cut_off_goes_on() {
     assert_eq!(dir.read("cut.jsonl"), all);
 }
 
-/// Items that were at work when they were told to end leave nothing.
+/// Items that were at work when they were interrupted leave nothing.
 #[test]
 fn a_cancelled_run_goes_on() {
     let dir = Dir::new();

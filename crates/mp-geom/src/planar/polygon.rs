@@ -29,7 +29,7 @@ pub enum PolygonError {
         /// Its y.
         y: f64,
     },
-    /// The work was told to end.
+    /// The work was interrupted.
     #[error("reading the map was ended")]
     Interrupted,
     /// A size that is not positive, or corners of which the second is not above the first.

@@ -29,7 +29,7 @@ pub enum PlanarWorldError {
         /// How many there may be.
         max: usize,
     },
-    /// The work was told to end.
+    /// The work was interrupted.
     #[error("preparing the map was ended")]
     Interrupted,
     /// A polygon is invalid.
@@ -100,7 +100,7 @@ impl PlanarWorld {
     /// As [`new`](Self::new), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and [`Interrupted`](PlanarWorldError::Interrupted) when it was told to end.
+    /// As [`new`](Self::new), and [`Interrupted`](PlanarWorldError::Interrupted) when it was interrupted.
     pub fn new_until(
         polygons: Vec<Polygon>,
         walls: Option<[[f64; 2]; 2]>,

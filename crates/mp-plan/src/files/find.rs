@@ -25,7 +25,7 @@ impl Scene {
     /// As [`find`](Self::find), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`find`](Self::find), and when it was told to end.
+    /// As [`find`](Self::find), and when it was interrupted.
     pub fn find_until(given: impl AsRef<Path>, interrupt: &Interrupt) -> Result<Self, Error> {
         let until = |files| Until { files, interrupt: interrupt.clone() };
         let SceneFiles { file, shipped, .. } = SceneFiles::find(Path::new(""), given.as_ref())?;

@@ -18,7 +18,7 @@ impl Scene {
     /// As [`from_problem`](Self::from_problem), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`from_problem`](Self::from_problem), and when it was told to end.
+    /// As [`from_problem`](Self::from_problem), and when it was interrupted.
     pub fn from_problem_until(problem: RigidProblem, interrupt: &Interrupt) -> Result<Self, Error> {
         Self::of_problem_until(None, problem, interrupt)
     }
@@ -52,7 +52,7 @@ impl Scene {
     /// As [`from_task`](Self::from_task), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`from_task`](Self::from_task), and when it was told to end.
+    /// As [`from_task`](Self::from_task), and when it was interrupted.
     pub fn from_task_until(task: RigidTask, interrupt: &Interrupt) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %task.problem.name).entered();
         match (task.problem.space, &task.driven) {
@@ -75,7 +75,7 @@ impl Scene {
     /// As [`from_world`](Self::from_world), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`from_world`](Self::from_world), and when it was told to end.
+    /// As [`from_world`](Self::from_world), and when it was interrupted.
     pub fn from_world_until(problem: PlanarProblem, interrupt: &Interrupt) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %problem.name).entered();
         match problem.file.robot {

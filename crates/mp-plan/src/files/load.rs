@@ -92,7 +92,7 @@ impl Scene {
     /// As [`parse`](Self::parse), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`parse`](Self::parse), and when it was told to end.
+    /// As [`parse`](Self::parse), and when it was interrupted.
     pub fn parse_until(
         name: &str,
         text: &str,

@@ -216,7 +216,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
     /// As [`from_problem`](Self::from_problem), with the meshes of the robot read through `files`, unless their token says to end.
     ///
     /// # Errors
-    /// As [`from_problem`](Self::from_problem), and when it was told to end.
+    /// As [`from_problem`](Self::from_problem), and when it was interrupted.
     pub fn from_problem_in(files: &dyn Files, problem: RobotProblem) -> Result<Self, Error> {
         Self::from_problem_after(files, problem, None)
     }

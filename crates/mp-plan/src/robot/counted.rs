@@ -25,7 +25,7 @@ pub(crate) fn queries_of_thread() -> u64 {
     OF_THREAD.get()
 }
 
-/// A checker whose queries are added to a common count: now and then, and when it is dropped. Once it is told to end, it queries
+/// A checker whose queries are added to a common count: now and then, and when it is dropped. Once it is interrupted, it queries
 /// nothing any more: everything is in contact.
 pub struct Counted<'a, R: Queries> {
     checker: R,
@@ -64,7 +64,7 @@ impl<'a, R: Queries> Counted<'a, R> {
         self.reported = now;
     }
 
-    /// The answer of the checker to a query; `ended` once it is told to end.
+    /// The answer of the checker to a query; `ended` once it is interrupted.
     #[inline]
     fn query<T>(&mut self, ended: T, query: impl FnOnce(&mut R) -> T) -> T {
         if self.interrupt.ask() {

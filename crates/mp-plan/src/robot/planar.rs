@@ -286,7 +286,7 @@ impl<B: PlanarBody> PlanarScene<B> {
     /// As [`new`](Self::new), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and when it was told to end.
+    /// As [`new`](Self::new), and when it was interrupted.
     pub fn new_until(problem: PlanarProblem, interrupt: &Interrupt) -> Result<Self, Error> {
         let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
         let world = PlanarWorld::new_until(polygons, problem.walls, interrupt)

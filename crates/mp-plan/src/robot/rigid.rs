@@ -160,7 +160,7 @@ impl<M: RigidSpace> RigidScene<M> {
     /// As [`after`](Self::after), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and when it was told to end.
+    /// As [`new`](Self::new), and when it was interrupted.
     pub fn after_until(
         before: Option<&Self>,
         problem: RigidProblem,
@@ -203,7 +203,7 @@ impl<M: RigidSpace> RigidScene<M> {
     /// As [`among_moving`](Self::among_moving), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`among_moving`](Self::among_moving), and when it was told to end.
+    /// As [`among_moving`](Self::among_moving), and when it was interrupted.
     pub fn among_moving_until(
         self,
         moving: &[RigidMoving],

@@ -19,7 +19,7 @@ pub(crate) fn plan(kind: &dyn Robot, request: &Request, control: &mut Control<'_
     let interrupt = control.interrupt_of(request);
     request.check()?;
     PlannerKind::new(&request.planner)?;
-    // Whether it was told to end is asked below.
+    // Whether it was interrupted is asked below.
     let _ = kind.make_ready(&interrupt);
     check_ends(kind)?;
     control.spend_since(began);

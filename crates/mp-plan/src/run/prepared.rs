@@ -33,7 +33,7 @@ pub(crate) struct Prepared<'k> {
     /// What the run asks whether to end.
     interrupt: Mutex<Interrupt>,
     deadlines: Deadlines,
-    /// Whether the verification of a path was told to end.
+    /// Whether the verification of a path was interrupted.
     unverified: AtomicBool,
 }
 
@@ -189,7 +189,7 @@ impl<'k> Prepared<'k> {
     }
 }
 
-/// The verifier of paths, which notes when it was told to end.
+/// The verifier of paths, which notes when it was interrupted.
 struct Verifying<'a> {
     verifier: AnyCheck<'a, Configuration>,
     interrupt: Interrupt,

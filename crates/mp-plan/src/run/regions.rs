@@ -14,9 +14,9 @@ use std::sync::Arc;
 
 /// The planner whose roadmaps are made by regions.
 pub(crate) const PLANNER: &str = "regional-prm";
-/// With so many samples the cost of a region is estimated.
+/// The samples with which the cost of a region is estimated.
 const SAMPLES: u32 = 64;
-/// A free sample costs about so many times as much as another: it is connected to others.
+/// How many times as much a free sample costs as another: it is connected to others.
 const NODE: f64 = 25.0;
 
 /// The work on a roadmap by regions: an item for each region, then one for each pair of adjacent regions. Each item can be done anywhere, in
@@ -107,7 +107,7 @@ impl<'s> RegionalWork<'s> {
     /// Builds the roadmap of a region: its result.
     ///
     /// # Errors
-    /// When it was told to end, or start or goal of the scene are not free.
+    /// When it was interrupted, or start or goal of the scene are not free.
     pub fn build(&self, region: u64, interrupt: &Interrupt) -> Result<Vec<u8>, Error> {
         self.work.piece(region, &[], interrupt)
     }
@@ -205,7 +205,7 @@ fn add_region(map: &mut Roadmap<Configuration>, result: &[u8]) -> Result<Range<N
 impl RobotRegional<'_> {
     fn checker(&self, interrupt: &Interrupt) -> Result<AnyEdgeChecker<'_, Configuration>, Error> {
         match (self.prepared.problem_until(interrupt.clone()), interrupt.raised()) {
-            // Once it is told to end, start and goal count as not free.
+            // Once it is interrupted, start and goal count as not free.
             (_, Some(_)) => Err(Error::new("told to end")),
             (problem, None) => Ok(AnyEdgeChecker::of(problem?, PATIENCE).0),
         }

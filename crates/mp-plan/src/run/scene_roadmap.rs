@@ -209,7 +209,7 @@ impl RobotRoadmap {
         let map = Some([self.roadmap.map().edges(), self.roadmap.map_mut().components()]);
         let (outcome, why) = match (answer, interrupt.raised()) {
             (Ok(path), _) => (Outcome::Solved(relax_if_requested(kind, request, path, control, None)?), None),
-            // What the query says about the roadmap means nothing when it was told to end.
+            // What the query says about the roadmap means nothing when it was interrupted.
             (Err(_), Some(reason)) => (Outcome::Stopped(reason), None),
             (Err(why), None) => (Outcome::Stopped(StopReason::Exhausted), Some(why.to_string())),
         };

@@ -285,7 +285,7 @@ fn work_by_regions_is_checked() {
     let e = work.finish(&[connected.clone(), connected.clone()].concat(), &connected).unwrap_err();
     assert!(e.to_string().contains("not what it should be"), "{e}");
     assert!(work.connect(2, [&built[0], b"no"], &never).is_err());
-    // What was told to end has no result.
+    // What was interrupted has no result.
     let cancel = Cancel::new();
     cancel.cancel();
     assert!(work.build(0, &Interrupt::new(cancel)).is_err());

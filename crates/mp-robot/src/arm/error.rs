@@ -39,7 +39,7 @@ pub enum ArmError {
         /// The one that is missing.
         missing: String,
     },
-    /// The work was told to end.
+    /// The work was interrupted.
     #[error("preparing the robot was ended")]
     Interrupted,
     /// There are no links.
@@ -221,7 +221,7 @@ pub enum UrdfError {
         /// What to do about it.
         remedy: &'static str,
     },
-    /// The reader was told to end.
+    /// The reader was interrupted.
     #[error("the time was up, or the work interrupted, while the robot was read")]
     Interrupted,
     /// A joint has a kind that is not handled.

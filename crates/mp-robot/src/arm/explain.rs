@@ -151,7 +151,7 @@ impl Arm {
     ///
     /// The search moves along each degree of freedom and in many other directions by growing amounts, then goes back toward
     /// `q`.
-    /// The same input gives the same result, unless the arm is [told to end](Arm::with_interrupt): then the result is any configuration. Some
+    /// The same input gives the same result, unless the arm is [interrupted](Arm::with_interrupt): then the result is any configuration. Some
     /// thousands of clearance queries: meant for messages.
     pub fn nearest_free<C>(&mut self, q: &C::State, space: &C, margin: f64) -> Option<C::State>
     where

@@ -280,7 +280,7 @@ impl Arm {
     /// As [`new`](Self::new), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and [`Interrupted`](ArmError::Interrupted) when it was told to end.
+    /// As [`new`](Self::new), and [`Interrupted`](ArmError::Interrupted) when it was interrupted.
     pub fn new_until(
         model: &ArmModel,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
@@ -333,7 +333,7 @@ impl Arm {
     /// As [`among`](Self::among), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`among`](Self::among), and [`Interrupted`](ArmError::Interrupted) when it was told to end.
+    /// As [`among`](Self::among), and [`Interrupted`](ArmError::Interrupted) when it was interrupted.
     pub fn among_until(
         &self,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
@@ -349,7 +349,7 @@ impl Arm {
     /// `interrupt` says to end. Clones share it.
     ///
     /// # Errors
-    /// When it was told to end.
+    /// When it was interrupted.
     pub fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         let (robot, mut asked) = (&*self.robot, interrupt.clone());
         make_once(&robot.reference, interrupt, || {

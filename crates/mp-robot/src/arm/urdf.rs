@@ -46,7 +46,7 @@ impl ArmModel {
     /// As [`from_urdf`](Self::from_urdf), unless `interrupt` says to end. Takes time in proportion to the length of the text.
     ///
     /// # Errors
-    /// As [`from_urdf`](Self::from_urdf), and [`UrdfError::Interrupted`] when it was told to end.
+    /// As [`from_urdf`](Self::from_urdf), and [`UrdfError::Interrupted`] when it was interrupted.
     pub fn from_urdf_until(
         text: &str,
         mut mesh: impl FnMut(&str) -> Result<TriMesh, String>,

@@ -65,7 +65,7 @@ impl<P: Placement> AmongMoving<P> {
     /// As [`new`](Self::new), unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and [`Interrupted`](RobotError::Interrupted) when it was told to end.
+    /// As [`new`](Self::new), and [`Interrupted`](RobotError::Interrupted) when it was interrupted.
     pub fn new_until(
         body: RigidBody<P>,
         moving: impl IntoIterator<Item = (String, TriMesh, Trajectory)>,

@@ -21,7 +21,7 @@ fn at(n: u64) -> Interrupt {
     Interrupt::by(Cancel::new(), clock, STEP * u32::try_from(n).unwrap())
 }
 
-/// Makes it to the end, which takes at least a question for eight of the `triangles`; then is told to end at some of the questions.
+/// Makes it to the end, which takes at least a question for eight of the `triangles`; then is interrupted at some of the questions.
 fn ends<T, E: PartialEq + std::fmt::Debug>(
     what: &str,
     triangles: usize,
@@ -127,7 +127,7 @@ fn a_search_for_a_free_configuration_ends() {
     assert!(queries(&cancel) < 50, "{}", queries(&cancel));
 }
 
-/// What is told to end while it makes what verifiers need leaves nothing half made.
+/// What is interrupted while it makes what verifiers need leaves nothing half made.
 #[test]
 fn what_was_ended_is_made_again() {
     let body = FreeFlyer::among(&primitives::cuboid(0.2, 0.2, 0.2).unwrap(), obstacles()).unwrap();

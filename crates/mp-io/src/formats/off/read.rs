@@ -175,7 +175,7 @@ impl<'a> Reader<'a> {
     }
 
     /// # Errors
-    /// When the reader is told to end.
+    /// When the reader is interrupted.
     fn go_on(&mut self) -> Result<(), Error> {
         if self.interrupt.ask() { Err(Error::interrupted(self.text.file)) } else { Ok(()) }
     }

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 
 /// A URDF reduced to the parts that planning needs.
 pub(super) struct Extract {
-    /// The reduced document, in parts that are documents themselves: a reader cannot be told to end within one.
+    /// The reduced document, in parts that are documents themselves: a reader cannot be interrupted within one.
     pub(super) parts: Vec<String>,
     /// For each link, the lines of its collision shapes in the original text.
     pub(super) links: Vec<Vec<u32>>,
