@@ -1,4 +1,4 @@
-//! The algorithms and the list of those that can be made by name: one file each, but for those that differ in one slot.
+//! The algorithms and the list of those that can be made by name: one file each.
 //!
 //! | algorithm | | nodes | edges |
 //! |---|---|---|---|
