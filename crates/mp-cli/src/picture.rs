@@ -128,10 +128,13 @@ impl Picture {
         let still = matches!(self, Self::Drawn(..));
         let meshes = matches!(self, Self::Meshes(_));
         let page = matches!(self, Self::Page(_));
-        let (pictures, films) = (&[Content::Png, Content::Svg][..], &[Content::Gif, Content::Mp4][..]);
-        let drawn = &[pictures, films].concat()[..];
+        let pages = ("pages", &[Content::Page][..]);
+        let pictures = ("pictures", &[Content::Png, Content::Svg][..]);
+        let films = ("films", &[Content::Gif, Content::Mp4][..]);
+        let drawn = ("pictures and films", &[pictures.1, films.1].concat()[..]);
+        let moving = ("films and meshes", &[films.1, &[Content::Gltf]].concat()[..]);
         let options = [
-            ("--with-planner", drawing.with_planner, page, &[Content::Page][..]),
+            ("--with-planner", drawing.with_planner, page, pages),
             ("--size", drawing.size.is_some(), film || still, drawn),
             ("--mode", drawing.mode.is_some(), film || still, drawn),
             ("--camera", drawing.camera.is_some(), film || still, drawn),
@@ -140,14 +143,14 @@ impl Picture {
             ("--at", drawing.at.is_some(), still, pictures),
             ("--turntable", drawing.turntable, film, films),
             ("--follow", drawing.follow, film, films),
-            ("--seconds", drawing.seconds.is_some(), film || meshes, &[films, &[Content::Gltf]].concat()),
+            ("--seconds", drawing.seconds.is_some(), film || meshes, moving),
             ("--fps", drawing.fps.is_some(), film, films),
         ];
         match options.into_iter().find(|(_, given, used, _)| *given && !used) {
             None => Ok(()),
-            Some((name, _, _, of)) => {
+            Some((name, _, _, (what, of))) => {
                 let of = Content::endings(|content| of.contains(&content));
-                let what = format!("{name} has no meaning for a .{ending} file: it is for {of}");
+                let what = format!("{name} has no meaning for a .{ending} file: it is for {what} ({of})");
                 Err(Error::new(what).help("leave it out, or end the name of the file otherwise"))
             }
         }

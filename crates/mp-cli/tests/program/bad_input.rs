@@ -74,10 +74,10 @@ const COMMANDS: &[(&[&str], &[&str])] = &[
     (&["render", "window.env", "--out", "p.png", "--at", "0.5"], &["no path", "name a path"]),
     (&["render", "window.env", "--out", "p.png", "--at", "1.5"], &["from 0 to 1"]),
     (&["render", "window.env", "--out", "p.png", "--turntable"], &["--turntable", ".png", ".gif"]),
-    (&["render", "window.env", "--out", "p.png", "--fps", "10"], &["--fps", ".gif or .mp4"]),
+    (&["render", "window.env", "--out", "p.png", "--fps", "10"], &["--fps", "films (.gif or .mp4)"]),
     (
         &["render", "window.env", "--out", "p.html", "--mode", "wire"],
-        &["--mode", ".html", ".png, .svg, .gif or .mp4"],
+        &["--mode", ".html", "pictures and films (.png, .svg"],
     ),
     (&["render", "window.env", "--out", "p.glb", "--camera", "top"], &["--camera", ".glb"]),
     (&["render", "window.env", "--out", "p.gif"], &["nothing moves", "--turntable"]),

@@ -71,7 +71,7 @@ fn bad_fields_are_explained() {
         ),
         (
             vec!["render", "rrs-follow", "--field", "clearance", "--picture", "x.html"],
-            ["--field has no meaning", ".png, .svg, .gif or .mp4"],
+            ["--field has no meaning", "pictures and films"],
         ),
     ] {
         let run = mp(&dir, &arguments);
