@@ -301,7 +301,9 @@ class Hull:
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Points, such as those of a depth camera, each with a ball around it. Planning takes meshes of 20 triangles that contain the balls.
+    """Points, such as those of a depth camera, each with a ball around it.
+
+    Planning takes meshes of 20 triangles that contain the balls.
 
     Parameters
     ----------
@@ -444,7 +446,10 @@ def shape_members(shape: Shape, files: dict[str, bytes]) -> dict[str, Any]:
             name = f"mesh-{len(files) + 1}.off"
             files[name] = _mp.mesh_off(shape.vertices, shape.triangles)
             return {"mesh": name} | ({"solid": True} if shape.solid else {})
-    raise Error(f"{shape!r} is no shape", remedy="give a Mesh, a Box, a Sphere, a Cylinder, a Capsule, a Cone, a Hull, Points or a HeightField")
+    raise Error(
+        f"{shape!r} is no shape",
+        remedy="give a Mesh, a Box, a Sphere, a Cylinder, a Capsule, a Cone, a Hull, Points or a HeightField",
+    )
 
 
 def _rows(points: ArrayLike, what: str) -> list[list[float]]:
