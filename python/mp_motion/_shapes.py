@@ -456,7 +456,7 @@ def _rows(points: ArrayLike, what: str) -> list[list[float]]:
     rows = np.asarray(points, dtype=np.float64)
     if rows.ndim != 2 or rows.shape[1] != 3:
         raise Error(f"{what} have the shape {rows.shape}", remedy="give an array of shape (n, 3)")
-    return rows.tolist()
+    return [[float(v) for v in row] for row in rows]
 
 
 def body_members(body: Body | Shape, files: dict[str, bytes]) -> dict[str, Any]:

@@ -113,21 +113,21 @@ def test_shapes_goals_and_bounds() -> None:
         (mp.Capsule(0.3, 1), [0, 0, 0.7]),
         (mp.Cone(0.5, 1), [0, 0, 0.3]),
         (mp.Hull([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]), [0.2, 0.2, 0.2]),
-        (mp.Points([[0, 0, 0], [0.5, 0, 0]], 0.2), [0.5, 0, 0.1]),
+        (mp.Points([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]], 0.2), [0.5, 0, 0.1]),
         (mp.HeightField([[0, 0, 1], [0, 0, 1]], (0.5, 1)), [0.4, 0, 0.5]),
     ],
 )
 def test_what_is_inside_of_a_shape_collides(shape: mp.Shape, inside: list[float]) -> None:
-    ends = [[0, 0, 5, 0, 0, 0], [1, 0, 5, 0, 0, 0]]
-    scene = mp.Scene.rigid(mp.Sphere(0.01), *ends, obstacles=[shape])
+    start, goal, bounds = [0, 0, 5, 0, 0, 0], [1, 0, 5, 0, 0, 0], [[-9, -9, -9], [9, 9, 9]]
+    scene = mp.Scene.rigid(mp.Sphere(0.01), start, goal, obstacles=[shape], bounds=bounds)
     assert scene.is_free([2, 2, 2, 0, 0, 0]) and not scene.is_free([*inside, 0, 0, 0])
     # As a robot, it has the small ball inside.
     there = [0, 0, 1]
     ball = mp.Body(mp.Sphere(0.01), [*(a + b for a, b in zip(inside, there, strict=True)), 0, 0, 0])
-    assert not mp.Scene.rigid(shape, *ends, obstacles=[ball]).is_free([*there, 0, 0, 0])
+    assert not mp.Scene.rigid(shape, start, goal, obstacles=[ball], bounds=bounds).is_free([*there, 0, 0, 0])
 
 
-@pytest.mark.parametrize("shape", [mp.Hull([0, 0, 0]), mp.Points([[0, 0]], 0.1), mp.HeightField([1, 2], (1, 1))])
+@pytest.mark.parametrize("shape", [mp.Hull([0, 0, 0]), mp.Points([[0, 0], [1, 0]], 0.1), mp.HeightField([1, 2], (1, 1))])
 def test_shapes_of_other_arrays_are_refused(shape: mp.Shape) -> None:
     with pytest.raises(mp.Error, match="have the shape"):
         mp.Scene.rigid(shape, [0, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0])

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Problems of each kind.
-const EACH: u64 = 10;
+const EACH: u64 = 16;
 
 fn of_kind(kind: &str) -> Wanted {
     Wanted { kind: Some(kind.to_owned()), planner: None }
