@@ -330,7 +330,7 @@ impl Scene {
     ///
     /// // A body that must stay below a ceiling.
     /// let low = Constraint::new("below 1.5 m", Length::Fraction(0.005), |row| row[2] <= 1.5);
-    /// let report = Scene::load("easy")?.under(low)?.plan(&Request::default())?;
+    /// let report = Scene::find("easy")?.under(low)?.plan(&Request::default())?;
     /// assert!(report.path.iter().flatten().all(|row| row[2] <= 1.5));
     /// # Ok::<(), mp_plan::Error>(())
     /// ```
