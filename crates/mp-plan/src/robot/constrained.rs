@@ -18,13 +18,16 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// Whether a constraint holds at a row of numbers.
+type Holds = dyn Fn(&[f64]) -> bool + Send + Sync;
+
 /// A function that says which configurations may be: see [`Scene::under`](crate::Scene::under).
 ///
 /// Nothing is known of it between configurations, so that it is sampled along motions.
 #[derive(Clone)]
 pub struct Constraint {
     name: String,
-    holds: Arc<dyn Fn(&[f64]) -> bool + Send + Sync>,
+    holds: Arc<Holds>,
     every: Length,
 }
 
