@@ -29,7 +29,7 @@ fn paths_keep_to_a_constraint_whatever_the_robot_is() {
         let scene = Scene::find(name).unwrap();
         let before = planned(&scene);
         // Around the row that is farthest from both ends.
-        let off = |a: &[f64], b: &[f64]| (a[0] - b[0]).hypot(a[1] - b[1]);
+        let off = |a: &[f64], b: &[f64]| mp_math::hypot(a[0] - b[0], a[1] - b[1]);
         let [first, last] = [before.rows.first().unwrap(), before.rows.last().unwrap()];
         let nearest_end = |row: &Vec<f64>| off(row, first).min(off(row, last));
         let middle =
