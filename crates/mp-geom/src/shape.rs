@@ -130,6 +130,9 @@ mod tests {
         mesh
     }
 
+    /// A shape and its lengths, a point on its surface, and the direction away from it.
+    type Case<'a> = (&'a str, &'a [f64], [f64; 3], [f64; 3]);
+
     /// Points on the surface of round shapes are in their meshes, and points a little farther out are not.
     #[test]
     fn meshes_contain_their_shapes() {
@@ -137,8 +140,7 @@ mod tests {
         for i in 0..400 {
             let ((s, c), (t, u)) = (round(i), round(7 * i + 1));
             let [x, y, z] = [c * u, s * u, t];
-            // As lengths, with a radius of 0.5: a point on the surface, and the direction away from it.
-            let cases: [(&str, &[f64], [f64; 3], [f64; 3]); 5] = [
+            let cases: [Case<'_>; 5] = [
                 ("sphere", &[0.5], [0.5 * x, 0.5 * y, 0.5 * z], [x, y, z]),
                 ("cylinder", &[0.5, 2.0], [0.5 * c, 0.5 * s, 0.999 * t], [c, s, 0.0]),
                 ("capsule", &[0.5, 2.0], [0.5 * x, 0.5 * y, 0.5 * z + z.signum()], [x, y, z]),
