@@ -4,7 +4,7 @@ use mp_plan::{Cancel, PathRows, Request, Scene, in_parallel};
 use nalgebra::Point3;
 
 /// Seeds that must all be solved.
-const SEEDS: usize = 8;
+const SEEDS: usize = 20;
 /// Wider than this (m) the head does not fit into the slot, 0.44 m high and 0.26 m wide, however it rolls: it is 0.06 m
 /// thick, and its outer edges are 0.13 m farther apart than its jaws are wide.
 const WIDEST_IN_SLOT: f64 = 0.335;
