@@ -5,6 +5,7 @@ from typing import Literal, TypeAlias
 PlannerName: TypeAlias = Literal[
     "add-rrt",
     "aorrtc",
+    "auto",
     "bi-rrt",
     "bridge-prm",
     "cvp-rrt",

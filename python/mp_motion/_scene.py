@@ -69,6 +69,7 @@ class Options:
     first_only: bool = False
     roadmap: File | None = None
     clearance: float = 0.0
+    sharp_clearance: bool = False
 
     def to_json(self, scene: Scene) -> str:
         """Return the request as ``mp plan --request`` reads it, with the planner that suits the scene if none is named."""
@@ -85,6 +86,7 @@ class Options:
                 "finish": self.finish,
                 "field": self.field,
                 "first_only": self.first_only,
+                **({"sharp_clearance": True} if self.sharp_clearance else {}),
                 "roadmap": None if self.roadmap is None else os.fspath(self.roadmap),
             }
         )
@@ -592,6 +594,7 @@ class Scene:
         first_only: bool = False,
         roadmap: File | None = None,
         clearance: float = 0.0,
+        sharp_clearance: bool = False,
         progress: bool | Callable[[Progress], object] = False,
         cancel: Cancel | None = None,
     ) -> Report:
@@ -630,6 +633,9 @@ class Scene:
         clearance : float
             What the path keeps from obstacles all along, metres; the links of an arm may be nearer to each other. Zero for what
             the scene :meth:`keeps <keeping>`.
+        sharp_clearance : bool
+            Whether the report has the clearance of the path as near as it can be measured, which may take as long as planning;
+            otherwise it has the bound that the proof of the path gives.
         progress : bool or callable
             Called with :class:`Progress` at most ten times a second, in the calling thread; ``True`` shows a bar of ``tqdm``.
         cancel : Cancel, optional
@@ -655,7 +661,7 @@ class Scene:
         """
         options = Options(
             planner, seed, time, iterations, queries, nodes, settings, metric, motion, threads, finish, field,
-            first_only, roadmap, clearance,
+            first_only, roadmap, clearance, sharp_clearance,
         )  # fmt: skip
         return self.plan_by(options, progress=progress, cancel=cancel)
 

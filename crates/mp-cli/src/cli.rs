@@ -62,8 +62,8 @@ pub(crate) struct Plan {
     #[arg(value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
     /// Which planner. With `or-` before its name, independent runs of it race on all threads; with `restart-`, it
-    /// starts again when it takes too long [default: rrt-connect; rrt among obstacles that move; rsrt for robots that
-    /// move by inputs].
+    /// starts again when it takes too long [default: auto, a portfolio that begins with rrt-connect; rrt among obstacles that
+    /// move; rsrt for robots that move by inputs].
     #[arg(long, value_name = "NAME", value_parser = PlannerName)]
     pub(crate) planner: Option<String>,
     /// How far apart two configurations are (`default`: ‖Δp‖ + 0.5·angle, in metres and radians).
@@ -161,6 +161,9 @@ pub(crate) struct Plan {
     /// Print one JSON object on standard output, and write only the files asked for.
     #[arg(long)]
     pub(crate) json: bool,
+    /// With --json: measure the clearance of the path as near as can be. The report has the bound that the proof gives otherwise.
+    #[arg(long, value_name = "WHAT", value_parser = ["clearance"])]
+    pub(crate) report: Option<String>,
     /// Keep the path as the planner found it.
     #[arg(long)]
     pub(crate) no_shorten: bool,

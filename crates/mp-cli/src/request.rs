@@ -8,7 +8,12 @@ use mp_plan::{Budget, Error, Finish, Request, Scene};
 pub(crate) fn request_for(scene: &Scene, args: &Plan, request: &Request) -> Result<Request, Error> {
     let mut request = request.clone();
     if args.planner.is_none() && args.request.is_none() {
-        let planner = if args.routes.is_some() { "cyclic-rrt" } else { scene.default_planner() };
+        let planner = match scene.default_planner() {
+            _ if args.routes.is_some() => "cyclic-rrt",
+            // One portfolio is enough.
+            "auto" if args.portfolio.is_some() => "rrt-connect",
+            planner => planner,
+        };
         request.planner = planner.to_owned();
         request.check()?;
     }
@@ -43,6 +48,8 @@ pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
         },
         field: args.relax.clone().unwrap_or_default(),
         roadmap: args.roadmap.clone(),
+        // A person reads it, or a certificate says it.
+        sharp_clearance: args.report.is_some() || args.certificate.is_some() || !args.json,
         ..Request::default()
     };
     if let Some(step) = args.step {

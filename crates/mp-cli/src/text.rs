@@ -28,6 +28,9 @@ pub(crate) fn summary(report: &Report) -> String {
         let [begun, needed] = [grouped(runs.begun), grouped(runs.iterations)];
         row("portfolio", format!("{won}{begun} runs with {needed} iterations in all"));
     }
+    if let Some(won) = report.won.as_ref().filter(|_| report.portfolio.is_none()) {
+        row("found by", won.clone());
+    }
     row("iterations", grouped(report.iterations));
     row("nodes", grouped(report.nodes as u64));
     if let (Some(edges), Some(components)) = (report.edges, report.components) {

@@ -71,7 +71,8 @@ pub(crate) fn finish_given(
     let relaxed = relax_if_requested(kind, request, given, control, rest)?;
     let rest = left(control);
     let planned = control.clock.now().saturating_sub(began);
-    finish(kind, &relaxed, request, control, rest, planned, &mut Vec::new())?.map_err(ended)
+    let proposed = Proposed { path: &relaxed, proved: true, time: planned };
+    finish(kind, &proposed, request, control, rest, &mut Vec::new())?.map_err(ended)
 }
 
 /// In passages too narrow for the clearance of shortcuts they keep this part of it.
@@ -185,31 +186,49 @@ fn shorten_by<C: Factored>(
     simplify(space, check, path, Effort::default(), rng)
 }
 
-/// Shortens `found` if the request says so, and verifies what will be written, within the time `left`. If the shortened path does
-/// not pass, or not in time, `found` itself is used. `stages` gets what was done. A proof of `found` takes less than the time `planned`.
+/// A path that a search has found.
+pub(crate) struct Proposed<'p> {
+    pub(crate) path: &'p Path<Configuration>,
+    /// Whether each of its edges was verified.
+    pub(crate) proved: bool,
+    /// How long the search took.
+    pub(crate) time: Duration,
+}
+
+/// Proving a path takes no longer than the search for it, times this, as a rule: less where the search has proved it.
+const PROOF_PER_SEARCH: [u32; 2] = [16, 4];
+
+/// Shortens a path if the request says so, and verifies what will be written, within the time `left`. If the shortened path does
+/// not pass, or not in time, the path as found is used. `stages` gets what was done.
 ///
 /// # Errors
-/// Inside: why there is no path. `found`, written and read again, does not pass either, or not in time.
+/// Inside: why there is no path. The path as found, written and read again, does not pass either, or not in time.
 pub(crate) fn finish(
     kind: &dyn Robot,
-    found: &Path<Configuration>,
+    proposed: &Proposed<'_>,
     request: &Request,
     control: &mut Control<'_>,
     left: Option<Duration>,
-    planned: Duration,
     stages: &mut Vec<StageTime>,
 ) -> Result<Result<Finished, StoppedBy>, Error> {
+    let found = proposed.path;
+    let measured =
+        |written: &Written, finished: Finished, interrupt: &Interrupt| match request.sharp_clearance {
+            true => measured(kind, written, finished, interrupt),
+            false => finished,
+        };
     control.stage(Stage::Finishing);
     let mut timed = Timed { control, stages, began: control.clock.now(), left };
     let mut proved = None;
     if request.finish == Finish::Shorten {
-        // The planner has proved what it has found. What is read back is another path as a rule, of about the same proof: that comes first
-        // where half of the time left may be too little for it.
+        // What is read back is another path than the planner has found, as a rule: its proof comes first where half of the time left may be too
+        // little for it.
         let written = Written::of(kind, found)?;
-        let known = written.read.states == found.states;
-        if !known && left.is_some_and(|left| left < planned.saturating_mul(4)) {
+        let known = proposed.proved && written.read.states == found.states;
+        let enough = proposed.time.saturating_mul(PROOF_PER_SEARCH[usize::from(proposed.proved)]);
+        if !known && left.is_some_and(|left| left < enough) {
             let interrupt = timed.interrupt(1.0);
-            proved = verified_as_written(kind, found, &written, false, &interrupt)?.ok();
+            proved = verified_as_written(kind, found, &written, known, &interrupt)?.ok();
             timed.ends(RunStage::Verifying, &interrupt);
         }
         let for_short = if known || proved.is_some() { 1.0 } else { SHORT_PART };
@@ -220,8 +239,8 @@ pub(crate) fn finish(
         if short.states != found.states {
             let interrupt = timed.interrupt_before(rest);
             let written = Written::of(kind, &short)?;
-            let finished = verified_as_written(kind, &short, &written, true, &interrupt)?
-                .map(|finished| measured(kind, &written, finished, &interrupt));
+            let finished = verified_as_written(kind, &short, &written, false, &interrupt)?
+                .map(|finished| Finished { shortened: true, ..measured(&written, finished, &interrupt) });
             timed.ends(RunStage::Verifying, &interrupt);
             if let Ok(finished) = finished {
                 return Ok(Ok(finished));
@@ -231,12 +250,13 @@ pub(crate) fn finish(
     }
     let written = Written::of(kind, found)?;
     if let Some(proved) = proved {
-        return Ok(Ok(measured(kind, &written, proved, &timed.interrupt(1.0))));
+        return Ok(Ok(measured(&written, proved, &timed.interrupt(1.0))));
     }
     let interrupt = timed.interrupt(1.0);
+    let known = proposed.proved && written.read.states == found.states;
     let prove = |interrupt: &Interrupt| {
-        let finished = verified_as_written(kind, found, &written, false, interrupt)?;
-        Ok::<_, Error>(finished.map(|finished| measured(kind, &written, finished, interrupt)))
+        let finished = verified_as_written(kind, found, &written, known, interrupt)?;
+        Ok::<_, Error>(finished.map(|finished| measured(&written, finished, interrupt)))
     };
     let mut finished = prove(&interrupt)?;
     timed.ends(RunStage::Verifying, &interrupt);
@@ -309,7 +329,7 @@ impl Written {
     }
 }
 
-/// `path` as it is `written`, if the verifier passes that.
+/// `path` as it is `written`, if the verifier passes that. `known` says that the planner has verified just this path.
 ///
 /// # Errors
 /// Inside: whether it does not pass, or was not verified because `interrupt` said to end.
@@ -317,7 +337,7 @@ fn verified_as_written(
     kind: &dyn Robot,
     path: &Path<Configuration>,
     written: &Written,
-    shortened: bool,
+    known: bool,
     interrupt: &Interrupt,
 ) -> Result<Result<Finished, StoppedBy>, Error> {
     let _span = tracing::info_span!("verify").entered();
@@ -327,13 +347,11 @@ fn verified_as_written(
         path: rows.clone(),
         length: path.length(&kind.any_space()),
         clearance,
-        shortened,
+        shortened: false,
     };
     if let Some(fault) = report.fault {
-        // The planner has verified each edge of the path as found. Where writing and reading change nothing, that holds for what is
-        // written.
         return Ok(match interrupt.raised() {
-            Some(_) if !shortened && read.states == path.states => Ok(finished(None)),
+            Some(_) if known => Ok(finished(None)),
             Some(reason) => Err(reason.into()),
             None => {
                 tracing::info!("{fault}");

@@ -89,6 +89,9 @@ pub struct Report {
     pub columns: Vec<Column>,
     /// The path, one configuration in each row, start first.
     pub path: Option<Vec<Vec<f64>>>,
+    /// Of the planner `auto`, the search that has found the path: its planner, with the settings that differ from those of the request.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub won: Option<String>,
     /// Of a portfolio (`mp-batch`), its runs; the other members are then those of the winner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub portfolio: Option<PortfolioCounts>,

@@ -49,6 +49,10 @@ pub struct Request {
     pub field: RelaxField,
     /// Whether to stop at the first path, also with an anytime planner.
     pub first_only: bool,
+    /// Whether the report has the clearance of the path as near as it can be measured, which may take as long as planning. Otherwise it has the
+    /// bound that its proof has given.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub sharp_clearance: bool,
     /// The file of a roadmap: read if it exists, grown, and written at the end. For planners that build roadmaps.
     pub roadmap: Option<PathBuf>,
 }
@@ -282,11 +286,11 @@ impl Default for Budget {
     }
 }
 
-/// RRT-Connect with its defaults, seed 1, one thread, a minute; the path is shortened.
+/// The planner `auto`, seed 1, one thread, a minute; the path is shortened.
 impl Default for Request {
     fn default() -> Self {
         Self {
-            planner: "rrt-connect".to_owned(),
+            planner: crate::run::auto::INFO.name.to_owned(),
             settings: BTreeMap::new(),
             metric: MetricName::Default,
             motion: MotionValidator::Certified,
@@ -297,6 +301,7 @@ impl Default for Request {
             finish: Finish::Shorten,
             field: RelaxField::Clearance,
             first_only: false,
+            sharp_clearance: false,
             roadmap: None,
         }
     }
@@ -393,6 +398,12 @@ impl Request {
     #[must_use]
     pub fn finish(self, finish: Finish) -> Self {
         Self { finish, ..self }
+    }
+
+    /// Asks for the clearance of the path as near as it can be measured.
+    #[must_use]
+    pub fn sharp_clearance(self) -> Self {
+        Self { sharp_clearance: true, ..self }
     }
 
     /// Relaxes the path found in this field.

@@ -1,5 +1,6 @@
 //! A run in pieces: for programs with an event loop, which plan a little between two events.
 
+pub(crate) mod auto;
 pub(crate) mod plan;
 pub(crate) mod planners;
 pub(crate) mod prepared;
@@ -13,6 +14,7 @@ pub(crate) mod scene_roadmap;
 pub(crate) mod search;
 
 use crate::finish::relax::relax_if_requested;
+use crate::run::auto::Auto;
 use crate::run::plan::{left, reported};
 use crate::run::planners::PlannerKind;
 use crate::run::prepared::Prepared;
@@ -57,8 +59,7 @@ impl PreparedRun<'_> {
     /// # Errors
     /// As those of the first.
     pub fn again(&self) -> Result<Self, Error> {
-        let prepared = Prepared::new(self.prepared.kind, self.prepared.request)?;
-        Ok(Self { prepared, file: self.file.clone() })
+        Ok(Self { prepared: self.prepared.again()?, file: self.file.clone() })
     }
 }
 
@@ -154,7 +155,8 @@ pub(crate) fn prepare<'s>(kind: &'s dyn Robot, request: &'s Request) -> Result<P
 }
 
 /// A planner made by name.
-enum NamedPlanner<'p> {
+pub(crate) enum NamedPlanner<'p> {
+    Auto(Box<Auto<'p>>),
     Tree(mp_tree::AnyPlanner<'p, Configuration, ()>),
     Roadmap(RoadmapPlanner<'p>),
 }
@@ -162,6 +164,7 @@ enum NamedPlanner<'p> {
 impl<'p> NamedPlanner<'p> {
     fn planner(&mut self) -> &mut (dyn Planner<Configuration, Edge = ()> + 'p) {
         match self {
+            Self::Auto(auto) => &mut **auto,
             Self::Tree(planner) => &mut **planner,
             Self::Roadmap(made) => made.planner(),
         }
@@ -174,7 +177,7 @@ pub(crate) struct RobotRun<'p, 'k> {
     /// None where the run ended before its planner was made.
     made: Option<NamedPlanner<'p>>,
     rng: Rng,
-    file: Option<GrowingFile<'k>>,
+    file: Option<GrowingFile<'p>>,
     /// The part of the budget of time that is for planning.
     part: f64,
     /// The time taken so far.
@@ -213,7 +216,7 @@ impl<'p, 'k> RobotRun<'p, 'k> {
         control: &mut Control<'_>,
         part: f64,
     ) -> Result<Self, Error> {
-        let (kind, request) = (prepared.kind, prepared.request);
+        let (kind, request) = (prepared.kind, &*prepared.request);
         let planner = PlannerKind::new(&request.planner)?;
         let workers = Workers::new(request.threads)?;
         let file = GrowingFile::of_request(kind, request, control.clock)?;
@@ -222,6 +225,7 @@ impl<'p, 'k> RobotRun<'p, 'k> {
         let interrupt = prepared.interrupt_of(control, part);
         prepared.interrupt_by(interrupt.clone());
         let made = match &planner {
+            PlannerKind::Auto => Auto::new(prepared).map(|auto| NamedPlanner::Auto(Box::new(auto))),
             PlannerKind::Tree(spec) => {
                 prepared.tree_planner(&spec.to_string(), &workers).map(NamedPlanner::Tree)
             }
@@ -231,7 +235,12 @@ impl<'p, 'k> RobotRun<'p, 'k> {
         };
         let mut found = Found { best: None, first: None, over: None };
         let made = match (made, interrupt.raised()) {
-            (Ok(made), _) => Some(made),
+            (Ok(mut made), _) => {
+                // Of paths that are improved each is shown.
+                let ends_with_its_path = request.first_only || !made.planner().improves();
+                prepared.prove_later(prepared.proves_later() && ends_with_its_path);
+                Some(made)
+            }
             // What was interrupted is no error.
             (Err(_), Some(reason)) => {
                 found.over = Some(Some(reason));
@@ -286,7 +295,7 @@ impl<'p, 'k> RobotRun<'p, 'k> {
     pub(crate) fn into_search(mut self, control: &mut Control<'_>) -> Result<Search, Error> {
         let progress = self.progress();
         let (prepared, Found { best, first, over }) = (self.prepared, self.found);
-        let (kind, request) = (prepared.kind, prepared.request);
+        let (kind, request) = (prepared.kind, &*prepared.request);
         let began = control.clock.now();
         let ended_by = over.unwrap_or(Some(StopReason::Cancelled));
         let outcome = match best {
@@ -299,8 +308,12 @@ impl<'p, 'k> RobotRun<'p, 'k> {
         let relaxes = request.finish == Finish::Relax && matches!(outcome, Outcome::Solved(_));
         let relaxing = if relaxes { control.clock.now().saturating_sub(began) } else { Duration::ZERO };
         let time = self.time + relaxing;
+        let won = match &self.made {
+            Some(NamedPlanner::Auto(auto)) => auto.won(),
+            _ => None,
+        };
         let (map, roadmap) = match &mut self.made {
-            None | Some(NamedPlanner::Tree(_)) => (None, None),
+            None | Some(NamedPlanner::Tree(_) | NamedPlanner::Auto(_)) => (None, None),
             Some(NamedPlanner::Roadmap(made)) => {
                 let (map, roadmap) = made.keep(self.file.as_ref(), control.keep_roadmap)?;
                 if let Some(watch) = control.watch.as_mut().filter(|watch| watch.wants_roadmap()) {
@@ -321,7 +334,7 @@ impl<'p, 'k> RobotRun<'p, 'k> {
             nodes = progress.nodes,
             "planned"
         );
-        let queries = prepared.queries.load(Ordering::Relaxed);
+        let queries = prepared.queries().load(Ordering::Relaxed);
         let found_unverified = ended_by.is_some() && prepared.found_unverified();
         Ok(Search {
             outcome,
@@ -330,10 +343,12 @@ impl<'p, 'k> RobotRun<'p, 'k> {
             time,
             relaxing,
             ended_by,
+            proved: !prepared.proves_later(),
             found_unverified,
             first,
             map,
             roadmap,
+            won,
         })
     }
 
@@ -345,7 +360,7 @@ impl<'p, 'k> RobotRun<'p, 'k> {
 
     /// Finishes the path found, and makes the report.
     fn finish(self, control: &mut Control<'_>) -> Result<Report, Error> {
-        let (kind, request) = (self.prepared.kind, self.prepared.request);
+        let (kind, request) = (self.prepared.kind, &*self.prepared.request);
         let found = self.into_search(control)?;
         let left = left(request, control, &found);
         reported(kind, request, found, None, control, left)
@@ -355,14 +370,14 @@ impl<'p, 'k> RobotRun<'p, 'k> {
     fn into_found(mut self) -> Result<FoundRun, Error> {
         let progress = self.progress();
         let map = match &mut self.made {
-            None | Some(NamedPlanner::Tree(_)) => None,
+            None | Some(NamedPlanner::Tree(_) | NamedPlanner::Auto(_)) => None,
             Some(NamedPlanner::Roadmap(made)) => Some(made.keep(self.file.as_ref(), false)?.0),
         };
         // Checkers report their last queries when they are dropped.
         self.made = None;
         Ok(FoundRun {
             progress,
-            queries: self.prepared.queries.load(Ordering::Relaxed),
+            queries: self.prepared.queries().load(Ordering::Relaxed),
             map,
             path: self.found.best.map(|path| path.states.iter().map(|q| q.to_vec()).collect()),
             ended_by: self.found.over.flatten(),

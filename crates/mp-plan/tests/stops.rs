@@ -8,7 +8,7 @@
 mod counting;
 
 use counting::{Counting, WORK};
-use mp_plan::{Clock, Control, Report, Request, Scene, StoppedBy};
+use mp_plan::{Clock, Control, Report, Request, RunStage, Scene, StoppedBy};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -182,6 +182,8 @@ fn a_path_that_was_found_is_proved_within_the_whole_time() {
         let scene = Scene::find(name).unwrap();
         for seed in 1..=8 {
             let request = Request::new("rrt-connect").seed(seed).finish(mp_plan::Finish::AsFound);
+            // Proved within the search, which patience asks for.
+            let request = request.set("patience", 10);
             let whole = within(&scene, &request, 100_000_000);
             assert!(whole.solved, "{name} {seed}: {:?}", whole.why);
             // Planning ends with the proof of its path.
@@ -193,6 +195,41 @@ fn a_path_that_was_found_is_proved_within_the_whole_time() {
         }
     }
     assert!(late > 6 && alike > 6, "{late} {alike}");
+}
+
+/// A path that is proved after the search has for its proof what the search has left.
+#[test]
+fn a_path_is_proved_in_what_the_search_has_left() {
+    let _alone = alone();
+    let (mut alike, mut unverified) = (0, 0);
+    for name in ["arm", "easy"] {
+        let scene = Scene::find(name).unwrap();
+        for seed in 1..=8 {
+            let request = Request::new("rrt-connect").seed(seed).finish(mp_plan::Finish::AsFound);
+            let whole = within(&scene, &request, 100_000_000);
+            assert!(whole.solved, "{name} {seed}: {:?}", whole.why);
+            let took = |wanted| {
+                let of_stage = whole.stages.iter().filter(|stage| stage.stage == wanted);
+                (of_stage.map(|stage| stage.time_s).sum::<f64>() / STEP.as_secs_f64()) as u64
+            };
+            let (planning, proof) = (took(RunStage::Planning), took(RunStage::Verifying));
+            let least = 10 * planning / 9 + 50;
+            let enough = within(&scene, &request, least.max(planning + proof + 50));
+            assert!(enough.solved && enough.path == whole.path, "{name} {seed}: {:?}", enough.stages);
+            alike += 1;
+            if planning + proof > least + proof / 10 {
+                let report = within(&scene, &request, least);
+                assert_eq!(
+                    report.stopped_by,
+                    Some(StoppedBy::Unverified),
+                    "{name} {seed}: {:?}",
+                    report.stages
+                );
+                unverified += 1;
+            }
+        }
+    }
+    assert!(alike == 16 && unverified > 6, "{alike} {unverified}");
 }
 
 /// A path that was not verified in time had all of the time.

@@ -174,6 +174,7 @@ export class PlanningPanel {
       finish: value(this.finish),
       field: value(this.field),
       first_only: isOn(this.first),
+      sharp_clearance: true,
     };
   }
   get going() { return this.run !== null && !ended(this.run); }

@@ -1,8 +1,8 @@
 //! Planning: runs a request, finishes the path and makes the report.
 
 use crate::explain::check_ends;
-use crate::finish::finish;
 use crate::finish::relax::relax_if_requested;
+use crate::finish::{Proposed, finish};
 use crate::report::{RunStage, StageTime};
 use crate::run::FoundRun;
 use crate::run::PLANNING_PART;
@@ -28,9 +28,22 @@ pub(crate) fn plan(kind: &dyn Robot, request: &Request, control: &mut Control<'_
         let space = (kind.space_name(), kind.columns());
         return Ok(Report::not_begun(kind.name(), Some(space), request, reason, control.spent));
     }
-    let found = search_within(kind, request, control, PLANNING_PART)?;
-    let left = left(request, control, &found);
-    reported(kind, request, found, None, control, left)
+    let mut once = |proves_later| {
+        let began = control.time_if_limited(request);
+        let found = search_within(kind, request, control, PLANNING_PART, proves_later)?;
+        let left = left(request, control, &found);
+        let report = reported(kind, request, found, None, control, left)?;
+        let again = proves_later && report.stopped_by == Some(StoppedBy::Verification);
+        if again {
+            control.spend_since(began);
+        }
+        Ok::<_, Error>((report, again))
+    };
+    match once(true)? {
+        // The same search, which now goes on behind what the verifier rejects.
+        (_, true) => Ok(once(false)?.0),
+        (report, false) => Ok(report),
+    }
 }
 
 impl Report {
@@ -108,6 +121,7 @@ impl Report {
             columns: Vec::new(),
             path: None,
             portfolio: None,
+            won: None,
         }
     }
 }
@@ -148,6 +162,7 @@ pub(crate) fn reported(
         first_length: found.first.as_ref().map(|(_, length, _)| *length),
         first_path: found.first.as_ref().map(|(.., path)| kind.rows(path)),
         columns: kind.columns(),
+        won: found.won,
         ..Report::empty()
     };
     let path = match found.outcome {
@@ -166,7 +181,8 @@ pub(crate) fn reported(
     };
     report.path_length_found = Some(path.length(&kind.any_space()));
     let began = control.clock.now();
-    let finished = finish(kind, &path, request, control, left, found.time, &mut report.stages)?;
+    let found = Proposed { path: &path, proved: found.proved, time: found.time };
+    let finished = finish(kind, &found, request, control, left, &mut report.stages)?;
     report.finish_s = control.clock.now().saturating_sub(began).as_secs_f64();
     let finished = match finished {
         Ok(finished) => finished,
@@ -219,10 +235,12 @@ pub(crate) fn found_report(
         time: time + relaxing,
         relaxing,
         ended_by,
+        proved: true,
         found_unverified: false,
         first: None,
         map,
         roadmap: None,
+        won: None,
     };
     let left = left(request, control, &found);
     reported(kind, request, found, None, control, left)

@@ -1,15 +1,15 @@
 //! Planners by name: of trees, with meta-planners or without, and of roadmaps.
 
-use super::roadmaps;
+use super::{auto, roadmaps};
 use crate::{Error, ErrorKind, Robot};
 use mp_cspace::registry::{PlannerInfo, Settings};
 use mp_cspace::{BuildError, Demand};
 use std::fmt;
 
-/// All planners by name, planners of trees first. The name of a planner of trees may have the prefix `or-` or `restart-`,
+/// All planners by name: `auto`, planners of trees, planners of roadmaps. The name of a planner of trees may have the prefix `or-` or `restart-`,
 /// and `rrt` also `shared-`: see [`meta_planners`].
 pub fn planners() -> impl Iterator<Item = &'static PlannerInfo> {
-    mp_tree::planners().iter().chain(roadmaps::planners())
+    std::iter::once(&auto::INFO).chain(mp_tree::planners()).chain(roadmaps::planners())
 }
 
 /// The planners by name that build roadmaps.
@@ -27,6 +27,8 @@ pub fn meta_planners() -> &'static [mp_tree::MetaPlanner] {
 /// A planner by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum PlannerKind {
+    /// The portfolio [`auto`].
+    Auto,
     /// Grows trees.
     Tree(mp_tree::PlannerSpec),
     /// Builds a roadmap.
@@ -36,6 +38,9 @@ pub(crate) enum PlannerKind {
 impl PlannerKind {
     /// The planner called `name`.
     pub(crate) fn new(name: &str) -> Result<Self, Error> {
+        if auto::INFO.is_called(name) {
+            return Ok(Self::Auto);
+        }
         if let Some(info) = roadmaps::planner(name) {
             return Ok(Self::Roadmap(info));
         }
@@ -57,6 +62,7 @@ impl PlannerKind {
     /// Refuses settings that the planner does not have.
     pub(crate) fn check(&self, settings: &Settings) -> Result<(), Error> {
         match self {
+            Self::Auto => settings.check(&auto::INFO)?,
             Self::Tree(spec) => spec.check(settings)?,
             Self::Roadmap(info) => settings.check(info)?,
         }
@@ -66,6 +72,7 @@ impl PlannerKind {
     /// Refuses a robot that demands what the planner cannot do.
     pub(crate) fn meets(&self, kind: &dyn Robot) -> Result<(), Error> {
         let info = match self {
+            Self::Auto => &auto::INFO,
             Self::Tree(spec) => spec.planner,
             Self::Roadmap(info) => info,
         };
@@ -100,6 +107,7 @@ impl PlannerKind {
 impl fmt::Display for PlannerKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Auto => f.write_str(auto::INFO.name),
             Self::Tree(spec) => spec.fmt(f),
             Self::Roadmap(info) => f.write_str(info.name),
         }

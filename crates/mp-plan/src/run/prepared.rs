@@ -4,6 +4,7 @@ use crate::goals;
 use crate::possible::{Deadlines, Possible};
 use crate::robot::counted::QueryBudget;
 use crate::robot::motion::{AnyVerifier, By, Counting, motions};
+use crate::run::auto;
 use crate::run::planners::PlannerKind;
 use crate::run::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
 use crate::watch::{Events, WatchAdapter};
@@ -13,6 +14,7 @@ use mp_cspace::{
     AnyProblem, BuildError, Configuration, Endpoint, Interrupt, Iterations, MotionCheck, MotionValidity,
     Nodes, ParameterError, Problem, Stop, Straight, Workers, registry::PlannerInfo,
 };
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -20,59 +22,109 @@ use std::time::Duration;
 /// What the problems and planners of one request are made from.
 pub(crate) struct Prepared<'k> {
     pub(crate) kind: &'k dyn Robot,
-    pub(crate) request: &'k Request,
+    pub(crate) request: Cow<'k, Request>,
     /// The space under the metric of the request.
     pub(crate) space: AnySpace<'k, Configuration>,
     /// An empty index of it.
     pub(crate) index: AnyIndex<Configuration>,
     verifier: AnyVerifier<'k>,
-    /// The common count of the queries of all checkers.
-    pub(crate) queries: AtomicU64,
+    state: Arc<RunState>,
     /// Planners of roadmaps tell on several threads which queries are not to be counted: see `QueryMeter` of mp-roadmap.
     counts_exactly: bool,
+    /// The members of the portfolio [`auto`](super::auto).
+    pub(crate) members: Vec<Prepared<'k>>,
+}
+
+/// What all problems of a run have in common.
+#[derive(Default)]
+struct RunState {
+    /// The common count of the queries of all checkers.
+    queries: AtomicU64,
     /// What the run asks whether to end.
     interrupt: Mutex<Interrupt>,
     deadlines: Deadlines,
     /// Whether the verification of a path was interrupted.
     unverified: AtomicBool,
+    /// Whether paths are proved after the search instead of in it.
+    proves_later: AtomicBool,
 }
 
 impl<'k> Prepared<'k> {
     pub(crate) fn new(kind: &'k dyn Robot, request: &'k Request) -> Result<Self, Error> {
+        Self::with(kind, Cow::Borrowed(request))
+    }
+
+    /// The same once more.
+    pub(crate) fn again(&self) -> Result<Self, Error> {
+        Self::with(self.kind, self.request.clone())
+    }
+
+    fn with(kind: &'k dyn Robot, request: Cow<'k, Request>) -> Result<Self, Error> {
         let planner = PlannerKind::new(&request.planner)?;
+        crate::finish::relax::check(kind, &request)?;
+        let state = Arc::<RunState>::default();
+        let mut prepared = Self::of(kind, request, &planner, &state)?;
+        if planner == PlannerKind::Auto {
+            let members = auto::requests(&prepared.request).into_iter();
+            let members = members.map(|member| {
+                let planner = PlannerKind::new(&member.planner)?;
+                Self::of(kind, Cow::Owned(member), &planner, &state)
+            });
+            // What the robot cannot do is left out.
+            prepared.members = members.filter_map(Result::ok).collect();
+        }
+        Ok(prepared)
+    }
+
+    fn of(
+        kind: &'k dyn Robot,
+        request: Cow<'k, Request>,
+        planner: &PlannerKind,
+        state: &Arc<RunState>,
+    ) -> Result<Self, Error> {
         planner.meets(kind)?;
-        crate::finish::relax::check(kind, request)?;
         let Measured { space, index } = kind.measured(request.metric)?;
-        let (verifier, queries) = (kind.any_verifier()?, AtomicU64::new(0));
+        let (verifier, state) = (kind.any_verifier()?, Arc::clone(state));
         let counts_exactly = matches!(planner, PlannerKind::Roadmap(_));
-        let (interrupt, unverified) = (Mutex::default(), AtomicBool::new(false));
-        let deadlines = Deadlines::default();
-        Ok(Self {
-            kind,
-            request,
-            space,
-            index,
-            verifier,
-            queries,
-            counts_exactly,
-            interrupt,
-            deadlines,
-            unverified,
-        })
+        Ok(Self { kind, request, space, index, verifier, state, counts_exactly, members: Vec::new() })
+    }
+
+    /// The common count of the queries of all checkers.
+    pub(crate) fn queries(&self) -> &AtomicU64 {
+        &self.state.queries
+    }
+
+    /// Whether the path of a run may be proved after it, once, as it is written. Where motions are certified, the proof has nothing to reject,
+    /// as a rule. What a roadmap keeps is proved as it grows, and so is what `patience` says.
+    pub(crate) fn can_prove_later(&self) -> bool {
+        motion(self.kind, &self.request) == MotionValidator::Certified
+            && self.kind.input_system().is_none()
+            && !self.counts_exactly
+            && !self.request.settings.contains_key(mp_tree::PATIENCE.name)
+    }
+
+    /// From now on the search takes every motion of its own check for proved; whoever runs it proves its path.
+    pub(crate) fn prove_later(&self, later: bool) {
+        self.state.proves_later.store(later, Ordering::Relaxed);
+    }
+
+    /// Whether paths are proved after the search instead of in it.
+    pub(crate) fn proves_later(&self) -> bool {
+        self.state.proves_later.load(Ordering::Relaxed)
     }
 
     /// What the run asks whether to end. Problems made from now on do.
     pub(crate) fn interrupt_by(&self, interrupt: Interrupt) {
-        *self.interrupt.lock().unwrap_or_else(PoisonError::into_inner) = interrupt;
+        *self.state.interrupt.lock().unwrap_or_else(PoisonError::into_inner) = interrupt;
     }
 
     pub(crate) fn interrupt(&self) -> Interrupt {
-        self.interrupt.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.state.interrupt.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Whether the run ended while a path that was found was verified.
     pub(crate) fn found_unverified(&self) -> bool {
-        self.unverified.load(Ordering::Relaxed)
+        self.state.unverified.load(Ordering::Relaxed)
     }
 
     /// The problem of the scene. Each thread makes its own.
@@ -86,24 +138,19 @@ impl<'k> Prepared<'k> {
         interrupt: Interrupt,
     ) -> Result<AnyProblem<'_, Configuration>, BuildError> {
         let kind = self.kind;
-        let counting = Counting::new(&self.queries, interrupt.clone()).exactly(self.counts_exactly);
-        let by = match motion(kind, self.request) {
+        let counting = Counting::new(self.queries(), interrupt.clone()).exactly(self.counts_exactly);
+        let by = match motion(kind, &self.request) {
             MotionValidator::Certified => By::Certificates(kind.tolerance()),
             MotionValidator::Discrete(length) => By::States(length),
         };
         let check = build_error(motions(kind, &self.space, by, &counting))?;
-        let deadlines = Some(&self.deadlines);
+        let deadlines = Some(&self.state.deadlines);
         let check: AnyCheck<'_, Configuration> =
             Box::new(Possible { kind, check, interrupt: interrupt.clone(), deadlines });
         let local = Straight::new(&self.space, check);
         let mut verifier: AnyCheck<'_, Configuration> = Box::new(self.verifier.clone());
         verifier.interrupt_by(&interrupt);
-        let verifier = Verifying {
-            verifier,
-            interrupt: interrupt.clone(),
-            unverified: &self.unverified,
-            deadlines: &self.deadlines,
-        };
+        let verifier = Verifying { verifier, interrupt: interrupt.clone(), state: &self.state };
         let problem = Problem::new(&self.space, local, verifier, kind.start().clone(), goals::of_kind(kind));
         let problem = problem.map_err(|e| written(kind, e))?;
         let problem = problem.with_obstacles(kind.any_obstacles(&counting)).with_interrupt(interrupt);
@@ -136,7 +183,7 @@ impl<'k> Prepared<'k> {
             settings: self.request.settings(),
             workers,
             threads: self.request.threads,
-            queries: &self.queries,
+            queries: self.queries(),
         };
         RoadmapPlanner::new(info, parts, file)
     }
@@ -160,7 +207,7 @@ impl<'k> Prepared<'k> {
     /// by then.
     pub(crate) fn move_deadlines(&self, now: Duration, left: Option<Duration>, whole: Option<Duration>) {
         if let (Some(left), Some(whole)) = (left, whole) {
-            self.deadlines.set(now.saturating_add(left), now.saturating_add(whole));
+            self.state.deadlines.set(now.saturating_add(left), now.saturating_add(whole));
             self.interrupt().move_deadline(now.saturating_add(left));
         }
     }
@@ -185,27 +232,29 @@ impl<'k> Prepared<'k> {
         self.interrupt()
             .or(budget.iterations.map(Iterations))
             .or(budget.nodes.map(Nodes))
-            .or(budget.queries.map(|most| QueryBudget { queries: &self.queries, most }))
+            .or(budget.queries.map(|most| QueryBudget { queries: self.queries(), most }))
     }
 }
 
-/// The verifier of paths, which notes when it was interrupted.
+/// The verifier of paths, which notes when it was interrupted. It passes every motion where paths are proved later.
 struct Verifying<'a> {
     verifier: AnyCheck<'a, Configuration>,
     interrupt: Interrupt,
-    unverified: &'a AtomicBool,
-    deadlines: &'a Deadlines,
+    state: &'a RunState,
 }
 
 impl MotionValidity<Configuration> for Verifying<'_> {
     fn check_motion(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
         // A single state is a start or a goal, not a path.
         if from != to {
-            self.deadlines.prove(&self.interrupt);
+            if self.state.proves_later.load(Ordering::Relaxed) {
+                return MotionCheck::Free { clearance: 0.0 };
+            }
+            self.state.deadlines.prove(&self.interrupt);
         }
         let check = self.verifier.check_motion(from, to);
         if !check.is_free() && from != to && self.interrupt.raised().is_some() {
-            self.unverified.store(true, Ordering::Relaxed);
+            self.state.unverified.store(true, Ordering::Relaxed);
         }
         check
     }

@@ -48,13 +48,13 @@ pub(crate) fn routes(
         PlannerKind::Tree(spec) if spec.meta_planners.is_empty() && spec.planner.name == "cyclic-rrt" => {
             of_tree(&prepared, &spec.to_string(), count, apart, control)?
         }
-        PlannerKind::Tree(_) => return Err(one_path_only(&planner)),
+        PlannerKind::Tree(_) | PlannerKind::Auto => return Err(one_path_only(&planner)),
         #[cfg(feature = "roadmaps")]
         PlannerKind::Roadmap(info) => of_roadmap(&prepared, info, count, apart, control)?,
         #[cfg(not(feature = "roadmaps"))]
         PlannerKind::Roadmap(_) => return Err(one_path_only(&planner)),
     };
-    let queries = prepared.queries.load(Ordering::Relaxed);
+    let queries = prepared.queries().load(Ordering::Relaxed);
     let search = |outcome| Search {
         outcome,
         progress: listed.progress,
@@ -62,10 +62,12 @@ pub(crate) fn routes(
         time: listed.time,
         relaxing: Duration::ZERO,
         ended_by: Some(listed.ended),
+        proved: true,
         found_unverified: false,
         first: None,
         map: listed.map,
         roadmap: None,
+        won: None,
     };
     if listed.paths.is_empty() {
         return Ok(vec![reported(
@@ -182,7 +184,7 @@ fn of_roadmap(
     /// How many of the nearest nodes an end is connected to.
     const NEIGHBOURS: usize = 20;
 
-    let (kind, request) = (prepared.kind, prepared.request);
+    let (kind, request) = (prepared.kind, &*prepared.request);
     let [goal] = kind.goals() else {
         let help = "give one goal, or take cyclic-rrt";
         return Err(Error::new(format!("{} lists routes to one goal only", info.name)).help(help));

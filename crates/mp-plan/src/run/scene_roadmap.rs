@@ -141,7 +141,7 @@ pub(crate) fn of_map(
 fn planner(request: &Request) -> Result<&'static PlannerInfo, Error> {
     match PlannerKind::new(&request.planner)? {
         PlannerKind::Roadmap(info) => Ok(info),
-        tree @ PlannerKind::Tree(_) => {
+        tree @ (PlannerKind::Tree(_) | PlannerKind::Auto) => {
             let names: Vec<_> = crate::run::roadmaps::planners().iter().map(|p| p.name).collect();
             Err(Error::new(format!("{tree} builds no roadmap"))
                 .help(format!("take one of: {}", names.join(", "))))
@@ -205,7 +205,7 @@ impl RobotRoadmap {
         progress.rejected = checker.rejected();
         // Checkers report their last queries when they are dropped.
         drop(checker);
-        let queries = prepared.queries.load(Ordering::Relaxed);
+        let queries = prepared.queries().load(Ordering::Relaxed);
         let map = Some([self.roadmap.map().edges(), self.roadmap.map_mut().components()]);
         let (outcome, why) = match (answer, interrupt.raised()) {
             (Ok(path), _) => (Outcome::Solved(relax_if_requested(kind, request, path, control, None)?), None),
@@ -220,9 +220,11 @@ impl RobotRoadmap {
             time,
             relaxing: Duration::ZERO,
             ended_by: interrupt.raised(),
+            proved: true,
             found_unverified: false,
             first: None,
             map,
+            won: None,
             roadmap: None,
         };
         reported(kind, request, found, why, control, None)

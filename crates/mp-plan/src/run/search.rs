@@ -11,7 +11,7 @@ use std::time::Duration;
 /// The result of running a planner.
 #[derive(Clone, Debug)]
 pub struct Search {
-    /// The path, verified by the planner, or the reason why there is none.
+    /// The path, or the reason why there is none.
     pub outcome: Outcome<Path<Configuration>>,
     /// The counts of what was done.
     pub progress: Progress,
@@ -23,12 +23,16 @@ pub struct Search {
     pub relaxing: Duration,
     /// What ended the search, also where it has found a path; `None` where the planner ended with its path.
     pub ended_by: Option<StopReason>,
+    /// Whether the planner has verified the path. The path of [`search`] always is.
+    pub proved: bool,
     /// Whether a path was found that could not be verified by then.
     pub found_unverified: bool,
     /// For an anytime planner: when it found its first path, the length of that path in the metric, and the path.
     pub first: Option<(Duration, f64, Path<Configuration>)>,
     /// For a planner that builds a roadmap: the numbers of edges and of connected components.
     pub map: Option<[usize; 2]>,
+    /// Of the portfolio `auto`, the search that has found the path.
+    pub won: Option<String>,
     /// The roadmap itself, if [requested](Control::keep_roadmap).
     pub roadmap: Option<Roadmap<Configuration>>,
 }
@@ -39,15 +43,16 @@ pub struct Search {
 /// # Errors
 /// When the request is not valid for this robot, or a roadmap cannot be read or written.
 pub fn search(kind: &dyn Robot, request: &Request, control: &mut Control<'_>) -> Result<Search, Error> {
-    search_within(kind, request, control, 1.0)
+    search_within(kind, request, control, 1.0, false)
 }
 
-/// [`search`] within the part `part` of the budget of time.
+/// [`search`] within the part `part` of the budget of time. Where it can be so, the path is not verified if `proves_later`.
 pub(crate) fn search_within(
     kind: &dyn Robot,
     request: &Request,
     control: &mut Control<'_>,
     part: f64,
+    proves_later: bool,
 ) -> Result<Search, Error> {
     let _span =
         tracing::info_span!("plan", scene = kind.name(), planner = %request.planner, seed = request.seed)
@@ -56,6 +61,7 @@ pub(crate) fn search_within(
     request.check()?;
     PlannerKind::new(&request.planner)?;
     let prepared = Prepared::new(kind, request)?;
+    prepared.prove_later(proves_later && prepared.can_prove_later());
     control.spend_since(began);
     let mut run = RobotRun::new(&prepared, control, part)?;
     run.advance(&mut Never, control);

@@ -16,7 +16,7 @@ const SCENES: [(&str, f64); 9] = [
 ];
 
 fn request(scene: &Scene) -> Request {
-    Request::new(scene.default_planner()).seed(1).iterations(50_000)
+    Request::new(scene.default_planner()).seed(1).iterations(50_000).sharp_clearance()
 }
 
 /// The path of a request, and the clearance of its report.

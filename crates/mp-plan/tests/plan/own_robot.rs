@@ -27,6 +27,8 @@ struct Crane {
 #[derive(Clone, Debug)]
 struct Load {
     posts: Vec<Vector2<f64>>,
+    /// How many posts, from the first one on, the check of the planner does not see.
+    unseen: usize,
     /// Whether only collisions are known.
     blind: bool,
     queries: u64,
@@ -36,7 +38,7 @@ impl Load {
     fn least(&mut self, q: &Configuration) -> f64 {
         self.queries += 1;
         let load = place(q);
-        self.posts.iter().map(|post| (post - load).norm() - LOAD).fold(f64::INFINITY, f64::min)
+        self.posts[self.unseen..].iter().map(|post| (post - load).norm() - LOAD).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -187,6 +189,7 @@ fn crane(goal: [f64; 2]) -> Crane {
         ends: [Configuration::from(vec![-1.0, 4.0]), Configuration::from(goal.to_vec())],
         check: Load {
             posts: (0..8).map(|i| Vector2::new(1.6 + 0.4 * f64::from(i), 0.0)).collect(),
+            unseen: 0,
             blind: false,
             queries: 0,
         },
@@ -228,6 +231,30 @@ fn what_is_wrong_is_explained() {
     assert!(scene.explain(&[9.0, 4.0]).unwrap().fault.unwrap().contains("out of bounds"));
     assert!(scene.explain(&[9.0]).unwrap_err().remedy().unwrap().contains("turn [rad]"));
     assert!(scene.lint().is_empty(), "{:?}", scene.lint());
+}
+
+/// The path is proved once, after the search. Where that fails, the search is made again, and goes on behind what is rejected.
+#[test]
+fn what_the_verifier_rejects_is_searched_on() {
+    let mut crane = crane([1.0, 4.0]);
+    crane.check.unseen = crane.check.posts.len();
+    let scene = Scene::new(crane);
+    for planner in ["rrt-connect", "rrt", "or-rrt-connect"] {
+        let request = Request::new(planner).iterations(5_000);
+        let report = scene.plan(&request).unwrap_or_else(|e| panic!("{e}"));
+        assert!(report.solved && report.rejected > 0, "{planner}: {report:?}");
+        let prepared = scene.prepare(&request).unwrap();
+        let mut run = prepared.begin(&mut Control::default()).unwrap();
+        while !run.advance(&mut mp_cspace::Iterations(u64::MAX), &mut Control::default()) {}
+        let in_pieces = run.finish(&mut Control::default()).unwrap();
+        assert_eq!(in_pieces.fingerprint, report.fingerprint, "{planner}");
+        let rows = report.path.unwrap();
+        let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+        assert!(scene.check(&path).unwrap().free, "{planner}");
+    }
+    // As long as nothing is rejected, the search has proved nothing.
+    let unproved = Request::new("rrt-connect").iterations(1);
+    assert_eq!(scene.plan(&unproved).unwrap().stopped_by, Some(mp_plan::StoppedBy::Iterations));
 }
 
 /// The same crane without clearance: motions are sampled.

@@ -1,0 +1,320 @@
+//! `auto`, the planner that is taken when none is named: a portfolio of searches that take turns.
+//!
+//! No planner is best everywhere, and none of them says beforehand how long it will take. So several work by turns, each on a share of the
+//! work, until one has a path: C. Gomes and B. Selman, *Algorithm portfolios*, Artificial Intelligence 126, 2001. The first is
+//! RRT-Connect as the request says. It has a turn that is long enough for what is easy, so that such problems cost nothing more, and
+//! their paths are those of `rrt-connect`. The others are for what is hard: shorter steps for narrow places, a metric in which turning counts as
+//! much as the robot's size says, trees that follow surfaces, roadmaps with samples between obstacles.
+//!
+//! A turn is measured in queries and iterations, never in time: the same request gives the same path on every machine. Each search
+//! draws from a stream of its own. What a robot cannot do (a metric, hints of obstacles) is left out.
+//!
+//! ```
+//! use mp_plan::{Request, Scene};
+//! let (scene, request) = (Scene::find("easy")?, Request::new("auto").seed(2));
+//! let report = scene.plan(&request)?;
+//! assert_eq!(report.won.as_deref(), Some("rrt-connect"));
+//! assert_eq!(report.fingerprint, scene.plan(&Request::new("rrt-connect").seed(2))?.fingerprint);
+//! # Ok::<(), mp_plan::Error>(())
+//! ```
+
+use crate::run::NamedPlanner;
+use crate::run::planners::PlannerKind;
+use crate::run::prepared::Prepared;
+use crate::{Error, MetricName, Request};
+use mp_cspace::registry::PlannerInfo;
+use mp_cspace::{Configuration, Event, Observer, Path, Planner, Progress, Rng, Workers};
+use rand::RngExt;
+use std::collections::BTreeMap;
+use std::sync::atomic::Ordering;
+
+/// The entry of [`planners`](crate::planners).
+pub(crate) const INFO: PlannerInfo = PlannerInfo {
+    name: "auto",
+    summary: "takes turns: RRT-Connect, then also short steps, other metrics, surfaces and roadmaps; the default",
+    citation: "Gomes and Selman 2001",
+    parameters: &[mp_tree::STEP, mp_tree::GOAL_BIAS, mp_tree::PATIENCE],
+    aliases: &[],
+    cannot: mp_tree::NEEDS_BOTH_ENDS,
+};
+
+/// A search of the portfolio.
+struct MemberInfo {
+    planner: &'static str,
+    settings: &'static [(&'static str, &'static str)],
+    /// `None` for that of the request.
+    metric: Option<MetricName>,
+}
+
+/// The first, with the settings of the request.
+const FIRST: &str = "rrt-connect";
+
+/// The others, in the order of their turns.
+const OTHERS: &[MemberInfo] = &[
+    MemberInfo { planner: "obrrt", settings: &[("step", "1%")], metric: None },
+    MemberInfo { planner: "rrt-connect", settings: &[("step", "1%")], metric: None },
+    MemberInfo { planner: "rrt-connect", settings: &[("step", "2%")], metric: Some(MetricName::Scaled) },
+    MemberInfo { planner: "bridge-prm", settings: &[], metric: Some(MetricName::Scaled) },
+    MemberInfo { planner: "rrt-connect", settings: &[("step", "0.3%")], metric: None },
+];
+
+/// The work of the first turn of the first search: enough for what is easy.
+const FIRST_TURN: u64 = 200_000;
+/// After it each search is brought to this part of the work of the first, and then all of them to this much more in each round.
+const ROUND: f64 = 1.5;
+/// The work of the others in the first round, as a part of [`FIRST_TURN`].
+const BEGINNERS: f64 = 0.25;
+
+/// The requests of all searches, the first one first.
+pub(crate) fn requests(request: &Request) -> Vec<Request> {
+    let first = Request { planner: FIRST.to_owned(), ..request.clone() };
+    let others = OTHERS.iter().map(|info| Request {
+        planner: info.planner.to_owned(),
+        settings: info
+            .settings
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
+            .collect(),
+        metric: info.metric.unwrap_or(request.metric),
+        ..request.clone()
+    });
+    std::iter::once(first).chain(others).collect()
+}
+
+/// How a search is called in reports: its planner, with what differs from the request.
+fn label(member: &Request, whole: &Request) -> String {
+    let mut label = member.planner.clone();
+    let own: BTreeMap<_, _> =
+        member.settings.iter().filter(|(name, _)| !whole.settings.contains_key(*name)).collect();
+    for (name, value) in own {
+        label += &format!(" {name}={value}");
+    }
+    if member.metric != whole.metric {
+        label += &format!(" metric={}", member.metric);
+    }
+    label
+}
+
+/// The searches of a portfolio, of which one has the turn.
+pub(crate) struct Auto<'p> {
+    prepared: &'p Prepared<'p>,
+    members: Vec<Member<'p>>,
+    turn: usize,
+    /// Up to which work the present turn goes.
+    reach: u64,
+    /// The work up to which each search is brought in this round.
+    round: f64,
+    /// The work of the first turn.
+    first_turn: u64,
+    won: Option<usize>,
+}
+
+/// A search: its planner is made when it has its first turn.
+struct Member<'p> {
+    prepared: &'p Prepared<'p>,
+    planner: Option<NamedPlanner<'p>>,
+    rng: Option<Rng>,
+    work: u64,
+    progress: Progress,
+    /// Whether it cannot go on, or cannot begin.
+    ended: bool,
+}
+
+impl<'p> Auto<'p> {
+    /// The portfolio of a prepared request. The first search is made at once.
+    ///
+    /// # Errors
+    /// When the first search cannot be made.
+    pub(crate) fn new(prepared: &'p Prepared<'p>) -> Result<Self, Error> {
+        let members = prepared.members.iter().map(|prepared| Member {
+            prepared,
+            planner: None,
+            rng: None,
+            work: 0,
+            progress: Progress::default(),
+            ended: false,
+        });
+        let mut members: Vec<_> = members.collect();
+        if let Some(first) = members.first_mut() {
+            first.planner = Some(first.made()?);
+        }
+        let auto = Self { prepared, members, turn: 0, reach: 0, round: 0.0, first_turn: 0, won: None };
+        Ok(auto.with_first_turn(FIRST_TURN))
+    }
+
+    fn with_first_turn(self, work: u64) -> Self {
+        Self { first_turn: work, reach: work, round: work as f64, ..self }
+    }
+
+    /// Which search has found the path.
+    pub(crate) fn won(&self) -> Option<String> {
+        let won = self.members.get(self.won?)?;
+        Some(label(&won.prepared.request, &self.prepared.request))
+    }
+
+    /// Gives the turn to the next search that can go on.
+    fn next_turn(&mut self) {
+        for _ in 0..self.members.len() {
+            self.turn += 1;
+            if self.turn == self.members.len() {
+                self.turn = 0;
+                self.round *= ROUND;
+            }
+            let part = if self.round <= self.first_turn as f64 { BEGINNERS } else { 1.0 };
+            self.reach = if self.turn == 0 { self.round } else { part * self.round } as u64;
+            if !self.members[self.turn].ended {
+                return;
+            }
+        }
+    }
+}
+
+impl<'p> Member<'p> {
+    fn made(&self) -> Result<NamedPlanner<'p>, Error> {
+        match PlannerKind::new(&self.prepared.request.planner)? {
+            PlannerKind::Tree(spec) => {
+                self.prepared.tree_planner(&spec.to_string(), &Workers::single()).map(NamedPlanner::Tree)
+            }
+            PlannerKind::Roadmap(info) => {
+                self.prepared.roadmap_planner(info, Workers::single(), None).map(NamedPlanner::Roadmap)
+            }
+            PlannerKind::Auto => Err(Error::new("a portfolio has no portfolio inside")),
+        }
+    }
+}
+
+impl Planner<Configuration> for Auto<'_> {
+    type Edge = ();
+
+    fn step(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<Configuration>,
+    ) -> Option<Path<Configuration>> {
+        let turn = self.turn;
+        let queries = self.prepared.queries();
+        let member = &mut self.members[turn];
+        if member.planner.is_none() {
+            match member.made() {
+                Ok(made) => {
+                    member.planner = Some(made);
+                    // Of the same numbers, which the first search does not miss.
+                    member.rng = Some(Rng::stream(rng.clone().random(), turn as u64));
+                }
+                Err(_) => {
+                    member.ended = true;
+                    self.next_turn();
+                    return None;
+                }
+            }
+        }
+        let Some(named) = &mut member.planner else { return None };
+        let (before, planner) = (queries.load(Ordering::Relaxed), named.planner());
+        // The first draws as it does alone.
+        let path = planner.step(member.rng.as_mut().unwrap_or(rng), &mut Numbered { observer, member: turn });
+        member.progress = planner.progress();
+        member.ended = member.progress.exhausted;
+        member.work += 1 + queries.load(Ordering::Relaxed).saturating_sub(before);
+        if path.is_some() {
+            self.won = Some(turn);
+        } else if member.ended || member.work >= self.reach {
+            self.next_turn();
+        }
+        path
+    }
+
+    fn progress(&self) -> Progress {
+        let mut sum = Progress::default();
+        for member in &self.members {
+            sum.iterations += member.progress.iterations;
+            sum.nodes += member.progress.nodes;
+            sum.motions += member.progress.motions;
+            sum.rejected += member.progress.rejected;
+        }
+        sum.exhausted = self.members.iter().all(|member| member.ended);
+        sum
+    }
+}
+
+/// Tells which trees are those of a search: two for each.
+struct Numbered<'o> {
+    observer: &'o mut dyn Observer<Configuration>,
+    member: usize,
+}
+
+impl Observer<Configuration> for Numbered<'_> {
+    fn on(&mut self, event: Event<'_, Configuration>) {
+        let of = |tree: usize| tree + 2 * self.member;
+        self.observer.on(match event {
+            Event::Rooted { tree, id, state, kind } => Event::Rooted { tree: of(tree), id, state, kind },
+            Event::Added { tree, id, parent, state, through } => {
+                Event::Added { tree: of(tree), id, parent, state, through }
+            }
+            Event::Rewired { tree, id, parent, through } => {
+                Event::Rewired { tree: of(tree), id, parent, through }
+            }
+            Event::Trapped { tree } => Event::Trapped { tree: of(tree) },
+            Event::Pruned { tree, survivors } => Event::Pruned { tree: of(tree), survivors },
+            // Edges of a roadmap name no tree.
+            Event::Linked { .. } | Event::Unlinked { .. } => return,
+            other => other,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Scene;
+
+    /// Plans with turns that are short, and returns who won, the work of each search, and the path.
+    fn planned(scene: &Scene, seed: u64, first_turn: u64) -> (Option<String>, Vec<u64>, Vec<Vec<f64>>) {
+        let request = Request::new("auto").seed(seed);
+        let run = scene.prepare(&request).unwrap();
+        let mut auto = Auto::new(&run.prepared).unwrap().with_first_turn(first_turn);
+        let mut rng = Rng::seed(seed);
+        let path = (0..1_000_000).find_map(|_| auto.step(&mut rng, &mut ())).unwrap();
+        let work: Vec<u64> = auto.members.iter().map(|member| member.work).collect();
+        (auto.won(), work, run.prepared.kind.rows(&path))
+    }
+
+    #[test]
+    fn all_have_turns_of_the_same_work_and_paths_are_repeated() {
+        let scene = Scene::find("twisty").unwrap();
+        for seed in 1..4 {
+            let (won, work, rows) = planned(&scene, seed, 300);
+            let again = planned(&scene, seed, 300);
+            assert_eq!((&won, &work, &rows), (&again.0, &again.1, &again.2));
+            assert!(work.iter().filter(|work| **work > 0).count() >= 4, "{work:?}");
+            let most = *work.iter().max().unwrap() as f64;
+            // A turn ends after whole iterations.
+            assert!(most < ROUND * work[0] as f64 + 2_000.0, "{work:?}");
+            let path = crate::PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+            assert!(scene.check(&path).unwrap().free, "{won:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_found_in_the_first_turn_is_the_path_of_rrt_connect() {
+        let scene = Scene::find("twisty").unwrap();
+        let alone = scene.plan(&Request::new(FIRST)).unwrap();
+        let auto = scene.plan(&Request::default()).unwrap();
+        assert_eq!(auto.won.as_deref(), Some(FIRST));
+        assert_eq!((auto.fingerprint, auto.collision_checks), (alone.fingerprint, alone.collision_checks));
+    }
+
+    #[test]
+    fn every_search_can_be_made_and_has_a_name_of_its_own() {
+        let scene = Scene::find("twisty").unwrap();
+        let request = Request::default();
+        let run = scene.prepare(&request).unwrap();
+        assert_eq!(run.prepared.members.len(), 1 + OTHERS.len());
+        let auto = Auto::new(&run.prepared).unwrap();
+        let mut labels: Vec<String> =
+            auto.members.iter().map(|member| label(&member.prepared.request, &request)).collect();
+        assert!(auto.members.iter().all(|member| member.made().is_ok()), "{labels:?}");
+        labels.sort();
+        labels.dedup();
+        assert_eq!(labels.len(), 1 + OTHERS.len());
+    }
+}
