@@ -22,6 +22,7 @@ PlannerName: TypeAlias = Literal[
     "prm-star",
     "rc-rrt",
     "regional-prm",
+    "retraction-rrt",
     "rrs",
     "rrs-connect",
     "rrt",

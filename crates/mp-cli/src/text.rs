@@ -215,6 +215,7 @@ mod tests {
             edges: None,
             components: None,
             portfolio: None,
+            won: None,
             motion_checks: 5000,
             collision_checks: 1_000_000,
             rejected: 0,

@@ -66,6 +66,7 @@ pub fn request(draw: &mut Draw, scene: &Scene, planner: Option<&str>) -> Request
         finish,
         field: if finish == Finish::Relax { field } else { RelaxField::Clearance },
         first_only: draw.chance(0.7),
+        sharp_clearance: draw.chance(0.5),
         roadmap: None,
     }
 }
@@ -84,7 +85,7 @@ fn planner_for(draw: &mut Draw, scene: &Scene) -> (String, Vec<Parameter>) {
         .collect();
     let inner = **draw.one(&able);
     let mut name = inner.name.to_owned();
-    let is_tree = !mp_plan::roadmap_planners().iter().any(|info| info.name == name);
+    let is_tree = name != "auto" && !mp_plan::roadmap_planners().iter().any(|info| info.name == name);
     if is_tree && draw.chance(0.25) {
         let fits = |prefix: &str, around: Option<&[&str]>| {
             prefix != "shared-" || around.is_none_or(|names| names.contains(&inner.name))

@@ -6,7 +6,7 @@ use crate::common::{Dir, mp};
 const SCENES: [(&str, &str); 9] = [
     ("crossing", "rrt"),
     ("blade", "rrt"),
-    ("docks", "rrt-connect"),
+    ("docks", "auto"),
     ("unicycle", "rsrt"),
     ("velocities", "rsrt"),
     ("accelerations", "rsrt"),

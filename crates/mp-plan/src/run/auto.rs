@@ -44,6 +44,8 @@ struct MemberInfo {
     settings: &'static [(&'static str, &'static str)],
     /// `None` for that of the request.
     metric: Option<MetricName>,
+    /// The part of the work of a turn that it gets: less where its queries take longer.
+    share: f64,
 }
 
 /// The first, with the settings of the request.
@@ -51,24 +53,29 @@ const FIRST: &str = "rrt-connect";
 
 /// The others, in the order of their turns.
 const OTHERS: &[MemberInfo] = &[
-    MemberInfo { planner: "obrrt", settings: &[("step", "1%")], metric: None },
-    MemberInfo { planner: "rrt-connect", settings: &[("step", "1%")], metric: None },
-    MemberInfo { planner: "rrt-connect", settings: &[("step", "2%")], metric: Some(MetricName::Scaled) },
-    MemberInfo { planner: "bridge-prm", settings: &[], metric: Some(MetricName::Scaled) },
-    MemberInfo { planner: "rrt-connect", settings: &[("step", "0.3%")], metric: None },
+    MemberInfo { planner: "obrrt", settings: &[("step", "1%")], metric: None, share: 1.0 },
+    MemberInfo { planner: "retraction-rrt", settings: &[], metric: None, share: 0.25 },
+    MemberInfo { planner: "rrt-connect", settings: &[("step", "1%")], metric: None, share: 1.0 },
+    MemberInfo {
+        planner: "rrt-connect",
+        settings: &[("step", "2%")],
+        metric: Some(MetricName::Scaled),
+        share: 1.0,
+    },
+    MemberInfo { planner: "bridge-prm", settings: &[], metric: Some(MetricName::Scaled), share: 1.0 },
 ];
 
 /// The work of the first turn of the first search: enough for what is easy.
-const FIRST_TURN: u64 = 200_000;
-/// After it each search is brought to this part of the work of the first, and then all of them to this much more in each round.
+const FIRST_TURN: u64 = 500_000;
+/// The others begin with this part of it.
+const BEGINNERS: f64 = 0.2;
+/// From then on the searches are brought to this times the work of the round before, all by turns.
 const ROUND: f64 = 1.5;
-/// The work of the others in the first round, as a part of [`FIRST_TURN`].
-const BEGINNERS: f64 = 0.25;
 
-/// The requests of all searches, the first one first.
-pub(crate) fn requests(request: &Request) -> Vec<Request> {
-    let first = Request { planner: FIRST.to_owned(), ..request.clone() };
-    let others = OTHERS.iter().map(|info| Request {
+/// The requests of all searches with their shares of a turn, the first one first.
+pub(crate) fn requests(request: &Request) -> Vec<(Request, f64)> {
+    let first = (Request { planner: FIRST.to_owned(), ..request.clone() }, 1.0);
+    let of = |info: &MemberInfo| Request {
         planner: info.planner.to_owned(),
         settings: info
             .settings
@@ -77,8 +84,8 @@ pub(crate) fn requests(request: &Request) -> Vec<Request> {
             .collect(),
         metric: info.metric.unwrap_or(request.metric),
         ..request.clone()
-    });
-    std::iter::once(first).chain(others).collect()
+    };
+    std::iter::once(first).chain(OTHERS.iter().map(|info| (of(info), info.share))).collect()
 }
 
 /// How a search is called in reports: its planner, with what differs from the request.
@@ -112,6 +119,7 @@ pub(crate) struct Auto<'p> {
 /// A search: its planner is made when it has its first turn.
 struct Member<'p> {
     prepared: &'p Prepared<'p>,
+    share: f64,
     planner: Option<NamedPlanner<'p>>,
     rng: Option<Rng>,
     work: u64,
@@ -126,8 +134,9 @@ impl<'p> Auto<'p> {
     /// # Errors
     /// When the first search cannot be made.
     pub(crate) fn new(prepared: &'p Prepared<'p>) -> Result<Self, Error> {
-        let members = prepared.members.iter().map(|prepared| Member {
+        let members = prepared.members.iter().map(|(prepared, share)| Member {
             prepared,
+            share: *share,
             planner: None,
             rng: None,
             work: 0,
@@ -160,8 +169,9 @@ impl<'p> Auto<'p> {
                 self.turn = 0;
                 self.round *= ROUND;
             }
-            let part = if self.round <= self.first_turn as f64 { BEGINNERS } else { 1.0 };
-            self.reach = if self.turn == 0 { self.round } else { part * self.round } as u64;
+            let begins = self.turn > 0 && self.round <= self.first_turn as f64;
+            let part = if begins { BEGINNERS } else { 1.0 };
+            self.reach = (part * self.members[self.turn].share * self.round) as u64;
             if !self.members[self.turn].ended {
                 return;
             }

@@ -31,8 +31,8 @@ pub(crate) struct Prepared<'k> {
     state: Arc<RunState>,
     /// Planners of roadmaps tell on several threads which queries are not to be counted: see `QueryMeter` of mp-roadmap.
     counts_exactly: bool,
-    /// The members of the portfolio [`auto`](super::auto).
-    pub(crate) members: Vec<Prepared<'k>>,
+    /// The searches of the portfolio [`auto`](super::auto), with their shares of a turn.
+    pub(crate) members: Vec<(Prepared<'k>, f64)>,
 }
 
 /// What all problems of a run have in common.
@@ -66,9 +66,9 @@ impl<'k> Prepared<'k> {
         let mut prepared = Self::of(kind, request, &planner, &state)?;
         if planner == PlannerKind::Auto {
             let members = auto::requests(&prepared.request).into_iter();
-            let members = members.map(|member| {
+            let members = members.map(|(member, share)| {
                 let planner = PlannerKind::new(&member.planner)?;
-                Self::of(kind, Cow::Owned(member), &planner, &state)
+                Ok::<_, Error>((Self::of(kind, Cow::Owned(member), &planner, &state)?, share))
             });
             // What the robot cannot do is left out.
             prepared.members = members.filter_map(Result::ok).collect();

@@ -19,6 +19,7 @@
 //! | [`DdRrt`](crate::DdRrt) | [`dd_rrt`] | from start and goal | the same, each node learning what is far |
 //! | [`MvbRrt`](crate::MvbRrt) | [`mvb_rrt`] | from start and goal | as RRT-Connect, toward the mean of the samples nearest to one node |
 //! | [`UtilityRrt`](crate::UtilityRrt) | [`utility_rrt`] | from start and goal | as RRT-Connect, the most promising of several expansions |
+//! | [`RetractionRrt`](crate::RetractionRrt) | [`retraction_rrt`] | from start and goal | as RRT-Connect; what is blocked goes on along the obstacle |
 //! | [`Obrrt`](crate::Obrrt) | [`obrrt`] | from the start | one step toward a sample or along an obstacle, by hints |
 //! | [`TRrt`](crate::TRrt) | [`t_rrt`] | from the start | one step toward a sample, if its end does not cost too much more |
 //! | [`Rrs`](crate::Rrs) | [`rrs`] | from the start, of edges that bend | one step toward a sample, around obstacles by a snake |
@@ -34,6 +35,7 @@ pub mod obrrt;
 pub mod or_parallel;
 pub mod rc_rrt;
 pub mod restarts;
+pub mod retraction_rrt;
 pub mod rrs;
 pub mod rrt;
 pub mod rrt_connect;
@@ -86,6 +88,7 @@ planners! {
     dd_rrt::adaptive: ;
     mvb_rrt: MvbRrt, VoronoiBias;
     utility_rrt: UtilityGuided, UtilityRrt;
+    retraction_rrt: Retract, RetractionRrt;
     obrrt: GrowthWeights, Obrrt, ObstacleGuided;
     cyclic_rrt: Cyclic, CyclicRrt, Listed;
     rrs: Rrs;

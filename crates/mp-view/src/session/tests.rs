@@ -118,7 +118,7 @@ fn names_planners_for_the_robot() {
     assert!(why.is_some_and(|why| why.len() > 10), "{why:?}");
     assert!(cannot.iter().all(|pair| pair[0] != "rsrt"));
     let rigid = page.ask(json!({"do": "open", "scene": "easy"})).head;
-    assert_eq!((&rigid["planner"], &rigid["cannot"]), (&json!("rrt-connect"), &json!([])));
+    assert_eq!((&rigid["planner"], &rigid["cannot"]), (&json!("auto"), &json!([])));
 }
 
 #[test]
