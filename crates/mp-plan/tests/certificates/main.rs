@@ -6,15 +6,22 @@ mod look;
 use mp_plan::{Interrupt, PathRows, Request, Scene};
 use mp_verify_certificate::{is_of_meshes, is_of_path, verify};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::{Arc, Mutex, OnceLock};
 
-/// A path through a shipped scene, and its certificate.
-fn certified(name: &str) -> (PathRows, String) {
-    certified_in(&Scene::find(name).unwrap())
+/// A path, and its certificate.
+type Certified = (PathRows, String);
+
+/// A path through a shipped scene, and its certificate: made once for all tests.
+fn certified(name: &str) -> Certified {
+    static MADE: Mutex<BTreeMap<String, Arc<OnceLock<Certified>>>> = Mutex::new(BTreeMap::new());
+    let made = MADE.lock().unwrap().entry(name.to_owned()).or_default().clone();
+    made.get_or_init(|| certified_in(&Scene::find(name).unwrap())).clone()
 }
 
 /// The same for any scene.
-fn certified_in(scene: &Scene) -> (PathRows, String) {
+fn certified_in(scene: &Scene) -> Certified {
     let name = scene.name();
     let report = scene.plan(&Request::new(scene.default_planner())).unwrap();
     let rows = report.path.unwrap_or_else(|| panic!("{name}: {:?}", report.why));

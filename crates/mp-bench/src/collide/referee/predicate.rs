@@ -146,7 +146,8 @@ mod tests {
             };
             let (a, b): (Triangle, Triangle) = ([point(), point(), point()], [point(), point(), point()]);
             let sides = Sides::of(&a, &b);
-            let exact = triangles_meet(&integers(&a, &b)[0], &integers(&a, &b)[1], |_, _, _| None);
+            let [whole_a, whole_b] = integers(&a, &b);
+            let exact = triangles_meet(&whole_a, &whole_b, |_, _, _| None);
             assert_eq!(meet_exactly(&a, &b, &sides), exact, "{a:?} {b:?}");
             assert_eq!(mp_collide::triangle::intersect(&a, &b), exact, "{a:?} {b:?}");
             let (no, yes) = (apart(&a, &b), sides.meet());
