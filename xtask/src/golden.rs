@@ -24,7 +24,7 @@ struct Way {
 }
 
 /// The test programs: bits of functions, results of planners, and a simulated experiment.
-const PROGRAMS: [&str; 3] = ["bits", "fingerprints", "follow"];
+const PROGRAMS: [&str; 3] = ["bits", "fingerprints", "experiments"];
 
 /// How they are built.
 const TESTS: &[&[&str]] = &[&[
@@ -39,7 +39,7 @@ const TESTS: &[&[&str]] = &[&[
     "--test",
     "fingerprints",
     "--test",
-    "follow",
+    "experiments",
 ]];
 
 /// How `cargo test` has built them, with all others.
@@ -103,7 +103,16 @@ const WAYS: [Way; 5] = [
         needs: &[(&["node", "--version"], "node")],
         target: Some("wasm32-wasip1"),
         tests: &[
-            &["--package", "mp-math", "--package", "mp-experiments", "--test", "bits", "--test", "follow"],
+            &[
+                "--package",
+                "mp-math",
+                "--package",
+                "mp-experiments",
+                "--test",
+                "bits",
+                "--test",
+                "experiments",
+            ],
             &[
                 "--package",
                 "mp-plan",
@@ -176,6 +185,9 @@ impl Way {
         for tests in if built && self.target.is_none() { BUILT } else { self.tests } {
             // At the same time: an emulated program is slow, and some have one thread.
             let programs = self.build(tests)?;
+            if self.target.is_none() && programs.len() != PROGRAMS.len() {
+                return Err(format!("of the test programs {PROGRAMS:?} there are only {programs:?}"));
+            }
             std::thread::scope(|scope| {
                 let start = |program: &PathBuf| self.start(program);
                 let running: Vec<_> = programs.iter().map(|p| scope.spawn(move || start(p))).collect();

@@ -290,7 +290,7 @@ impl Default for Budget {
 impl Default for Request {
     fn default() -> Self {
         Self {
-            planner: crate::run::auto::INFO.name.to_owned(),
+            planner: "auto".to_owned(),
             settings: BTreeMap::new(),
             metric: MetricName::Default,
             motion: MotionValidator::Certified,

@@ -211,7 +211,7 @@ pub trait Motion: AnyMotion {
 
     /// The planner that is taken when none is named.
     fn default_planner(&self) -> &'static str {
-        crate::run::auto::INFO.name
+        "auto"
     }
 
     /// The path made shorter, for robots that straight motions do not suit, as those moved by inputs; `None`, the default, where

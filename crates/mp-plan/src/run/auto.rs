@@ -22,18 +22,26 @@ use crate::run::NamedPlanner;
 use crate::run::planners::PlannerKind;
 use crate::run::prepared::Prepared;
 use crate::{Error, MetricName, Request};
-use mp_cspace::registry::PlannerInfo;
-use mp_cspace::{Configuration, Event, Observer, Path, Planner, Progress, Rng, Workers};
+use mp_cspace::registry::{Parameter, PlannerInfo, Settings};
+use mp_cspace::{BuildError, Configuration, Event, Observer, Path, Planner, Progress, Rng, Workers};
+use mp_tree::Tuning;
 use rand::RngExt;
-use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
+
+/// The work of the first turn of the first search.
+const TURN: Parameter = Parameter {
+    name: "turn",
+    range: "a whole number",
+    default: "500000",
+    doc: "queries and iterations after which the other searches have turns too",
+};
 
 /// The entry of [`planners`](crate::planners).
 pub(crate) const INFO: PlannerInfo = PlannerInfo {
     name: "auto",
     summary: "takes turns: RRT-Connect, then also short steps, other metrics, surfaces and roadmaps; the default",
     citation: "Gomes and Selman 2001",
-    parameters: &[mp_tree::STEP, mp_tree::GOAL_BIAS, mp_tree::PATIENCE],
+    parameters: &[TURN, mp_tree::STEP, mp_tree::GOAL_BIAS, mp_tree::PATIENCE],
     aliases: &[],
     cannot: mp_tree::NEEDS_BOTH_ENDS,
 };
@@ -65,16 +73,16 @@ const OTHERS: &[MemberInfo] = &[
     MemberInfo { planner: "bridge-prm", settings: &[], metric: Some(MetricName::Scaled), share: 1.0 },
 ];
 
-/// The work of the first turn of the first search: enough for what is easy.
-const FIRST_TURN: u64 = 500_000;
-/// The others begin with this part of it.
+/// The others begin with this part of the first turn.
 const BEGINNERS: f64 = 0.2;
 /// From then on the searches are brought to this times the work of the round before, all by turns.
 const ROUND: f64 = 1.5;
 
 /// The requests of all searches with their shares of a turn, the first one first.
 pub(crate) fn requests(request: &Request) -> Vec<(Request, f64)> {
-    let first = (Request { planner: FIRST.to_owned(), ..request.clone() }, 1.0);
+    let mut first = Request { planner: FIRST.to_owned(), ..request.clone() };
+    first.settings.remove(TURN.name);
+    let first = (first, 1.0);
     let of = |info: &MemberInfo| Request {
         planner: info.planner.to_owned(),
         settings: info
@@ -88,11 +96,17 @@ pub(crate) fn requests(request: &Request) -> Vec<(Request, f64)> {
     std::iter::once(first).chain(OTHERS.iter().map(|info| (of(info), info.share))).collect()
 }
 
+/// Refuses settings that the portfolio does not have, and values that cannot be read.
+pub(crate) fn check(settings: &Settings) -> Result<(), BuildError> {
+    settings.check(&INFO)?;
+    settings.count_of(&TURN)?;
+    Tuning::read(settings, &INFO).map(drop)
+}
+
 /// How a search is called in reports: its planner, with what differs from the request.
 fn label(member: &Request, whole: &Request) -> String {
     let mut label = member.planner.clone();
-    let own: BTreeMap<_, _> =
-        member.settings.iter().filter(|(name, _)| !whole.settings.contains_key(*name)).collect();
+    let own = member.settings.iter().filter(|(name, value)| whole.settings.get(*name) != Some(value));
     for (name, value) in own {
         label += &format!(" {name}={value}");
     }
@@ -147,12 +161,9 @@ impl<'p> Auto<'p> {
         if let Some(first) = members.first_mut() {
             first.planner = Some(first.made()?);
         }
-        let auto = Self { prepared, members, turn: 0, reach: 0, round: 0.0, first_turn: 0, won: None };
-        Ok(auto.with_first_turn(FIRST_TURN))
-    }
-
-    fn with_first_turn(self, work: u64) -> Self {
-        Self { first_turn: work, reach: work, round: work as f64, ..self }
+        let first_turn = prepared.request.settings().count_of(&TURN)?.max(1);
+        let (reach, round) = (first_turn, first_turn as f64);
+        Ok(Self { prepared, members, turn: 0, reach, round, first_turn, won: None })
     }
 
     /// Which search has found the path.
@@ -269,62 +280,5 @@ impl Observer<Configuration> for Numbered<'_> {
             Event::Linked { .. } | Event::Unlinked { .. } => return,
             other => other,
         });
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Scene;
-
-    /// Plans with turns that are short, and returns who won, the work of each search, and the path.
-    fn planned(scene: &Scene, seed: u64, first_turn: u64) -> (Option<String>, Vec<u64>, Vec<Vec<f64>>) {
-        let request = Request::new("auto").seed(seed);
-        let run = scene.prepare(&request).unwrap();
-        let mut auto = Auto::new(&run.prepared).unwrap().with_first_turn(first_turn);
-        let mut rng = Rng::seed(seed);
-        let path = (0..1_000_000).find_map(|_| auto.step(&mut rng, &mut ())).unwrap();
-        let work: Vec<u64> = auto.members.iter().map(|member| member.work).collect();
-        (auto.won(), work, run.prepared.kind.rows(&path))
-    }
-
-    #[test]
-    fn all_have_turns_of_the_same_work_and_paths_are_repeated() {
-        let scene = Scene::find("twisty").unwrap();
-        for seed in 1..4 {
-            let (won, work, rows) = planned(&scene, seed, 300);
-            let again = planned(&scene, seed, 300);
-            assert_eq!((&won, &work, &rows), (&again.0, &again.1, &again.2));
-            assert!(work.iter().filter(|work| **work > 0).count() >= 4, "{work:?}");
-            let most = *work.iter().max().unwrap() as f64;
-            // A turn ends after whole iterations.
-            assert!(most < ROUND * work[0] as f64 + 2_000.0, "{work:?}");
-            let path = crate::PathRows { format: scene.path_format(), columns: scene.columns(), rows };
-            assert!(scene.check(&path).unwrap().free, "{won:?}");
-        }
-    }
-
-    #[test]
-    fn what_is_found_in_the_first_turn_is_the_path_of_rrt_connect() {
-        let scene = Scene::find("twisty").unwrap();
-        let alone = scene.plan(&Request::new(FIRST)).unwrap();
-        let auto = scene.plan(&Request::default()).unwrap();
-        assert_eq!(auto.won.as_deref(), Some(FIRST));
-        assert_eq!((auto.fingerprint, auto.collision_checks), (alone.fingerprint, alone.collision_checks));
-    }
-
-    #[test]
-    fn every_search_can_be_made_and_has_a_name_of_its_own() {
-        let scene = Scene::find("twisty").unwrap();
-        let request = Request::default();
-        let run = scene.prepare(&request).unwrap();
-        assert_eq!(run.prepared.members.len(), 1 + OTHERS.len());
-        let auto = Auto::new(&run.prepared).unwrap();
-        let mut labels: Vec<String> =
-            auto.members.iter().map(|member| label(&member.prepared.request, &request)).collect();
-        assert!(auto.members.iter().all(|member| member.made().is_ok()), "{labels:?}");
-        labels.sort();
-        labels.dedup();
-        assert_eq!(labels.len(), 1 + OTHERS.len());
     }
 }

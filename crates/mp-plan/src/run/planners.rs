@@ -62,7 +62,7 @@ impl PlannerKind {
     /// Refuses settings that the planner does not have.
     pub(crate) fn check(&self, settings: &Settings) -> Result<(), Error> {
         match self {
-            Self::Auto => settings.check(&auto::INFO)?,
+            Self::Auto => auto::check(settings)?,
             Self::Tree(spec) => spec.check(settings)?,
             Self::Roadmap(info) => settings.check(info)?,
         }

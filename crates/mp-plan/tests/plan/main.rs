@@ -1,5 +1,6 @@
 //! Scenes planned in, in one program: each would link all of the library again.
 
+mod auto;
 mod clearance;
 mod constrained;
 mod field;

@@ -18,6 +18,7 @@ mod obrrt;
 mod or_parallel;
 mod rc_rrt;
 mod restarts;
+mod retraction_rrt;
 mod rrs;
 mod rrs_connect;
 mod rrt;
@@ -49,6 +50,7 @@ const EXAMPLES: &[Example] = &[
     ("or_parallel", or_parallel::main),
     ("rc_rrt", rc_rrt::main),
     ("restarts", restarts::main),
+    ("retraction_rrt", retraction_rrt::main),
     ("rrs", rrs::main),
     ("rrs_connect", rrs_connect::main),
     ("rrt", rrt::main),

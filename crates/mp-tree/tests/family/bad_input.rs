@@ -149,7 +149,7 @@ fn obstacles_must_be_known_to_be_followed() {
     let problem = || Problem::new(&space, local(), Exact(boxes.clone()), point(0.1, 0.1), point(0.9, 0.1));
     let error = |name| build(name, problem().unwrap(), &Settings::default()).err().unwrap();
     assert_eq!(error("obrrt"), BuildError::NoHints { planner: "obrrt" });
-    for planner in ["rrs", "rrs-connect"] {
+    for planner in ["rrs", "rrs-connect", "retraction-rrt"] {
         assert_eq!(error(planner), BuildError::NoGradient { planner });
     }
 }

@@ -13,6 +13,7 @@ mod obrrt;
 mod optimal;
 mod panics;
 mod repeated;
+mod retraction;
 mod shared_tree;
 mod slots;
 mod t_rrt;
