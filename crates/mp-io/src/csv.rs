@@ -89,7 +89,7 @@ fn faulty(text: &Text<'_>, line: Token<'_>, index: usize, fault: Fault) -> Error
 #[must_use]
 pub fn csv_text(names: &[String], rows: &[Vec<f64>]) -> String {
     let mut out = String::new();
-    let quoted = |name: &String| match name.starts_with('#') || name.contains([',', '"']) {
+    let quoted = |name: &String| match name.starts_with(['#', '\u{feff}']) || name.contains([',', '"']) {
         true => format!("\"{}\"", name.replace('"', "\"\"")),
         false => name.clone(),
     };
@@ -136,6 +136,11 @@ mod tests {
         assert_eq!(parse_csv("p.csv", text.as_bytes(), &odd).unwrap(), (odd.to_vec(), numbers.clone()));
         let read = parse_csv("p.csv", text.as_bytes(), &turned).unwrap().1;
         assert_eq!(read, [[7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0]]);
+        // A byte order mark that is a name is none of the file.
+        let (marked, numbers) = parse_csv("p.csv", b" \xef\xbb\xbf ,\n \n3,4\r\n", &[]).unwrap();
+        let names: Vec<_> = marked.iter().map(ToString::to_string).collect();
+        let text = csv_text(&names, &numbers);
+        assert_eq!(parse_csv("p.csv", text.as_bytes(), &[]).unwrap(), (marked, numbers));
     }
 
     #[test]

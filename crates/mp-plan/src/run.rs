@@ -198,6 +198,8 @@ struct Found {
     first: Option<(Duration, f64, Path<Configuration>)>,
     /// Whether the run is over, and why it stopped; no reason when it has a path that it does not improve.
     over: Option<Option<StopReason>>,
+    /// Whether paths are told of when they are found: those that the planner has verified.
+    tells: bool,
 }
 
 impl<'p, 'k> RobotRun<'p, 'k> {
@@ -233,12 +235,13 @@ impl<'p, 'k> RobotRun<'p, 'k> {
                 prepared.roadmap_planner(info, workers, file.as_ref()).map(NamedPlanner::Roadmap)
             }
         };
-        let mut found = Found { best: None, first: None, over: None };
+        let mut found = Found { best: None, first: None, over: None, tells: true };
         let made = match (made, interrupt.raised()) {
             (Ok(mut made), _) => {
                 // Of paths that are improved each is shown.
                 let ends_with_its_path = request.first_only || !made.planner().improves();
                 prepared.prove_later(prepared.proves_later() && ends_with_its_path);
+                found.tells = !prepared.proves_later();
                 Some(made)
             }
             // What was interrupted is no error.
@@ -294,7 +297,7 @@ impl<'p, 'k> RobotRun<'p, 'k> {
     /// Relaxes the path found if the request says so, and says what was done.
     pub(crate) fn into_search(mut self, control: &mut Control<'_>) -> Result<Search, Error> {
         let progress = self.progress();
-        let (prepared, Found { best, first, over }) = (self.prepared, self.found);
+        let (prepared, Found { best, first, over, .. }) = (self.prepared, self.found);
         let (kind, request) = (prepared.kind, &*prepared.request);
         let began = control.clock.now();
         let ended_by = over.unwrap_or(Some(StopReason::Cancelled));
@@ -422,10 +425,10 @@ fn search_on(
     events: &mut Events<'_, '_, '_>,
     time: &dyn Fn() -> Duration,
 ) {
-    let (adapter, rows) = (events.adapter, events.rows);
+    let (adapter, rows, tells) = (events.adapter, events.rows, found.tells);
     let report = |path: &Path<Configuration>| {
         let length = path.length(space);
-        if let Some(watch) = &mut *adapter.watch.borrow_mut() {
+        if let (true, Some(watch)) = (tells, &mut *adapter.watch.borrow_mut()) {
             watch.found(length, &|| rows(path));
         }
         length

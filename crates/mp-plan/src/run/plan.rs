@@ -31,8 +31,13 @@ pub(crate) fn plan(kind: &dyn Robot, request: &Request, control: &mut Control<'_
     let mut once = |proves_later| {
         let began = control.time_if_limited(request);
         let found = search_within(kind, request, control, PLANNING_PART, proves_later)?;
-        let left = left(request, control, &found);
+        let (left, proved) = (left(request, control, &found), found.proved);
         let report = reported(kind, request, found, None, control, left)?;
+        if let (false, Some(length), Some(rows), Some(watch)) =
+            (proved, report.path_length, &report.path, control.watch.as_deref_mut())
+        {
+            watch.found(length, &|| rows.clone());
+        }
         let again = proves_later && report.stopped_by == Some(StoppedBy::Verification);
         if again {
             control.spend_since(began);
