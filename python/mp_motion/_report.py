@@ -139,6 +139,8 @@ class Report(InScene):
         A lower bound on the clearance along the path, metres.
     clearance_kept : float
         The clearance from obstacles that was asked for, metres; zero for none.
+    won : str or None
+        Of the planner ``auto``, the search that has found the path.
     shortened : bool
         Whether the path was shortened.
     fingerprint : str or None
@@ -181,6 +183,7 @@ class Report(InScene):
     picture_file: str | None = None
     certificate_file: str | None = None
     clearance_kept: float = 0.0
+    won: str | None = None
     _scene: Scene | None = field(default=None)
 
     @classmethod
@@ -204,6 +207,8 @@ class Report(InScene):
         members: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "_scene"}
         if self.clearance_kept == 0.0:
             del members["clearance_kept"]
+        if self.won is None:
+            del members["won"]
         members["columns"] = [vars(column) for column in self.columns]
         members["stages"] = [vars(stage) for stage in self.stages]
         for name in ("path", "first_path"):
