@@ -58,18 +58,14 @@ struct MemberInfo {
 
 /// The first, with the settings of the request.
 const FIRST: &str = "rrt-connect";
+/// Its share of the turns after its first one: what it has not solved by then is rather for the others.
+const FIRST_SHARE: f64 = 0.5;
 
 /// The others, in the order of their turns.
 const OTHERS: &[MemberInfo] = &[
     MemberInfo { planner: "obrrt", settings: &[("step", "1%")], metric: None, share: 1.0 },
     MemberInfo { planner: "retraction-rrt", settings: &[], metric: None, share: 0.25 },
     MemberInfo { planner: "rrt-connect", settings: &[("step", "1%")], metric: None, share: 1.0 },
-    MemberInfo {
-        planner: "rrt-connect",
-        settings: &[("step", "2%")],
-        metric: Some(MetricName::Scaled),
-        share: 1.0,
-    },
     MemberInfo { planner: "bridge-prm", settings: &[], metric: Some(MetricName::Scaled), share: 1.0 },
 ];
 
@@ -82,7 +78,7 @@ const ROUND: f64 = 1.5;
 pub(crate) fn requests(request: &Request) -> Vec<(Request, f64)> {
     let mut first = Request { planner: FIRST.to_owned(), ..request.clone() };
     first.settings.remove(TURN.name);
-    let first = (first, 1.0);
+    let first = (first, FIRST_SHARE);
     let of = |info: &MemberInfo| Request {
         planner: info.planner.to_owned(),
         settings: info
