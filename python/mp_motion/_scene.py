@@ -855,7 +855,7 @@ class Scene:
         Parameters
         ----------
         path : array_like, shape (n, columns), or Report or Finished
-            Of a report the clearance is used, half of which is proved.
+            Of a report the clearance is used, half of which is proved: plan with ``sharp_clearance`` for the most.
         """
         clearance = path.clearance or 0.0 if isinstance(path, Report | Finished) else 0.0
         return self._native.certificate(self._path(path), clearance)

@@ -59,7 +59,7 @@ def test_every_kind_of_scene_is_compared() -> None:
 
 def test_certificates_pictures_and_pages_are_those_of_the_program(program: str, folder: Path) -> None:
     scene = mp.Scene("easy")
-    report = scene.plan("rrt-connect", seed=2)
+    report = scene.plan("rrt-connect", seed=2, sharp_clearance=True)
     scene.save("p.txt", report)
     (folder / "c.json").write_text(scene.certificate(report))
     args = ["plan", "easy", "--planner", "rrt-connect", "--seed", "2", "--out", "q.txt", "--certificate", "d.json"]
