@@ -216,7 +216,7 @@ browserTest("the plot shows what is chosen, of both runs that are compared", () 
   assert.match(await label(), /^X along the path/);
   await driver.click("checkbox", "Compare with run 1");
   const curves = await driver.page.evaluate(async () => (await window.mpView.planner).viewer.timeline.plot.curves.map(({ path, values }) => [path.name, values.length === path.count]));
-  assert.deepEqual(curves, [["run 2: rrt", true], ["run 1: rrt-connect", true]]);
+  assert.deepEqual(curves, [["run 2: rrt", true], ["run 1: auto", true]]);
   // A press in the middle leads to the middle of the way; the choice stays when another path is shown.
   const box = await (await driver.page.$(".plot")).boundingBox();
   await driver.page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);

@@ -18,7 +18,7 @@ const search = (driver) => driver.page.evaluate(async () => {
 browserTest("a run finds a verified path, and its tree is drawn", () => withPage("easy", async (driver) => {
   await driver.press("Plan");
   const cells = await driver.untilResult(/verified path/);
-  assert.equal(cells[3], "rrt-connect");
+  assert.equal(cells[3], "auto");
   const { nodes, trees, rejected } = await search(driver);
   assert.equal(String(nodes), cells[8].replace(/\D/g, ""), "every node of the planner is drawn");
   assert.equal(trees, 2);
