@@ -195,7 +195,8 @@ pub(crate) struct Proposed<'p> {
     pub(crate) time: Duration,
 }
 
-/// Proving a path takes no longer than the search for it, times this, as a rule: less where the search has proved it.
+/// How many times longer than its search the proof of a path takes at most, as a rule: where the search has proved nothing, and where it has
+/// proved the path once.
 const PROOF_PER_SEARCH: [u32; 2] = [16, 4];
 
 /// Shortens a path if the request says so, and verifies what will be written, within the time `left`. If the shortened path does

@@ -103,7 +103,7 @@ impl<'k> Prepared<'k> {
             && !self.request.settings.contains_key(mp_tree::PATIENCE.name)
     }
 
-    /// From now on the search takes every motion of its own check for proved; whoever runs it proves its path.
+    /// Whether the verifier passes every motion from now on. Then whoever runs the search must prove its path.
     pub(crate) fn prove_later(&self, later: bool) {
         self.state.proves_later.store(later, Ordering::Relaxed);
     }

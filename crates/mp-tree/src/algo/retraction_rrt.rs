@@ -14,8 +14,8 @@
 //!
 //! The paper finds the nearest state in contact by optimising over the contact space that penetration queries describe; here
 //! the clearance and its gradient on the free side lead along it, so that all that is added is certified as any edge is. Where
-//! several directions lead out of an obstacle (turning or moving), the paper takes the nearest in its metric; here the weights
-//! of the degrees of freedom are drawn anew for each blocked step.
+//! turning and moving both lead out of an obstacle, the paper takes what is nearest in its metric; here each blocked step draws the weights
+//! of the degrees of freedom anew.
 //!
 //! **When to use it.** Narrow passages with long walls: tubes that interlock, keys and nuts, twisted corridors. Each slide
 //! costs a clearance with its gradient.
