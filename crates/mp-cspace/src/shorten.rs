@@ -73,9 +73,15 @@ fn is_shortcut<C: Space>(space: &C, check: &mut impl MotionValidity<C::State>, p
     space.distance(first, last) <= along && check.check_motion(first, last).is_free()
 }
 
-/// Whether every edge through `states` is free.
+/// Whether every edge through `states` is free. The first and the last one are asked about last: they are parts of edges that were
+/// free, so others are likelier to refuse.
 fn all_free<S>(check: &mut impl MotionValidity<S>, states: &[S]) -> bool {
-    states.windows(2).all(|w| check.check_motion(&w[0], &w[1]).is_free())
+    let mut free = |states: &[S]| states.windows(2).all(|w| check.check_motion(&w[0], &w[1]).is_free());
+    let n = states.len();
+    match n {
+        0..4 => free(states),
+        _ => free(&states[1..n - 1]) && free(&states[..2]) && free(&states[n - 2..]),
+    }
 }
 
 /// Reduces, takes shortcuts of both kinds, reduces again and rounds the corners.

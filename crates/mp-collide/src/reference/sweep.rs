@@ -1,6 +1,6 @@
 //! Whole motions of a mesh past another mesh, proved free.
 
-use super::swept_triangle::SweptTriangle;
+use super::swept_triangle::{Front, SweptTriangle};
 use super::triangle::{Triangle, triangle_gap};
 use super::{Ball, Content, Node, RefMesh, TOUCHING, is_usable};
 use mp_stop::Interrupt;
@@ -279,10 +279,22 @@ impl Sweep {
         let enough = task.margin + task.touching;
         let first = open.near[1];
         let mut kept = first;
+        // What separates one triangle often separates the next, which is near it.
+        let mut front = Front::none();
         for i in first..self.near.len() {
-            let near = self.near[i];
-            let gap = |stands| hull.gap_from(stands, near.way, enough + swath.bend).0 - swath.bend;
-            let gap = task.stands(&near, &mut None).map_or(f64::NEG_INFINITY, gap);
+            let (near, mut made) = (self.near[i], None);
+            let gap = task.stands(&near, &mut made).map_or(f64::NEG_INFINITY, |stands| {
+                let gap = front.gap(stands);
+                if gap >= enough + swath.bend {
+                    return gap;
+                }
+                let (gap, way) = hull.gap_from(stands, near.way, enough + swath.bend);
+                if gap >= enough + swath.bend {
+                    front = hull.along(way);
+                }
+                gap
+            });
+            let gap = gap - swath.bend;
             if gap >= enough {
                 *least = least.min(gap - task.touching);
             } else {

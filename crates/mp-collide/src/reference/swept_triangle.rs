@@ -11,6 +11,11 @@ impl SweptTriangle {
         Self([a, b, c, d, e, f])
     }
 
+    /// The hull as it is seen along a direction.
+    pub(super) fn along(&self, way: Vector3<f64>) -> Front {
+        Front { way, least: least_along(&self.0, &way).0 }
+    }
+
     /// The gap between the hull and a triangle along some direction, if possible at least `enough`, and that direction.
     /// Tries `first`, or the normal of the triangle when that is zero; then turns away from the points nearest along it
     /// (Chung and Wang, *Quick collision detection of polytopes in virtual environments*, VRST 1996).
@@ -28,7 +33,8 @@ impl SweptTriangle {
         }
         let mut most = (f64::NEG_INFINITY, direction);
         for _ in 0..TRIES {
-            let between = first_along(&self.0, &direction) - first_along(triangle, &-direction);
+            let nearest = self.0[least_along(&self.0, &direction).1];
+            let between = nearest - triangle[least_along(triangle, &-direction).1];
             let gap = between.dot(&direction);
             if gap > most.0 {
                 most = (gap, direction);
@@ -46,17 +52,35 @@ impl SweptTriangle {
     }
 }
 
+/// The least coordinate of a hull along a direction: what shows many triangles at once to be apart from it.
+pub(super) struct Front {
+    way: Vector3<f64>,
+    least: f64,
+}
+
+impl Front {
+    /// Of no hull: nothing is apart from it.
+    pub(super) fn none() -> Self {
+        Self { way: Vector3::zeros(), least: f64::NEG_INFINITY }
+    }
+
+    /// The gap between the hull and a triangle along the direction.
+    pub(super) fn gap(&self, triangle: &Triangle) -> f64 {
+        let [a, b, c] = triangle.map(|p| p.coords.dot(&self.way));
+        self.least - a.max(b).max(c)
+    }
+}
+
 /// How many directions are tried for a pair of triangles.
 const TRIES: usize = 5;
 
-/// The point with the least coordinate along a direction.
-fn first_along(points: &[Point3<f64>], direction: &Vector3<f64>) -> Point3<f64> {
-    let mut first = (f64::INFINITY, Point3::origin());
-    for p in points {
-        let along = p.coords.dot(direction);
-        if along < first.0 {
-            first = (along, *p);
-        }
+/// The least coordinate of points along a direction, and which of them has it. Without branches, which nothing foretells.
+fn least_along<const N: usize>(points: &[Point3<f64>; N], direction: &Vector3<f64>) -> (f64, usize) {
+    let along = points.map(|p| p.coords.dot(direction));
+    let mut least = (f64::INFINITY, 0);
+    for (i, along) in along.into_iter().enumerate() {
+        let less = along < least.0;
+        least = (if less { along } else { least.0 }, if less { i } else { least.1 });
     }
-    first.1
+    least
 }
