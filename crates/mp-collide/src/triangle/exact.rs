@@ -92,6 +92,11 @@ fn same(s: [i8; 3]) -> Option<bool> {
 
 /// The answer by exact signs.
 fn decide(a: &Triangle, b: &Triangle) -> bool {
+    // Flat faces of bodies that stand on one floor: no volume is needed.
+    let level = |k: usize| a.iter().chain(b).all(|p| p[k] == a[0][k]);
+    if let Some(answer) = (0..3).find(|&k| level(k)).and_then(|k| meet_in_plane(a, b, k)) {
+        return answer;
+    }
     let side_of_a = b.map(|p| volume(&a[0], &a[1], &a[2], &p));
     if one_sided(side_of_a) {
         return false;
@@ -102,6 +107,10 @@ fn decide(a: &Triangle, b: &Triangle) -> bool {
     }
     if side_of_a == [0; 3] || side_of_b == [0; 3] {
         // Coplanar, or one has no area.
+        let drop = visible_along(&a[0], &a[1], &a[2]);
+        if let Some(answer) = drop.filter(|_| side_of_a == side_of_b).and_then(|k| meet_in_plane(a, b, k)) {
+            return answer;
+        }
         return edges(a).any(|(p, q)| segment_meets(p, q, b))
             || edges(b).any(|(p, q)| segment_meets(p, q, a));
     }
@@ -191,6 +200,13 @@ fn volume(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, d: &Point3<f64>) ->
 
 #[cold]
 fn exact_volume(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, d: &Point3<f64>) -> i8 {
+    // What stands on one floor: all four in a plane across an axis, or two edges along one.
+    let same = |p: &Point3<f64>, q: &Point3<f64>, k: usize| p[k] == q[k];
+    let level = |k: usize| [b, c, d].into_iter().all(|p| same(a, p, k));
+    let along = |k: usize| (0..3).all(|l| l == k || (same(a, b, l) && same(c, d, l)));
+    if (0..3).any(|k| level(k) || along(k)) {
+        return 0;
+    }
     let coord = |p: &Point3<f64>| Coord3D { x: p.x, y: p.y, z: p.z };
     sign(orient3d(coord(a), coord(b), coord(c), coord(d)))
 }
@@ -209,6 +225,17 @@ fn area(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, drop: usize) -> i8 {
 /// An axis along which the triangle is seen to have an area; `None` when its corners lie on a line.
 fn visible_along(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>) -> Option<usize> {
     (0..3).find(|&drop| area(a, b, c, drop) != 0)
+}
+
+/// Whether two triangles of one plane meet, seen along axis `drop`; `None` where one of them has no area then. Disjoint ones are on
+/// different sides of an edge of one of them.
+fn meet_in_plane(a: &Triangle, b: &Triangle, drop: usize) -> Option<bool> {
+    let facing = |t: &Triangle| Some(area(&t[0], &t[1], &t[2], drop)).filter(|facing| *facing != 0);
+    let beyond_an_edge = |t: &Triangle, facing: i8, other: &Triangle| {
+        edges(t).any(|(u, v)| other.iter().all(|p| area(u, v, p, drop) == -facing))
+    };
+    let (of_a, of_b) = (facing(a)?, facing(b)?);
+    Some(!beyond_an_edge(a, of_a, b) && !beyond_an_edge(b, of_b, a))
 }
 
 /// Whether a closed segment meets a closed triangle; both may be degenerate.

@@ -18,8 +18,11 @@ fn corner(rng: &mut Pcg64, size: i64) -> Corner {
 fn pair(rng: &mut Pcg64, size: i64) -> ([Corner; 3], [Corner; 3]) {
     let mut a = [0; 3].map(|_| corner(rng, size));
     let mut b = [0; 3].map(|_| corner(rng, size));
-    match rng.random_range(0..8) {
-        0 => b.iter_mut().chain(a.iter_mut()).for_each(|p| p[2] = 0),
+    match rng.random_range(0..9) {
+        0 => {
+            let k = rng.random_range(0..3);
+            b.iter_mut().chain(a.iter_mut()).for_each(|p| p[k] = 0);
+        }
         1 => b[rng.random_range(0..3)] = a[rng.random_range(0..3)],
         2 => (b[0], b[1]) = (a[1], a[0]),
         3 => a[2] = a[0],
@@ -41,6 +44,16 @@ fn pair(rng: &mut Pcg64, size: i64) -> ([Corner; 3], [Corner; 3]) {
         6 => {
             // A sliver.
             a[2] = [0, 1, 2].map(|k| (a[0][k] + a[1][k]) / 2 + rng.random_range(-1..=1));
+        }
+        7 => {
+            // Both in a tilted plane.
+            let part = a.map(|p| p.map(|c| c / 8));
+            a = part.map(|p| p.map(|c| 2 * c));
+            for p in &mut b {
+                let (s, t) = (rng.random_range(-3..=3), rng.random_range(-3..=3));
+                *p = [0, 1, 2]
+                    .map(|k| 2 * part[0][k] + s * (part[1][k] - part[0][k]) + t * (part[2][k] - part[0][k]));
+            }
         }
         _ => {}
     }
