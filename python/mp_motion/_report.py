@@ -303,7 +303,7 @@ class Verdict:
 
 
 @dataclass(frozen=True)
-class Touch:
+class Contact:
     """A contact.
 
     Attributes
@@ -337,7 +337,7 @@ class Explanation:
     clearance : float
         A lower bound on the distance to contact, metres; zero in collision, and where none is known, ``inf`` where there is
         nothing to hit.
-    touching : tuple of Touch
+    touching : tuple of Contact
         What touches what.
     fault : str or None
         What is wrong, to follow the words "the configuration is".
@@ -348,7 +348,7 @@ class Explanation:
     free: bool
     in_bounds: bool
     clearance: float
-    touching: tuple[Touch, ...]
+    touching: tuple[Contact, ...]
     fault: str | None
     nearest_free: Array | None
 
@@ -378,7 +378,7 @@ def explanation(text: str) -> Explanation:
         free=m["free"],
         in_bounds=m["in_bounds"],
         clearance=_number(m["clearance"]),
-        touching=tuple(Touch(**touch) for touch in m["touching"]),
+        touching=tuple(Contact(**touch) for touch in m["touching"]),
         fault=m["fault"],
         nearest_free=None if nearest is None else np.array(nearest, dtype=np.float64),
     )

@@ -11,7 +11,7 @@ use mp_cspace::{
     WithMetric,
 };
 use mp_plan::{
-    Appearance, Body, Column, Description, Error, Length, Measured, MetricName, Mismatch, Motion, Touch,
+    Appearance, Body, Column, Contact, Description, Deviation, Error, Length, Measured, MetricName, Motion,
     TypedMotion,
 };
 use nalgebra::Isometry3;
@@ -240,7 +240,7 @@ impl Description for Own {
     fn space_name(&self) -> String {
         format!("{} numbers", self.columns.len())
     }
-    fn touching(&self, _: &Configuration) -> Vec<Touch> {
+    fn touching(&self, _: &Configuration) -> Vec<Contact> {
         Vec::new()
     }
     fn columns(&self) -> Vec<Column> {
@@ -256,8 +256,8 @@ impl Description for Own {
     fn state(&self, row: &[f64]) -> Configuration {
         self.space.space().wrapped(&self.numbers.state(row))
     }
-    fn mismatch(&self, q: &Configuration, wanted: &Configuration) -> Mismatch {
-        Mismatch { off: self.space.distance(q, wanted), allowed: 1e-6 * self.space.extent(), unit: "" }
+    fn deviation(&self, q: &Configuration, wanted: &Configuration) -> Deviation {
+        Deviation { off: self.space.distance(q, wanted), allowed: 1e-6 * self.space.extent(), unit: "" }
     }
 }
 

@@ -1,16 +1,16 @@
 //! Portfolios: many runs of one request, with random numbers of their own, over threads and over the ranks of a cluster.
 
-mod lane;
+mod group;
 mod rounds;
 
 use crate::job;
 use crate::ranks::{ranks_error, run};
-use lane::{Lane, Start};
+use group::{RunGroup, Start};
 use mp_cspace::Rng;
 use mp_plan::{
     Clock, Control, Error, FoundRun, PortfolioSchedule, Report, Request, Scene, StopReason, StoppedBy,
 };
-use mp_ranks::{Hand, Job, Link, Options};
+use mp_ranks::{ItemContext, Job, Link, Options};
 use mp_tree::Schedule;
 use rounds::Rounds;
 use serde::{Deserialize, Serialize};
@@ -39,12 +39,12 @@ const MAX_UNIT: u64 = 1_000_000_000_000;
 ///   ([there](mp_tree::algo::or_parallel)).
 ///
 /// How it is worked on, which changes nothing in the result:
-/// 1. the runs of a round are dealt to as many *lanes* as there are threads on all ranks, the largest caps first, one to each lane in turn,
+/// 1. the runs of a round are dealt to as many *groups* as there are threads on all ranks, the largest caps first, one to each group in turn,
 ///    there and back again;
-/// 2. a lane advances its runs by turns, the one as far as the other, until each has a path, has reached its cap, or has made as many
+/// 2. a group advances its runs by turns, the one as far as the other, until each has a path, has reached its cap, or has made as many
 ///    iterations as the best run known: then it cannot win any more;
-/// 3. a lane that is an eighth ahead of the one that is furthest behind waits for it, which must come as far as the winner anyway;
-/// 4. when a lane is done, the others hear of its best run.
+/// 3. a group that is an eighth ahead of the one that is furthest behind waits for it, which must come as far as the winner anyway;
+/// 4. when a group is done, the others hear of its best run.
 ///
 /// Where the request has no budget of iterations, queries or nodes, a portfolio of which no run has a path when all have reached their caps
 /// goes on with as many further runs, until its time is up: their caps are the next ones of the schedule; of the wide one, those of
@@ -263,8 +263,12 @@ impl Portfolio {
         let threads = options.threads.max(1);
         let budget = &request.budget;
         let goes_on = budget.iterations.is_none() && budget.queries.is_none() && budget.nodes.is_none();
-        let dealt =
-            Dealt { portfolio: *self, seed: request.seed, lanes: (threads * link.ranks()) as u64, goes_on };
+        let allocation = Allocation {
+            portfolio: *self,
+            seed: request.seed,
+            groups: (threads * link.ranks()) as u64,
+            goes_on,
+        };
         let clocks = Clocks { clock: control.clock, began, spent: control.spent };
         // The others wait for the first rank.
         let refused = |e: Error| {
@@ -278,13 +282,15 @@ impl Portfolio {
             _ => None,
         };
         let watch = control.watch.as_deref_mut();
-        let mut rounds = Rounds::new(&dealt, link.ranks(), checkpoint.as_ref(), watch).map_err(refused)?;
+        let mut rounds =
+            Rounds::new(&allocation, link.ranks(), checkpoint.as_ref(), watch).map_err(refused)?;
         let known = rounds.known_runs();
-        let identity = format!("{identity}, {} lanes", dealt.lanes);
+        let identity = format!("{identity}, {} groups", allocation.groups);
         let start = Start::shared(link, Some(Start::new(identity, &rounds)))?;
         let run_options = Options { threads, cancel: control.cancel.clone() };
-        let work = |item: u64, hand: &Hand| {
-            Lane { prepared: &prepared, dealt: &dealt, start: &start, clocks: &clocks }.work(item, hand)
+        let work = |item: u64, context: &ItemContext| {
+            RunGroup { prepared: &prepared, allocation: &allocation, start: &start, clocks: &clocks }
+                .work(item, context)
         };
         let job = link.is_master().then_some(&mut rounds as &mut dyn Job);
         let ran = run(link, &run_options, job, &work)?;
@@ -309,34 +315,34 @@ impl Portfolio {
     }
 }
 
-/// How the runs are dealt: the same on all ranks.
+/// How the runs are allocated: the same on all ranks.
 #[derive(Clone, Copy, Debug)]
-struct Dealt {
+struct Allocation {
     portfolio: Portfolio,
     seed: u64,
-    lanes: u64,
+    groups: u64,
     /// Whether further runs follow when no run has a path.
     goes_on: bool,
 }
 
-impl Dealt {
-    /// The runs of a lane of a round, with their caps, the largest first; those that `known` says are left out before.
-    fn lane(&self, item: u64, known: impl Fn(u64) -> bool) -> Vec<(u64, Option<u64>)> {
-        let (round, lane) = (item / self.lanes, item % self.lanes);
+impl Allocation {
+    /// The runs of a group of a round, with their caps, the largest first; those that `known` says are left out before.
+    fn group(&self, item: u64, known: impl Fn(u64) -> bool) -> Vec<(u64, Option<u64>)> {
+        let (round, group) = (item / self.groups, item % self.groups);
         let runs = self.portfolio.round_runs(round);
         let caps =
             self.portfolio.caps(self.seed).skip(usize::try_from(*runs.start() - 1).unwrap_or(usize::MAX));
         let mut open: Vec<_> = runs.zip(caps).filter(|(run, _)| !known(*run)).collect();
         open.sort_by_key(|(run, cap)| (std::cmp::Reverse(cap.unwrap_or(u64::MAX)), *run));
-        let mine = (0..).zip(open).filter(|(place, _)| dealt_to(*place, self.lanes) == lane);
+        let mine = (0..).zip(open).filter(|(place, _)| group_of(*place, self.groups) == group);
         mine.map(|(_, run)| run).collect()
     }
 }
 
-/// The lane, of so many, that gets the run in a place: there and back again, so that none has the larger cap of each turn.
-fn dealt_to(place: u64, lanes: u64) -> u64 {
-    let (turn, lane) = (place / lanes, place % lanes);
-    if turn.is_multiple_of(2) { lane } else { lanes - 1 - lane }
+/// The group that gets the run in a place: there and back again, so that none has the larger cap of each turn.
+fn group_of(place: u64, groups: u64) -> u64 {
+    let (turn, group) = (place / groups, place % groups);
+    if turn.is_multiple_of(2) { group } else { groups - 1 - group }
 }
 
 /// When a rank began, and what its time budget had spent by then.

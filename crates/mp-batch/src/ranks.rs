@@ -1,7 +1,7 @@
 //! What `mp-ranks` does, with errors of `mp-plan`.
 
 use mp_plan::Error;
-use mp_ranks::{Job, Link, Options, Ran, Work};
+use mp_ranks::{Job, JobEnd, Link, Options, Work};
 
 /// An error of ranks as one of `mp-plan`.
 #[must_use]
@@ -25,6 +25,6 @@ pub(crate) fn run(
     options: &Options,
     job: Option<&mut dyn Job>,
     work: &Work<'_>,
-) -> Result<Ran, Error> {
+) -> Result<JobEnd, Error> {
     mp_ranks::run(link, options, job, work).map_err(ranks_error)
 }

@@ -5,7 +5,7 @@ use crate::pieces::{Reader, Writer};
 use crate::ranks::{broadcast, run};
 use mp_cspace::Interrupt;
 use mp_plan::{Error, RegionalWork, Request, Scene, SceneRoadmap};
-use mp_ranks::{Checkpoint, Hand, Items, Job, Link, Options, Work};
+use mp_ranks::{Checkpoint, ItemContext, Items, Job, Link, Options, Work};
 use std::ops::Range;
 use std::path::Path;
 
@@ -42,8 +42,8 @@ pub fn build_regions(
         return estimated.map(|_| None);
     }
     let estimates = estimated?.unwrap_or_default();
-    let build = |region: u64, hand: &Hand| {
-        work.build(region, &Interrupt::new(hand.cancel.clone())).map_err(|e| e.to_string())
+    let build = |region: u64, context: &ItemContext| {
+        work.build(region, &Interrupt::new(context.cancel.clone())).map_err(|e| e.to_string())
     };
     let complete = job.run(0..regions, &|region| estimates[region as usize], &build);
     if !link.is_master() && complete.is_err() {
@@ -58,8 +58,8 @@ pub fn build_regions(
         let pair = work.pair(item).unwrap_or_default();
         pair.map(|region| built.get(region as usize).copied().unwrap_or_default())
     };
-    let connect = |item: u64, hand: &Hand| {
-        let interrupt = Interrupt::new(hand.cancel.clone());
+    let connect = |item: u64, context: &ItemContext| {
+        let interrupt = Interrupt::new(context.cancel.clone());
         work.connect(item, of_pair(item), &interrupt).map_err(|e| e.to_string())
     };
     let estimate = |item: u64| RegionalWork::estimate_pair(of_pair(item));
@@ -101,8 +101,8 @@ impl Phases<'_> {
     /// Estimates of all regions, made by all ranks; `None` when cancelled.
     fn estimate(&self, work: &RegionalWork<'_>) -> Result<Option<Vec<f64>>, Error> {
         let mut estimates = vec![0.0; work.regions() as usize];
-        let estimate = |region: u64, hand: &Hand| {
-            let estimate = work.estimate(region, &Interrupt::new(hand.cancel.clone()));
+        let estimate = |region: u64, context: &ItemContext| {
+            let estimate = work.estimate(region, &Interrupt::new(context.cancel.clone()));
             estimate.map(|estimate| estimate.to_le_bytes().to_vec()).map_err(|e| e.to_string())
         };
         let mut job = Items::new(0..work.regions(), |region, _, estimate: Vec<u8>| {

@@ -1,7 +1,7 @@
 //! What is wrong with a configuration, or with the ends of a scene.
 
 use crate::numbers::told_apart;
-use crate::{End, Error, ErrorKind, Robot, Touch};
+use crate::{Contact, End, Error, ErrorKind, Robot};
 use mp_cspace::{Clearance, Configuration, Space, Validity};
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ pub struct Explanation {
     /// A lower bound (m) on the distance to contact; zero in collision, and where none is known.
     pub clearance: f64,
     /// What touches what.
-    pub touching: Vec<Touch>,
+    pub touching: Vec<Contact>,
     /// What is inside of closed surfaces, which have no inside unless they are made solid.
     pub warnings: Vec<String>,
     /// What is wrong, to follow the words "the configuration is"; none when it is free.
@@ -93,7 +93,7 @@ pub(crate) fn refused(kind: &dyn Robot, name: &str, q: &Configuration) -> Option
     let fault = fault(kind, q)?;
     let mut help = match kind.nearest_free(q) {
         _ if !kind.any_space().contains(q) => kind.bounds_remedy(q),
-        Some(free) => format!("the nearest free configuration found is {}", kind.written(&free)),
+        Some(free) => format!("the nearest free configuration found is {}", kind.in_words(&free)),
         None if kind.kept() > 0.0 => "nothing nearby keeps that clearance: ask for less".to_owned(),
         None => "no free configuration was found nearby: is the scene in metres, the robot in its frame?"
             .to_owned(),
@@ -128,11 +128,11 @@ pub(crate) fn enclosures(kind: &dyn Robot, q: &Configuration) -> Option<String> 
 pub(crate) fn check_ends(kind: &dyn Robot) -> Result<Vec<String>, Error> {
     for (end, name, q) in ends(kind) {
         if let Some((message, help)) = refused(kind, &name, q) {
-            return Err(kind.fault(end, message, help).of_kind(ErrorKind::NotFree(end)));
+            return Err(kind.end_error(end, message, help).of_kind(ErrorKind::NotFree(end)));
         }
     }
     let inside = ends(kind).filter_map(|(_, name, q)| Some(format!("at {name} {}", enclosures(kind, q)?)));
-    Ok(inside.chain(kind.odd_ends()).collect())
+    Ok(inside.chain(kind.ends_error()).collect())
 }
 
 /// What is wrong or odd about a scene.
@@ -152,6 +152,6 @@ pub(crate) fn lint(kind: &dyn Robot) -> Vec<String> {
 }
 
 /// The names of what touches, as messages list them.
-pub(crate) fn list(touching: &[Touch]) -> String {
-    touching.iter().map(Touch::to_string).collect::<Vec<_>>().join(", ")
+pub(crate) fn list(touching: &[Contact]) -> String {
+    touching.iter().map(Contact::to_string).collect::<Vec<_>>().join(", ")
 }

@@ -1,8 +1,8 @@
 //! Scenes from files: readers of all formats, scenes by name, and what is in a file.
 
-pub(crate) mod alone;
 pub(crate) mod find;
 pub mod info;
 pub(crate) mod inputs;
 pub(crate) mod kinds;
 pub(crate) mod load;
+pub(crate) mod without_problem;

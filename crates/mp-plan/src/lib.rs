@@ -101,10 +101,10 @@ pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
 pub use request::{Budget, Finish, MetricName, MotionValidator, RelaxField, Request};
 pub use robot::motion::{AnyChecker, AnyMotion, AnyVerifier, Counting, TypedMotion};
 pub use robot::{
-    Appearance, ArmScene, Body, BodyShape, Checker, Column, Constraint, Counted, Description, Drivable,
-    Drive, DriveModel, DrivenScene, End, FloatingScene, LinkedScene, LinkedSpace, Measured, Mismatch,
-    ModelBody, ModelFrame, ModelPair, ModelPart, Motion, MotionModel, MovingScene, PathFormat, PlanarBody,
-    PlanarScene, Queries, RigidScene, RigidSpace, Robot, SpeedBound, Step, Touch, WithMoving,
+    Appearance, ArmScene, Body, BodyShape, Checker, Column, Constraint, Contact, Counted, Description,
+    Deviation, Drivable, Drive, DriveModel, DrivenScene, End, FloatingScene, LinkedScene, LinkedSpace,
+    Measured, ModelBody, ModelFrame, ModelPair, ModelPart, Motion, MotionModel, MovingScene, PathFormat,
+    PlanarBody, PlanarScene, Queries, RigidScene, RigidSpace, Robot, SpeedBound, Step, WithMoving,
 };
 pub use run::planners::{meta_planners, planners, roadmap_planners};
 #[cfg(feature = "roadmaps")]

@@ -83,7 +83,7 @@ pub enum BodyShape {
 
 /// A contact of the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Touch {
+pub struct Contact {
     /// The part of the robot that touches, if the robot has several.
     pub part: Option<String>,
     /// What it touches: an obstacle, or another part of the robot.
@@ -94,7 +94,7 @@ pub struct Touch {
     pub depth: Option<f64>,
 }
 
-impl fmt::Display for Touch {
+impl fmt::Display for Contact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(part) = &self.part {
             write!(f, "{part} in ")?;
@@ -287,7 +287,7 @@ pub trait Description: Motion {
     fn space_name(&self) -> String;
 
     /// What touches what at a configuration.
-    fn touching(&self, q: &Configuration) -> Vec<Touch>;
+    fn touching(&self, q: &Configuration) -> Vec<Contact>;
 
     /// What is nearest to contact at a configuration, as messages name it, such as `tool and table`, and how far apart that is (m). By
     /// default it is not known.
@@ -296,7 +296,7 @@ pub trait Description: Motion {
     }
 
     /// What to do about contacts at the start or a goal, besides moving it. By default there is nothing else.
-    fn remedy(&self, _touching: &[Touch]) -> Option<String> {
+    fn remedy(&self, _touching: &[Contact]) -> Option<String> {
         None
     }
 
@@ -317,7 +317,7 @@ pub trait Description: Motion {
     }
 
     /// What is odd about start and goal together without being an error, such as being inside of different solids.
-    fn odd_ends(&self) -> Option<String> {
+    fn ends_error(&self) -> Option<String> {
         None
     }
 
@@ -328,11 +328,11 @@ pub trait Description: Motion {
 
     /// Why a configuration is out of bounds, to follow the words "the start is". By default it lists all of its numbers.
     fn out_of_bounds(&self, q: &Configuration) -> String {
-        format!("out of bounds: {}", self.written(q))
+        format!("out of bounds: {}", self.in_words(q))
     }
 
     /// An error about one end of the problem. A scene from a file adds the line; the default does not.
-    fn fault(&self, _end: End, message: String, help: String) -> Error {
+    fn end_error(&self, _end: End, message: String, help: String) -> Error {
         Error::new(message).help(help)
     }
 
@@ -390,17 +390,17 @@ pub trait Description: Motion {
     }
 
     /// What is wrong with rows from a file apart from their length, such as leaving the plane.
-    fn odd_rows(&self, _rows: &[Vec<f64>]) -> Option<String> {
+    fn row_error(&self, _rows: &[Vec<f64>]) -> Option<String> {
         None
     }
 
     /// How far a configuration is from the one that it should be, and how far it may be. Files often have only four digits.
-    fn mismatch(&self, q: &Configuration, wanted: &Configuration) -> Mismatch {
-        Mismatch { off: self.any_space().distance(q, wanted), allowed: 1e-3, unit: "" }
+    fn deviation(&self, q: &Configuration, wanted: &Configuration) -> Deviation {
+        Deviation { off: self.any_space().distance(q, wanted), allowed: 1e-3, unit: "" }
     }
 
     /// A configuration as text for messages.
-    fn written(&self, q: &Configuration) -> String {
+    fn in_words(&self, q: &Configuration) -> String {
         format!("[{}]", self.row(q).into_iter().map(plain).collect::<Vec<_>>().join(", "))
     }
 }
@@ -449,7 +449,7 @@ pub trait Appearance {
 
 /// How far a configuration is from the one that it should be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mismatch {
+pub struct Deviation {
     /// How far it is.
     pub off: f64,
     /// How far it may be.
@@ -458,7 +458,7 @@ pub struct Mismatch {
     pub unit: &'static str,
 }
 
-impl Mismatch {
+impl Deviation {
     /// Whether it is at most as far off as allowed; false for NaN.
     #[must_use]
     pub fn is_near(&self) -> bool {

@@ -13,7 +13,7 @@ pub trait Job {
     /// # Errors
     /// When the result is not what it should be: what is wrong.
     fn take(&mut self, item: u64, rank: usize, result: Vec<u8>) -> Result<(), String>;
-    /// A number that only falls, which the [hand](crate::Hand) of all items that are worked on gets: for searches, the best so far.
+    /// A number that only falls, which the [context](crate::ItemContext) of all items that are worked on gets: for searches, the best so far.
     fn bound(&self) -> u64 {
         u64::MAX
     }

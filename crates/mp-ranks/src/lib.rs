@@ -11,9 +11,9 @@
 //! - [`simulate`] replays measured costs for any number of ranks.
 //!
 //! ```
-//! use mp_ranks::{Hand, Items, Options, run, threads};
+//! use mp_ranks::{ItemContext, Items, Options, run, threads};
 //!
-//! let square = |item: u64, _: &Hand| Ok((item * item).to_le_bytes().to_vec());
+//! let square = |item: u64, _: &ItemContext| Ok((item * item).to_le_bytes().to_vec());
 //! let mut squares = [0; 100];
 //! let mut job = Items::new(0..100, |item, _rank, result: Vec<u8>| {
 //!     squares[item as usize] = u64::from_le_bytes(result.try_into().map_err(|_| "eight bytes")?);
@@ -44,7 +44,7 @@ pub use checkpoint::Checkpoint;
 pub use job::{Items, Job};
 pub use link::{Link, ThreadLink, threads};
 pub use pace::Pace;
-pub use run::{Hand, Options, Ran, Work, broadcast, run};
+pub use run::{ItemContext, JobEnd, Options, Work, broadcast, run};
 pub use shares::Shares;
 pub use simulate::{Policy, Simulated, simulate};
 

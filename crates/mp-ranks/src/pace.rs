@@ -1,6 +1,6 @@
 //! Searches that race keep pace with each other.
 
-use crate::Hand;
+use crate::ItemContext;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ const REPORT: Duration = Duration::from_micros(50);
 /// How often one who waits asks whether it is over.
 const OVER: Duration = Duration::from_millis(5);
 
-/// The pace of the work on an item of a job whose winner is the item that needs the least, by the measure of [`Hand::reached`]: one that is an
+/// The pace of the work on an item of a job whose winner is the item that needs the least, by the measure of [`ItemContext::reached`]: one that is an
 /// eighth ahead of the one that is furthest behind waits for it, as what it makes beyond the winner is in vain.
 ///
 /// It costs no time that it waits: the last must get as far as the winner anyway. News take some time, so that what was made in the last
@@ -40,20 +40,20 @@ impl Pace {
     /// `over`. `now` is the time since any moment.
     pub fn keep(
         &mut self,
-        hand: &Hand,
+        context: &ItemContext,
         reach: u64,
         now: impl Fn() -> Duration,
         mut over: impl FnMut() -> bool,
     ) {
         let mut reported = self.reaches(now(), reach);
         if reported {
-            hand.reached(self.item, reach);
+            context.reached(self.item, reach);
         }
-        hand.wait_while(OVER, || {
-            let waits = !over() && self.is_too_far(now(), hand.least_reached());
+        context.wait_while(OVER, || {
+            let waits = !over() && self.is_too_far(now(), context.least_reached());
             // Others may wait for this one: nobody may wait without having said how far it is.
             if waits && !std::mem::replace(&mut reported, true) {
-                hand.reached(self.item, reach);
+                context.reached(self.item, reach);
             }
             waits
         });

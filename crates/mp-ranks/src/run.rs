@@ -34,7 +34,7 @@ impl Default for Options {
 
 /// What the work on an item knows of the whole.
 #[derive(Debug)]
-pub struct Hand {
+pub struct ItemContext {
     /// Raised when the result is not wanted any more.
     pub cancel: Cancel,
     bound: AtomicU64,
@@ -48,7 +48,7 @@ pub struct Hand {
     news: Condvar,
 }
 
-impl Hand {
+impl ItemContext {
     /// The [bound](Job::bound) of the job, as far as it is known here.
     #[must_use]
     pub fn bound(&self) -> u64 {
@@ -90,7 +90,7 @@ impl Hand {
 
 /// How a job ended, on the master; elsewhere there are no numbers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Ran {
+pub struct JobEnd {
     /// Whether it was cancelled. Then some items have no result.
     pub cancelled: bool,
     /// How many items each rank has done.
@@ -139,7 +139,7 @@ fn parts(from: usize, message: &[u8]) -> Result<(u8, u64, &[u8]), Error> {
 }
 
 /// Does an item: its result, or why there is none. The result must depend on the item alone.
-pub type Work<'a> = dyn Fn(u64, &Hand) -> Result<Vec<u8>, String> + Sync + 'a;
+pub type Work<'a> = dyn Fn(u64, &ItemContext) -> Result<Vec<u8>, String> + Sync + 'a;
 
 /// What became of an item.
 enum Outcome {
@@ -153,7 +153,7 @@ enum Outcome {
 struct Workers<'s> {
     queue: Sender<u64>,
     results: Receiver<(u64, Outcome)>,
-    hand: &'s Hand,
+    context: &'s ItemContext,
     /// How many items were given and have not come back.
     busy: usize,
 }
@@ -174,33 +174,33 @@ impl Workers<'_> {
 
     /// Drops all work.
     fn stop(&mut self) {
-        self.hand.cancel.cancel();
-        self.hand.tell_news();
+        self.context.cancel.cancel();
+        self.context.tell_news();
         while self.busy > 0 && self.results.recv().is_ok() {
             self.busy -= 1;
         }
     }
 
     fn lower(&self, bound: u64) {
-        self.hand.bound.fetch_min(bound, Ordering::Relaxed);
-        self.hand.tell_news();
+        self.context.bound.fetch_min(bound, Ordering::Relaxed);
+        self.context.tell_news();
     }
 
     /// The item that is furthest behind is so far.
     fn set_least(&self, far: u64) {
-        self.hand.least.store(far, Ordering::Relaxed);
-        self.hand.tell_news();
+        self.context.least.store(far, Ordering::Relaxed);
+        self.context.tell_news();
     }
 
     /// What was reported since the last time.
     fn reports(&self) -> Vec<(u64, u64)> {
-        std::mem::take(&mut self.hand.reports.lock().unwrap_or_else(PoisonError::into_inner))
+        std::mem::take(&mut self.context.reports.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
 /// Calls `with` with the workers: as many threads as the options say, which do `work`.
 fn with_workers<T>(options: &Options, work: &Work<'_>, with: impl FnOnce(Workers<'_>) -> T) -> T {
-    let hand = Hand {
+    let context = ItemContext {
         cancel: options.cancel.clone(),
         bound: AtomicU64::new(u64::MAX),
         least: AtomicU64::new(0),
@@ -214,31 +214,31 @@ fn with_workers<T>(options: &Options, work: &Work<'_>, with: impl FnOnce(Workers
     let items = Mutex::new(items);
     std::thread::scope(|scope| {
         for _ in 0..options.threads.max(1) {
-            let (items, sender, hand) = (&items, sender.clone(), &hand);
+            let (items, sender, context) = (&items, sender.clone(), &context);
             scope.spawn(move || {
                 loop {
                     let item = items.lock().unwrap_or_else(PoisonError::into_inner).recv();
                     let Ok(item) = item else { return };
-                    if sender.send((item, outcome(item, hand, work))).is_err() {
+                    if sender.send((item, outcome(item, context, work))).is_err() {
                         return;
                     }
-                    hand.reader.unpark();
+                    context.reader.unpark();
                 }
             });
         }
         drop(sender);
-        with(Workers { queue, results, hand: &hand, busy: 0 })
+        with(Workers { queue, results, context: &context, busy: 0 })
     })
 }
 
 /// Works on an item. What was made under a cancel may be less than the whole, so it is dropped.
-fn outcome(item: u64, hand: &Hand, work: &Work<'_>) -> Outcome {
-    if hand.cancel.is_raised() {
+fn outcome(item: u64, context: &ItemContext, work: &Work<'_>) -> Outcome {
+    if context.cancel.is_raised() {
         return Outcome::Dropped;
     }
-    match std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| work(item, hand))) {
+    match std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| work(item, context))) {
         Err(panic) => Outcome::Failed(said(&*panic)),
-        Ok(_) if hand.cancel.is_raised() => Outcome::Dropped,
+        Ok(_) if context.cancel.is_raised() => Outcome::Dropped,
         Ok(Ok(result)) => Outcome::Done(result),
         Ok(Err(message)) => Outcome::Failed(message),
     }
@@ -259,14 +259,14 @@ pub fn run(
     options: &Options,
     job: Option<&mut dyn Job>,
     work: &Work<'_>,
-) -> Result<Ran, Error> {
+) -> Result<JobEnd, Error> {
     with_workers(options, work, |workers| match job {
         Some(job) if link.is_master() => {
             let mut master = Master::new(link, options, job, workers);
             let ran = master.hand_out();
             master.end(ran)
         }
-        _ => other(link, workers).map(|()| Ran::default()),
+        _ => other(link, workers).map(|()| JobEnd::default()),
     })
 }
 
@@ -412,7 +412,7 @@ impl<'a, 'c> Master<'a, 'c> {
     }
 
     /// Ends the job on all ranks, and waits until none of them works any more.
-    fn end(mut self, ran: Result<bool, Error>) -> Result<Ran, Error> {
+    fn end(mut self, ran: Result<bool, Error>) -> Result<JobEnd, Error> {
         if let Err(e @ Error::Link(_)) = ran {
             self.workers.stop();
             return Err(e);
@@ -430,7 +430,7 @@ impl<'a, 'c> Master<'a, 'c> {
                 None => self.link.wait(CANCEL),
             }
         }
-        Ok(Ran { cancelled: !ran?, items: self.done })
+        Ok(JobEnd { cancelled: !ran?, items: self.done })
     }
 }
 

@@ -1,8 +1,8 @@
 //! The same results for any number of ranks, whoever is fast or slow; cancelled and gone on with; failing.
 
 use mp_ranks::{
-    Checkpoint, Error, Hand, Items, Job, Link, Options, Pace, Policy, Ran, Work, broadcast, run, simulate,
-    threads,
+    Checkpoint, Error, ItemContext, Items, Job, JobEnd, Link, Options, Pace, Policy, Work, broadcast, run,
+    simulate, threads,
 };
 use mp_stop::Cancel;
 use proptest::prelude::*;
@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 /// Runs a job on so many ranks; the master's answer.
-fn on(ranks: usize, options: &Options, job: &mut (dyn Job + Send), work: &Work<'_>) -> Result<Ran, Error> {
+fn on(ranks: usize, options: &Options, job: &mut (dyn Job + Send), work: &Work<'_>) -> Result<JobEnd, Error> {
     std::thread::scope(|scope| {
         let mut links = threads(ranks).into_iter();
         let master = links.next().unwrap();
@@ -24,7 +24,7 @@ fn on(ranks: usize, options: &Options, job: &mut (dyn Job + Send), work: &Work<'
 }
 
 /// Takes longer for some items, which differ from rank to rank and time to time.
-fn square(item: u64, _: &Hand) -> Result<Vec<u8>, String> {
+fn square(item: u64, _: &ItemContext) -> Result<Vec<u8>, String> {
     static CALLS: AtomicU64 = AtomicU64::new(0);
     let call = CALLS.fetch_add(1, Ordering::Relaxed);
     std::thread::sleep(Duration::from_micros(200 * (call % 7)));
@@ -62,9 +62,9 @@ fn what_was_cancelled_goes_on_from_its_checkpoint() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("squares");
     let done = AtomicU64::new(0);
-    let work = |item: u64, hand: &Hand| {
+    let work = |item: u64, context: &ItemContext| {
         done.fetch_add(1, Ordering::Relaxed);
-        square(item, hand)
+        square(item, context)
     };
     let mut results = std::collections::BTreeMap::new();
     for stop_at in [30, 70, 1000] {
@@ -89,8 +89,8 @@ fn what_was_cancelled_goes_on_from_its_checkpoint() {
 }
 
 /// Waits until it is cancelled.
-fn wait(hand: &Hand) -> Result<Vec<u8>, String> {
-    while !hand.cancel.is_raised() {
+fn wait(context: &ItemContext) -> Result<Vec<u8>, String> {
+    while !context.cancel.is_raised() {
         std::thread::sleep(Duration::from_millis(1));
     }
     Ok(Vec::new())
@@ -101,9 +101,9 @@ fn long_items_hear_of_a_cancel() {
     // Again and again: the cancel comes at any moment of the master's loop.
     for _ in 0..100 {
         let options = Options::default();
-        let waits = |_: u64, hand: &Hand| {
+        let waits = |_: u64, context: &ItemContext| {
             options.cancel.cancel();
-            wait(hand)
+            wait(context)
         };
         let ran = on(3, &options, &mut Items::new(0..10, |_, _, _| Ok(())), &waits).unwrap();
         assert!(ran.cancelled && ran.items == [0, 0, 0]);
@@ -113,12 +113,12 @@ fn long_items_hear_of_a_cancel() {
 #[test]
 fn a_cancel_on_any_rank_ends_the_job() {
     // An item that fails because it was cancelled is no failure.
-    let cancelled_on_its_rank = |item: u64, hand: &Hand| match item {
+    let cancelled_on_its_rank = |item: u64, context: &ItemContext| match item {
         5 => {
-            hand.cancel.cancel();
+            context.cancel.cancel();
             Err("no time".to_owned())
         }
-        _ => wait(hand),
+        _ => wait(context),
     };
     let options = Options { threads: 2, ..Options::default() };
     let ran = on(3, &options, &mut Items::new(0..20, |_, _, _| Ok(())), &cancelled_on_its_rank).unwrap();
@@ -128,18 +128,18 @@ fn a_cancel_on_any_rank_ends_the_job() {
 #[test]
 fn an_item_that_fails_is_named_and_ends_all_ranks() {
     for bad in [0, 17, 49] {
-        let fails = |item: u64, hand: &Hand| match item == bad {
+        let fails = |item: u64, context: &ItemContext| match item == bad {
             true => Err("no map".to_owned()),
-            false => square(item, hand),
+            false => square(item, context),
         };
         let e = on(3, &Options::default(), &mut Items::new(0..50, |_, _, _| Ok(())), &fails).unwrap_err();
         assert!(
             matches!(&e, Error::Item { item, message, .. } if *item == bad && message == "no map"),
             "{e}"
         );
-        let panics = |item: u64, hand: &Hand| {
+        let panics = |item: u64, context: &ItemContext| {
             assert!(item != bad, "a fault");
-            square(item, hand)
+            square(item, context)
         };
         let e = on(2, &Options::default(), &mut Items::new(0..50, |_, _, _| Ok(())), &panics).unwrap_err();
         assert!(e.to_string().contains("a fault"), "{e}");
@@ -178,10 +178,10 @@ fn the_bound_reaches_those_that_work() {
     for ranks in [1, 3] {
         let ended_early = AtomicU64::new(0);
         // Item 2 counts to 2, the others never end by themselves.
-        let counts = |item: u64, hand: &Hand| {
+        let counts = |item: u64, context: &ItemContext| {
             let mut n = 0_u64;
             while n < if item == 2 { 2 } else { u64::MAX } {
-                if n > hand.bound() {
+                if n > context.bound() {
                     ended_early.fetch_add(1, Ordering::Relaxed);
                     return Ok(u64::MAX.to_le_bytes().to_vec());
                 }
@@ -201,7 +201,7 @@ fn several_jobs_one_after_the_other_with_what_all_must_know() {
     let sum_of = |link: &dyn Link, cancel: &Cancel| {
         let (mut total, options) = (0, Options { cancel: cancel.clone(), ..Options::default() });
         for round in 0..5_u64 {
-            let work = move |item: u64, _: &Hand| Ok((item + round).to_le_bytes().to_vec());
+            let work = move |item: u64, _: &ItemContext| Ok((item + round).to_le_bytes().to_vec());
             let mut sum = total;
             let mut job = Items::new(0..20, |_, _, result: Vec<u8>| {
                 sum += u64::from_le_bytes(result.try_into().map_err(|_| "eight bytes")?);
@@ -248,12 +248,12 @@ proptest! {
 
 #[test]
 fn simulated_jobs_are_those_done_by_hand() {
-    let hand = |costs: &[f64], policy, ranks| simulate(costs, policy, ranks, 0.0, 0.0).makespan_s;
+    let last = |costs: &[f64], policy, ranks| simulate(costs, policy, ranks, 0.0, 0.0).makespan_s;
     let costs = [1.0, 1.0, 1.0, 5.0];
-    assert_eq!(hand(&costs, Policy::Blocks, 2), 6.0);
-    assert_eq!(hand(&costs, Policy::Shards, 2), 6.0);
-    assert_eq!(hand(&costs, Policy::InOrder, 2), 6.0);
-    assert_eq!(hand(&costs, Policy::DearestFirst, 2), 5.0);
+    assert_eq!(last(&costs, Policy::Blocks, 2), 6.0);
+    assert_eq!(last(&costs, Policy::Shards, 2), 6.0);
+    assert_eq!(last(&costs, Policy::InOrder, 2), 6.0);
+    assert_eq!(last(&costs, Policy::DearestFirst, 2), 5.0);
     let slow = simulate(&[1.0; 4], Policy::InOrder, 2, 0.5, 0.25);
     // Sent at 0.25 and 0.5, there at 0.75 and 1, done at 1.75 and 2, known at 2.25 and 2.5, the next ones sent at 2.5 and 2.75 …
     assert_eq!((slow.makespan_s, slow.master_load), (4.25, 1.0 / 4.25));
@@ -263,16 +263,16 @@ fn simulated_jobs_are_those_done_by_hand() {
 fn race(
     [ranks, threads]: [usize; 2],
     steps: u64,
-    wait: &(dyn Fn(&mut Pace, &Hand, u64, u64) + Sync),
+    wait: &(dyn Fn(&mut Pace, &ItemContext, u64, u64) + Sync),
     most: &(dyn Fn(u64) -> u64 + Sync),
 ) {
     let items = (ranks * threads) as u64;
     let far: Vec<AtomicU64> = (0..items).map(|_| AtomicU64::new(0)).collect();
-    let work = |item: u64, hand: &Hand| {
+    let work = |item: u64, context: &ItemContext| {
         let mut pace = Pace::new(item);
         for reached in 0..steps {
             far[item as usize].store(reached, Ordering::SeqCst);
-            wait(&mut pace, hand, item, reached);
+            wait(&mut pace, context, item, reached);
             // What is known is older than what is.
             let least = far.iter().map(|far| far.load(Ordering::SeqCst)).min().unwrap();
             assert!(reached <= most(least), "{reached}, and one is at {least}");
@@ -288,9 +288,9 @@ fn race(
 #[test]
 fn items_hear_how_far_the_last_of_them_is() {
     const LEAD: u64 = 10;
-    let wait = |_: &mut Pace, hand: &Hand, item, reached| {
-        hand.reached(item, reached);
-        while reached > hand.least_reached() + LEAD {
+    let wait = |_: &mut Pace, context: &ItemContext, item, reached| {
+        context.reached(item, reached);
+        while reached > context.least_reached() + LEAD {
             std::thread::sleep(Duration::from_micros(100));
         }
     };
@@ -306,7 +306,9 @@ fn those_who_race_keep_pace() {
         for on in [[1, 4], [3, 1], [3, 2]] {
             let clock = AtomicU64::new(0);
             let now = || Duration::from_micros(clock.fetch_add(step, Ordering::SeqCst));
-            let wait = |pace: &mut Pace, hand: &Hand, _, reached| pace.keep(hand, reached, now, || false);
+            let wait = |pace: &mut Pace, context: &ItemContext, _, reached| {
+                pace.keep(context, reached, now, || false)
+            };
             let most = |least: u64| if step < 200 { u64::MAX } else { least + (least / 8).max(4) };
             race(on, 400, &wait, &most);
         }
@@ -315,19 +317,19 @@ fn those_who_race_keep_pace() {
 
 #[test]
 fn nobody_waits_without_having_said_how_far_it_is() {
-    let work = |item: u64, hand: &Hand| {
+    let work = |item: u64, context: &ItemContext| {
         if item == 0 {
             let mut pace = Pace::new(0);
-            pace.keep(hand, 10, || Duration::ZERO, || false);
+            pace.keep(context, 10, || Duration::ZERO, || false);
             // So soon after, 20 is not reported; then time passes, and it is too far ahead of 15.
             let asked = AtomicU64::new(0);
             let now =
                 || Duration::from_micros([10, 1000][usize::from(asked.fetch_add(1, Ordering::SeqCst) > 0)]);
-            pace.keep(hand, 20, now, || false);
+            pace.keep(context, 20, now, || false);
         } else {
-            hand.reached(1, 15);
-            hand.wait_while(Duration::from_millis(1), || hand.least_reached() < 15);
-            hand.reached(1, 100);
+            context.reached(1, 15);
+            context.wait_while(Duration::from_millis(1), || context.least_reached() < 15);
+            context.reached(1, 100);
         }
         Ok(Vec::new())
     };
@@ -339,19 +341,19 @@ fn nobody_waits_without_having_said_how_far_it_is() {
 #[test]
 fn news_wake_those_who_wait() {
     let (waits, day) = (AtomicU64::new(0), Duration::from_secs(24 * 60 * 60));
-    let work = |item: u64, hand: &Hand| {
+    let work = |item: u64, context: &ItemContext| {
         if item == 0 {
-            hand.reached(0, 2);
-            hand.wait_while(day, || {
+            context.reached(0, 2);
+            context.wait_while(day, || {
                 waits.store(1, Ordering::SeqCst);
-                hand.least_reached() < 1
+                context.least_reached() < 1
             });
         } else {
             while waits.load(Ordering::SeqCst) == 0 {
                 std::thread::yield_now();
             }
-            hand.reached(item, 1);
-            hand.wait_while(day, || hand.least_reached() < 1);
+            context.reached(item, 1);
+            context.wait_while(day, || context.least_reached() < 1);
         }
         Ok(Vec::new())
     };

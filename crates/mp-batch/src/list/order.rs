@@ -27,34 +27,34 @@ pub(super) struct Order<'l> {
     end: u64,
     /// How many items are not handed out.
     left: u64,
-    runs: BinaryHeap<Stretch>,
+    runs: BinaryHeap<ItemRange>,
     costs: Costs,
 }
 
 /// Items of a line that follow each other, by their places in the shard.
-struct Stretch {
+struct ItemRange {
     cost: f64,
     next: u64,
     end: u64,
     line: usize,
 }
 
-impl Ord for Stretch {
+impl Ord for ItemRange {
     fn cmp(&self, other: &Self) -> Ordering {
         self.cost.total_cmp(&other.cost).then(other.next.cmp(&self.next))
     }
 }
-impl PartialOrd for Stretch {
+impl PartialOrd for ItemRange {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
-impl PartialEq for Stretch {
+impl PartialEq for ItemRange {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
-impl Eq for Stretch {}
+impl Eq for ItemRange {}
 
 /// What items took, seconds.
 struct Costs {
@@ -167,7 +167,7 @@ impl<'l> Order<'l> {
             // The items of the shard before the next line.
             let after = self.list.problems.get(line + 1).map_or(self.list.items, |problem| problem.first);
             let end = self.shard.count(after).clamp(next + 1, self.end);
-            self.runs.push(Stretch { cost: self.costs.of(line), next, end, line });
+            self.runs.push(ItemRange { cost: self.costs.of(line), next, end, line });
             next = end;
         }
     }

@@ -5,7 +5,7 @@ use super::run::{Log, Planned};
 use super::{ListedProblems, ManyOptions, ManyOutcome, Shard, Tally};
 use crate::ranks::{broadcast, ranks_error, run};
 use mp_plan::{Cancel, Error};
-use mp_ranks::{Checkpoint, Hand, Job, Link, Options, Shares};
+use mp_ranks::{Checkpoint, ItemContext, Job, Link, Options, Shares};
 use mp_store::{FileId, Lock};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -53,15 +53,15 @@ impl ListedProblems {
             if !parcel.is_empty() {
                 let problems = Self::unpacked(&parcel);
                 drop(parcel);
-                run(link, &ranks, None, &|item, hand| match &problems {
-                    Ok(problems) => problems.item_on(item, options, hand),
+                run(link, &ranks, None, &|item, context| match &problems {
+                    Ok(problems) => problems.item_on(item, options, context),
                     Err(e) => Err(e.to_string()),
                 })?;
             }
             return Ok(None);
         }
         let begun = problems().and_then(|problems| {
-            let begun = Begun::new(&problems, out, options)?;
+            let begun = OpenResults::new(&problems, out, options)?;
             // One rank needs to send nothing.
             let parcel =
                 if link.ranks() == 1 || begun.is_complete() { Vec::new() } else { problems.packed()? };
@@ -78,8 +78,8 @@ impl ListedProblems {
     }
 
     /// What a rank sends for an item.
-    fn item_on(&self, item: u64, options: &ManyOptions, hand: &Hand) -> Result<Vec<u8>, String> {
-        match self.planned(item, options, &hand.cancel) {
+    fn item_on(&self, item: u64, options: &ManyOptions, context: &ItemContext) -> Result<Vec<u8>, String> {
+        match self.planned(item, options, &context.cancel) {
             Some(planned) => planned.map(|planned| planned.to_bytes()).map_err(|e| e.to_string()),
             // Then this result counts for nothing.
             None => Err("interrupted".to_owned()),
@@ -88,14 +88,14 @@ impl ListedProblems {
 }
 
 /// Results that are open.
-struct Begun {
+struct OpenResults {
     log: Log,
-    ahead: Ahead,
+    ahead: EarlyResults,
     now: ManyOutcome,
     _lock: Lock,
 }
 
-impl Begun {
+impl OpenResults {
     fn new(problems: &ListedProblems, out: &Path, options: &ManyOptions) -> Result<Self, Error> {
         let is_out = |file: &&PathBuf| FileId::of(file) == FileId::of(out);
         if let Some(input) = problems.inputs().iter().find(is_out) {
@@ -109,7 +109,7 @@ impl Begun {
         let log = Log::open(out, &header)?;
         let job = serde_json::to_string(&header)
             .map_err(|e| Error::new(format!("the header cannot be written as JSON: {e}")))?;
-        let ahead = Ahead::open(out, job, options.shard, log.tally.items)?;
+        let ahead = EarlyResults::open(out, job, options.shard, log.tally.items)?;
         let now = ManyOutcome { items: options.shard.count(header.items), before: 0, tally: log.tally };
         let mut begun = Self { log, ahead, now, _lock: lock };
         begun.write_ready()?;
@@ -146,7 +146,8 @@ impl Begun {
                 progress: &mut progress,
                 failed: None,
             };
-            let ran = run(link, ranks, Some(&mut job), &|item, hand| problems.item_on(item, options, hand));
+            let ran =
+                run(link, ranks, Some(&mut job), &|item, context| problems.item_on(item, options, context));
             if let Some(failed) = job.failed.take() {
                 return Err(failed);
             }
@@ -178,7 +179,7 @@ impl Begun {
 
 /// The items of a list, as the master hands them out.
 struct ListJob<'j, 'l> {
-    begun: &'j mut Begun,
+    begun: &'j mut OpenResults,
     order: Order<'l>,
     shares: &'j mut Shares,
     progress: &'j mut dyn FnMut(&ManyOutcome),
@@ -227,7 +228,7 @@ impl Job for ListJob<'_, '_> {
 }
 
 /// Results whose place in the file has not come, in memory and in a file beside it.
-struct Ahead {
+struct EarlyResults {
     file: PathBuf,
     job: String,
     shard: Shard,
@@ -239,7 +240,7 @@ struct Ahead {
     ready: BTreeMap<u64, Planned>,
 }
 
-impl Ahead {
+impl EarlyResults {
     fn open(out: &Path, job: String, shard: Shard, written: u64) -> Result<Self, Error> {
         let mut file = out.as_os_str().to_owned();
         file.push(".ahead");

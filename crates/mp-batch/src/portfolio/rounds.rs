@@ -1,21 +1,21 @@
-//! The master of a portfolio: hands out the lanes of round after round, and finds the winner.
+//! The master of a portfolio: hands out the groups of round after round, and finds the winner.
 
-use super::lane::LaneResult;
-use super::{Dealt, Known, RankWork, RunOutcome, is_of_machine, reason_of};
+use super::group::GroupResult;
+use super::{Allocation, Known, RankWork, RunOutcome, is_of_machine, reason_of};
 use mp_plan::{Error, FoundRun, PortfolioCounts, Progress, StopReason, StoppedBy, Watch};
 use mp_ranks::{Checkpoint, Job};
 use std::collections::{HashMap, HashSet, VecDeque};
 
 /// The rounds of a portfolio, as a job.
 pub(super) struct Rounds<'a, 'w> {
-    dealt: &'a Dealt,
+    allocation: &'a Allocation,
     checkpoint: Option<&'a Checkpoint>,
     watch: Option<&'a mut (dyn Watch + 'w)>,
     /// The runs that are known of this round and later ones.
     outcomes: Known,
     /// The present round.
     round: u64,
-    /// Its lanes that are not handed out, and how many have not come back.
+    /// Its groups that are not handed out, and how many have not come back.
     left: VecDeque<u64>,
     open: usize,
     /// The best run with a path of this round: iterations and number.
@@ -52,7 +52,7 @@ impl<'a, 'w> Rounds<'a, 'w> {
     /// # Errors
     /// When a run in it is none of this portfolio.
     pub(super) fn new(
-        dealt: &'a Dealt,
+        allocation: &'a Allocation,
         ranks: usize,
         checkpoint: Option<&'a Checkpoint>,
         watch: Option<&'a mut (dyn Watch + 'w)>,
@@ -61,7 +61,9 @@ impl<'a, 'w> Rounds<'a, 'w> {
         for (run, bytes) in checkpoint.into_iter().flat_map(|checkpoint| checkpoint.known()) {
             match serde_json::from_slice::<RunOutcome>(bytes) {
                 Ok(outcome)
-                    if outcome.run == *run && *run > 0 && (dealt.goes_on || *run <= dealt.portfolio.runs) =>
+                    if outcome.run == *run
+                        && *run > 0
+                        && (allocation.goes_on || *run <= allocation.portfolio.runs) =>
                 {
                     outcomes.insert(*run, outcome);
                 }
@@ -73,14 +75,14 @@ impl<'a, 'w> Rounds<'a, 'w> {
         }
         // Runs that were outrun count only with the best run by which they were.
         let mut best: HashMap<u64, u64> = HashMap::new();
-        let round_of = |run: u64| dealt.portfolio.round_of(run);
+        let round_of = |run: u64| allocation.portfolio.round_of(run);
         for outcome in outcomes.values().filter(|outcome| outcome.path.is_some()) {
             let best = best.entry(round_of(outcome.run)).or_insert(u64::MAX);
             *best = outcome.iterations.min(*best);
         }
         outcomes.retain(|run, outcome| outcome.is_settled(best.get(&round_of(*run)).copied()));
         let mut rounds = Self {
-            dealt,
+            allocation,
             checkpoint,
             watch,
             outcomes,
@@ -102,7 +104,7 @@ impl<'a, 'w> Rounds<'a, 'w> {
 
     /// How many those are, with those of rounds that are over.
     pub(super) fn known_runs(&self) -> u64 {
-        self.outcomes.len() as u64 + *self.dealt.portfolio.round_runs(self.round).start() - 1
+        self.outcomes.len() as u64 + *self.allocation.portfolio.round_runs(self.round).start() - 1
     }
 
     /// The iterations of the best run known.
@@ -112,18 +114,18 @@ impl<'a, 'w> Rounds<'a, 'w> {
 
     /// The known runs of this round, by their numbers.
     fn of_round(&self) -> impl Iterator<Item = &RunOutcome> {
-        self.dealt.portfolio.round_runs(self.round).filter_map(|run| self.outcomes.get(&run))
+        self.allocation.portfolio.round_runs(self.round).filter_map(|run| self.outcomes.get(&run))
     }
 
-    /// Queues the lanes of this round. When nothing is open in it, goes on to the next, or ends.
+    /// Queues the groups of this round. When nothing is open in it, goes on to the next, or ends.
     fn begin_round(&mut self) {
         loop {
             self.best = self.of_round().filter_map(RunOutcome::rank).min();
-            let first = self.round * self.dealt.lanes;
+            let first = self.round * self.allocation.groups;
             // Lanes get a run each in turn.
-            let runs = self.dealt.portfolio.round_runs(self.round);
+            let runs = self.allocation.portfolio.round_runs(self.round);
             let open = runs.filter(|run| !self.outcomes.contains_key(run)).count() as u64;
-            self.left = (first..first + open.min(self.dealt.lanes)).collect();
+            self.left = (first..first + open.min(self.allocation.groups)).collect();
             self.open = self.left.len();
             if self.open > 0 || self.is_last() {
                 return;
@@ -135,17 +137,17 @@ impl<'a, 'w> Rounds<'a, 'w> {
     /// Whether the present round is the last: it has a path, time has ended it, or there are no further runs.
     fn is_last(&self) -> bool {
         self.best.is_some()
-            || (self.round + 1 >= self.dealt.portfolio.rounds() && !self.goes_on())
+            || (self.round + 1 >= self.allocation.portfolio.rounds() && !self.goes_on())
             || !self.of_round().all(RunOutcome::is_lasting)
     }
 
     /// Whether runs follow those that there are: not where all of the last have tried all they can.
     fn goes_on(&self) -> bool {
-        self.dealt.goes_on && self.of_round().any(|run| run.stopped_by != Some(StoppedBy::Exhausted))
+        self.allocation.goes_on && self.of_round().any(|run| run.stopped_by != Some(StoppedBy::Exhausted))
     }
 
     fn next_round(&mut self) {
-        for run in self.dealt.portfolio.round_runs(self.round) {
+        for run in self.allocation.portfolio.round_runs(self.round) {
             if let Some(outcome) = self.outcomes.remove(&run) {
                 self.before.add(&outcome);
             }
@@ -169,7 +171,7 @@ impl<'a, 'w> Rounds<'a, 'w> {
         self.of_round().for_each(|run| sums.add(run));
         let most = self.best.map_or(u64::MAX, |(iterations, _)| iterations);
         let needed: u64 = self.of_round().map(|run| run.iterations.min(most)).sum();
-        let portfolio = self.dealt.portfolio;
+        let portfolio = self.allocation.portfolio;
         let counts = PortfolioCounts {
             runs: portfolio.runs,
             schedule: portfolio.schedule,
@@ -214,12 +216,12 @@ impl Job for Rounds<'_, '_> {
     }
 
     fn take(&mut self, item: u64, rank: usize, result: Vec<u8>) -> Result<(), String> {
-        let result: LaneResult =
+        let result: GroupResult =
             serde_json::from_slice(&result).map_err(|e| format!("its result cannot be read: {e}"))?;
         let work = &mut self.work[rank];
         for outcome in result.runs {
-            if !self.dealt.portfolio.round_runs(self.round).contains(&outcome.run) {
-                return Err(format!("its result is of run {}, which is not of lane {item}", outcome.run));
+            if !self.allocation.portfolio.round_runs(self.round).contains(&outcome.run) {
+                return Err(format!("its result is of run {}, which is not of group {item}", outcome.run));
             }
             work.runs += 1;
             work.iterations += outcome.iterations;
@@ -235,7 +237,7 @@ impl Job for Rounds<'_, '_> {
         }
         if let Some(watch) = &mut self.watch {
             let mut sums = self.before;
-            let runs = self.dealt.portfolio.round_runs(self.round);
+            let runs = self.allocation.portfolio.round_runs(self.round);
             runs.filter_map(|run| self.outcomes.get(&run)).for_each(|run| sums.add(run));
             let mut progress = Progress::new(sums.iterations, sums.nodes, sums.motions);
             progress.rejected = sums.rejected;

@@ -4,7 +4,7 @@ use super::log::{CaseKey, Log, RunRecord};
 use crate::clock;
 use crate::error::{IntoError, Result};
 use mp_cspace::Cancel;
-use mp_ranks::{Hand, Items, Link, Options, Shares, broadcast, run};
+use mp_ranks::{ItemContext, Items, Link, Options, Shares, broadcast, run};
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -58,10 +58,10 @@ pub(crate) fn measured<K: CaseKey, R: RunRecord>(
     group: impl Fn(&Vec<K>) -> Result<Vec<(K, R)>> + Sync,
     mut took: impl FnMut(usize),
 ) -> Result<Vec<(K, R)>> {
-    let work = |item: u64, hand: &Hand| {
+    let work = |item: u64, context: &ItemContext| {
         let began = clock::nanoseconds();
         let runs = group(&groups[item as usize]).map_err(|e| e.to_string())?;
-        match hand.cancel.is_raised() {
+        match context.cancel.is_raised() {
             true => Err("interrupted".to_owned()),
             false => serde_json::to_vec(&(clock::seconds_since(began), runs)).map_err(|e| e.to_string()),
         }

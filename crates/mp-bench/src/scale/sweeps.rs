@@ -115,7 +115,7 @@ fn table(costs: &[f64]) -> Table {
 /// What the master needs for an item without work, seconds of processor time: two ranks, here threads.
 pub(super) fn master_seconds() -> f64 {
     const ITEMS: u64 = 50_000;
-    let nothing = |_: u64, _: &mp_ranks::Hand| Ok(Vec::new());
+    let nothing = |_: u64, _: &mp_ranks::ItemContext| Ok(Vec::new());
     let mut links = threads(2).into_iter();
     let Some(master) = links.next() else { return 0.0 };
     std::thread::scope(|scope| {

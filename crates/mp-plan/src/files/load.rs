@@ -1,6 +1,6 @@
 //! Reading scenes from files of any kind.
 
-use super::alone;
+use super::without_problem;
 use crate::files::inputs::Recording;
 use crate::{Error, Scene, SceneFiles};
 use mp_io::{Content, Disk, Files, ProblemFile, RigidProblem, RobotProblem, SceneDocument};
@@ -47,7 +47,7 @@ impl Scene {
         };
         let recording = Recording::new(files);
         let files: &dyn Files = &recording;
-        let scene = match alone::scene(files, file, named).map_err(of)? {
+        let scene = match without_problem::scene(files, file, named).map_err(of)? {
             Some(scene) => scene,
             None if named == Some(Content::Toml) => match ProblemFile::load_from(files, file)? {
                 ProblemFile::World(problem) => {

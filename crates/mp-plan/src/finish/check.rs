@@ -95,13 +95,13 @@ pub(crate) fn clearance(
 pub(crate) fn end_faults(kind: &dyn Robot, states: &[Configuration]) -> Vec<String> {
     let mut faults = Vec::new();
     let (first, last) = (&states[0], &states[states.len() - 1]);
-    let start = kind.mismatch(first, kind.start());
+    let start = kind.deviation(first, kind.start());
     if !start.is_near() {
         faults.push(format!("does not begin at the start: {}{} off", brief(start.off), start.unit));
     }
     let ends: Vec<_> = match kind.goal_parts() {
-        None => kind.goals().iter().map(|goal| kind.mismatch(last, goal)).collect(),
-        Some(goals) => goals.iter().map(|goal| kind.mismatch(last, &next_to(kind, goal, last))).collect(),
+        None => kind.goals().iter().map(|goal| kind.deviation(last, goal)).collect(),
+        Some(goals) => goals.iter().map(|goal| kind.deviation(last, &next_to(kind, goal, last))).collect(),
     };
     let nearest = ends.into_iter().min_by(|a, b| a.off.total_cmp(&b.off));
     if let Some(goal) = nearest
@@ -118,7 +118,7 @@ pub(crate) fn check(kind: &dyn Robot, path: &PathRows, interrupt: &Interrupt) ->
     let _span = tracing::info_span!("check", scene = kind.name()).entered();
     let states = Path::straight(states(kind, path)?);
     let mut faults = end_faults(kind, &states.states);
-    faults.extend(kind.odd_rows(&path.rows));
+    faults.extend(kind.row_error(&path.rows));
     let report = verified(kind, &states, interrupt)?;
     faults.extend(report.fault.map(|fault| fault_text(kind, &states, fault)));
     let clearance = match faults.is_empty() {

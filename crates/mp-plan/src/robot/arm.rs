@@ -1,12 +1,12 @@
 //! Arms, and other trees of links, among meshes; their base stands still or floats.
 
-mod alone;
+mod choose_ends;
 mod read;
 
 use super::model::{ModelBody, ModelFrame, ModelPair, MotionModel, Step, seven};
 use super::{
-    Appearance, Body, BodyShape, Column, Counted, Description, DrivenScene, End, Measured, Motion, Queries,
-    SpeedBound, Touch, hints_and_gradient, no_metric,
+    Appearance, Body, BodyShape, Column, Contact, Counted, Description, DrivenScene, End, Measured, Motion,
+    Queries, SpeedBound, hints_and_gradient, no_metric,
 };
 use crate::goals::{GoalPart, examples, rows, turning};
 use crate::numbers::plain_row;
@@ -493,9 +493,9 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
             false => format!("{joints} joints"),
         }
     }
-    fn touching(&self, q: &Configuration) -> Vec<Touch> {
+    fn touching(&self, q: &Configuration) -> Vec<Contact> {
         let contacts = self.arm.clone().explain(q.as_slice());
-        let touch = |c: mp_robot::ArmContact| Touch {
+        let touch = |c: mp_robot::ArmContact| Contact {
             part: Some(c.link),
             other: c.other,
             with_itself: c.with_itself,
@@ -507,7 +507,7 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         let gap = self.arm.clone().closest(q.as_slice())?;
         Some((format!("{} and {}", gap.link, gap.other), gap.distance))
     }
-    fn remedy(&self, touching: &[Touch]) -> Option<String> {
+    fn remedy(&self, touching: &[Contact]) -> Option<String> {
         let own = touching.iter().any(|touch| touch.with_itself);
         self.source.as_deref().filter(|_| own).map(srdf_help)
     }
@@ -520,7 +520,7 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
                 let limits = format!("{name} may be from {} to {}", plain(low), plain(high));
                 format!("out of the limits: {}, but {limits}", plain(x))
             }
-            None => format!("out of the limits: {}", self.written(q)),
+            None => format!("out of the limits: {}", self.in_words(q)),
         }
     }
     fn bounds_remedy(&self, q: &Configuration) -> String {
@@ -536,7 +536,7 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
             None => "move it, or widen the bounds".to_owned(),
         }
     }
-    fn fault(&self, end: End, message: String, help: String) -> Error {
+    fn end_error(&self, end: End, message: String, help: String) -> Error {
         let error = match &self.source {
             Some(problem) => {
                 let part = match end {

@@ -2,8 +2,8 @@
 
 use super::motion::{AnyChecker, AnyMotion, AnyVerifier, Counting};
 use super::{
-    Appearance, Body, Column, Description, End, Measured, Mismatch, Motion, MotionModel, PathFormat, Queries,
-    Robot, Touch,
+    Appearance, Body, Column, Contact, Description, Deviation, End, Measured, Motion, MotionModel,
+    PathFormat, Queries, Robot,
 };
 use crate::{Error, GoalPart, Length, MetricName};
 use mp_cspace::erased::AnyFactored;
@@ -246,15 +246,15 @@ impl Description for Constrained {
     of_the_robot! {
         fn name(&self) -> &str;
         fn space_name(&self) -> String;
-        fn touching(&self, q: &Configuration) -> Vec<Touch>;
+        fn touching(&self, q: &Configuration) -> Vec<Contact>;
         fn closest(&self, q: &Configuration) -> Option<(String, f64)>;
-        fn remedy(&self, touching: &[Touch]) -> Option<String>;
+        fn remedy(&self, touching: &[Contact]) -> Option<String>;
         fn enclosures(&self, q: &Configuration) -> Vec<[String; 2]>;
         fn lint(&self) -> Vec<String>;
-        fn odd_ends(&self) -> Option<String>;
+        fn ends_error(&self) -> Option<String>;
         fn bounds_remedy(&self, q: &Configuration) -> String;
         fn out_of_bounds(&self, q: &Configuration) -> String;
-        fn fault(&self, end: End, message: String, help: String) -> Error;
+        fn end_error(&self, end: End, message: String, help: String) -> Error;
         fn columns(&self) -> Vec<Column>;
         fn limits(&self) -> Vec<Option<[f64; 2]>>;
         fn path_format(&self) -> PathFormat;
@@ -263,9 +263,9 @@ impl Description for Constrained {
         fn rows(&self, path: &mp_cspace::Path<Configuration>) -> Vec<Vec<f64>>;
         fn given_start(&self) -> Vec<f64>;
         fn export(&self, folder: &Path) -> Result<PathBuf, Error>;
-        fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String>;
-        fn mismatch(&self, q: &Configuration, wanted: &Configuration) -> Mismatch;
-        fn written(&self, q: &Configuration) -> String;
+        fn row_error(&self, rows: &[Vec<f64>]) -> Option<String>;
+        fn deviation(&self, q: &Configuration, wanted: &Configuration) -> Deviation;
+        fn in_words(&self, q: &Configuration) -> String;
     }
     fn broken(&self, q: &Configuration) -> Option<String> {
         match self.holds(q) {

@@ -7,7 +7,7 @@ mod steer;
 mod system;
 
 use super::model::{self, DriveModel, MotionModel};
-use super::{Appearance, Body, Column, Description, End, Measured, Motion, Touch, no_metric};
+use super::{Appearance, Body, Column, Contact, Description, End, Measured, Motion, no_metric};
 use crate::goals::{GoalPart, examples};
 use crate::robot::motion::TypedMotion;
 use crate::{Error, MetricName};
@@ -294,13 +294,13 @@ impl Description for DrivenScene {
         };
         format!("{}, {by}", self.robot.space_name())
     }
-    fn touching(&self, q: &Configuration) -> Vec<Touch> {
+    fn touching(&self, q: &Configuration) -> Vec<Contact> {
         self.robot.touching(&self.parts(q).q)
     }
     fn closest(&self, q: &Configuration) -> Option<(String, f64)> {
         self.robot.closest(&self.parts(q).q)
     }
-    fn remedy(&self, touching: &[Touch]) -> Option<String> {
+    fn remedy(&self, touching: &[Contact]) -> Option<String> {
         self.robot.remedy(touching)
     }
     fn enclosures(&self, q: &Configuration) -> Vec<[String; 2]> {
@@ -309,8 +309,8 @@ impl Description for DrivenScene {
     fn lint(&self) -> Vec<String> {
         self.robot.lint()
     }
-    fn fault(&self, end: End, message: String, help: String) -> Error {
-        self.robot.fault(end, message, help)
+    fn end_error(&self, end: End, message: String, help: String) -> Error {
+        self.robot.end_error(end, message, help)
     }
     fn columns(&self) -> Vec<Column> {
         self.columns.clone()
@@ -378,7 +378,7 @@ impl Description for DrivenScene {
         row.iter_mut().zip(self.robot.given_start()).for_each(|(x, given)| *x = given);
         row
     }
-    fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
+    fn row_error(&self, rows: &[Vec<f64>]) -> Option<String> {
         let system = &self.space.system;
         let states: Vec<_> = rows.iter().map(|row| self.parts(&self.state(row))).collect();
         let off = states.windows(2).map(|pair| self.space.off_course(&pair[0], &pair[1]));

@@ -2,8 +2,8 @@
 
 use super::model::{ModelBody, MotionModel};
 use super::{
-    Appearance, Body, BodyShape, Checker, Column, Description, DrivenScene, End, Measured, Mismatch, Motion,
-    SpeedBound, Touch, no_metric,
+    Appearance, Body, BodyShape, Checker, Column, Contact, Description, Deviation, DrivenScene, End,
+    Measured, Motion, SpeedBound, no_metric,
 };
 use crate::goals::{GoalPart, examples};
 use crate::numbers::told_apart;
@@ -292,12 +292,12 @@ impl<K: WithMoving> Description for MovingScene<K> {
     fn space_name(&self) -> String {
         format!("{} and time", self.still.space_name())
     }
-    fn touching(&self, q: &Configuration) -> Vec<Touch> {
+    fn touching(&self, q: &Configuration) -> Vec<Contact> {
         let mut touches = self.still.touching(&self.alone(q));
         let name = |i: usize| self.obstacles.get(i).map_or("?", |body| body.name.as_str()).to_owned();
         let touched = |moment: Moment<K>| K::touched(&mut self.among.inner().clone(), &moment);
         let touched = q.to().map(touched).unwrap_or_default();
-        touches.extend(touched.into_iter().map(|i| Touch {
+        touches.extend(touched.into_iter().map(|i| Contact {
             part: None,
             other: name(i),
             with_itself: false,
@@ -311,8 +311,8 @@ impl<K: WithMoving> Description for MovingScene<K> {
     fn lint(&self) -> Vec<String> {
         self.still.lint()
     }
-    fn fault(&self, end: End, message: String, help: String) -> Error {
-        self.still.fault(end, message, help)
+    fn end_error(&self, end: End, message: String, help: String) -> Error {
+        self.still.end_error(end, message, help)
     }
     fn motion_model(&self) -> Result<MotionModel, Error> {
         let mut model = self.still.motion_model()?;
@@ -363,9 +363,9 @@ impl<K: WithMoving> Description for MovingScene<K> {
         row.iter_mut().zip(self.still.given_start()).for_each(|(x, given)| *x = given);
         row
     }
-    fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
+    fn row_error(&self, rows: &[Vec<f64>]) -> Option<String> {
         let positions: Vec<_> = rows.iter().map(|row| row[..row.len().saturating_sub(1)].to_vec()).collect();
-        if let Some(odd) = self.still.odd_rows(&positions) {
+        if let Some(odd) = self.still.row_error(&positions) {
             return Some(odd);
         }
         let moments: Option<Vec<Moment<K>>> = rows.iter().map(|row| self.state(row).to()).collect();
@@ -392,12 +392,12 @@ impl<K: WithMoving> Description for MovingScene<K> {
             }
         })
     }
-    fn mismatch(&self, q: &Configuration, wanted: &Configuration) -> Mismatch {
+    fn deviation(&self, q: &Configuration, wanted: &Configuration) -> Deviation {
         let late = (time(q) - time(wanted)).abs();
         if late > TIME_TOLERANCE {
-            return Mismatch { off: late, allowed: TIME_TOLERANCE, unit: " s" };
+            return Deviation { off: late, allowed: TIME_TOLERANCE, unit: " s" };
         }
-        self.still.mismatch(&self.alone(q), &self.alone(wanted))
+        self.still.deviation(&self.alone(q), &self.alone(wanted))
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::model::{ModelBody, ModelFrame, MotionModel, Step};
 use super::{
-    Appearance, Body, BodyShape, Checker, Column, Counted, Description, DrivenScene, End, Measured, Motion,
-    MovingScene, Queries, SpeedBound, Touch, WithMoving, greatest_speed, hints_and_gradient, no_metric,
+    Appearance, Body, BodyShape, Checker, Column, Contact, Counted, Description, DrivenScene, End, Measured,
+    Motion, MovingScene, Queries, SpeedBound, WithMoving, greatest_speed, hints_and_gradient, no_metric,
 };
 use crate::goals::{GoalPart, examples, rows};
 use crate::robot::motion::TypedMotion;
@@ -491,9 +491,9 @@ impl<B: PlanarBody> Description for PlanarScene<B> {
     fn space_name(&self) -> String {
         B::SPACE.to_owned()
     }
-    fn touching(&self, q: &Configuration) -> Vec<Touch> {
+    fn touching(&self, q: &Configuration) -> Vec<Contact> {
         let rings = self.rings_at(q);
-        let mut touches: Vec<Touch> = Vec::new();
+        let mut touches: Vec<Contact> = Vec::new();
         let mut note = |obstacle: Option<usize>| {
             let other = match obstacle {
                 Some(i) => self.problem.obstacles.get(i).map_or("?", |o| o.name.as_str()),
@@ -501,7 +501,12 @@ impl<B: PlanarBody> Description for PlanarScene<B> {
                 None => "the edge of the map",
             };
             if !touches.iter().any(|touch| touch.other == other) {
-                touches.push(Touch { part: None, other: other.to_owned(), with_itself: false, depth: None });
+                touches.push(Contact {
+                    part: None,
+                    other: other.to_owned(),
+                    with_itself: false,
+                    depth: None,
+                });
             }
         };
         if self.robot().clone().keeping_clearance(0.0).clearance(&placed::<B>(q), f64::MIN_POSITIVE) > 0.0 {
@@ -520,7 +525,7 @@ impl<B: PlanarBody> Description for PlanarScene<B> {
         }
         touches
     }
-    fn fault(&self, end: End, message: String, help: String) -> Error {
+    fn end_error(&self, end: End, message: String, help: String) -> Error {
         let part = match end {
             End::Start => PlanarPart::Start,
             End::Goal(i) => PlanarPart::Goal(i),

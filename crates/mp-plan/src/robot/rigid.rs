@@ -2,8 +2,8 @@
 
 use super::model::{ModelBody, ModelFrame, MotionModel, Step};
 use super::{
-    Appearance, Body, BodyShape, Column, Counted, Description, End, Measured, Mismatch, Motion, MovingScene,
-    PathFormat, Queries, SpeedBound, Touch, WithMoving, hints_and_gradient,
+    Appearance, Body, BodyShape, Column, Contact, Counted, Description, Deviation, End, Measured, Motion,
+    MovingScene, PathFormat, Queries, SpeedBound, WithMoving, hints_and_gradient,
 };
 use crate::goals::{GoalPart, examples, rows};
 use crate::numbers::{fingerprint, plain};
@@ -440,9 +440,9 @@ impl<M: RigidSpace> Description for RigidScene<M> {
     fn space_name(&self) -> String {
         self.problem.space.to_string()
     }
-    fn touching(&self, q: &Configuration) -> Vec<Touch> {
+    fn touching(&self, q: &Configuration) -> Vec<Contact> {
         let contacts = self.robot().clone().explain(&placed::<M>(q));
-        let touch = |c: mp_collide::Contact| Touch {
+        let touch = |c: mp_collide::Contact| Contact {
             part: None,
             other: c.name,
             with_itself: false,
@@ -477,7 +477,7 @@ impl<M: RigidSpace> Description for RigidScene<M> {
         }
         found
     }
-    fn odd_ends(&self) -> Option<String> {
+    fn ends_error(&self) -> Option<String> {
         let inside = [&self.start, &self.goals[0]].map(|q| self.robot().enclosing(&placed::<M>(q)));
         if inside[0] == inside[1] {
             return None;
@@ -488,7 +488,7 @@ impl<M: RigidSpace> Description for RigidScene<M> {
         });
         Some(format!("the start is {start}, the goal {goal}: there may be no way"))
     }
-    fn fault(&self, _: End, message: String, help: String) -> Error {
+    fn end_error(&self, _: End, message: String, help: String) -> Error {
         Error::new(message).help(help).context(format!("cannot plan in {}", self.problem.name))
     }
     fn columns(&self) -> Vec<Column> {
@@ -545,7 +545,7 @@ impl<M: RigidSpace> Description for RigidScene<M> {
         model.add_obstacles(obstacles, [0]);
         Ok(model)
     }
-    fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
+    fn row_error(&self, rows: &[Vec<f64>]) -> Option<String> {
         if self.problem.space != SpaceKind::Se2 {
             return None;
         }
@@ -553,11 +553,11 @@ impl<M: RigidSpace> Description for RigidScene<M> {
         let i = rows.iter().position(off)?;
         Some(format!("configuration {} leaves the plane: z, β and γ must be 0", i + 1))
     }
-    fn mismatch(&self, q: &Configuration, wanted: &Configuration) -> Mismatch {
+    fn deviation(&self, q: &Configuration, wanted: &Configuration) -> Deviation {
         let off = displacement_bound(&pose::<M>(q), &pose::<M>(wanted), self.radius);
-        Mismatch { off, allowed: END_TOLERANCE * self.radius, unit: " m" }
+        Deviation { off, allowed: END_TOLERANCE * self.radius, unit: " m" }
     }
-    fn written(&self, q: &Configuration) -> String {
+    fn in_words(&self, q: &Configuration) -> String {
         self.row(q).into_iter().map(plain).collect::<Vec<_>>().join(" ")
     }
 }

@@ -271,7 +271,7 @@ fn written(kind: &dyn Robot, mut error: BuildError) -> BuildError {
             Endpoint::Goal(i) => kind.goals().get(*i),
         };
         if let Some(end) = end {
-            *state = kind.written(end);
+            *state = kind.in_words(end);
         }
     }
     error

@@ -6,7 +6,7 @@ use mp_cspace::{
     MotionClearance, MotionValidity, Rng, Space, Validity, nn::Layout,
 };
 use mp_plan::{
-    Appearance, Body, BodyShape, Column, Description, Error, Measured, MetricName, Motion, Queries, Touch,
+    Appearance, Body, BodyShape, Column, Contact, Description, Error, Measured, MetricName, Motion, Queries,
     TypedMotion,
 };
 use nalgebra::{Isometry3, Point2};
@@ -216,7 +216,7 @@ impl Description for Counting {
     fn space_name(&self) -> String {
         "square".to_owned()
     }
-    fn touching(&self, _: &Configuration) -> Vec<Touch> {
+    fn touching(&self, _: &Configuration) -> Vec<Contact> {
         Vec::new()
     }
     fn columns(&self) -> Vec<Column> {

@@ -5,8 +5,8 @@ use mp_cspace::{
     Validity,
 };
 use mp_plan::{
-    Appearance, Body, BodyShape, Column, Control, Description, Error, Finish, Length, Measured, MetricName,
-    Motion, PathRows, Queries, Request, Scene, Touch, TypedMotion,
+    Appearance, Body, BodyShape, Column, Contact, Control, Description, Error, Finish, Length, Measured,
+    MetricName, Motion, PathRows, Queries, Request, Scene, TypedMotion,
 };
 use nalgebra::{Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 
@@ -137,11 +137,11 @@ impl Description for Crane {
     fn space_name(&self) -> String {
         "crane".to_owned()
     }
-    fn touching(&self, q: &Configuration) -> Vec<Touch> {
+    fn touching(&self, q: &Configuration) -> Vec<Contact> {
         let near = |(_, post): &(usize, &Vector2<f64>)| (*post - place(q)).norm() <= LOAD;
         let posts = self.check.posts.iter().enumerate().filter(near);
         let touch =
-            |(i, _)| Touch { part: None, other: format!("post {i}"), with_itself: false, depth: None };
+            |(i, _)| Contact { part: None, other: format!("post {i}"), with_itself: false, depth: None };
         posts.map(touch).collect()
     }
     fn columns(&self) -> Vec<Column> {

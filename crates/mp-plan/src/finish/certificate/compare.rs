@@ -53,7 +53,7 @@ pub(crate) fn differences(kind: &dyn Robot, text: &str) -> Result<Vec<String>, E
     found.extend(
         outside.map(|i| format!("configuration {} of its path is {}", i + 1, kind.out_of_bounds(&states[i]))),
     );
-    found.extend(kind.odd_rows(&path.rows).map(|odd| format!("its path is odd: {odd}")));
+    found.extend(kind.row_error(&path.rows).map(|odd| format!("its path is odd: {odd}")));
     if let Some(i) = states.windows(2).position(|ends| !kind.can_move(&ends[0], &ends[1])) {
         found.push(format!("the robot cannot move from configuration {} to {} of its path", i + 1, i + 2));
     }

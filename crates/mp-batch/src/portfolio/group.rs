@@ -1,10 +1,10 @@
-//! A lane: runs of one round that are advanced by turns in one thread.
+//! A group: runs of one round that are advanced by turns in one thread.
 
-use super::{Clocks, Dealt, RunOutcome, rounds::Rounds};
+use super::{Allocation, Clocks, RunOutcome, rounds::Rounds};
 use crate::ranks::{broadcast, ranks_error};
 use mp_cspace::{Iterations, Rng};
 use mp_plan::{Control, Error, PreparedRun, Run, StoppedBy};
-use mp_ranks::{Hand, Link, Pace};
+use mp_ranks::{ItemContext, Link, Pace};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::time::Duration;
@@ -80,23 +80,23 @@ fn received(link: &dyn Link) -> Result<(usize, bool), Error> {
     }
 }
 
-/// What came out of a lane.
+/// What came out of a group.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct LaneResult {
+pub(super) struct GroupResult {
     pub(super) runs: Vec<RunOutcome>,
 }
 
-/// All that a lane needs.
-pub(super) struct Lane<'a> {
+/// All that a group needs.
+pub(super) struct RunGroup<'a> {
     pub(super) prepared: &'a PreparedRun<'a>,
-    pub(super) dealt: &'a Dealt,
+    pub(super) allocation: &'a Allocation,
     pub(super) start: &'a Start,
     pub(super) clocks: &'a Clocks,
 }
 
 /// A run under way.
-struct Racer<'p> {
+struct RunInGroup<'p> {
     number: u64,
     cap: u64,
     run: Option<Run<'p>>,
@@ -105,44 +105,44 @@ struct Racer<'p> {
     time: Duration,
 }
 
-impl Lane<'_> {
-    /// Advances the runs of the lane `item` until none can win any more.
-    pub(super) fn work(&self, item: u64, hand: &Hand) -> Result<Vec<u8>, String> {
-        let runs = self.raced(item, hand).map_err(|e| e.to_string())?;
-        serde_json::to_vec(&LaneResult { runs })
+impl RunGroup<'_> {
+    /// Advances the runs of the group `item` until none can win any more.
+    pub(super) fn work(&self, item: u64, context: &ItemContext) -> Result<Vec<u8>, String> {
+        let runs = self.raced(item, context).map_err(|e| e.to_string())?;
+        serde_json::to_vec(&GroupResult { runs })
             .map_err(|e| format!("a path has a number that is not finite: {e}"))
     }
 
-    fn raced(&self, item: u64, hand: &Hand) -> Result<Vec<RunOutcome>, Error> {
-        let runs = self.dealt.lane(item, |run| self.start.known.contains(&run));
+    fn raced(&self, item: u64, context: &ItemContext) -> Result<Vec<RunOutcome>, Error> {
+        let runs = self.allocation.group(item, |run| self.start.known.contains(&run));
         let prepared = runs.iter().map(|_| self.prepared.again()).collect::<Result<Vec<_>, _>>()?;
         let mut racers = Vec::new();
         for ((number, cap), prepared) in runs.into_iter().zip(&prepared) {
             let began = self.clocks.clock.now();
-            let rng = Rng::stream(self.dealt.seed, number);
-            let run = Some(prepared.begin_with(rng, &mut self.control(hand, Duration::ZERO))?);
+            let rng = Rng::stream(self.allocation.seed, number);
+            let run = Some(prepared.begin_with(rng, &mut self.control(context, Duration::ZERO))?);
             let time = self.clocks.clock.now().saturating_sub(began);
-            racers.push(Racer { number, cap: cap.unwrap_or(u64::MAX), run, iterations: 0, time });
+            racers.push(RunInGroup { number, cap: cap.unwrap_or(u64::MAX), run, iterations: 0, time });
         }
         let mut outcomes: Vec<RunOutcome> = Vec::new();
         let mut best: Option<(u64, u64)> = None;
         // Runs with as many iterations cannot win.
         let bound = |best: Option<(u64, u64)>| {
-            let known = self.start.best.unwrap_or(u64::MAX).min(hand.bound());
+            let known = self.start.best.unwrap_or(u64::MAX).min(context.bound());
             best.map_or(known, |(iterations, _)| iterations.min(known))
         };
         let mut reach = 0;
         let mut pace = Pace::new(item);
-        while racers.iter().any(|racer| racer.run.is_some()) && !hand.cancel.is_raised() {
+        while racers.iter().any(|racer| racer.run.is_some()) && !context.cancel.is_raised() {
             // Where nothing but the end of runs that cannot win is left, nobody is waited for.
-            let over = || hand.cancel.is_raised() || bound(best) <= reach;
-            pace.keep(hand, reach, || self.clocks.clock.now(), over);
+            let over = || context.cancel.is_raised() || bound(best) <= reach;
+            pace.keep(context, reach, || self.clocks.clock.now(), over);
             reach = next_reach(reach);
             for racer in &mut racers {
                 let Some(mut run) = racer.run.take() else { continue };
                 let bound = bound(best);
                 let began = self.clocks.clock.now();
-                let mut control = self.control(hand, racer.time);
+                let mut control = self.control(context, racer.time);
                 let over = run.advance(&mut Iterations(reach.min(racer.cap).min(bound)), &mut control);
                 racer.time += self.clocks.clock.now().saturating_sub(began);
                 racer.iterations = run.progress().iterations;
@@ -170,11 +170,11 @@ impl Lane<'_> {
     }
 
     /// The control of a run that took the time `time` itself: time is that of the whole portfolio.
-    fn control(&self, hand: &Hand, time: Duration) -> Control<'static> {
+    fn control(&self, context: &ItemContext, time: Duration) -> Control<'static> {
         let Clocks { clock, began, spent } = *self.clocks;
         let passed = spent + clock.now().saturating_sub(began);
         Control {
-            cancel: hand.cancel.clone(),
+            cancel: context.cancel.clone(),
             spent: passed.saturating_sub(time),
             clock,
             ..Control::default()
