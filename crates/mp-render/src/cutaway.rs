@@ -18,19 +18,29 @@ pub(crate) fn thresholds(camera: &Camera, path: &[f32], slope: f32, slack: f32) 
         return vec![f32::NEG_INFINITY; w * h];
     }
     let step = slope * camera.sample_size((sum / f64::from(n)) as f32);
-    let diagonal = step * std::f32::consts::SQRT_2;
     // Two sweeps of a chamfer distance transform, in the max-plus sense: from the neighbours before each sample, and from those behind.
-    let mut spread = |i: usize, sign: isize| {
-        for (dx, dy, away) in [(-1, 0, step), (0, -1, step), (-1, -1, diagonal), (1, -1, diagonal)] {
-            let (x, y) = ((i % w).checked_add_signed(sign * dx), (i / w).checked_add_signed(sign * dy));
-            if let (Some(x), Some(y)) = (x.filter(|x| *x < w), y.filter(|y| *y < h)) {
-                depth[i] = depth[i].max(depth[y * w + x] - away);
+    for _ in 0..2 {
+        sweep(&mut depth, w, step, step * std::f32::consts::SQRT_2);
+        depth.reverse();
+    }
+    depth.iter().map(|&z| camera.key_of(z - slack)).collect()
+}
+
+/// Raises each depth to those of its neighbours to the left and in the row above, less the way from there.
+fn sweep(depth: &mut [f32], width: usize, step: f32, diagonal: f32) {
+    for y in 0..depth.len() / width {
+        let (above, row) = depth.split_at_mut(y * width);
+        let row = &mut row[..width];
+        if let Some(above) = y.checked_sub(1).map(|y| &above[y * width..]) {
+            for (x, z) in row.iter_mut().enumerate() {
+                let beside = |x: usize| above.get(x).map_or(f32::NEG_INFINITY, |z| z - diagonal);
+                *z = z.max(above[x] - step).max(beside(x.wrapping_sub(1))).max(beside(x + 1));
             }
         }
-    };
-    (0..w * h).for_each(|i| spread(i, 1));
-    (0..w * h).rev().for_each(|i| spread(i, -1));
-    depth.iter().map(|&z| camera.key_of(z - slack)).collect()
+        for x in 1..width {
+            row[x] = row[x].max(row[x - 1] - step);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -147,10 +147,10 @@ pub use algo::shared_tree::SharedTree;
 pub use algo::types::*;
 pub use by_name::{ACCEPT, AnyPlanner, INPUTS, LEVELS, ORDER};
 pub use engine::{
-    Acceptable, Append, AppendApart, AppendDistinct, Connect, Core, Extend, Extender, GOAL_BIAS, Growing,
-    Grown, Improving, Inserted, Inserter, NEEDS_BOTH_ENDS, Near, NearestSelector, PATIENCE, Purpose, Rewire,
-    STEP, Samples, SearchTree, Selector, SingleTree, TargetSampler, Tree, TreePlannerParts, Tuning, TwoTrees,
-    Untried, improve,
+    Acceptable, Append, AppendApart, AppendDistinct, BALANCE, Connect, Core, Extend, Extender, GOAL_BIAS,
+    Growing, Grown, Improving, Inserted, Inserter, NEEDS_BOTH_ENDS, Near, NearestSelector, PATIENCE, Purpose,
+    Rewire, STEP, Samples, SearchTree, Selector, SingleTree, TargetSampler, Tree, TreePlannerParts, Tuning,
+    TwoTrees, Untried, improve,
 };
 pub use mp_cspace::AnyProblem;
 pub use mp_cspace::erased::AnyIndex;

@@ -65,7 +65,7 @@ fn plan_solves_verifies_and_writes() {
     let report = run.json();
     assert_fields(&report, true);
     assert_eq!((&report["scene"], &report["planner"]), (&"window".into(), &"auto".into()));
-    assert_eq!(report["won"], "rrt-connect");
+    assert_eq!(report["won"], "rrt-connect balance=1");
     assert!(report["path_length"].as_f64() <= report["path_length_found"].as_f64());
     assert!(report["clearance"].as_f64().unwrap() > 0.0);
     let text = dir.read("a/p.txt");
@@ -410,7 +410,7 @@ fn pictures_of_runs_have_what_the_run_has_grown() {
     assert_eq!(report["nodes"], map.kind.len());
 
     // The path is the same whether or not the search is shown.
-    let alone = mp(&dir, &["plan", "window.env", "--json", "--seed", "3"]).json();
+    let alone = mp(&dir, &["plan", "window.env", "--planner", "rrt-connect", "--json", "--seed", "3"]).json();
     let (_, shown) = file("rrt-connect", &[]);
     assert_eq!((&alone["path"], &alone["nodes"]), (&shown["path"], &shown["nodes"]));
 }

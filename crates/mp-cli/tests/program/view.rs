@@ -161,7 +161,7 @@ fn a_scene_is_shown_planned_saved_and_ended() {
     assert_eq!(hello["folder"], place.to_str().unwrap());
 
     // The same path as that of `mp plan`.
-    let plan = json!({"do": "plan", "run": 1, "request": {"planner": "rrt-connect", "seed": 1}});
+    let plan = json!({"do": "plan", "run": 1, "request": {"planner": "auto", "seed": 1}});
     let reply = tab.request(&plan);
     assert_eq!(reply.get("error"), None, "{reply}");
     let done = tab.end_of(1);

@@ -2,8 +2,8 @@
 //!
 //! No planner is best everywhere, and none of them says beforehand how long it will take. So several work by turns, each on a share of the
 //! work, until one has a path: C. Gomes and B. Selman, *Algorithm portfolios*, Artificial Intelligence 126, 2001. The first is
-//! RRT-Connect as the request says. It has a turn that is long enough for what is easy, so that such problems cost nothing more, and
-//! their paths are those of `rrt-connect`. The others are for what is hard: shorter steps for narrow places, a metric in which turning counts as
+//! RRT-Connect as the request says, with trees of equal size: where one of them grows in a dead end, it waits for the other one. It has a turn
+//! that is long enough for what is easy, so that such problems cost nothing more. The others are for what is hard: shorter steps for narrow places, a metric in which turning counts as
 //! much as the robot's size says, trees that follow surfaces, roadmaps with samples between obstacles.
 //!
 //! A turn is measured in queries and iterations, never in time: the same request gives the same path on every machine. Each search
@@ -13,8 +13,9 @@
 //! use mp_plan::{Request, Scene};
 //! let (scene, request) = (Scene::find("easy")?, Request::new("auto").seed(2));
 //! let report = scene.plan(&request)?;
-//! assert_eq!(report.won.as_deref(), Some("rrt-connect"));
-//! assert_eq!(report.fingerprint, scene.plan(&Request::new("rrt-connect").seed(2))?.fingerprint);
+//! assert_eq!(report.won.as_deref(), Some("rrt-connect balance=1"));
+//! let first = Request::new("rrt-connect").seed(2).set("balance", "1");
+//! assert_eq!(report.fingerprint, scene.plan(&first)?.fingerprint);
 //! # Ok::<(), mp_plan::Error>(())
 //! ```
 
@@ -36,12 +37,15 @@ const TURN: Parameter = Parameter {
     doc: "queries and iterations after which the other searches have turns too",
 };
 
+/// The balance of the trees of the first search.
+const BALANCE: Parameter = Parameter { default: "1", ..mp_tree::BALANCE };
+
 /// The entry of [`planners`](crate::planners).
 pub(crate) const INFO: PlannerInfo = PlannerInfo {
     name: "auto",
     summary: "takes turns: RRT-Connect, then also short steps, other metrics, surfaces and roadmaps; the default",
     citation: "Gomes and Selman 2001",
-    parameters: &[TURN, mp_tree::STEP, mp_tree::GOAL_BIAS, mp_tree::PATIENCE],
+    parameters: &[TURN, mp_tree::STEP, mp_tree::GOAL_BIAS, mp_tree::PATIENCE, BALANCE],
     aliases: &[],
     cannot: mp_tree::NEEDS_BOTH_ENDS,
 };
@@ -78,6 +82,7 @@ const ROUND: f64 = 1.5;
 pub(crate) fn requests(request: &Request) -> Vec<(Request, f64)> {
     let mut first = Request { planner: FIRST.to_owned(), ..request.clone() };
     first.settings.remove(TURN.name);
+    first.settings.entry(BALANCE.name.to_owned()).or_insert_with(|| BALANCE.default.to_owned());
     let first = (first, FIRST_SHARE);
     let of = |info: &MemberInfo| Request {
         planner: info.planner.to_owned(),

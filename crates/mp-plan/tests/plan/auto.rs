@@ -8,13 +8,14 @@ fn in_turns(scene: &Scene, seed: u64, turn: u64) -> Report {
 }
 
 #[test]
-fn what_is_found_in_the_first_turn_is_the_path_of_rrt_connect() {
+fn what_is_found_in_the_first_turn_is_the_path_of_balanced_rrt_connect() {
     for name in ["twisty", "docks", "arm"] {
         let scene = Scene::find(name).unwrap();
         for step in ["5%", "3%"] {
-            let alone = scene.plan(&Request::new("rrt-connect").set("step", step)).unwrap();
+            let alone = Request::new("rrt-connect").set("step", step).set("balance", 1);
+            let alone = scene.plan(&alone).unwrap();
             let auto = scene.plan(&Request::default().set("step", step)).unwrap();
-            assert_eq!(auto.won.as_deref(), Some("rrt-connect"));
+            assert_eq!(auto.won.as_deref(), Some("rrt-connect balance=1"));
             assert_eq!(
                 (auto.fingerprint, auto.collision_checks),
                 (alone.fingerprint, alone.collision_checks)

@@ -32,6 +32,7 @@
 //! | `tries`: samples refused in a row before one is taken regardless | 0, 1, 2, … | 100 |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//! | `balance`: a tree with more than this times the nodes of the other one waits; 0 for strict turns | 0, or at least 1 | 0 |
 //!
 //! A point goes around a disc in the unit square:
 //! ```
@@ -57,7 +58,7 @@
 
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
-use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::engine::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     Acceptable, Append, BuildError, Connect, Extend, NearestSelector, Parameter, PlannerInfo, Purpose,
     Samples, Selector, Settings, TreePlannerParts, Tuning, TwoTrees,
@@ -84,7 +85,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "dd-rrt",
     summary: "RRT-Connect that refuses samples far from nodes that failed; for traps and tight spaces",
     citation: "Yershova, Jaillet, Siméon and LaValle 2005",
-    parameters: &[STEP, RADIUS, TRIES, GOAL_BIAS, PATIENCE],
+    parameters: &[STEP, RADIUS, TRIES, GOAL_BIAS, PATIENCE, BALANCE],
     aliases: &["dynamic-domain"],
     cannot: NEEDS_BOTH_ENDS,
 };
@@ -119,7 +120,7 @@ pub mod adaptive {
         name: "add-rrt",
         summary: "dynamic-domain RRT that tunes itself; for traps and tight spaces",
         citation: "Jaillet, Yershova, LaValle and Siméon 2005",
-        parameters: &[STEP, RADIUS, ADAPT, LEAST, TRIES, GOAL_BIAS, PATIENCE],
+        parameters: &[STEP, RADIUS, ADAPT, LEAST, TRIES, GOAL_BIAS, PATIENCE, BALANCE],
         aliases: &["adaptive-dynamic-domain"],
         cannot: NEEDS_BOTH_ENDS,
     };

@@ -27,6 +27,7 @@
 //! | `samples`: how many are compared; 1 is RRT-Connect | 1, 2, … 100 000 | 5 |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//! | `balance`: a tree with more than this times the nodes of the other one waits; 0 for strict turns | 0, or at least 1 | 0 |
 //!
 //! A point goes around a disc in the unit square:
 //! ```
@@ -50,7 +51,7 @@
 
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
-use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::engine::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     Append, BuildError, Connect, Extend, NearestSelector, Parameter, PlannerInfo, Purpose, Selector,
     TargetSampler, TreePlannerParts, Tuning, TwoTrees,
@@ -70,7 +71,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "mvb-rrt",
     summary: "RRT-Connect toward the largest Voronoi region; covers open spaces with few nodes",
     citation: "Lindemann and LaValle 2004",
-    parameters: &[STEP, SAMPLES, GOAL_BIAS, PATIENCE],
+    parameters: &[STEP, SAMPLES, GOAL_BIAS, PATIENCE, BALANCE],
     aliases: &["ms-rrt"],
     cannot: NEEDS_BOTH_ENDS,
 };

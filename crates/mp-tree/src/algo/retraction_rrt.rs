@@ -26,6 +26,7 @@
 //! | `slides`: most moves along an obstacle | 0, 1, 2, … | 8 |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//! | `balance`: a tree with more than this times the nodes of the other one waits; 0 for strict turns | 0, or at least 1 | 0 |
 //!
 //! A point goes through a slanted corridor in the unit square:
 //! ```
@@ -57,7 +58,7 @@
 
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
-use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::engine::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     AppendDistinct, BuildError, Connect, Extender, Growing, Grown, Inserter, NearestSelector, Parameter,
     PlannerInfo, Samples, Selector, TreePlannerParts, Tuning, TwoTrees,
@@ -78,7 +79,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "retraction-rrt",
     summary: "two trees whose blocked steps go on along the obstacle; for long narrow passages",
     citation: "Zhang and Manocha 2008",
-    parameters: &[STEP, SLIDES, GOAL_BIAS, PATIENCE],
+    parameters: &[STEP, SLIDES, GOAL_BIAS, PATIENCE, BALANCE],
     aliases: &["rrrt"],
     cannot: NEEDS_BOTH_ENDS,
 };

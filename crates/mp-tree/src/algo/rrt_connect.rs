@@ -28,6 +28,7 @@
 //! | `step`: longest step | (0, extent of the space] | 5% of the extent |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//! | `balance`: a tree with more than this times the nodes of the other one waits; 0 for strict turns | 0, or at least 1 | 0 |
 //!
 //! A point goes around a disc in the unit square, by each of the four:
 //! ```
@@ -58,7 +59,7 @@
 
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
-use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::engine::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     Append, Connect, Extend, NearestSelector, PlannerInfo, Samples, TreePlannerParts, Tuning, TwoTrees,
 };
@@ -93,7 +94,7 @@ macro_rules! two_trees {
                 name: $name,
                 summary: $summary,
                 citation: $citation,
-                parameters: &[STEP, GOAL_BIAS, PATIENCE],
+                parameters: &[STEP, GOAL_BIAS, PATIENCE, BALANCE],
                 aliases: $aliases,
                 cannot: NEEDS_BOTH_ENDS,
             };

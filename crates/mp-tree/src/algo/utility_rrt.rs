@@ -28,6 +28,7 @@
 //! | `candidates`: expansions that are compared | 1, 2, … 100 000 | 4 |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//! | `balance`: a tree with more than this times the nodes of the other one waits; 0 for strict turns | 0, or at least 1 | 0 |
 //!
 //! A point goes around a disc in the unit square:
 //! ```
@@ -51,7 +52,7 @@
 
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
-use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::engine::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     AppendDistinct, BuildError, Connect, Extender, Growing, Grown, Inserter, NearestSelector, Parameter,
     PlannerInfo, Samples, Selector, TreePlannerParts, Tuning, TwoTrees,
@@ -72,7 +73,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "utility-rrt",
     summary: "RRT-Connect that makes the most promising of several expansions; where most motions fail",
     citation: "Burns and Brock 2007",
-    parameters: &[STEP, CANDIDATES, GOAL_BIAS, PATIENCE],
+    parameters: &[STEP, CANDIDATES, GOAL_BIAS, PATIENCE, BALANCE],
     aliases: &["utility-guided"],
     cannot: NEEDS_BOTH_ENDS,
 };

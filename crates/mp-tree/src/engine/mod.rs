@@ -33,6 +33,6 @@ pub use select::{NearestSelector, Purpose, Selector};
 pub use single::SingleTree;
 pub use target::{Acceptable, Samples, TargetSampler};
 pub use tree::Tree;
-pub use tuning::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP, Tuning};
+pub use tuning::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP, Tuning};
 pub use two::TwoTrees;
 pub use untried::Untried;

@@ -35,6 +35,14 @@ pub const PATIENCE: Parameter = Parameter {
     doc: "rejected paths after which every new edge is verified as it grows",
 };
 
+/// [`Tuning::balance`](crate::Tuning::balance).
+pub const BALANCE: Parameter = Parameter {
+    name: "balance",
+    range: "0, or at least 1",
+    default: "0",
+    doc: "the tree with more than this times the nodes of the other one waits for it; 0: they take turns whatever their sizes",
+};
+
 /// The parameters every planner of the family has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
@@ -46,11 +54,15 @@ pub struct Tuning {
     /// After this many rejected paths the local planner is no longer trusted: each new edge is verified as it grows. By
     /// default 10; 0 verifies every edge.
     pub patience: u64,
+    /// Of two trees, the one with more than this times the nodes of the other waits until that has caught up; otherwise they take turns (J. J. Kuffner and
+    /// S. M. LaValle, *An efficient approach to path planning using balanced bidirectional RRT search*, CMU-RI-TR-05-34, 2005). At least
+    /// 1, or 0 for strict turns, the default.
+    pub balance: f64,
 }
 
 impl Default for Tuning {
     fn default() -> Self {
-        Self { step: Length::Fraction(0.05), goal_bias: 0.05, patience: 10 }
+        Self { step: Length::Fraction(0.05), goal_bias: 0.05, patience: 10, balance: 0.0 }
     }
 }
 
@@ -67,6 +79,7 @@ impl Tuning {
             step: settings.length(STEP.name)?.unwrap_or(default.step),
             goal_bias: settings.number(GOAL_BIAS.name)?.unwrap_or(default.goal_bias),
             patience: settings.count(PATIENCE.name)?.unwrap_or(default.patience),
+            balance: settings.number(BALANCE.name)?.unwrap_or(default.balance),
         })
     }
 
@@ -80,6 +93,18 @@ impl Tuning {
         }
         let range = "in [0, 1], a probability".to_owned();
         Err(BuildError::OutOfRange { name: "goal-bias", value: self.goal_bias, range })
+    }
+
+    /// The balance.
+    ///
+    /// # Errors
+    /// When it is out of range.
+    pub fn checked_balance(&self) -> Result<f64, BuildError> {
+        if self.balance == 0.0 || self.balance >= 1.0 {
+            return Ok(self.balance);
+        }
+        let range = "0, or at least 1".to_owned();
+        Err(BuildError::OutOfRange { name: "balance", value: self.balance, range })
     }
 }
 

@@ -13,7 +13,7 @@ use mp_cspace::{
 ///
 /// The first iteration tries a straight motion from the start to each listed goal state, unless one of the extenders
 /// [declines](Extender::allows_direct). Each iteration then grows one tree toward a sampled target, and the other toward
-/// the node that was added; the trees take turns. Where they meet, the path is verified. The goal tree has a root for each listed
+/// the node that was added; the trees take turns, but one that is much [larger](crate::Tuning::balance) waits. Where they meet, the path is verified. The goal tree has a root for each listed
 /// goal state; where goals come from a sampler, a root is added with probability
 /// [`goal_bias`](crate::Tuning::goal_bias) per iteration, and in every iteration until there is one. Stepping on after a
 /// solution continues with the same trees.
@@ -30,6 +30,7 @@ pub struct TwoTrees<'c, C: Space, L: LocalPlanner<C::State>, P, Se, GA, GB, A> {
     explore: GA,
     join: GB,
     turn: usize,
+    balance: f64,
 }
 
 impl<'c, C, L, P, Se, GA, GB, A> TwoTrees<'c, C, L, P, Se, GA, GB, A>
@@ -70,6 +71,7 @@ where
             explore: parts.extender.0,
             join: parts.extender.1,
             turn: 0,
+            balance: parts.tuning.checked_balance()?,
         })
     }
 
@@ -105,6 +107,16 @@ where
             }
         }
         None
+    }
+
+    /// Which tree explores now: the one that did not explore last, unless it is too large.
+    fn next_turn(&mut self) -> usize {
+        let size = |tree: usize| self.trees[tree].nodes().len() as f64;
+        let other = self.turn ^ 1;
+        let waits = self.balance > 0.0 && size(self.turn) > self.balance * size(other);
+        let turn = if waits { other } else { self.turn };
+        self.turn = turn ^ 1;
+        turn
     }
 
     /// The path through two nodes with the same state, if it passes verification; otherwise the part from the failed edge
@@ -148,8 +160,7 @@ where
         if self.core.goals.has_sampler() {
             self.core.sample_goal(&mut self.trees[1], rng, observer);
         }
-        let turn = self.turn;
-        self.turn ^= 1;
+        let turn = self.next_turn();
         let [forward, backward] = &mut self.trees;
         let (a, b) = if turn == 0 { (forward, backward) } else { (backward, forward) };
         let (points, selector) = a.parts();

@@ -104,7 +104,13 @@ fn parameters_must_be_in_range() {
             assert!(matches!(error, BuildError::OutOfRange { name, .. } if name == parameter), "{error}");
         }
     }
-    let longest = Tuning { step: Length::Absolute(space.extent()), goal_bias: 1.0, patience: 0 };
+    for balance in [-1.0, 0.5, nan] {
+        let tuning = Tuning { balance, ..Tuning::default() };
+        let error = RrtConnect::with_index(ready(), Linear::new(), tuning).map(|_| ()).unwrap_err();
+        assert!(matches!(error, BuildError::OutOfRange { name: "balance", .. }), "{error}");
+    }
+    let longest =
+        Tuning { step: Length::Absolute(space.extent()), goal_bias: 1.0, patience: 0, ..Tuning::default() };
     assert!(Rrt::with_index(ready(), Linear::new(), longest).is_ok());
 }
 

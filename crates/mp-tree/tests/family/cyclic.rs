@@ -65,7 +65,7 @@ fn biased<'c>(
     let check = Discrete::new(space, boxes.clone(), Length::Absolute(resolution)).unwrap();
     let local = Recording { straight: Straight::new(space, check), least };
     let problem = Problem::new(space, local, Replayed(boxes.clone()), START, GOAL).unwrap();
-    let tuning = Tuning { step: Length::Absolute(STEP), patience: 1_000_000, goal_bias };
+    let tuning = Tuning { step: Length::Absolute(STEP), patience: 1_000_000, goal_bias, ..Tuning::default() };
     CyclicRrt::new(problem, tuning, TOLERANCE).unwrap()
 }
 

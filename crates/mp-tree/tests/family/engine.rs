@@ -61,6 +61,25 @@ fn budgets_are_kept_exactly() {
     }
 }
 
+/// The goal is in a closed cell, where hardly any step is free: the tree from the start waits for the one inside, if it is to.
+#[test]
+fn a_balanced_tree_waits_for_a_smaller_one() {
+    let (space, boxes) = (square(), closed());
+    let sizes = |balance: f64| {
+        let tuning = Tuning { balance, ..short() };
+        let mut planner =
+            RrtConnect::with_index(problem(&space, &boxes, goal()), Linear::new(), tuning).unwrap();
+        planner.solve(&mut Rng::seed(1), &mut Iterations(2000), &mut ());
+        planner.trees().map(Tree::len)
+    };
+    let ([outside, inside], [waiting, ahead]) = (sizes(0.0), sizes(1.0));
+    assert!(outside > 10 * inside, "{outside} {inside}");
+    assert!(waiting < ahead + 40 && outside > 5 * waiting, "{waiting} {ahead} {outside}");
+    // Where it may be three times as large, it is.
+    let [waiting, ahead] = sizes(3.0);
+    assert!(waiting > 2 * ahead && waiting < 3 * ahead + 40, "{waiting} {ahead}");
+}
+
 #[test]
 fn going_on_equals_one_long_run() {
     let (space, boxes) = (square(), slit(0.1, 0.8, 0.04));
