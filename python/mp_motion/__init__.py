@@ -16,7 +16,7 @@ from ._mp import Cancel
 from ._own import Robot, Space
 from ._planners import Parameter, PlannerInfo, meta_planners, metrics, planners, scenes
 from ._progress import Progress
-from ._report import Column, Explanation, Finished, Report, StageTime, Contact, Verdict
+from ._report import Column, Contact, Explanation, Finished, Report, StageTime, Verdict
 from ._results import Results, read_results
 from ._roadmap import Roadmap
 from ._scene import Options, Scene
@@ -50,6 +50,7 @@ __all__ = [
     "Circle",
     "Column",
     "Cone",
+    "Contact",
     "Cylinder",
     "Disc",
     "Error",
@@ -76,7 +77,6 @@ __all__ = [
     "Space",
     "Sphere",
     "StageTime",
-    "Contact",
     "Verdict",
     "matrix_from_pose",
     "meta_planners",
