@@ -16,6 +16,7 @@ mod output;
 mod peer;
 mod planners;
 mod plot;
+mod puzzles;
 mod regions;
 mod rigid;
 mod roadmaps;
@@ -58,6 +59,8 @@ pub struct Options {
     #[command(flatten)]
     rrs: rrs::Options,
     #[command(flatten)]
+    puzzles: puzzles::Options,
+    #[command(flatten)]
     assets: assets::Options,
 }
 
@@ -68,6 +71,8 @@ enum Suite {
     Rigid,
     /// Every planner on shipped scenes, to the first solution.
     Planners,
+    /// Graded scenes, from easy ones to those that nothing here solves: `auto` and single planners, in processor time.
+    Puzzles,
     /// Queries between two meshes.
     Collide,
     /// The experiment of Baizid et al.: RRT, and RRS, which bends blocked edges with snakes, in four worlds.
@@ -95,7 +100,10 @@ impl Options {
         let c = &mut same.common;
         (c.shard, c.threads, c.fresh) = (mp_batch::Shard::WHOLE, None, false);
         (c.out, c.merge, c.peer) = Default::default();
-        format!("{:?} {:?} {:?} {:?} {:?}", same.suite, c, same.rsrt, same.roadmaps, same.rrs)
+        format!(
+            "{:?} {:?} {:?} {:?} {:?} {:?}",
+            same.suite, c, same.rsrt, same.roadmaps, same.rrs, same.puzzles
+        )
     }
 }
 
@@ -144,6 +152,7 @@ pub fn run(options: &Options) -> Result<bool, Error> {
     let complete = match options.suite {
         Suite::Collide => collide::run(common, &options.collide),
         Suite::Planners => planners::run(common),
+        Suite::Puzzles => puzzles::run(common, &options.puzzles),
         Suite::Rigid => rigid::run(common, &options.rigid),
         Suite::Rrs => rrs::run(common, &options.rrs),
         Suite::Rsrt => rsrt::run(common, &options.rsrt),

@@ -3,7 +3,40 @@
 use crate::error::{IntoError, Result};
 use mp_plan::Error;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::process::Command;
+
+/// The result of another planner in one run.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct FirstPath {
+    pub(crate) solved: u8,
+    pub(crate) time: f64,
+    /// Seconds of processor time, if the program tells them.
+    pub(crate) cpu: Option<f64>,
+    pub(crate) checks: f64,
+    pub(crate) valid_at_20x_finer: i32,
+}
+
+/// Runs another planner once on a problem that [`mp_io::export_ompl`] has written. A range of 0 stands for its own longest step.
+///
+/// # Errors
+/// As [`json_lines`].
+pub(crate) fn first_path(
+    program: &Path,
+    problem: &Path,
+    planner: &str,
+    seed: u64,
+    time: f64,
+    range: f64,
+) -> Result<FirstPath> {
+    let mut command = Command::new(program);
+    command.arg("--problem").arg(problem).args(["--planner", planner, "--seeds", "1"]);
+    command.args(["--seed0", &seed.to_string(), "--time", &time.to_string()]);
+    command.args(["--range", &range.to_string()]);
+    let told = json_lines(&mut command)?.into_iter().next();
+    told.ok_or_else(|| Error::new(format!("{} printed no line of JSON", program.display())))
+}
 
 /// The lines of JSON that a program prints.
 ///

@@ -13,14 +13,13 @@
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table, bit, mean};
 use crate::options::Common;
-use crate::peer::json_lines;
+use crate::peer::{FirstPath, first_path};
 use crate::scenes::{Planned, Rigid, bare};
 use clap::Args;
 use mp_io::{OmplExport, export_ompl};
-use mp_plan::{Error, Length, MotionValidator, Request, median};
+use mp_plan::{Length, MotionValidator, Request, median};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::PathBuf;
 
 const SCENES: [&str; 4] = ["easy", "cubicles", "twisty", "apartment"];
 
@@ -47,16 +46,7 @@ struct Case {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Run {
     ours: Planned,
-    theirs: Option<Theirs>,
-}
-
-/// The result of the other program in one run.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Theirs {
-    solved: u8,
-    time: f64,
-    checks: f64,
-    valid_at_20x_finer: i32,
+    theirs: Option<FirstPath>,
 }
 
 /// A scene prepared for both programs.
@@ -76,10 +66,7 @@ impl PreparedScene {
         let folder = tempfile::tempdir().into_error()?;
         let file =
             export_ompl(rigid.problem(), folder.path(), &rigid.problem().name, &OmplExport::default())?;
-        let range = match step {
-            Length::Absolute(length) => length,
-            Length::Fraction(part) => part * rigid.extent(),
-        };
+        let range = rigid.length(step);
         let motion = MotionValidator::Discrete(Length::Fraction(0.01));
         let request = bare("rrt-connect").motion(motion).time(time).set("step", step);
         Ok(Self { rigid, request, range, file, _folder: folder })
@@ -106,14 +93,16 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
         |prepared, case| {
             let request = prepared.request.clone().seed(case.seed);
             let Some(ours) = prepared.rigid.plan(&request, &lab.cancel)? else { return Ok(None) };
-            let ask = |peer: &PathBuf| ask(peer, &prepared.file, case.seed, common.time, prepared.range);
+            let ask = |peer: &PathBuf| {
+                first_path(peer, &prepared.file, "rrtconnect", case.seed, common.time, prepared.range)
+            };
             Ok(Some(Run { ours, theirs: case.peer.as_ref().map(ask).transpose()? }))
         },
     )?;
     if !complete {
         return Ok(false);
     }
-    let peer = |run: &Run, cell: &dyn Fn(Theirs) -> String| run.theirs.map(cell).unwrap_or_default();
+    let peer = |run: &Run, cell: &dyn Fn(FirstPath) -> String| run.theirs.map(cell).unwrap_or_default();
     let each = Table::of(
         log.each(&cases),
         &[
@@ -161,16 +150,6 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
 }
 
 /// The runs that the other program solved.
-fn solutions(theirs: &[Theirs]) -> impl Iterator<Item = &Theirs> {
+fn solutions(theirs: &[FirstPath]) -> impl Iterator<Item = &FirstPath> {
     theirs.iter().filter(|run| run.solved == 1)
-}
-
-/// Runs the other program once.
-fn ask(program: &Path, problem: &Path, seed: u64, time: f64, range: f64) -> Result<Theirs> {
-    let mut command = Command::new(program);
-    command.arg("--problem").arg(problem).args(["--planner", "rrtconnect", "--seeds", "1"]);
-    command.args(["--seed0", &seed.to_string(), "--time", &time.to_string()]);
-    command.args(["--range", &range.to_string()]);
-    let told = json_lines(&mut command)?.into_iter().next();
-    told.ok_or_else(|| Error::new(format!("{} printed no line of JSON", program.display())))
 }

@@ -6,7 +6,8 @@ use crate::output::note;
 use mp_cspace::{Cancel, Configuration, Outcome, Rng, Space, StopReason, Validity};
 use mp_io::{RigidProblem, SpaceKind};
 use mp_plan::{
-    Budget, Control, Finish, Request, RigidScene, RigidSpace, Robot, Scene, Search, TypedMotion, search,
+    Budget, Control, Finish, Length, Request, RigidScene, RigidSpace, Robot, Scene, Search, TypedMotion,
+    search,
 };
 use mp_robot::{Planar, Spatial};
 use serde::{Deserialize, Serialize};
@@ -80,6 +81,14 @@ impl Rigid {
     /// The largest distance in the space, in its own metric.
     pub(crate) fn extent(&self) -> f64 {
         either!(self, scene => scene.space().extent())
+    }
+
+    /// A length in the metric of the space.
+    pub(crate) fn length(&self, length: Length) -> f64 {
+        match length {
+            Length::Absolute(length) => length,
+            Length::Fraction(part) => part * self.extent(),
+        }
     }
 
     pub(crate) fn robot(&self) -> &dyn Robot {

@@ -291,7 +291,7 @@ fn worked() -> Duration {
 #[ignore = "measures time, and takes minutes"]
 fn runs_end_within_50_ms_of_processor_time() {
     let (time, mut late) = (0.1, Vec::new());
-    for name in Scene::shipped() {
+    for name in mp_scenes::without_solution() {
         let scene = Scene::find(name).unwrap();
         for request in requests() {
             let began = worked();

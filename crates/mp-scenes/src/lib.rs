@@ -9,10 +9,12 @@
 //! ```
 
 mod files;
+mod puzzles;
 #[cfg(feature = "source")]
 pub mod source;
 
 pub use files::FILES;
+pub use puzzles::{PUZZLES, Puzzle, puzzle, without_solution};
 
 /// A file in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

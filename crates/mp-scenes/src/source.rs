@@ -5,17 +5,21 @@
 
 mod alpha;
 mod apartment;
+mod assembly;
 mod bugtrap;
 mod cubicles;
 pub mod disc_scenes;
 mod furniture;
 mod gempa;
+mod key;
+mod nut;
 mod piano;
 mod planar;
 mod scene;
 mod shape;
 #[cfg(test)]
 mod tests;
+mod twist;
 mod windows;
 mod wrench;
 
@@ -78,6 +82,11 @@ pub fn generate() -> Files {
     alpha::add(&mut files);
     planar::add(&mut files);
     wrench::add(&mut files);
+    apartment::add_flats(&mut files);
+    assembly::add(&mut files);
+    key::add(&mut files);
+    nut::add(&mut files);
+    twist::add(&mut files);
     disc_scenes::add(&mut files);
     files.extend(BY_HAND.map(|(path, text)| (path.to_owned(), text.into())));
     files

@@ -1,4 +1,6 @@
 //! `apartment`: piano movers. A baby grand goes from the living room through the hall to the music room.
+//!
+//! `flat-1.05`, `flat-1.2`: the same piano in a flat without furniture, through two doors that it passes only on its side.
 
 use super::furniture::{
     basin, bath, bed, chair, closet, counter, lamp, plant, refrigerator, round_table, shelves, sofa, stool,
@@ -58,6 +60,48 @@ pub(super) fn add(files: &mut Files) {
         // Music room.
         .obstacle("apartment/stool.off", &stool(), &[at(8.5, 10.2, 0.4)])
         .finish(files);
+}
+
+/// Adds the flats: doors that are so many times as wide as the piano is high, and so many times as high as it is wide.
+pub(super) fn add_flats(files: &mut Files) {
+    let piano = piano();
+    let size = piano.aabb();
+    let (low, high) = (size.min.z, size.max.z);
+    let (half_width, length) = (size.max.x, size.max.y - size.min.y);
+    for (name, factor) in [("flat-1.05", 1.05), ("flat-1.2", 1.2)] {
+        let (door, lintel) = (0.5 * factor * (high - low), 2.0 * factor * half_width);
+        let hall = 1.25 * length;
+        // On its side, in the middle of the door.
+        let tilted = |x: f64, y: f64| -> Six { [x - 0.5 * (low + high), y, 0.5 * lintel, 0.0, QUARTER, 0.0] };
+        let upright = |x: f64, z: f64| -> Six { [x, -2.0, z, 0.0, 0.0, 0.0] };
+        let on_side = |x: f64| -> Six { [x, -2.0, 1.3, 0.0, QUARTER, 0.0] };
+        let inside = 0.15 + 0.5 * hall - 0.5 * (size.min.y + size.max.y);
+        let path = [
+            upright(-1.5, RAISE + 0.2),
+            upright(-1.5, 1.3),
+            on_side(-1.5),
+            tilted(-1.5, -2.0),
+            tilted(-1.5, inside),
+            tilted(1.5, inside),
+            tilted(1.5, -2.0),
+            on_side(1.5),
+            upright(1.5, 1.3),
+            upright(1.5, RAISE + 0.2),
+        ];
+        let xs = [-3.15, -3.0, -1.5 - door, -1.5 + door, -0.075, 0.075, 1.5 - door, 1.5 + door, 3.0, 3.15];
+        let ys = [-3.65, -3.5, 0.0, 0.15, 0.15 + hall, 0.3 + hall];
+        let walls = cells(&xs, &ys, &[0.0, lintel, 2.6], |i, j, k| match (i, j) {
+            (0 | 8, _) | (_, 0 | 4) | (4, 1) => true,
+            (2 | 6, 2) => k == 1,
+            (_, 2) => true,
+            _ => false,
+        });
+        Scene::new(name, [[-2.8, -3.3, 0.3], [2.8, hall, 1.8]], "apartment/piano.off", &piano)
+            .solved_by(&path)
+            .obstacle(&format!("flat/{name}.off"), &walls, &[HOME])
+            .obstacle("flat/floor.txt", &block([-3.15, -3.65, -0.2], [3.15, 2.65, 0.0]), &[HOME])
+            .finish(files);
+    }
 }
 
 /// Walls 0.15 thick and 2.6 high, with door openings 2.1 high.

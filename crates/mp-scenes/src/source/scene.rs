@@ -1,6 +1,6 @@
 //! A builder of scenes, which turns them into files.
 
-use super::shape::{mapped, on_grid};
+use super::shape::{mapped, on_fine_grid, on_grid};
 use mp_geom::TriMesh;
 use mp_io::{Environment, Obstacle, PathFile, SpaceKind, gempa_mesh_text, off_text};
 use std::collections::BTreeMap;
@@ -61,6 +61,13 @@ impl Scene {
     pub(super) fn query(mut self, start: Six, goal: Six) -> Self {
         (self.start, self.goal) = (start, goal);
         self
+    }
+
+    /// Sets start and goal to the ends of a known solution, which becomes `paths/NAME.txt`.
+    pub(super) fn solved_by(mut self, path: &[Six]) -> Self {
+        let path: Vec<Six> = path.iter().map(|six| six.map(on_fine_grid)).collect();
+        self.files.insert(format!("paths/{}.txt", self.name), configurations(&path));
+        self.query(path[0], path[path.len() - 1])
     }
 
     /// Adds an obstacle at every one of `poses`.

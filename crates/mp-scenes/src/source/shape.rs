@@ -16,6 +16,11 @@ pub(super) fn on_grid(x: f64) -> f64 {
     (x * GRID + 0.5 + 1e-3).floor() / GRID
 }
 
+/// The same for configurations of paths through passages that are not much wider than the grid of meshes.
+pub(super) fn on_fine_grid(x: f64) -> f64 {
+    on_grid(x * GRID) / GRID
+}
+
 /// A mesh made of constants, which are always valid.
 pub(super) fn mesh(vertices: Vec<Point3<f64>>, triangles: Vec<[u32; 3]>) -> TriMesh {
     TriMesh::new(vertices, triangles).expect("assets are built from valid constants")
@@ -168,13 +173,26 @@ pub(super) fn tube(
     sides: u32,
     up: Vector3<f64>,
 ) -> TriMesh {
+    let mut side = up;
+    tube_facing(line, radius, sides, |t| {
+        side = (side - t * t.dot(&side)).normalize();
+        side
+    })
+}
+
+/// A tube of which each cross section has its first corner where `facing` says for the tangent there: across it, of length 1.
+pub(super) fn tube_facing(
+    line: &[Point3<f64>],
+    radius: impl Fn(usize) -> f64,
+    sides: u32,
+    mut facing: impl FnMut(Vector3<f64>) -> Vector3<f64>,
+) -> TriMesh {
     let n = line.len();
     let tangent = |i: usize| (line[(i + 1).min(n - 1)] - line[i.saturating_sub(1)]).normalize();
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    let mut side = up;
     for (i, p) in line.iter().enumerate() {
         let t = tangent(i);
-        side = (side - t * t.dot(&side)).normalize();
+        let side = facing(t);
         let other = t.cross(&side);
         vertices.extend((0..sides).map(|k| {
             let (s, c) = mp_math::sin_cos(TAU * f64::from(k) / f64::from(sides));

@@ -29,6 +29,11 @@ fn space(p: &RigidProblem) -> Se3 {
     Se3::new([b.min.x, b.min.y, b.min.z], [b.max.x, b.max.y, b.max.z]).unwrap()
 }
 
+/// The radius of the robot about its origin.
+fn radius(p: &RigidProblem) -> f64 {
+    p.robot.mesh.vertices().iter().map(|v| v.coords.norm()).fold(0.0, f64::max)
+}
+
 #[test]
 fn committed_files_are_regenerated_bit_for_bit() {
     let files = generate();
@@ -99,7 +104,9 @@ fn starts_and_goals_are_free_and_within_bounds() {
                 })
             }
         };
-        assert!(clearances.iter().all(|&c| c > 0.05), "{}: {clearances:?}", p.name);
+        // Some begin in their narrow passage.
+        let least = crate::puzzle(&p.name).map_or(0.05, |known| (0.99 * known.room * radius(&p)).min(0.05));
+        assert!(clearances.iter().all(|&c| c > least), "{}: {clearances:?}", p.name);
     }
 }
 
@@ -131,6 +138,39 @@ fn the_alphas_come_apart() {
         for (i, step) in path.windows(2).enumerate() {
             assert!(verifier.check_motion(&step[0], &step[1]).is_free(), "{}: motion {i}", p.name);
         }
+    }
+}
+
+/// Each hard scene has a known solution: the certified checker proves it, and its least clearance is the room that the scene is said to
+/// leave.
+#[test]
+fn puzzles_can_be_solved_and_are_as_tight_as_said() {
+    let easy: Vec<&str> = crate::without_solution().collect();
+    let puzzles: Vec<RigidProblem> =
+        scenes().into_iter().filter(|p| !easy.contains(&p.name.as_str())).collect();
+    for p in &puzzles {
+        let known = crate::puzzle(&p.name).unwrap();
+        let path = PathFile::read(assets().join(format!("paths/{}.txt", p.name))).unwrap().poses();
+        assert_eq!((path[0], path[path.len() - 1]), (p.start, p.goal), "{}", p.name);
+        let mut robot = FreeFlyer::new(&p.robot.mesh, obstacles(p)).unwrap();
+        let space = space(p);
+        let mut verifier = Verifier::new(&space, &robot).unwrap();
+        let mut least = f64::INFINITY;
+        for (i, step) in path.windows(2).enumerate() {
+            assert!(verifier.check_motion(&step[0], &step[1]).is_free(), "{}: motion {i}", p.name);
+            for part in 0..20 {
+                let q = space.interpolate(&step[0], &step[1], f64::from(part) / 20.0);
+                least = least.min(robot.clearance(&q, 1.0));
+            }
+        }
+        let room = least / radius(p);
+        // The numbers have two or three digits, and corners between samples come a little nearer.
+        assert!((room / known.room - 1.0).abs() < 0.05, "{}: {room}", p.name);
+    }
+    assert!(puzzles.len() >= 12 && crate::PUZZLES.is_sorted_by_key(|known| known.grade));
+    for known in crate::PUZZLES {
+        let solved = puzzles.iter().any(|p| p.name == known.scene);
+        assert!(crate::scene(known.scene).is_some() && (solved || known.grade == 1), "{}", known.scene);
     }
 }
 

@@ -93,11 +93,28 @@ impl SceneInfo {
             goals: scene.goals(),
             triangles: still.filter_map(|body| Some(body.mesh.as_ref()?.triangles)).sum(),
             free: scene.free_share(10_000),
-            details: scene.details(),
+            details: graded(scene).into_iter().chain(scene.details()).collect(),
             bodies,
             warnings,
         }
     }
+}
+
+/// How hard a shipped scene is, if it is graded.
+#[cfg(feature = "scenes")]
+fn graded(scene: &Scene) -> Option<(String, String)> {
+    let known = mp_scenes::puzzle(scene.name()).filter(|_| scene.files.shipped)?;
+    let room = plain((1e4 * known.room).round() / 100.0);
+    let text = format!(
+        "{}: {}; a way is known with a clearance of {room}% of the robot's radius",
+        known.grade, known.about
+    );
+    Some(("grade".to_owned(), text))
+}
+
+#[cfg(not(feature = "scenes"))]
+fn graded(_: &Scene) -> Option<(String, String)> {
+    None
 }
 
 impl BodyInfo {
