@@ -47,7 +47,7 @@ fn results_are_lines_in_order() {
 
     // The same as without a list.
     let scene = mp_plan::Scene::find("easy").unwrap();
-    let report = scene.plan(&mp_plan::Request::new("rrt-connect").seed(8)).unwrap();
+    let report = scene.plan(&mp_plan::Request::new("auto").seed(8)).unwrap();
     assert_eq!(items[3]["report"]["fingerprint"].as_str(), report.fingerprint.as_deref());
 }
 
