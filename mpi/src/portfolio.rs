@@ -73,7 +73,7 @@ impl Watch for Watcher {
 
 /// Plans. True when there is a path.
 pub(crate) fn run(args: &Race, link: &dyn Link, cancel: &Cancel) -> Result<bool, Error> {
-    let suits = |scene: &Scene| scene.default_planner().to_owned();
+    let suits = |scene: &Scene| Portfolio::default_planner(scene).to_owned();
     let problem = args.problem.on_ranks(link, cancel, suits, |scene, request| args.check(scene, request))?;
     // The first rank says why.
     let Some((scene, request)) = problem else { return Ok(true) };

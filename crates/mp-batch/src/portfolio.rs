@@ -212,6 +212,15 @@ impl Portfolio {
         outcome.ok_or_else(|| Error::new("there is no rank that hands out the runs"))
     }
 
+    /// The planner of the runs where none is named: that of the scene, but `rrt-connect` in place of `auto`, as one portfolio is enough.
+    #[must_use]
+    pub fn default_planner(scene: &Scene) -> &'static str {
+        match scene.default_planner() {
+            "auto" => "rrt-connect",
+            planner => planner,
+        }
+    }
+
     /// As [`plan`](Self::plan), on all ranks of `link`: each calls this with the same scene, request, portfolio and number of
     /// threads. The first has the outcome, the others `None`.
     ///
