@@ -8,10 +8,12 @@ use mp_plan::{Budget, Error, Finish, Request, Scene};
 pub(crate) fn request_for(scene: &Scene, args: &Plan, request: &Request) -> Result<Request, Error> {
     let mut request = request.clone();
     if args.planner.is_none() && args.request.is_none() {
-        let planner = match () {
-            () if args.routes.is_some() => "cyclic-rrt",
-            () if args.portfolio.is_some() => mp_batch::Portfolio::default_planner(scene),
-            () => scene.default_planner(),
+        let planner = if args.routes.is_some() {
+            "cyclic-rrt"
+        } else if args.portfolio.is_some() {
+            mp_batch::Portfolio::default_planner(scene)
+        } else {
+            scene.default_planner()
         };
         request.planner = planner.to_owned();
         request.check()?;

@@ -74,7 +74,7 @@ impl Front {
 /// How many directions are tried for a pair of triangles.
 const TRIES: usize = 5;
 
-/// The least coordinate of points along a direction, and which of them has it. Without branches, which nothing foretells.
+/// The least coordinate of points along a direction, and which of them has it. Without branches: a processor cannot predict them here.
 fn least_along<const N: usize>(points: &[Point3<f64>; N], direction: &Vector3<f64>) -> (f64, usize) {
     let along = points.map(|p| p.coords.dot(direction));
     let mut least = (f64::INFINITY, 0);

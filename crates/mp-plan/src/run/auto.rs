@@ -2,8 +2,9 @@
 //!
 //! No planner is best everywhere, and none of them says beforehand how long it will take. So several work by turns, each on a share of the
 //! work, until one has a path: C. Gomes and B. Selman, *Algorithm portfolios*, Artificial Intelligence 126, 2001. The first is
-//! RRT-Connect as the request says, with trees of equal size: where one of them grows in a dead end, it waits for the other one. It has a turn
-//! that is long enough for what is easy, so that such problems cost nothing more. The others are for what is hard: shorter steps for narrow places, a metric in which turning counts as
+//! RRT-Connect as the request says, with balanced trees: the larger one waits, so that work goes to the end that is boxed in. It has a turn
+//! that is long enough for what is easy, so that such problems cost nothing more. The others are for what is hard: shorter steps for
+//! narrow places, a metric in which turning counts as
 //! much as the robot's size says, trees that follow surfaces, roadmaps with samples between obstacles.
 //!
 //! A turn is measured in queries and iterations, never in time: the same request gives the same path on every machine. Each search

@@ -54,9 +54,9 @@ pub struct Tuning {
     /// After this many rejected paths the local planner is no longer trusted: each new edge is verified as it grows. By
     /// default 10; 0 verifies every edge.
     pub patience: u64,
-    /// Of two trees, the one with more than this times the nodes of the other waits until that has caught up; otherwise they take turns (J. J. Kuffner and
+    /// Of two trees, one with more than this times the nodes of the other does not explore until that has caught up (J. J. Kuffner and
     /// S. M. LaValle, *An efficient approach to path planning using balanced bidirectional RRT search*, CMU-RI-TR-05-34, 2005). At least
-    /// 1, or 0 for strict turns, the default.
+    /// 1, or 0 for strict turns, the default. It helps where one end is boxed in, unless hardly any step is free there.
     pub balance: f64,
 }
 

@@ -13,7 +13,8 @@ use mp_cspace::{
 ///
 /// The first iteration tries a straight motion from the start to each listed goal state, unless one of the extenders
 /// [declines](Extender::allows_direct). Each iteration then grows one tree toward a sampled target, and the other toward
-/// the node that was added; the trees take turns, but one that is much [larger](crate::Tuning::balance) waits. Where they meet, the path is verified. The goal tree has a root for each listed
+/// the node that was added; the trees take turns, unless the larger one is to [wait](crate::Tuning::balance). Where they meet, the path is
+/// verified. The goal tree has a root for each listed
 /// goal state; where goals come from a sampler, a root is added with probability
 /// [`goal_bias`](crate::Tuning::goal_bias) per iteration, and in every iteration until there is one. Stepping on after a
 /// solution continues with the same trees.
@@ -109,7 +110,7 @@ where
         None
     }
 
-    /// Which tree explores now: the one that did not explore last, unless it is too large.
+    /// Which tree explores now: the one whose turn it is, or the other one while that is too small.
     fn next_turn(&mut self) -> usize {
         let size = |tree: usize| self.trees[tree].nodes().len() as f64;
         let other = self.turn ^ 1;
