@@ -8,7 +8,9 @@
 pub mod draw;
 pub mod oracle;
 pub mod request;
+mod slice;
 pub mod soak;
 pub mod tally;
+mod thin_walls;
 pub mod trial;
 pub mod worlds;

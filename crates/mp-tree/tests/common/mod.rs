@@ -177,16 +177,16 @@ pub(crate) struct Arm<const N: usize> {
 }
 
 impl<const N: usize> Arm<N> {
-    /// The joints and the tip.
-    pub(crate) fn joints(&self, q: &SVector<f64, N>) -> Vec<Vector2<f64>> {
+    /// Where each link begins and ends.
+    pub(crate) fn links(&self, q: &SVector<f64, N>) -> [[Vector2<f64>; 2]; N] {
         let (mut at, mut angle) = (Vector2::zeros(), 0.0);
-        let mut joints = vec![at];
-        for turn in q.iter() {
-            angle += turn;
-            at += Vector2::new(mp_math::cos(angle), mp_math::sin(angle)) * self.link;
-            joints.push(at);
-        }
-        joints
+        std::array::from_fn(|i| {
+            angle += q[i];
+            let (sin, cos) = mp_math::sin_cos(angle);
+            let from = at;
+            at += Vector2::new(cos, sin) * self.link;
+            [from, at]
+        })
     }
 }
 impl<const N: usize> Validity<SVector<f64, N>> for Arm<N> {
@@ -197,14 +197,16 @@ impl<const N: usize> Validity<SVector<f64, N>> for Arm<N> {
 impl<const N: usize> Clearance<SVector<f64, N>> for Arm<N> {
     /// Exact: the distance of a disc's centre from the axis of a link, less both radii.
     fn clearance(&mut self, q: &SVector<f64, N>, _: f64) -> f64 {
-        let joints = self.joints(q);
-        let links = joints.windows(2).flat_map(|pair| self.discs.iter().map(move |disc| (pair, disc)));
-        let distances = links.map(|(pair, (center, radius))| {
-            let (along, to) = (pair[1] - pair[0], center - pair[0]);
-            let nearest = along * (to.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-            (to - nearest).norm() - radius - self.radius
-        });
-        distances.fold(f64::INFINITY, f64::min)
+        let mut least = f64::INFINITY;
+        for [from, tip] in self.links(q) {
+            let along = tip - from;
+            for (center, radius) in &self.discs {
+                let to = center - from;
+                let nearest = along * (to.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+                least = least.min((to - nearest).norm() - radius - self.radius);
+            }
+        }
+        least
     }
 }
 impl<const N: usize> MotionClearance<SVector<f64, N>> for Arm<N> {

@@ -1,4 +1,4 @@
-//! Tests of the whole family. One program, so that what they share is compiled once.
+//! Tests of the whole family. One program, so that what they share is compiled once; spaces that only few have are in `spaces`.
 
 mod bad_input;
 #[path = "../common/mod.rs"]
@@ -6,9 +6,7 @@ mod common;
 mod conformance;
 mod cyclic;
 mod engine;
-mod erased;
 mod goals;
-mod inputs;
 mod obrrt;
 mod optimal;
 mod panics;

@@ -1,12 +1,14 @@
 //! A slice of the soak: all kinds of worlds and all planners, and the loop around them.
 
+#![cfg(test)]
+
+use crate::draw::Draw;
+use crate::oracle::{Fault, rows_of};
+use crate::soak::{Options, read_tally, run, write_problem};
+use crate::tally::Tally;
+use crate::trial::{Outcome, Problem, Wanted, damage};
+use crate::worlds::KINDS;
 use mp_plan::{Cancel, PathFileKind, PathRows, Scene};
-use mp_soak::draw::Draw;
-use mp_soak::oracle::{Fault, rows_of};
-use mp_soak::soak::{Options, read_tally, run, write_problem};
-use mp_soak::tally::Tally;
-use mp_soak::trial::{Outcome, Problem, Wanted, damage};
-use mp_soak::worlds::KINDS;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 

@@ -1,6 +1,8 @@
 //! The oracle sees what is wrong with a path, for every kind of robot: a wall thinner than a hair, a wrong end, a leap.
 
-use mp_soak::oracle::{
+#![cfg(test)]
+
+use crate::oracle::{
     Ask, Body, Case, Drive, DriveKind, Fault, Joint, Mover, Moves, Piece, Shape, Timing, Tree, box_pieces,
 };
 use nalgebra::{Isometry3, Point3, Translation3, Vector3};
