@@ -17,6 +17,7 @@ PlannerName: TypeAlias = Literal[
     "mvb-rrt",
     "obprm",
     "obrrt",
+    "obrrt-connect",
     "obstacle-geometry-prm",
     "prm",
     "prm-star",

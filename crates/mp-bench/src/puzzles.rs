@@ -21,14 +21,15 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// The planners, each with its settings.
-const PLANNERS: [&str; 7] = [
+const PLANNERS: [&str; 8] = [
     "auto",
     "rrt-connect",
+    "obrrt-connect step=1% balance=1",
+    "obrrt-connect step=0.3% balance=1",
     "obrrt step=1%",
     "retraction-rrt",
     "rrt-connect step=1%",
     "bridge-prm metric=scaled",
-    "rrt",
 ];
 /// Those of the other program, after this word; without `range` with its own longest step, a fifth of the extent.
 const PEER: &str = "peer ";
@@ -42,7 +43,7 @@ const QUICK_CAP: f64 = 1.0;
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `puzzles`")]
 pub(crate) struct Options {
-    /// A planner to measure, with its settings and metric: `rrt-connect step=1% metric=scaled` [default: auto and six others].
+    /// A planner to measure, with its settings and metric: `rrt-connect step=1% metric=scaled` [default: auto and seven others].
     #[arg(long = "planner", value_name = "PLANNER")]
     planners: Vec<String>,
     /// Only scenes of this grade or below.
@@ -232,7 +233,7 @@ mod tests {
         for planner in &plan.planners {
             request(planner).unwrap().check().unwrap();
         }
-        assert_eq!(request(PLANNERS[5]).unwrap().metric, mp_plan::MetricName::Scaled);
+        assert_eq!(request(PLANNERS[7]).unwrap().metric, mp_plan::MetricName::Scaled);
         let easy = Plan::new(&Common::test(), &Options { grade: Some(1), ..Options::default() });
         assert!(!easy.scenes.is_empty() && easy.scenes.len() < plan.scenes.len());
     }

@@ -26,7 +26,7 @@ use crate::{Factored, MotionValidity, Path, Rng, Space, trace};
 pub struct Effort {
     /// Shortcuts tried at most, of each kind.
     pub attempts: usize,
-    /// Shortcuts that may fail one after another before giving up.
+    /// Shortcuts that may gain less than a thousandth of the length, one after another, before giving up.
     pub patience: usize,
     /// Rounds of corner rounding, each at most doubling the number of states; at most 10 are done.
     pub rounds: usize,

@@ -13,7 +13,7 @@ use crate::report::{RunStage, StageTime};
 use crate::robot::motion::{By, Counting, motions};
 use crate::{Control, Error, Finish, PathRows, Request, Robot, Stage, StoppedBy};
 use mp_cspace::erased::{AnyCheck, AnySpace};
-use mp_cspace::shorten::{Effort, simplify};
+use mp_cspace::shorten::{Effort, reduce, shortcut, simplify};
 use mp_cspace::{Configuration, Factored, Interrupt, MotionCheck, MotionValidity, Path, Rng};
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
@@ -78,8 +78,8 @@ pub(crate) fn finish_given(
 /// In passages too narrow for the clearance of shortcuts they keep this part of it.
 const NARROW: f64 = 0.1;
 
-/// Of two paths that lead through narrow passages, the one that keeps more elsewhere is taken if the other is not shorter than this part
-/// of its length.
+/// Of two paths that lead through narrow passages, the one that keeps more elsewhere is taken if plain shortcuts do not make the other one
+/// shorter than this part of its length.
 const FAR_SHORTER: f64 = 0.8;
 
 /// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](crate::Motion::shortcut_clearance), or leads through a
@@ -147,9 +147,10 @@ pub fn shorten(
     }
     let short = Path::straight(states);
     // There are passages where little is kept: a far shorter way may lead through others.
-    let other = shorten_by(&factors, &mut narrow, &short, &mut rng);
+    let other = reduce(&factors, &mut narrow, &short);
+    let other = shortcut(&factors, &mut narrow, &other, Effort::default(), &mut rng);
     let is_far_shorter = other.length(&space) < FAR_SHORTER * short.length(&space);
-    Ok(if is_far_shorter { other } else { short })
+    Ok(if is_far_shorter { shorten_by(&factors, &mut narrow, &other, &mut rng) } else { short })
 }
 
 /// `check`, which finds no motion free that the robot cannot make.

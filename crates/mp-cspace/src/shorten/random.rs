@@ -1,8 +1,13 @@
 //! Random shortcuts.
 
-use super::{Effort, all_free};
+use super::{Effort, all_free, reduce};
 use crate::{Factored, MotionValidity, Path, Rng, Space};
 use rand::RngExt;
+
+/// Shortcuts go on as long as this part of the length is gained within [`Effort::patience`].
+const WORTH: f64 = 1e-3;
+/// States are left out once there are this many times as many as before, as every shortcut asks about all between its ends.
+const CROWDED: usize = 4;
 
 /// A piece of a path: it begins on edge `first` and ends on edge `last`, at the arc lengths `s` and the
 /// states `from` and `to`.
@@ -62,12 +67,13 @@ fn improve<C: Space>(
 ) -> Path<C::State> {
     let mut states = path.states.clone();
     let mut s = arc_lengths(space, &states);
-    let mut failures = 0;
+    let (mut attempts, mut gained) = (0, 0.0);
+    let mut crowded = CROWDED * states.len();
     for _ in 0..effort.attempts {
-        if failures >= effort.patience || states.len() < 3 || check.is_interrupted() {
+        if attempts >= effort.patience || states.len() < 3 || check.is_interrupted() {
             break;
         }
-        failures += 1;
+        attempts += 1;
         let Some(piece) = random_piece(space, &states, &s, rng) else { continue };
         let (first, last) = (piece.first, piece.last);
         let middle = propose(&states, &s, piece, rng);
@@ -81,8 +87,17 @@ fn improve<C: Space>(
         if is_shorter && all_free(check, &new) {
             new.pop();
             states.splice(first..=last, new);
+            if states.len() > crowded {
+                states = reduce(space, check, &Path::straight(states)).states;
+                crowded = CROWDED * states.len();
+            }
+            gained += s[s.len() - 1];
             s = arc_lengths(space, &states);
-            failures = 0;
+            let length = s[s.len() - 1];
+            gained -= length;
+            if gained > WORTH * length {
+                (attempts, gained) = (0, 0.0);
+            }
         }
     }
     Path::straight(states)

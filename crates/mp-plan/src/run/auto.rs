@@ -5,7 +5,7 @@
 //! RRT-Connect as the request says, with balanced trees: the larger one waits, so that work goes to the end that is boxed in. It has a turn
 //! that is long enough for what is easy, so that such problems cost nothing more. The others are for what is hard: shorter steps for
 //! narrow places, a metric in which turning counts as
-//! much as the robot's size says, trees that follow surfaces, roadmaps with samples between obstacles.
+//! much as the robot's size says, trees that grow along surfaces by steps of two lengths, roadmaps with samples between obstacles.
 //!
 //! A turn is measured in queries and iterations, never in time: the same request gives the same path on every machine. Each search
 //! draws from a stream of its own. What a robot cannot do (a metric, hints of obstacles) is left out.
@@ -66,12 +66,21 @@ const FIRST: &str = "rrt-connect";
 /// Its share of the turns after its first one: what it has not solved by then is rather for the others.
 const FIRST_SHARE: f64 = 0.5;
 
+/// Trees of the same size.
+const BALANCED: (&str, &str) = (BALANCE.name, BALANCE.default);
+
 /// The others, in the order of their turns.
 const OTHERS: &[MemberInfo] = &[
-    MemberInfo { planner: "obrrt", settings: &[("step", "1%")], metric: None, share: 1.0 },
+    MemberInfo { planner: "obrrt-connect", settings: &[("step", "1%"), BALANCED], metric: None, share: 1.0 },
+    MemberInfo {
+        planner: "obrrt-connect",
+        settings: &[("step", "0.3%"), BALANCED],
+        metric: None,
+        share: 1.0,
+    },
     MemberInfo { planner: "retraction-rrt", settings: &[], metric: None, share: 0.25 },
     MemberInfo { planner: "rrt-connect", settings: &[("step", "1%")], metric: None, share: 1.0 },
-    MemberInfo { planner: "bridge-prm", settings: &[], metric: Some(MetricName::Scaled), share: 1.0 },
+    MemberInfo { planner: "bridge-prm", settings: &[], metric: Some(MetricName::Scaled), share: 0.25 },
 ];
 
 /// The others begin with this part of the first turn.

@@ -15,6 +15,7 @@ mod dd_rrt;
 mod informed_rrt_star;
 mod mvb_rrt;
 mod obrrt;
+mod obrrt_connect;
 mod or_parallel;
 mod rc_rrt;
 mod restarts;
@@ -47,6 +48,7 @@ const EXAMPLES: &[Example] = &[
     ("informed_rrt_star", informed_rrt_star::main),
     ("mvb_rrt", mvb_rrt::main),
     ("obrrt", obrrt::main),
+    ("obrrt_connect", obrrt_connect::main),
     ("or_parallel", or_parallel::main),
     ("rc_rrt", rc_rrt::main),
     ("restarts", restarts::main),

@@ -9,7 +9,7 @@ use rand::RngExt;
 use shared::Point;
 
 /// The walls of the trap run around its middle.
-struct Around;
+pub(crate) struct Around;
 
 impl ObstacleHints<Point> for Around {
     fn touches(&mut self, q: &Point) -> bool {

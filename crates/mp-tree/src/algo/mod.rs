@@ -21,6 +21,7 @@
 //! | [`UtilityRrt`](crate::UtilityRrt) | [`utility_rrt`] | from start and goal | as RRT-Connect, the most promising of several expansions |
 //! | [`RetractionRrt`](crate::RetractionRrt) | [`retraction_rrt`] | from start and goal | as RRT-Connect; what is blocked goes on along the obstacle |
 //! | [`Obrrt`](crate::Obrrt) | [`obrrt`] | from the start | one step toward a sample or along an obstacle, by hints |
+//! | [`ObrrtConnect`](crate::ObrrtConnect) | [`obrrt`] | from start and goal | as RRT-Connect, one step toward a sample or along an obstacle |
 //! | [`TRrt`](crate::TRrt) | [`t_rrt`] | from the start | one step toward a sample, if its end does not cost too much more |
 //! | [`Rrs`](crate::Rrs) | [`rrs`] | from the start, of edges that bend | one step toward a sample, around obstacles by a snake |
 //! | [`RrsConnect`](crate::RrsConnect) | [`rrs`] | from start and goal, of edges that bend | as RRT-Connect, around obstacles by snakes |
@@ -89,7 +90,8 @@ planners! {
     mvb_rrt: MvbRrt, VoronoiBias;
     utility_rrt: UtilityGuided, UtilityRrt;
     retraction_rrt: Retract, RetractionRrt;
-    obrrt: GrowthWeights, Obrrt, ObstacleGuided;
+    obrrt: GrowthWeights, Obrrt, ObrrtConnect, ObstacleGuided;
+    obrrt::connect: ;
     cyclic_rrt: Cyclic, CyclicRrt, Listed;
     rrs: Rrs;
     rrs::connect: RrsConnect;

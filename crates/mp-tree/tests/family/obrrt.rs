@@ -99,18 +99,9 @@ fn a_rod_turns_to_pass_a_gap() {
 fn two_trees_grow_along_obstacles() {
     let (space, boxes) = (square(), hollow([0.4, 0.5], 0.2, 0.05, 0.03));
     for seed in 0..20 {
-        let parts = TreePlannerParts {
-            target_sampler: Samples(Uniform(&space)),
-            selector: NearestSelector(Linear::new()),
-            extender: (
-                ObstacleGuided::new(boxes.clone(), GrowthWeights::default()).unwrap(),
-                Connect::default(),
-            ),
-            inserter: AppendDistinct::default(),
-            tuning: step(0.1),
-        };
         let problem = point_problem(&space, &boxes, [[0.4, 0.5], [0.05, 0.5]]);
-        let mut planner = TwoTrees::assemble("obrrt-connect", problem, parts).unwrap();
+        let mut planner =
+            ObrrtConnect::new(problem, boxes.clone(), step(0.1), GrowthWeights::default()).unwrap();
         let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(20_000), &mut ());
         let Outcome::Solved(path) = outcome else { panic!("seed {seed}: {outcome:?}") };
         assert!(!path.states.windows(2).any(|pair| boxes.hit(&pair[0], &pair[1])));
