@@ -36,8 +36,8 @@
 //! **When to use it.** For one-way motions and goal regions beyond narrow passages, where the walls lead through the
 //! passage and a robot that turns as it goes gets stuck. Where there are goal states and motions can be reversed,
 //! try [RRT-Connect](super::rrt_connect) first, and then [`ObrrtConnect`]: the two trees of RRT-Connect, whose extensions toward
-//! samples are by these growth methods. With `balance=1` and short steps it is the best there is here for puzzles: tubes, keys, threads,
-//! traps, each in a tenth of the time or less of the one tree, as a rule. Made [by name](crate::build) both
+//! samples are by these growth methods. With `balance=1` and steps of 0.3% to 1% it solves more of the shipped puzzles than any other
+//! planner here: tubes, keys, assemblies in a fraction of the time of the one tree. Made [by name](crate::build) both
 //! take the hints [of the problem](crate::Problem::with_obstacles).
 //!
 //! | parameter | range | default |
