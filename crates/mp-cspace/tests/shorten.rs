@@ -120,3 +120,20 @@ fn degenerate_paths_are_left_alone() {
         assert!(out.states.len() <= n);
     }
 }
+
+/// Each shortcut of one factor adds states. They do not pile up where there is room to leave them out.
+#[test]
+fn states_do_not_pile_up() {
+    let (space, effort) = (space(), Effort { attempts: 300, patience: 300, rounds: 0 });
+    for seed in 0..10 {
+        let path = rambling(&space, seed);
+        let mut open = Discrete::new(&space, |_: &Se2State| true, Length::Absolute(0.5)).unwrap();
+        let short = partial_shortcut(&space, &mut open, &path, effort, &mut Rng::seed(seed));
+        assert!(
+            short.states.len() <= 4 * path.states.len(),
+            "{} of {}",
+            short.states.len(),
+            path.states.len()
+        );
+    }
+}

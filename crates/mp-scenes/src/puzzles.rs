@@ -5,8 +5,8 @@
 pub struct Puzzle {
     /// The name of the scene.
     pub scene: &'static str,
-    /// How hard it is: 1 where RRT-Connect takes seconds at most, 2 where it does not always arrive within a minute, 3 where nothing here
-    /// does so reliably.
+    /// How hard it is: 1 where RRT-Connect takes seconds at most, 2 where it does not always arrive within a minute, 3 where no
+    /// planner did so reliably when the scene was made.
     pub grade: u8,
     /// The least clearance along the widest way that is known, as a share of the robot's radius about its origin.
     pub room: f64,

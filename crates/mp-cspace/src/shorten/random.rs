@@ -4,9 +4,9 @@ use super::{Effort, all_free, reduce};
 use crate::{Factored, MotionValidity, Path, Rng, Space};
 use rand::RngExt;
 
-/// Shortcuts go on as long as this part of the length is gained within [`Effort::patience`].
+/// Shortcuts end when [`Effort::patience`] of them, one after another, have not gained this part of the length.
 const WORTH: f64 = 1e-3;
-/// States are left out once there are this many times as many as before, as every shortcut asks about all between its ends.
+/// A path with this many times the states it had is [reduced](reduce): each shortcut of one factor asks about all states between its ends.
 const CROWDED: usize = 4;
 
 /// A piece of a path: it begins on edge `first` and ends on edge `last`, at the arc lengths `s` and the
@@ -67,13 +67,14 @@ fn improve<C: Space>(
 ) -> Path<C::State> {
     let mut states = path.states.clone();
     let mut s = arc_lengths(space, &states);
-    let (mut attempts, mut gained) = (0, 0.0);
+    // Shortcuts tried since the path had the length `before`.
+    let (mut tried, mut before) = (0, s[s.len() - 1]);
     let mut crowded = CROWDED * states.len();
     for _ in 0..effort.attempts {
-        if attempts >= effort.patience || states.len() < 3 || check.is_interrupted() {
+        if tried >= effort.patience || states.len() < 3 || check.is_interrupted() {
             break;
         }
-        attempts += 1;
+        tried += 1;
         let Some(piece) = random_piece(space, &states, &s, rng) else { continue };
         let (first, last) = (piece.first, piece.last);
         let middle = propose(&states, &s, piece, rng);
@@ -91,12 +92,10 @@ fn improve<C: Space>(
                 states = reduce(space, check, &Path::straight(states)).states;
                 crowded = CROWDED * states.len();
             }
-            gained += s[s.len() - 1];
             s = arc_lengths(space, &states);
             let length = s[s.len() - 1];
-            gained -= length;
-            if gained > WORTH * length {
-                (attempts, gained) = (0, 0.0);
+            if before - length > WORTH * length {
+                (tried, before) = (0, length);
             }
         }
     }

@@ -66,7 +66,7 @@ const FIRST: &str = "rrt-connect";
 /// Its share of the turns after its first one: what it has not solved by then is rather for the others.
 const FIRST_SHARE: f64 = 0.5;
 
-/// Trees of the same size.
+/// The larger tree waits for the smaller one.
 const BALANCED: (&str, &str) = (BALANCE.name, BALANCE.default);
 
 /// The others, in the order of their turns.

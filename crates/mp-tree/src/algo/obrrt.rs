@@ -35,9 +35,9 @@
 //!
 //! **When to use it.** For one-way motions and goal regions beyond narrow passages, where the walls lead through the
 //! passage and a robot that turns as it goes gets stuck. Where there are goal states and motions can be reversed,
-//! try [RRT-Connect](super::rrt_connect) first, and then [`ObrrtConnect`]: the two trees of RRT-Connect, whose extensions toward
-//! samples are by these growth methods. With `balance=1` and steps of 0.3% to 1% it solves more of the shipped puzzles than any other
-//! planner here: tubes, keys, assemblies in a fraction of the time of the one tree. Made [by name](crate::build) both
+//! try [RRT-Connect](super::rrt_connect) first, and then [`ObrrtConnect`]: it grows two trees as RRT-Connect does, and each step
+//! toward a sample is made by one of these methods. With `balance=1` and steps of 0.3% to 1% it solves tubes, keys and assemblies that
+//! the one tree solves late or not at all. Made [by name](crate::build) both
 //! take the hints [of the problem](crate::Problem::with_obstacles).
 //!
 //! | parameter | range | default |
@@ -51,7 +51,7 @@
 //! A point goes around discs in the unit square, along their tangents:
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Length, Rn, Rng, Straight, obstacles::ObstacleHints};
-//! use mp_tree::{GrowthWeights, Obrrt, Problem, Tuning};
+//! use mp_tree::{GrowthWeights, Obrrt, ObrrtConnect, Problem, Tuning};
 //! use nalgebra::Vector2;
 //! use rand::RngExt;
 //!
@@ -80,15 +80,23 @@
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Point| !Tangents.touches(q);
-//! let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.005))?);
-//! let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
 //! let (start, goal) = (Point::new(0.1, 0.5), Point::new(0.9, 0.5));
+//! let problem = || {
+//!     let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.005))?);
+//!     let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0005))?;
+//!     Problem::new(&space, local, verifier, start, goal)
+//! };
 //!
-//! let problem = Problem::new(&space, local, verifier, start, goal)?;
-//! let mut planner = Obrrt::new(problem, Tangents, Tuning::default(), GrowthWeights::default())?;
-//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
-//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
-//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! let (tuning, weights) = (Tuning::default(), GrowthWeights::default());
+//! let planners: [Box<dyn Planner<Point, Edge = ()>>; 2] = [
+//!     Box::new(Obrrt::new(problem()?, Tangents, tuning, weights)?),
+//!     Box::new(ObrrtConnect::new(problem()?, Tangents, tuning, weights)?),
+//! ];
+//! for mut planner in planners {
+//!     let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//!     let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//!     assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
