@@ -14,12 +14,17 @@ pub(crate) fn count() {
     COUNTED.store(true, Ordering::Relaxed);
 }
 
+/// Whether time is counted.
+pub(crate) fn is_counted() -> bool {
+    COUNTED.load(Ordering::Relaxed)
+}
+
 /// Nanoseconds of [processor time](processor_nanoseconds) that this thread has used, or of counted time.
 pub(crate) fn nanoseconds() -> f64 {
     thread_local! {
         static ASKED: Cell<f64> = const { Cell::new(0.0) };
     }
-    if !COUNTED.load(Ordering::Relaxed) {
+    if !is_counted() {
         return processor_nanoseconds();
     }
     ASKED.set(ASKED.get() + 1e5);

@@ -2,6 +2,7 @@
 
 mod lab;
 mod log;
+mod provenance;
 pub(crate) mod ranks;
 pub(crate) mod shards;
 mod stats;

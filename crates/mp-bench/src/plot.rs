@@ -19,7 +19,7 @@ pub(crate) struct ChartCurve {
     pub(crate) colour: usize,
     /// x and y of each point; points that the axes cannot show are left out.
     pub(crate) points: Vec<(f64, f64)>,
-    /// The x of a point, and the lower and upper end of the range of its y.
+    /// The x of a point, and the lower and upper end of the range of its y: drawn as a band along the curve.
     pub(crate) ranges: Vec<(f64, f64, f64)>,
     /// Whether it is drawn thin, as a companion of another curve.
     pub(crate) thin: bool,
@@ -72,17 +72,17 @@ pub(crate) struct Labels<'a> {
 const WIDTH: u32 = 1100;
 const LEGEND: u32 = 250;
 
-const COLOURS: [RGBColor; 10] = [
-    RGBColor(0x1f, 0x77, 0xb4),
-    RGBColor(0xd6, 0x27, 0x28),
-    RGBColor(0x2c, 0xa0, 0x2c),
-    RGBColor(0x94, 0x67, 0xbd),
-    RGBColor(0xe0, 0x82, 0x14),
-    RGBColor(0x55, 0x55, 0x55),
-    RGBColor(0x17, 0xa2, 0xb8),
-    RGBColor(0xb0, 0x59, 0x8a),
-    RGBColor(0x8c, 0x56, 0x4b),
-    RGBColor(0xbc, 0xbd, 0x22),
+/// Most curves that one can tell apart in a chart.
+pub(crate) const MOST_CURVES: usize = 6;
+
+/// From dark to light, so that they differ without colours too.
+const COLOURS: [RGBColor; MOST_CURVES] = [
+    RGBColor(0x10, 0x18, 0x20),
+    RGBColor(0x4b, 0x2a, 0x8a),
+    RGBColor(0xc2, 0x27, 0x2d),
+    RGBColor(0x2a, 0x9d, 0x8f),
+    RGBColor(0xe8, 0x96, 0x1f),
+    RGBColor(0x9b, 0xd0, 0xf0),
 ];
 
 /// The scale of an axis.
@@ -117,11 +117,37 @@ impl Axis<'_> {
     }
 }
 
+/// Charts of any number of curves, each with a suffix for its name: one with all of them, or several, which all have the first curve.
+pub(crate) fn charts(
+    labels: Labels<'_>,
+    axes: [Axis<'_>; 2],
+    curves: Vec<ChartCurve>,
+) -> Vec<(String, Result<String>)> {
+    if curves.len() <= MOST_CURVES {
+        return vec![(String::new(), chart(labels, axes, &curves))];
+    }
+    let parts: Vec<_> = curves[1..].chunks(MOST_CURVES - 1).enumerate().collect();
+    let part = |(i, others): (usize, &[ChartCurve])| {
+        let own = others.iter().enumerate().map(|(k, curve)| ChartCurve { colour: k + 1, ..curve.clone() });
+        let curves: Vec<_> = std::iter::once(curves[0].clone()).chain(own).collect();
+        let title = format!("{} ({} of {})", labels.title, i + 1, parts.len());
+        (format!("-{}", i + 1), chart(Labels { title: &title, ..labels }, axes, &curves))
+    };
+    parts.iter().copied().map(part).collect()
+}
+
 /// A chart as SVG.
 ///
 /// # Errors
-/// When no curve has a point that the axes show.
+/// When no curve has a point that the axes show, and when there are more than [`MOST_CURVES`], not counting thin companions.
 pub(crate) fn chart(labels: Labels<'_>, [x, y]: [Axis<'_>; 2], curves: &[ChartCurve]) -> Result<String> {
+    let count = curves.iter().filter(|curve| !curve.thin).count();
+    if count > MOST_CURVES {
+        return Err(Error::new(format!(
+            "the chart `{}` has {count} curves, more than {MOST_CURVES}",
+            labels.title
+        )));
+    }
     let shown = |p: &(f64, f64)| x.shows(p.0) && y.shows(p.1);
     let ends = |c: &ChartCurve| {
         c.ranges.iter().flat_map(|&(x, low, high)| [(x, low), (x, high)]).collect::<Vec<_>>()
@@ -219,6 +245,14 @@ where
         .x_label_formatter(&|v| number(*v))
         .y_label_formatter(&|v| number(*v))
         .draw()?;
+    // Bands are below all curves.
+    for curve in curves {
+        let ranges: Vec<_> =
+            curve.ranges.iter().filter(|r| shown(&(r.0, r.1)) && shown(&(r.0, r.2))).collect();
+        let upper = ranges.iter().map(|&&(x, _, high)| (x, high));
+        let band: Vec<_> = upper.chain(ranges.iter().rev().map(|&&(x, low, _)| (x, low))).collect();
+        chart.draw_series([Polygon::new(band, COLOURS[curve.colour % COLOURS.len()].mix(0.15).filled())])?;
+    }
     for (i, curve) in curves.iter().enumerate() {
         let colour = COLOURS[curve.colour % COLOURS.len()];
         let style = colour.stroke_width(if curve.thin { 1 } else { 2 });
@@ -248,10 +282,6 @@ where
                 _ => marked!(area, chart, legend, points, |p| Circle::new(p, 4, colour.stroke_width(1))),
             }
         }
-        let ranges = curve.ranges.iter().filter(|r| shown(&(r.0, r.1)) && shown(&(r.0, r.2)));
-        chart.draw_series(ranges.map(|&(x, low, high)| {
-            PathElement::new([(x, low), (x, high)], colour.mix(0.5).stroke_width(1))
-        }))?;
     }
     Ok(())
 }
@@ -291,6 +321,32 @@ mod tests {
             [0.25, 8.15, 2.0, 512.0, 0.001, 1e-6, 1e6].map(number),
             ["0.25", "8.15", "2", "512", "0.001", "1e-6", "1e6"]
         );
+    }
+
+    /// The lightness of colours in grey, CIE L*.
+    #[test]
+    fn colours_differ_in_grey() {
+        let linear = |c: u8| mp_math::powf((f64::from(c) / 255.0 + 0.055) / 1.055, 2.4);
+        let lightness = |c: &RGBColor| {
+            let y = 0.2126 * linear(c.0) + 0.7152 * linear(c.1) + 0.0722 * linear(c.2);
+            116.0 * mp_math::cbrt(y) - 16.0
+        };
+        let all: Vec<f64> = COLOURS.iter().map(lightness).collect();
+        assert!(all.windows(2).all(|pair| pair[0] + 10.0 < pair[1]) && all[5] < 85.0, "{all:?}");
+    }
+
+    #[test]
+    fn many_curves_are_in_several_charts() {
+        let curve = |i: usize| ChartCurve::new(format!("curve {i}"), i, vec![(1.0, 1.0), (2.0, 3.0)]);
+        let labels = Labels { title: "Time", x: "obstacles", y: "s" };
+        let of = |n: usize| charts(labels, [Axis::Even; 2], (0..n).map(curve).collect());
+        assert_eq!(of(6)[0].0, "");
+        let [(first, a), (second, b)] = &of(8)[..] else { panic!("not two charts") };
+        assert_eq!((first.as_str(), second.as_str()), ("-1", "-2"));
+        let (a, b) = (a.as_ref().unwrap(), b.as_ref().unwrap());
+        assert!(a.contains("curve 0") && a.contains("curve 5") && !a.contains("curve 6"));
+        assert!(b.contains("curve 0") && !b.contains("curve 5") && b.contains("curve 7"));
+        assert!(chart(labels, [Axis::Even; 2], &(0..7).map(curve).collect::<Vec<_>>()).is_err());
     }
 
     #[test]

@@ -83,16 +83,20 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     }
     let widths: Vec<String> = corridors.into_iter().flatten().map(|(name, _)| name).collect();
     parts.push(("Corridors", results.summary(&widths)));
-    let many = queries::measure(common.quick)?;
+    let (many, each_query) = queries::measure(common.quick)?;
     note(&many.markdown());
     parts.push(("Many queries", many));
-    parts.push(("Growth", growth::measure(common.quick)?));
-    let Some(coverage) = coverage::measure(&lab, common.quick)? else { return Ok(false) };
+    lab.csv(&format!("{name}-queries"), &each_query)?;
+    let growth = growth::measure(common.quick)?;
+    lab.csv(&format!("{name}-growth"), &growth)?;
+    parts.push(("Growth", growth));
+    let Some((coverage, each_roadmap)) = coverage::measure(&lab, common.quick)? else { return Ok(false) };
+    lab.csv(&format!("{name}-coverage"), &each_roadmap)?;
     parts.push(("Coverage", coverage));
     let scenes = [named, widths].concat();
     lab.report(&name, &sections(2, &parts), &log.table(&plan.all_cases(&scenes))?)?;
     for corridors in &CORRIDORS {
-        lab.write(&format!("{name}-{}.svg", corridors.name), &results.chart(corridors)?)?;
+        lab.charts(&format!("{name}-{}", corridors.name), results.charts(corridors))?;
     }
     picture::draw(&lab)?;
     Ok(true)

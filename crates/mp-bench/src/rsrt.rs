@@ -135,13 +135,13 @@ fn run_clutter(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
         instances: common.runs_or(3, INSTANCES),
         levels: LEVELS.iter().copied().skip(quick).step_by(1 + quick).collect(),
     };
-    let name = lab.name("rsrt");
+    let name = lab.name("rsrt-clutter");
     let mut log = lab.log(&name, cap)?;
     let complete = series::measure(&plan, lab, &mut log)?;
     let results = tables::Results { log: &log, plan: &plan };
-    lab.text(&name, &results.markdown())?;
+    lab.text(&format!("{name}-claims"), &results.markdown())?;
     lab.charts(&name, results.charts())?;
-    lab.report(&format!("{name}-summary"), &results.summary().markdown(), &log.table(&plan.cases())?)?;
+    lab.report(&name, &results.summary().markdown(), &log.table(&plan.cases())?)?;
     note(&format!("{} runs of up to {:?} each", log.all().len(), Duration::from_secs_f64(cap)));
     Ok(complete)
 }

@@ -1,6 +1,7 @@
 //! Running the cases of experiments, and writing their results.
 
 use super::log::{CaseKey, Log, RunRecord};
+use super::provenance;
 use super::ranks;
 use super::table::Table;
 use crate::error::{IntoError, Result};
@@ -252,14 +253,25 @@ impl Lab {
 
     /// Prints `text` and writes it, with `each` as comma-separated values.
     pub(crate) fn report(&self, name: &str, text: &str, each: &Table) -> Result<()> {
-        self.text(name, text)?;
-        let csv = format!("{name}.csv");
-        self.write(&csv, &each.csv())?;
+        let made_by = provenance::lines(each).into_iter();
+        let made_by: Vec<String> = made_by.map(|(name, said)| format!("{name} `{said}`")).collect();
+        match made_by.is_empty() {
+            true => self.text(name, text)?,
+            false => self.text(name, &format!("{}\n\nMeasured: {}.", text.trim_end(), made_by.join(", ")))?,
+        }
+        let csv = self.csv(name, each)?;
         if self.is_whole() {
             let file = |name: &str| self.file(name).display().to_string();
             note(&format!("written: {}, {}", file(&format!("{name}.md")), file(&csv)));
         }
         Ok(())
+    }
+
+    /// Writes comma-separated values, with what made them in the head. Returns the file's name.
+    pub(crate) fn csv(&self, name: &str, each: &Table) -> Result<String> {
+        let file = format!("{name}.csv");
+        self.write(&file, &each.csv_file())?;
+        Ok(file)
     }
 }
 

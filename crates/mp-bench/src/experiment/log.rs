@@ -1,5 +1,6 @@
 //! The log of finished runs, one line of JSON each, so that an interrupted measurement can be continued.
 
+use super::provenance::commit;
 use super::table::{Table, bit};
 use crate::error::{IntoError, Result};
 use mp_plan::Error;
@@ -7,7 +8,7 @@ use mp_store::Journal;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::hash::Hash;
 use std::path::Path;
 
@@ -20,6 +21,9 @@ struct Line<K, R> {
     cap: f64,
     case: K,
     run: R,
+    /// The commit of the program that ran it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    commit: Option<String>,
 }
 
 /// All finished runs, and the file to which new ones are appended.
@@ -27,6 +31,8 @@ struct Line<K, R> {
 pub(crate) struct Log<K, R> {
     cap: f64,
     runs: HashMap<K, R>,
+    /// The commits of runs that are known from before.
+    earlier: HashMap<K, String>,
     /// The file; `None` where another process keeps it.
     journal: Option<Journal>,
 }
@@ -70,7 +76,7 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
             true => String::from_utf8_lossy(&mp_store::read(path, MAX_LOG_BYTES)?).into_owned(),
             false => String::new(),
         };
-        let (mut runs, mut kept) = (HashMap::new(), String::new());
+        let (mut runs, mut earlier, mut kept) = (HashMap::new(), HashMap::new(), String::new());
         let lines: Vec<&str> = text.lines().collect();
         for (i, line) in lines.iter().enumerate() {
             match serde_json::from_str::<Line<K, R>>(line) {
@@ -78,6 +84,8 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
                     kept.push_str(line);
                     kept.push('\n');
                     if known.cap == cap {
+                        earlier
+                            .insert(known.case.clone(), known.commit.unwrap_or_else(|| "unknown".to_owned()));
                         runs.insert(known.case, known.run);
                     }
                 }
@@ -88,12 +96,12 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
                 }
             }
         }
-        Ok(Self { cap, runs, journal: Some(Journal::create(path, &kept)?) })
+        Ok(Self { cap, runs, earlier, journal: Some(Journal::create(path, &kept)?) })
     }
 
     /// A log without a file.
     pub(crate) fn in_memory(cap: f64) -> Self {
-        Self { cap, runs: HashMap::new(), journal: None }
+        Self { cap, runs: HashMap::new(), earlier: HashMap::new(), journal: None }
     }
 
     /// The result of `case`, if it was run.
@@ -103,7 +111,8 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
 
     /// Appends a finished run to the file; [`learn`](Self::learn) adds it to the runs in memory.
     pub(crate) fn write(&self, case: &K, run: &R) -> Result<()> {
-        let line = Line { cap: self.cap, case: case.clone(), run: run.clone() };
+        let commit = commit().map(str::to_owned);
+        let line = Line { cap: self.cap, case: case.clone(), run: run.clone(), commit };
         let text = serde_json::to_string(&line).into_error()?;
         self.journal.as_ref().map_or(Ok(()), |journal| Ok(journal.append(&text)?))
     }
@@ -165,7 +174,18 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
             }
             table.rows.push(row.into_iter().map(|(_, value)| cell(value)).collect());
         }
+        table.commits = self.commits(cases);
         Ok(table)
+    }
+
+    /// The commits at which those `cases` that were run were, and how many at each.
+    pub(crate) fn commits(&self, cases: &[K]) -> BTreeMap<String, usize> {
+        let mut commits = BTreeMap::new();
+        for (case, _) in self.each(cases) {
+            let now = || commit().unwrap_or("unknown").to_owned();
+            *commits.entry(self.earlier.get(case).cloned().unwrap_or_else(now)).or_default() += 1;
+        }
+        commits
     }
 
     /// All runs, sorted.

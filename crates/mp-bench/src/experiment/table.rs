@@ -1,5 +1,8 @@
 //! Tables, as Markdown and as comma-separated values.
 
+use super::provenance;
+use std::collections::BTreeMap;
+
 /// The heading of a column, and the function that gives its cell for an item.
 pub(crate) type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
 
@@ -8,12 +11,15 @@ pub(crate) type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
 pub(crate) struct Table {
     pub(crate) head: Vec<String>,
     pub(crate) rows: Vec<Vec<String>>,
+    /// The commits at which the runs in it were made, and how many runs of each: empty where all is of now.
+    pub(crate) commits: BTreeMap<String, usize>,
 }
 
 impl Table {
     /// A table with these headings and no rows.
     pub(crate) fn new(head: impl IntoIterator<Item = impl Into<String>>) -> Self {
-        Self { head: head.into_iter().map(Into::into).collect(), rows: Vec::new() }
+        let head = head.into_iter().map(Into::into).collect();
+        Self { head, rows: Vec::new(), commits: BTreeMap::new() }
     }
 
     /// A table with a row for each of `items`.
@@ -42,6 +48,12 @@ impl Table {
         let line = |cells: &[String]| cells.iter().map(|cell| quote(cell)).collect::<Vec<_>>().join(",");
         let lines = std::iter::once(&self.head).chain(&self.rows).map(|row| line(row) + "\n");
         lines.collect()
+    }
+
+    /// The comma-separated values as a file: before them, in lines that begin with `#`, what made them.
+    pub(crate) fn csv_file(&self) -> String {
+        let head = provenance::lines(self).into_iter().map(|(name, text)| format!("# {name}: {text}\n"));
+        head.collect::<String>() + &self.csv()
     }
 }
 

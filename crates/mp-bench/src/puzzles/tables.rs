@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::experiment::{
     Log, Median, Table, bootstrap, ratio, restricted_mean, seconds, survival, wilson, wilson_percent,
 };
-use crate::plot::{Axis, ChartCurve, Labels, chart};
+use crate::plot::{Axis, ChartCurve, Labels, charts};
 use mp_scenes::puzzle;
 
 /// The planner with which `auto` is compared.
@@ -101,25 +101,24 @@ impl Results<'_> {
 
     /// For each scene, the share of runs that are still going on, against time, with 95% intervals.
     pub(super) fn charts(&self) -> Vec<(String, Result<String>)> {
-        let of = |scene: &String| {
+        let of = |scene: &String| -> Vec<(String, Result<String>)> {
             let curves = self.plan.planners.iter().enumerate().map(|(i, planner)| {
                 let times = self.times(scene, planner);
                 let interval = |part: f64| {
                     let time = part * self.plan.cap;
                     let going = times.iter().filter(|(end, ended)| !ended || *end > time).count();
                     let (low, high) = wilson(going, times.len());
-                    // Side by side, so that none hides another.
-                    (time * (1.0 - 0.04 * i as f64), low, high)
+                    (time, low, high)
                 };
                 let ranges = MARKS.map(interval).to_vec();
                 ChartCurve { ranges, ..ChartCurve::new(planner, i, survival(times)).pattern(i % 4) }
             });
             let title = format!("{scene}: runs that still go on, with 95% intervals");
             let labels = Labels { title: &title, x: "s of processor time", y: "share of runs" };
-            let curves: Vec<_> = curves.collect();
-            (scene.clone(), chart(labels, [Axis::Log, Axis::FromZero(Some(1.0))], &curves))
+            let all = charts(labels, [Axis::Log, Axis::FromZero(Some(1.0))], curves.collect());
+            all.into_iter().map(|(part, chart)| (format!("{scene}{part}"), chart)).collect()
         };
-        self.plan.scenes.iter().map(of).collect()
+        self.plan.scenes.iter().flat_map(of).collect()
     }
 }
 

@@ -3,7 +3,7 @@
 use super::queries::{checker, local, prm_builder};
 use crate::clock::{nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
-use crate::experiment::{Group, Lab, Median, Table, short};
+use crate::experiment::{Group, Lab, Log, Median, Table, short};
 use crate::scenes::{Rigid, either, free};
 use mp_cspace::{
     Configuration, Direction, Extension, Iterations, KdTree, LocalPlanner, NodeId, Nodes, Reach, Rng, Space,
@@ -29,8 +29,8 @@ struct Case {
     seed: u64,
 }
 
-/// Measures the coverage. `None` when it was interrupted.
-pub(super) fn measure(lab: &Lab, quick: bool) -> Result<Option<Table>> {
+/// Measures the coverage: medians, and a row for each seed. `None` when it was interrupted.
+pub(super) fn measure(lab: &Lab, quick: bool) -> Result<Option<(Table, Table)>> {
     let (scenes, seeds) = if quick { (&SCENES[..1], 2) } else { (&SCENES[..], SEEDS) };
     let case = |scene: &str, seed| Case { scene: scene.to_owned(), seed };
     let cases: Vec<Case> =
@@ -42,7 +42,7 @@ pub(super) fn measure(lab: &Lab, quick: bool) -> Result<Option<Table>> {
         Ok(Some(either!(&ready[i], scene => on(scene, case.seed))?))
     })?;
     let groups = log.groups(&cases, |case| case.scene.as_str());
-    Ok(complete.then(|| table(groups)))
+    Ok(complete.then(|| (table(groups), each(&log, &cases))))
 }
 
 /// The fractions of the free samples that are seen: from any node, and from a node of the largest component.
@@ -165,6 +165,27 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
     }
     let few = Needed { nodes, components, seconds };
     Ok(Measured { few, guards, estimate, seen: aim, many: needed })
+}
+
+/// A row for each scene and seed.
+fn each(log: &Log<Case, Measured>, cases: &[Case]) -> Table {
+    let needed = |needed: Option<&Needed>| {
+        let of = |value: fn(&Needed) -> f64| needed.map_or_else(String::new, |n| value(n).to_string());
+        [of(|n| n.nodes), of(|n| n.components), of(|n| n.seconds)]
+    };
+    let heads = ["scene", "seed", "guards", "estimate", "seen", "seen_from_largest"];
+    let columns = ["nodes", "components", "seconds"];
+    let of_columns =
+        ["visib", "prm_seen", "prm_connected"].map(|what| columns.map(|column| format!("{what}_{column}")));
+    let mut table = Table::new(heads.map(str::to_owned).into_iter().chain(of_columns.into_iter().flatten()));
+    table.commits = log.commits(cases);
+    for (case, run) in log.each(cases) {
+        let own = [run.guards, run.estimate, run.seen.any, run.seen.largest].map(|v| v.to_string());
+        let names = [case.scene.clone(), case.seed.to_string()];
+        let all = [Some(&run.few), run.many[0].as_ref(), run.many[1].as_ref()].map(needed);
+        table.rows.push(names.into_iter().chain(own).chain(all.into_iter().flatten()).collect());
+    }
+    table
 }
 
 /// The medians of each scene.

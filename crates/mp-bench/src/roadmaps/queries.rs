@@ -2,7 +2,7 @@
 
 use crate::clock::{nanoseconds, processor_clock, seconds_since};
 use crate::error::{IntoError, Result};
-use crate::experiment::{Median, Table, mean, short};
+use crate::experiment::{Median, Table, bit, mean, short};
 use crate::output::note;
 use crate::scenes::{Rigid, either, free};
 use mp_cspace::{Certified, Deadline, KdTree, Nodes, Outcome, Planner, Problem, Rng, Straight};
@@ -55,12 +55,12 @@ pub(super) fn prm_builder<M: RigidSpace>(
     Ok(Builder::new(checker, parts.generator, parts.connector, KdTree::default()))
 }
 
-/// Measures on the scene `cubicles`.
-pub(super) fn measure(quick: bool) -> Result<Table> {
+/// Measures on the scene `cubicles`: a summary, and a row for each query.
+pub(super) fn measure(quick: bool) -> Result<(Table, Table)> {
     either!(Rigid::load("cubicles")?, scene => on(&scene, quick))
 }
 
-fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
+fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<(Table, Table)> {
     let (sizes, count) = if quick { (&SIZES[..1], 100) } else { (&SIZES[..], QUERIES) };
     let space = scene.space();
     let ends: Vec<_> = free(scene, Rng::stream(1, 99)).take(2 * count).collect();
@@ -94,6 +94,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
         "RRT-Connect : this, medians",
         "means",
     ]);
+    let mut each = Table::new(["asked", "nodes", "query", "answered", "seconds"]);
     let of = |times: &[f64]| Median::of(times.iter().copied()).unwrap_or_default();
     let mean = |times: &[f64]| mean(times.iter().copied().filter(|t| t.is_finite())).unwrap_or(0.0);
     let connect = (of(&alone), mean(&alone));
@@ -111,6 +112,11 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
             format!("{:.1}", connect.1 / mean),
         ]);
         note(&cells.join(" | "));
+        for (query, &seconds) in times.iter().enumerate() {
+            let answered = seconds.is_finite();
+            let took = if answered { format!("{seconds:.4e}") } else { String::new() };
+            each.rows.push(vec![what.to_owned(), cells[1].clone(), query.to_string(), bit(answered), took]);
+        }
         table.rows.push(cells);
     };
     row("RRT-Connect", [const { String::new() }; 3], &alone);
@@ -140,5 +146,5 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
         let verified = seconds_since(began);
         ask("roadmap, edges verified when built", build + verified, &mut answers);
     }
-    Ok(table)
+    Ok((table, each))
 }

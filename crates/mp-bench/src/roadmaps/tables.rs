@@ -4,7 +4,7 @@ use super::runs::{BESIDE, Case, Plan, Run, planners};
 use super::scenes::Corridors;
 use crate::error::Result;
 use crate::experiment::{Log, Median, Table, short, wilson, wilson_percent};
-use crate::plot::{Axis, ChartCurve, Labels, chart};
+use crate::plot::{Axis, ChartCurve, Labels, charts};
 
 /// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]
@@ -138,8 +138,8 @@ impl Results<'_> {
         table
     }
 
-    /// A chart of the success rate against the width of the corridor.
-    pub(super) fn chart(&self, corridors: &Corridors) -> Result<String> {
+    /// Charts of the success rate against the width of the corridor.
+    pub(super) fn charts(&self, corridors: &Corridors) -> Vec<(String, Result<String>)> {
         let curve = |(i, planner): (usize, &'static str)| {
             let share = |slack: f64| self.share(&corridors.scene(slack), planner, self.plan.budget);
             let shares = corridors.slacks.iter().map(|&slack| (slack, share(slack)));
@@ -152,7 +152,7 @@ impl Results<'_> {
             x: "width of the corridor less that of the robot, m",
             y: "share of runs solved",
         };
-        chart(labels, [Axis::Log, Axis::FromZero(Some(1.02))], &curves)
+        charts(labels, [Axis::Log, Axis::FromZero(Some(1.02))], curves)
     }
 }
 
@@ -203,6 +203,7 @@ mod tests {
             ["0", "0", "2/2"].map(str::to_owned),
             "9,000 of 1,000, 3,000, 10,000"
         );
-        assert!(results.chart(&corridors).unwrap().contains("<polyline"));
+        let charts = results.charts(&corridors);
+        assert!(charts.iter().all(|(_, chart)| chart.as_ref().is_ok_and(|c| c.contains("<polyline"))));
     }
 }

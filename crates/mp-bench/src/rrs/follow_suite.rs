@@ -62,9 +62,13 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
             ("arrived", &|(_, all)| all.iter().filter(|run| run.arrived).count().to_string()),
             ("length, cm", &|(_, all)| centimetres(all, |run| run.length)),
             ("clearance planned, cm", &|(_, all)| centimetres(all, |run| run.planned)),
-            ("driven, cm", &|(_, all)| centimetres(all, |run| run.executed.max(0.0))),
+            // Below zero where the robot hit something: as deep.
+            ("driven, cm", &|(_, all)| centimetres(all, |run| run.executed)),
             ("tracking error, cm", &|(_, all)| centimetres(all, |run| run.error)),
-            ("uncertainty at the end, cm", &|(_, all)| centimetres(all, |run| run.uncertainty)),
+            ("uncertainty at the end, of those that arrived, cm", &|(_, all)| {
+                let arrived: Vec<&Following> = all.iter().copied().filter(|run| run.arrived).collect();
+                centimetres(&arrived, |run| run.uncertainty)
+            }),
         ],
     );
     lab.report(&name, &summary.markdown(), &log.table(&cases)?)?;
@@ -87,7 +91,7 @@ fn picture(scene: &DiscScene, kind: &str, followed: &Followed, colour: u32) -> R
     let subtitle = format!(
         "least distance from an obstacle: {:.1} cm planned, {:.1} cm driven",
         100.0 * followed.run.planned,
-        100.0 * followed.run.executed.max(0.0)
+        100.0 * followed.run.executed
     );
     let title = format!("A robot follows a path of {}", kind.to_uppercase());
     let corners = [[0.0; 2], scene.size].map(Point2::from);

@@ -258,10 +258,9 @@ impl<'a> Results<'a> {
                     let at = |&step: &u32| Some((f64::from(step), of(&self.measures(world, planner, step)?)));
                     ChartCurve::new(name(planner), i, self.plan.steps.iter().filter_map(at).collect())
                 };
-                // A sample of RRT-Connect may add many nodes.
-                let shown =
-                    PLANNERS.iter().enumerate().filter(|(_, p)| file != "accepted" || **p != "rrt-connect");
-                let curves: Vec<ChartCurve> = shown.map(curve).collect();
+                let others = ["rrs-bulge", "rrt-connect"];
+                let shown = PLANNERS.iter().filter(|planner| !others.contains(planner));
+                let curves: Vec<ChartCurve> = shown.enumerate().map(curve).collect();
                 let title = format!("{world}: {title}");
                 charts.push((
                     format!("{world}-{file}"),

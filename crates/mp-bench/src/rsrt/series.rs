@@ -144,14 +144,14 @@ mod tests {
         let plan = Plan { cap: 2.0, instances: 1, levels: vec![2] };
         let folder = tempfile::tempdir().unwrap();
         let lab = Lab::test(folder.path(), 2);
-        let mut log = lab.log("rsrt", 2.0).unwrap();
+        let mut log = lab.log("rsrt-clutter", 2.0).unwrap();
         assert!(measure(&plan, &lab, &mut log).unwrap());
         assert_eq!(log.all().len(), Series::all().len());
         let easy = log.all().iter().filter(|(_, run)| run.solved).count();
         assert!(easy > log.all().len() / 2, "{easy} of {} solved", log.all().len());
-        let text = || std::fs::read_to_string(lab.file("rsrt-runs.jsonl")).unwrap();
+        let text = || std::fs::read_to_string(lab.file("rsrt-clutter-runs.jsonl")).unwrap();
         let before = text();
-        let mut again = lab.log("rsrt", 2.0).unwrap();
+        let mut again = lab.log("rsrt-clutter", 2.0).unwrap();
         assert!(measure(&plan, &lab, &mut again).unwrap());
         assert_eq!(before, text());
         lab.cancel.cancel();

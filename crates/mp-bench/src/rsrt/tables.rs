@@ -2,7 +2,7 @@
 
 use super::series::{Case, PLANNERS, Plan, Series};
 use crate::error::Result;
-use crate::experiment::{Log, Median, Table, geometric_mean, ratio, seconds};
+use crate::experiment::{Log, Median, Table, geometric_mean, ratio, seconds, survival};
 use crate::plot::{Axis, ChartCurve, Labels, chart};
 use mp_experiments::clutter::{METRICS, MODELS, MOVERS, Run};
 
@@ -221,13 +221,15 @@ impl<'a> Results<'a> {
         }
     }
 
-    /// Figure 5 for each robot and model of which there are runs: time against the number of obstacles.
+    /// Figure 5 for each robot and model of which there are runs: time against the number of obstacles; and the share of runs that go on at
+    /// the most obstacles, as runs are cut short there.
     pub(super) fn charts(&self) -> Vec<(String, Result<String>)> {
         let mut charts = Vec::new();
         for mover in MOVERS {
             for model in MODELS {
                 let mut curves = Vec::new();
-                for (p, planner) in PLANNERS.into_iter().enumerate() {
+                // As in the paper, RRT and RSRT: the third is in the tables.
+                for (p, planner) in [(2, PLANNERS[0]), (0, PLANNERS[1])] {
                     for (m, metric) in METRICS.into_iter().enumerate() {
                         let series = Series { mover, model, metric, planner };
                         let groups: Vec<(f64, Median)> = self
@@ -253,10 +255,34 @@ impl<'a> Results<'a> {
                 let marks: Vec<f64> =
                     levels.filter(|l| curves.iter().any(|c| c.points.iter().any(|p| p.0 == *l))).collect();
                 let name = format!("{}-{model}", mover.replace(' ', "-").to_lowercase());
-                charts.push((name, chart(labels, [Axis::LogAt(&marks), Axis::Log], &curves)));
+                charts.push((name.clone(), chart(labels, [Axis::LogAt(&marks), Axis::Log], &curves)));
+                charts.extend(self.survival_chart(mover, model).map(|c| (format!("{name}-survival"), c)));
             }
         }
         charts
+    }
+
+    /// The share of runs that still go on, against time, at the most obstacles at which RSRT was run, if it was.
+    fn survival_chart(&self, mover: &'static str, model: &'static str) -> Option<Result<String>> {
+        let has_runs = |level: &&usize| {
+            let series = |metric| Series { mover, model, metric, planner: PLANNERS[1] };
+            METRICS.into_iter().any(|metric| !self.runs(&series(metric), **level).is_empty())
+        };
+        let level = self.plan.levels.iter().rev().find(has_runs).copied()?;
+        let mut curves = Vec::new();
+        for (colour, planner) in [(2, PLANNERS[0]), (0, PLANNERS[1])] {
+            for (pattern, metric) in METRICS.into_iter().enumerate() {
+                let runs = self.runs(&Series { mover, model, metric, planner }, level);
+                if !runs.is_empty() {
+                    let steps = survival(runs.iter().map(|run| (run.seconds, run.solved)));
+                    let name = format!("{planner}, {metric}");
+                    curves.push(ChartCurve::new(name, colour, steps).pattern(pattern));
+                }
+            }
+        }
+        let title = format!("{mover}, {model}, {level} obstacles: runs that still go on");
+        let labels = Labels { title: &title, x: "s of processor time", y: "share of runs" };
+        Some(chart(labels, [Axis::Log, Axis::FromZero(Some(1.0))], &curves))
     }
 }
 
@@ -303,7 +329,7 @@ mod tests {
         let text = results.markdown();
         assert!(text.contains("euclidean 2.00 at 2") && text.contains("1/4 at 4 / 4/4 at 4"), "{text}");
         let charts = results.charts();
-        assert_eq!(charts.len(), 4);
+        assert_eq!(charts.len(), 8);
         assert!(charts.iter().all(|(_, chart)| chart.as_ref().is_ok_and(|c| c.contains("rsrt, scaled"))));
     }
 }
