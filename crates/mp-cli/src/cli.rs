@@ -34,6 +34,9 @@ pub(crate) enum Command {
     Check(Check),
     /// Describe a mesh, scene or path file.
     Info(Info),
+    /// Find which links of a robot may touch, and write it as an SRDF, as the Setup Assistant of MoveIt does: those that a joint
+    /// connects, that touch at the neutral configuration, always or never, in thousands of configurations.
+    Srdf(Srdf),
     /// Draw a scene, and a path through it, as a picture, film, page or meshes, with no display.
     Render(Render),
     /// Open the viewer in the browser: look at a scene and a path, edit the scene, and plan.
@@ -230,6 +233,21 @@ pub(crate) struct Check {
     /// Print one JSON object on standard output.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Srdf {
+    /// A robot: a URDF, or a robot problem, whose limits of joints count.
+    pub(crate) robot: PathBuf,
+    /// The file for the SRDF [default: standard output]. Called like the URDF and beside it, it is found.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace the file, if it is there already.
+    #[arg(long, requires = "out")]
+    pub(crate) replace: bool,
+    /// Leave out links that were never seen to touch, so that they go on being compared: slower, and nothing can be missed.
+    #[arg(long)]
+    pub(crate) check_never: bool,
 }
 
 #[derive(Clone, Debug, Args)]

@@ -21,6 +21,7 @@ mod programs;
 mod progress;
 mod render;
 mod request;
+mod srdf;
 mod text;
 mod view;
 
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         Command::Merge(args) => many::merge(args),
         Command::Check(args) => check::run(args),
         Command::Info(args) => info::run(args),
+        Command::Srdf(args) => srdf::run(args),
         Command::Render(args) => render::run(args),
         Command::View(args) => view::run(args),
         Command::Scenes => scenes(),

@@ -31,6 +31,7 @@ mod number;
 mod ompl;
 mod path;
 mod planar;
+mod pose_goal;
 mod problem;
 mod problem_file;
 mod rigid_toml;
@@ -57,9 +58,10 @@ pub use planar::{
     GridMap, PlanarFile, PlanarMap, PlanarMoving, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape,
     RosMap,
 };
+pub use pose_goal::{FreeTurns, PoseEntry};
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
 pub use problem_file::ProblemFile;
 pub use rigid_toml::{RigidMoving, RigidTask};
-pub use robot::{ObstacleEntry, RobotFile, RobotPart, RobotProblem, read_robot_text};
+pub use robot::{FoundSrdf, ObstacleEntry, RobotFile, RobotPart, RobotProblem, read_robot_text, robot_name};
 pub use shape::ShapeEntry;
 pub use toml_problem::{GoalEntry, GoalPart, Timing};

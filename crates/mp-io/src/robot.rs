@@ -1,11 +1,13 @@
 //! Robot problems: an arm, obstacles, a start and goals, in TOML.
 
 mod problem;
+mod srdf_near;
 #[cfg(test)]
 mod tests;
 mod urdf_mesh;
 
 pub use problem::{RobotProblem, read_robot_text};
+pub use srdf_near::{FoundSrdf, robot_name};
 
 use crate::drive::{DriveTable, Driven};
 use crate::error::Error;
@@ -38,6 +40,8 @@ pub struct RobotFile {
     pub urdf: String,
     /// The name of the SRDF file.
     pub srdf: Option<String>,
+    /// Whether there is to be none, so that none is looked for.
+    pub without_srdf: bool,
     /// The folder that `package://` means.
     pub packages: Option<String>,
     /// The pose of the root link, six numbers; zeros if the base floats.
@@ -108,7 +112,7 @@ struct File {
 #[serde(deny_unknown_fields)]
 struct RobotTable {
     urdf: Spanned<String>,
-    srdf: Option<Spanned<String>>,
+    srdf: Option<Spanned<SrdfEntry>>,
     packages: Option<String>,
     #[serde(default)]
     solid: bool,
@@ -121,6 +125,14 @@ struct RobotTable {
     duration: Option<Spanned<f64>>,
     speeds: Option<Spanned<Vec<f64>>>,
     accelerations: Option<Spanned<Vec<f64>>>,
+}
+
+/// The name of an SRDF, or that there is to be none.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected the name of an SRDF, or `false` for none")]
+enum SrdfEntry {
+    Name(String),
+    Is(bool),
 }
 
 /// The lower and the upper corner of a box.
@@ -162,6 +174,17 @@ impl RobotFile {
         let driven = table.read(&source, &robot_span, &["velocities", "accelerations"])?;
         let base_span = robot.base.as_ref().map_or(0..0, Spanned::span);
         let (base, floating) = base_of(&source, robot.base, robot.bounds)?;
+        let srdf_span = robot.srdf.as_ref().map_or(0..0, Spanned::span);
+        let (srdf, without_srdf) = match robot.srdf.map(Spanned::into_inner) {
+            Some(SrdfEntry::Name(name)) => (Some(name), false),
+            Some(SrdfEntry::Is(false)) => (None, true),
+            Some(SrdfEntry::Is(true)) => {
+                return Err(source.error(&srdf_span, "`srdf = true` names no file").expected(
+                    "the name of an SRDF; without `srdf` one near the URDF is taken, if there is one, and with `false` none",
+                ));
+            }
+            None => (None, false),
+        };
         let (mut limits, mut places_of_limits) = (Vec::new(), Vec::new());
         for (joint, range) in robot.limits {
             let (what, span) = (format!("the limits of {}", crate::text::clipped(&joint)), range.span());
@@ -198,7 +221,7 @@ impl RobotFile {
         let obstacles = obstacle.iter().enumerate().map(|(i, table)| entry(&source, i, table));
         let places = Places {
             urdf: robot.urdf.span(),
-            srdf: robot.srdf.as_ref().map_or(0..0, Spanned::span),
+            srdf: srdf_span,
             robot: robot_span,
             base: base_span,
             motion: motion.places,
@@ -206,7 +229,8 @@ impl RobotFile {
         };
         Ok(Self {
             urdf: robot.urdf.into_inner(),
-            srdf: robot.srdf.map(Spanned::into_inner),
+            srdf,
+            without_srdf,
             packages: robot.packages,
             solid: robot.solid,
             base,

@@ -1,6 +1,7 @@
 //! Problems in TOML: the place of every value, so that errors can point at it, and the table of start and goals.
 
 use crate::error::{Error, ErrorKind};
+use crate::pose_goal::PoseEntry;
 use crate::problem::MAX_COORDINATE;
 use crate::text::clipped;
 use serde::Deserialize;
@@ -94,6 +95,8 @@ pub enum GoalEntry {
     All(Vec<f64>),
     /// Some of them, by name; the others are free.
     Named(BTreeMap<String, GoalPart>),
+    /// A link of an arm at a place.
+    Pose(PoseEntry),
 }
 
 impl GoalEntry {
@@ -130,6 +133,13 @@ impl GoalEntry {
                 }
                 Ok(names.iter().map(|name| parts.get(name).copied().map_or(GoalPart::Free, about)).collect())
             }
+            Self::Pose(pose) => Err([
+                format!("{what} is a place of the link `{}`", clipped(&pose.link)),
+                format!(
+                    "numbers of a configuration ({}): only arms whose base stands still, and that do not move by inputs, have links as goals",
+                    names.join(", ")
+                ),
+            ]),
         }
     }
 
@@ -138,7 +148,7 @@ impl GoalEntry {
     pub fn values(&self) -> Option<&[f64]> {
         match self {
             Self::All(values) => Some(values),
-            Self::Named(_) => None,
+            Self::Named(_) | Self::Pose(_) => None,
         }
     }
 
@@ -146,6 +156,7 @@ impl GoalEntry {
     fn numbers(&self) -> Vec<f64> {
         match self {
             Self::All(values) => values.clone(),
+            Self::Pose(goal) => [&goal.pose[..], &goal.within].concat(),
             Self::Named(parts) => parts
                 .values()
                 .flat_map(|part| match part {
@@ -162,7 +173,8 @@ impl GoalEntry {
 #[derive(Deserialize)]
 #[serde(
     untagged,
-    expecting = "a goal is a list of numbers, or a table of the numbers that are fixed, such as { x = 1.0, y = [2.0, 2.5] }"
+    expecting = "a goal is a list of numbers, or a table of the numbers that are fixed, such as { x = 1.0, y = [2.0, 2.5] }, or of a \
+                 link and its pose, such as { link = \"tool\", pose = [0.4, 0, 0.3, 0, 3.14, 0] }"
 )]
 enum GoalText {
     All(Vec<f64>),
@@ -172,9 +184,12 @@ enum GoalText {
 /// The text of one number of a goal.
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum PartText {
+pub(crate) enum PartText {
     Exactly(f64),
     Between([f64; 2]),
+    /// Of a [`PoseEntry`].
+    Numbers(Vec<f64>),
+    Text(String),
 }
 
 /// The table `motion` of a problem.
@@ -272,12 +287,20 @@ impl MotionTable {
                         .error(&span, message)
                         .expected("at least one number, such as { x = 1.0 }"));
                 }
+                GoalText::Named(parts) if matches!(parts.get("link"), Some(PartText::Text(_))) => {
+                    GoalEntry::Pose(PoseEntry::read(text, parts, &span)?)
+                }
                 GoalText::Named(parts) => {
                     let parts = parts.into_iter().map(|(name, part)| match part {
                         PartText::Exactly(v) => Ok((name, GoalPart::Exactly(v))),
                         PartText::Between(range) => {
                             let what = format!("{} of the goal", clipped(&name));
                             Ok((name, GoalPart::Between(interval(text, &what, range, &span)?)))
+                        }
+                        PartText::Numbers(_) | PartText::Text(_) => {
+                            let message =
+                                format!("{} of the goal is neither a number nor an interval", clipped(&name));
+                            Err(text.error(&span, message).expected("such as { x = 1.0, y = [2.0, 2.5] }"))
                         }
                     });
                     GoalEntry::Named(parts.collect::<Result<_, Error>>()?)
@@ -369,6 +392,10 @@ fn timing(
             let range = match goal.into_inner() {
                 PartText::Exactly(time) => [time; 2],
                 PartText::Between(range) => interval(text, "the time of the goal", range, &span)?,
+                PartText::Numbers(_) | PartText::Text(_) => {
+                    let message = "the time of the goal is neither a number nor an interval";
+                    return Err(text.error(&span, message).expected("such as 5.0 or [4.5, 5.5], in seconds"));
+                }
             };
             seconds("the time of the goal", range[0], &span)?;
             if by_inputs && range[0] == range[1] {

@@ -5,4 +5,5 @@ pub mod info;
 pub(crate) mod inputs;
 pub(crate) mod kinds;
 pub(crate) mod load;
+pub(crate) mod robot_pairs;
 pub(crate) mod without_problem;

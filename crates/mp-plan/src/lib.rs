@@ -48,6 +48,7 @@
 //! | find out why a configuration is not free | [`Scene::explain`] |
 //! | find out what is odd about a scene | [`Scene::lint`] |
 //! | find out what is in a file | [`info::Info`] |
+//! | find out which links of a robot may touch | [`RobotPairs`] |
 //! | decide by what an error is about | [`Error::kind`], [`ErrorKind`] |
 //! | draw | `Scene::picture`, `Scene::film` (feature `pictures`), [`Scene::bodies`], [`Scene::poses`], [`Scene::sweep`] |
 //! | add your own kind of robot | [`Robot`] |
@@ -83,6 +84,7 @@ pub use error::{Error, ErrorKind};
 pub use explain::Explanation;
 pub use files::find::{SceneFiles, find_problem, shipped_files};
 pub use files::info;
+pub use files::robot_pairs::RobotPairs;
 pub use finish::certificate::Certificate;
 pub use finish::check::Verdict;
 pub use finish::field::FieldImage;
@@ -104,7 +106,7 @@ pub use robot::{
     Appearance, ArmScene, Body, BodyShape, Checker, Column, Constraint, Contact, Counted, Description,
     Deviation, Drivable, Drive, DriveModel, DrivenScene, End, FloatingScene, LinkedScene, LinkedSpace,
     Measured, ModelBody, ModelFrame, ModelPair, ModelPart, Motion, MotionModel, MovingScene, PathFormat,
-    PlanarBody, PlanarScene, Queries, RigidScene, RigidSpace, Robot, SpeedBound, Step, WithMoving,
+    PlanarBody, PlanarScene, Queries, Reached, RigidScene, RigidSpace, Robot, SpeedBound, Step, WithMoving,
 };
 pub use run::planners::{meta_planners, planners, roadmap_planners};
 #[cfg(feature = "roadmaps")]
@@ -121,6 +123,8 @@ pub use watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
 
 #[cfg(feature = "pictures")]
 pub use mp_render::{Mode, View};
+
+pub use mp_robot::{SampledPair, SampledPairs, TouchReason};
 
 pub use mp_cspace::{
     Cancel, Clock, Interrupt, Length, Progress, StopReason,

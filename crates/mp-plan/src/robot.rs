@@ -11,7 +11,8 @@ mod moving;
 mod planar;
 mod rigid;
 
-pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace};
+pub(crate) use arm::model_of;
+pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace, Reached};
 pub(crate) use constrained::Constrained;
 pub use constrained::Constraint;
 pub(crate) use driven::greatest_speed;

@@ -58,8 +58,9 @@ mod solid_obstacle;
 mod verify;
 
 pub use arm::{
-    Arm, ArmContact, ArmError, ArmGap, ArmModel, ArmVerifier, AttachedLink, Coordinate, Joint, JointFrame,
-    JointKind, Kinematics, Link, Mimic, UrdfError,
+    Arm, ArmContact, ArmError, ArmGap, ArmModel, ArmVerifier, AttachedLink, Coordinate, FreeTurn,
+    IK_PRECISION, InverseKinematics, Joint, JointFrame, JointKind, Kinematics, Link, Mimic, PoseGoal,
+    SampledPair, SampledPairs, TouchReason, UrdfError,
 };
 pub use counters::CheckCounters;
 pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};

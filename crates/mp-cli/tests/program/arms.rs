@@ -380,3 +380,80 @@ fn bad_floating_problems_are_told_what_to_do() {
         assert!(run.code == 2 && words.iter().all(|word| told.contains(word)), "{to}: {told}");
     }
 }
+
+/// A robot whose hand touches its base unless the arm is folded, in a folder as packages of ROS have it.
+fn clumsy() -> Dir {
+    let dir = Dir::new();
+    let block = |name: &str, at: &str| {
+        format!(
+            "<link name=\"{name}\"><collision><origin xyz=\"{at}\"/><geometry><box size=\"0.2 0.2 0.2\"/></geometry></collision></link>"
+        )
+    };
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name=\"{name}\" type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{child}\"/><axis xyz=\"0 0 1\"/>\
+             <limit lower=\"-2\" upper=\"2\" velocity=\"1\"/></joint>"
+        )
+    };
+    let urdf = format!(
+        "<robot name=\"clumsy\">{}<link name=\"arm\"/>{}{}{}</robot>",
+        block("base", "0 0 0"),
+        block("hand", "0.1 0 0"),
+        joint("a", "base", "arm"),
+        joint("b", "arm", "hand")
+    );
+    std::fs::create_dir_all(dir.path("clumsy_description/urdf")).unwrap();
+    std::fs::create_dir_all(dir.path("clumsy_moveit_config/config")).unwrap();
+    dir.write("clumsy_description/urdf/arm.urdf", &urdf);
+    dir.write("clumsy.toml", "[robot]\nurdf = \"clumsy_description/urdf/arm.urdf\"\nSRDF\n[motion]\nstart = [0, 0]\ngoal = [1, 1]\n");
+    dir
+}
+
+#[test]
+fn an_srdf_is_made_and_found() {
+    let dir = clumsy();
+    let robot = "clumsy_description/urdf/arm.urdf";
+    // The base and the hand touch always, and no joint connects them: that was found without an SRDF too.
+    let apart = "<robot name=\"clumsy\"><enable_collisions link1=\"base\" link2=\"hand\"/></robot>";
+    let in_package = "clumsy_moveit_config/config/other.srdf";
+    let refused = |dir: &Dir| mp(dir, &["plan", robot, "--out", "p.txt"]);
+    dir.write(in_package, apart);
+    let run = refused(&dir);
+    assert!(run.code == 2 && run.stderr.contains("other.srdf") && run.stderr.contains("base"), "{run:?}");
+    // One of another robot is not taken, but one called like the URDF is; and `false` takes none.
+    dir.write(in_package, &apart.replace("clumsy", "other"));
+    assert_eq!(refused(&dir).code, 0);
+    dir.write("clumsy_description/urdf/arm.srdf", &apart.replace("clumsy", "other"));
+    assert_eq!(refused(&dir).code, 2);
+    let problem = dir.read("clumsy.toml");
+    dir.write("none.toml", &problem.replace("SRDF", "srdf = false"));
+    assert_eq!(mp(&dir, &["plan", "none.toml", "--out", "p.txt"]).code, 0);
+    dir.write("true.toml", &problem.replace("SRDF", "srdf = true"));
+    let run = mp(&dir, &["plan", "true.toml", "--out", "p.txt"]);
+    assert!(
+        run.code == 2 && run.stderr.contains("true.toml:3:") && run.stderr.contains("names no file"),
+        "{run:?}"
+    );
+
+    // What is written is not replaced unasked.
+    let srdf = ["srdf", robot, "--out", "clumsy_description/urdf/arm.srdf"];
+    let run = mp(&dir, &srdf);
+    assert!(run.code == 2 && run.stderr.contains("is there already"), "{run:?}");
+    let run = mp(&dir, &[&srdf[..], &["--replace"]].concat());
+    assert!(
+        run.code == 0 && run.stderr.contains("0 adjacent, 0 at the neutral configuration, 1 always"),
+        "{run:?}"
+    );
+    let text = dir.read("clumsy_description/urdf/arm.srdf");
+    let line =
+        "<disable_collisions link1=\"base\" link2=\"hand\" reason=\"Always\"/> <!-- in 100.0% of them -->";
+    assert!(text.contains("<robot name=\"clumsy\">") && text.contains(line), "{text}");
+    assert_eq!(mp(&dir, &["srdf", robot]).stdout, text);
+    let run = refused(&dir);
+    assert_eq!(run.code, 0, "{run:?}");
+    let info = mp(&dir, &["info", robot]);
+    assert!(info.stdout.contains("arm.srdf was found: it lets 1 pair of links touch"), "{info:?}");
+    for bad in [["srdf", "gone.urdf"], ["srdf", "window.env"]] {
+        assert_eq!(mp(&dir, &bad).code, 2);
+    }
+}

@@ -1,9 +1,9 @@
 //! Robot problems and the files they name.
 
+use super::srdf_near::srdf_near;
 use super::{RobotFile, RobotPart};
 use crate::error::Error;
 use crate::files::{Disk, Files, MAX_TEXT_BYTES, stem};
-use crate::formats::Content;
 use crate::problem::PlacedBody;
 use crate::shape::Meshes;
 use mp_geom::pose_from_six;
@@ -21,9 +21,11 @@ pub struct RobotProblem {
     pub urdf_file: PathBuf,
     /// The content of the URDF.
     pub urdf: String,
-    /// The content of the SRDF.
+    /// The content of the SRDF: the one that the problem names, else the one that was found.
     pub srdf: Option<String>,
-    /// The name of an SRDF beside the URDF, if the problem names none.
+    /// Where the SRDF is, if the problem names none and one of this robot was found near the URDF.
+    pub srdf_found: Option<PathBuf>,
+    /// The name of an SRDF beside the URDF that is not taken.
     pub srdf_beside: Option<String>,
     /// The folder that `package://` means.
     pub packages: Option<PathBuf>,
@@ -83,7 +85,14 @@ impl RobotProblem {
             Some(name) => Some(text(RobotPart::Srdf, name)?.1),
             None => None,
         };
-        let srdf_beside = if srdf.is_none() { srdf_beside(files, &urdf_file) } else { None };
+        let (mut srdf, mut srdf_found, mut srdf_beside) = (srdf, None, None);
+        if srdf.is_none() {
+            let (found, beside) = srdf_near(files, &urdf_file, &urdf);
+            match found.filter(|_| !file.without_srdf) {
+                Some(found) => (srdf, srdf_found) = (Some(found.text), Some(found.file)),
+                None => srdf_beside = beside,
+            }
+        }
         let (mut obstacles, mut meshes) = (Vec::new(), Meshes::new(files, path));
         for entry in &file.obstacles {
             let (from, mesh) = meshes.of(&file.source(), &entry.name, &entry.shape)?;
@@ -91,7 +100,8 @@ impl RobotProblem {
             obstacles.push(PlacedBody { name, file: from, mesh, pose });
         }
         let packages = file.packages.as_ref().map(|name| folder.join(name));
-        Ok(Self { name: stem(path), file, urdf_file, urdf, srdf, srdf_beside, packages, obstacles })
+        let name = stem(path);
+        Ok(Self { name, file, urdf_file, urdf, srdf, srdf_found, srdf_beside, packages, obstacles })
     }
 }
 
@@ -102,18 +112,6 @@ impl RobotProblem {
 pub fn read_robot_text(files: &dyn Files, path: &Path) -> Result<String, Error> {
     let bytes = files.read(path, MAX_TEXT_BYTES)?;
     Ok(crate::xml::text(&path.display().to_string(), &bytes)?.into_owned())
-}
-
-/// The name of an SRDF in the folder of a URDF: the one of the same name, or else the first.
-fn srdf_beside(files: &dyn Files, urdf: &Path) -> Option<String> {
-    let own = urdf.with_extension(Content::RobotSemantics.ending());
-    if files.holds(&own) {
-        return own.file_name().map(|name| name.to_string_lossy().into_owned());
-    }
-    let names = files.names_in(urdf.parent().unwrap_or(Path::new("")));
-    let is_one =
-        |name: &String| Content::of(Path::new(name)).any(|content| content == Content::RobotSemantics);
-    names.into_iter().find(is_one)
 }
 
 /// The error of a file that cannot be used, at the place that names it.

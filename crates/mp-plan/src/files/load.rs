@@ -121,11 +121,11 @@ fn arm(files: &dyn Files, problem: RobotProblem, before: Option<&Scene>) -> Resu
     if problem.file.floating.is_some() {
         let before = before.and_then(Scene::robot);
         let scene = crate::FloatingScene::from_problem_after(files, problem, before)?;
-        let notes = scene.said().to_vec();
+        let notes = scene.said();
         return Ok(Scene::new(scene).of_kind("floating").with_notes(notes));
     }
     let scene = crate::ArmScene::from_problem_after(files, problem, before.and_then(Scene::robot))?;
-    let notes = scene.said().to_vec();
+    let notes = scene.said();
     let scene = match scene.driven()? {
         Some(driven) => Scene::new(driven).of_kind("driven"),
         None => Scene::new(scene).of_kind("arms"),

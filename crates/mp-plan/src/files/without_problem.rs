@@ -60,13 +60,20 @@ fn around(file: &Path) -> PathBuf {
 }
 
 fn robot(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
+    let (scene, notes) = crate::ArmScene::from_robot_alone(files, robot_alone(files, file)?)?;
+    Ok(Scene::new(scene).of_kind("arms").with_notes(notes))
+}
+
+/// The problem of a URDF alone, without start and goal.
+///
+/// # Errors
+/// When the file cannot be read.
+pub(crate) fn robot_alone(files: &dyn Files, file: &Path) -> Result<mp_io::RobotProblem, Error> {
     let place = around(file);
     let text = format!("[robot]\nurdf = {}\n[motion]\nstart = []\ngoal = []\n", quoted(file)?);
     // Read first, so that an error about it names the file itself.
     mp_io::read_robot_text(files, file)?;
-    let problem = mp_io::RobotProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?;
-    let (scene, notes) = crate::ArmScene::from_robot_alone(files, problem)?;
-    Ok(Scene::new(scene).of_kind("arms").with_notes(notes))
+    Ok(mp_io::RobotProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?)
 }
 
 /// The radius (m) of the disc that moves on a map alone: that of common mobile robots.

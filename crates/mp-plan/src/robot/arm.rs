@@ -1,6 +1,7 @@
 //! Arms, and other trees of links, among meshes; their base stands still or floats.
 
 mod choose_ends;
+mod pose_goals;
 mod read;
 
 use super::model::{ModelBody, ModelFrame, ModelPair, MotionModel, Step, seven};
@@ -18,9 +19,11 @@ use mp_cspace::{
     Manhattan, MotionClearance, ObstacleKnowledge, Path, ScaledEuclidean, Space, TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, continued_six, pose_from_six, six_from_pose};
-use mp_io::{Disk, Files, PlacedBody, RobotPart, RobotProblem};
+use mp_io::{Disk, Files, GoalEntry, PlacedBody, RobotPart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, JointKind};
 use nalgebra::Isometry3;
+pub use pose_goals::Reached;
+pub(crate) use read::model_of;
 use read::{srdf_help, what};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
@@ -133,8 +136,12 @@ pub struct LinkedScene<C> {
     goals: Vec<Configuration>,
     /// What the goals ask of each number, if they are not configurations.
     goal_parts: Option<Vec<Vec<GoalPart>>>,
+    /// For each goal, the one of the problem that it is from.
+    entries: Vec<usize>,
     /// What decides which links may touch without being asked for, in sentences.
     said: Vec<String>,
+    /// Which configurations reach goals that are places of links, in sentences.
+    of_goals: Vec<String>,
     /// The problem that it was made from, to locate errors in its file.
     source: Option<Box<RobotProblem>>,
 }
@@ -199,7 +206,9 @@ impl<C: LinkedSpace> LinkedScene<C> {
             given_start,
             goals,
             goal_parts: None,
+            entries: Vec::new(),
             said: Vec::new(),
+            of_goals: Vec::new(),
             source: None,
         })
     }
@@ -253,8 +262,18 @@ impl<C: LinkedSpace> LinkedScene<C> {
             let help = "leave `kind` out, or give the base a place: `base = [x, y, z, α, β, γ]`".to_owned();
             return Err(fault(RobotPart::Robot, [message, help]));
         }
-        let mut parts = Vec::new();
+        let (mut parts, mut entries, mut of_goals) = (Vec::new(), Vec::new(), Vec::new());
         for (i, goal) in file.goals.iter().enumerate() {
+            if let (GoalEntry::Pose(entry), None, Ok(joints)) = (goal, driven, arm.space()) {
+                let start = joints.wrapped(&within(joints.ranges(), &file.start).into());
+                let found = pose_goals::goals(&arm, &joints, entry, &start, &files.interrupt());
+                let (configurations, sentence) = found.map_err(|wrong| fault(RobotPart::Goal(i), wrong))?;
+                let exactly = |q: &Configuration| q.iter().map(|x| GoalPart::Exactly(*x)).collect();
+                parts.extend(configurations.iter().map(exactly));
+                entries.resize(parts.len(), i);
+                of_goals.push(sentence);
+                continue;
+            }
             if let Some(values) = goal.values()
                 && values.len() != state_names.len()
                 && let Some(wrong) = wrong_count("the goal", values, &names)
@@ -273,6 +292,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
                 return Err(fault(RobotPart::Goal(i), [message, "give beta from -π/2 to π/2".to_owned()]));
             }
             parts.push(goal);
+            entries.push(i);
         }
         if let Some(driven) = driven {
             driven.check(&names).map_err(|wrong| fault(RobotPart::Robot, wrong))?;
@@ -289,7 +309,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
         let given = goals.as_ref().unwrap_or(&first);
         let scene = Self::assembled(problem.name.clone(), arm, problem.obstacles.clone(), &start, given);
         let scene = scene.map_err(of)?;
-        let mut scene = Self { source: Some(Box::new(problem)), said, ..scene };
+        let mut scene = Self { source: Some(Box::new(problem)), entries, said, of_goals, ..scene };
         if goals.is_none() {
             scene.goals = examples(&scene, &parts);
             scene.goal_parts = Some(parts);
@@ -297,10 +317,10 @@ impl<C: LinkedSpace> LinkedScene<C> {
         Ok(scene)
     }
 
-    /// What decides which links may touch without being asked for, in sentences: what of an SRDF was not taken, and pairs that are
+    /// What decides which links may touch without being asked for, and what goals were made, in sentences: what of an SRDF was not taken, and pairs that are
     /// left out for being close in every configuration.
-    pub(crate) fn said(&self) -> &[String] {
-        &self.said
+    pub(crate) fn said(&self) -> Vec<String> {
+        [&self.said[..], &self.of_goals].concat()
     }
 
     /// The arm among its obstacles.
@@ -541,7 +561,7 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
             Some(problem) => {
                 let part = match end {
                     End::Start => RobotPart::Start,
-                    End::Goal(i) => RobotPart::Goal(i),
+                    End::Goal(i) => RobotPart::Goal(self.entries.get(i).copied().unwrap_or(i)),
                 };
                 problem.file.fault(part, &message, &help).into()
             }

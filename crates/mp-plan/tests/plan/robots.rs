@@ -269,11 +269,11 @@ fn links_that_touch_everywhere_are_named() {
     let kept = "<robot name=\"r\"/>";
     let named = problem.replace("urdf =", "srdf = \"s.srdf\"\nurdf =");
     for (files, srdf) in [
-        (vec![("p.toml", problem.as_str()), ("r.urdf", moving.as_str())], "there is none beside"),
         (
-            vec![("p.toml", problem.as_str()), ("r.urdf", moving.as_str()), ("r.srdf", kept)],
-            "`srdf = \"r.srdf\"` in a robot problem",
+            vec![("p.toml", problem.as_str()), ("r.urdf", moving.as_str())],
+            "`mp srdf r.urdf --out r.srdf` makes one",
         ),
+        (vec![("p.toml", problem.as_str()), ("r.urdf", moving.as_str()), ("r.srdf", kept)], "in r.srdf"),
         (vec![("p.toml", named.as_str()), ("r.urdf", alone.as_str()), ("s.srdf", kept)], "in s.srdf"),
     ] {
         let error = refused(&files);

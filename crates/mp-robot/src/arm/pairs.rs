@@ -85,14 +85,14 @@ pub(super) fn pairs(
 
 /// Whether a joint connects the rigid bodies of two links.
 #[derive(Clone, Copy, PartialEq)]
-enum Joined {
+pub(super) enum Joined {
     No,
     /// One link is fixed to a body that stands still, but is not the link of the joint.
     Beside,
     Yes,
 }
 
-fn joined(kinematics: &Kinematics, a: &LinkBody, b: &LinkBody) -> Joined {
+pub(super) fn joined(kinematics: &Kinematics, a: &LinkBody, b: &LinkBody) -> Joined {
     let moves = |child: &LinkBody, parent: &LinkBody| {
         child.frame > 0 && kinematics.frames[child.frame - 1].parent == parent.frame
     };

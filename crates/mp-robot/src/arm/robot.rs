@@ -74,7 +74,7 @@ pub(super) struct SharedArm {
 }
 
 impl SharedArm {
-    fn new(model: &ArmModel, interrupt: &Interrupt) -> Result<Self, ArmError> {
+    pub(super) fn new(model: &ArmModel, interrupt: &Interrupt) -> Result<Self, ArmError> {
         let kinematics = Kinematics::new(model)?;
         let mut bodies = Vec::new();
         let (mut first, mut count, mut reach, mut length) = (0, 0_usize, 0.0_f64, 0.0_f64);

@@ -3,6 +3,7 @@
 mod bad_input;
 mod common;
 mod floating;
+mod ik;
 mod kinematics;
 mod motions;
 mod pairs;

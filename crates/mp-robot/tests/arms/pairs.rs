@@ -1,8 +1,9 @@
 //! Which links are compared, and how near they may come.
 
+use mp_cspace::Interrupt;
 use mp_cspace::{Clearance, Configuration};
 use mp_geom::primitives::cuboid;
-use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};
+use mp_robot::{Arm, ArmModel, Joint, JointKind, Link, TouchReason};
 use nalgebra::{Isometry3, Vector3};
 
 const TURN: JointKind = JointKind::Revolute { low: -2.0, high: 2.0 };
@@ -208,4 +209,54 @@ fn the_tolerance_does_not_grow_with_what_only_places_the_links() {
     let space = folded.space().unwrap();
     let free = folded.nearest_free(&Configuration::from(vec![0.0, 0.0, 0.0]), &space, 1e-3);
     assert!(free.is_some());
+}
+
+/// A bar of a metre turns all around beside a post, on a foot that overlaps the post's; `flag` is welded to the bar.
+fn turnstile() -> ArmModel {
+    let all_around = JointKind::Continuous;
+    let bar = cuboid(1.0, 0.02, 0.02).unwrap();
+    let post = cuboid(0.2, 0.2, 1.0).unwrap();
+    let links = vec![
+        block("foot", 0.1, -0.5),
+        Link::new("post").with(&post, &Isometry3::translation(0.7, 0.0, 0.0)),
+        Link::new("bar").with(&bar, &Isometry3::translation(0.5, 0.0, 0.0)),
+        Link::new("flag").with(&cuboid(0.1, 0.02, 0.3).unwrap(), &Isometry3::translation(0.3, 0.0, 0.0)),
+        block("cap", 0.6, -0.6),
+    ];
+    let joints = vec![
+        joint("weld", "foot", "post", JointKind::Fixed),
+        joint("turn", "foot", "bar", all_around),
+        joint("weld flag", "bar", "flag", JointKind::Fixed),
+        joint("spin", "bar", "cap", TURN),
+    ];
+    model(links, joints)
+}
+
+#[test]
+fn pairs_are_sampled_until_they_are_known() {
+    let model = turnstile();
+    let found = model.sampled_pairs(&Interrupt::never()).unwrap();
+    let of = |a: &str, b: &str| found.pairs.iter().find(|pair| pair.links == [a, b]).unwrap();
+    assert_eq!(of("foot", "bar").reason, Some(TouchReason::Adjacent));
+    assert_eq!(of("foot", "post").reason, Some(TouchReason::Never));
+    assert_eq!(of("bar", "flag").reason, Some(TouchReason::Always));
+    assert_eq!(of("foot", "cap").reason, Some(TouchReason::Always));
+    assert_eq!(of("post", "flag").reason, Some(TouchReason::Never));
+    // The bar touches the post where the near corner of the post, 0.6 m away and 0.1 m aside, is less than half its width away:
+    // up to atan(0.1 / 0.6) + asin(0.01 / 0.608) to either side. It does at zero, so it is allowed; its share says how rarely.
+    let bar = of("post", "bar");
+    let share = (mp_math::atan2(0.1, 0.6) + mp_math::asin(0.01 / 0.608_3)) / std::f64::consts::PI;
+    assert_eq!(bar.reason, Some(TouchReason::Default));
+    assert!((bar.share - share).abs() < 5e-4, "{} is not {share}", bar.share);
+    assert_eq!(found, model.sampled_pairs(&Interrupt::never()).unwrap());
+    assert_eq!(found.pairs.len(), 10);
+
+    // The file says the same, and what it leaves out is compared.
+    let srdf = found.srdf("r & d", false);
+    assert!(srdf.contains("<robot name=\"r &amp; d\">"), "{srdf}");
+    let line =
+        "<disable_collisions link1=\"post\" link2=\"bar\" reason=\"Default\"/> <!-- in 5.8% of them -->";
+    assert!(srdf.contains(line) && !srdf.contains("Never"), "{srdf}");
+    assert_eq!(compared(&model.clone().with_srdf(&srdf).unwrap()), ["post flag", "post cap"]);
+    assert_eq!(compared(&model.clone().with_srdf(&found.srdf("r", true)).unwrap()), [""; 0]);
 }

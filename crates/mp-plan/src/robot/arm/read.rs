@@ -1,32 +1,49 @@
 //! The arm of a robot problem, from its URDF and SRDF.
 
 use super::{HAIR, LinkedScene, LinkedSpace};
-use crate::{Error, brief, plain};
+use crate::{Error, brief, count, plain};
 use mp_cspace::{FloatingJoints, Interrupt, JointRange};
 use mp_geom::{Aabb, TriMesh};
 use mp_io::{Files, RobotPart, RobotProblem};
-use mp_robot::{Arm, ArmError, ArmModel, Kinematics};
+use mp_robot::{Arm, ArmError, ArmModel, Kinematics, UrdfError};
+
+/// The robot of a problem, without what its SRDF says.
+pub(crate) fn model_of(files: &dyn Files, problem: &RobotProblem) -> Result<ArmModel, Error> {
+    let mut mesh = |name: &str| problem.mesh_from(files, name);
+    let mut model = from_urdf(problem, &mut mesh, &files.interrupt())?;
+    model.base = problem.base();
+    model.floating = problem.file.floating.map(|[low, high]| Aabb::new(low.into(), high.into()));
+    for (i, (joint, [low, high])) in problem.file.limits.iter().enumerate() {
+        model = model.with_limits(joint, *low, *high).map_err(|e| {
+            problem.file.fault(RobotPart::Limits(i), &e.to_string(), "name joints as the URDF does")
+        })?;
+    }
+    Ok(model)
+}
+
+/// The model with what the SRDF of the problem says. Notes say what was found and what is not read.
+fn with_srdf(model: ArmModel, problem: &RobotProblem) -> Result<ArmModel, Error> {
+    let Some(srdf) = &problem.srdf else { return Ok(model) };
+    let before = model.notes.len();
+    let mut model = model.with_srdf(srdf).map_err(|e| srdf_fault(problem, &e))?;
+    let name = srdf_name(problem);
+    model.notes[before..].iter_mut().for_each(|note| *note = format!("{name}: {note}"));
+    if problem.srdf_found.is_some() {
+        let pairs = count(model.may_touch.as_ref().map_or(0, Vec::len), "pair");
+        let note = format!(
+            "{name} was found: it lets {pairs} of links touch. A robot problem names another by `srdf`, or says `srdf = false`"
+        );
+        model.notes.insert(before, note);
+    }
+    Ok(model)
+}
 
 impl<C: LinkedSpace> LinkedScene<C> {
     /// The arm of a problem among its obstacles, and what decides which links may touch.
     pub(super) fn arm_of(files: &dyn Files, problem: &RobotProblem) -> Result<(Arm, Vec<String>), Error> {
-        let mut mesh = |name: &str| problem.mesh_from(files, name);
-        let mut model = from_urdf(problem, &mut mesh, &files.interrupt())?;
+        let model = model_of(files, problem)?;
         let of_urdf = model.notes.len();
-        model.base = problem.base();
-        model.floating = problem.file.floating.map(|[low, high]| Aabb::new(low.into(), high.into()));
-        if let Some(srdf) = &problem.srdf {
-            model = model.with_srdf(srdf).map_err(|e| {
-                problem.file.fault(RobotPart::Srdf, &e.to_string(), "name an SRDF of this robot, or none")
-            })?;
-            let name = problem.file.srdf.as_deref().unwrap_or_default();
-            model.notes[of_urdf..].iter_mut().for_each(|note| *note = format!("{name}: {note}"));
-        }
-        for (i, (joint, [low, high])) in problem.file.limits.iter().enumerate() {
-            model = model.with_limits(joint, *low, *high).map_err(|e| {
-                problem.file.fault(RobotPart::Limits(i), &e.to_string(), "name joints as the URDF does")
-            })?;
-        }
+        let mut model = with_srdf(model, problem)?;
         let in_urdf = |e: ArmError| {
             let line = e.element().and_then(|(element, name)| line_of(&problem.urdf, element, name));
             in_urdf(problem, line, e.to_string(), "correct the links and joints of the URDF")
@@ -74,19 +91,47 @@ pub(super) fn what(problem: &RobotProblem) -> String {
     format!("cannot make a robot of {}", problem.urdf_file.display())
 }
 
+/// The name of the SRDF of a problem, in messages.
+fn srdf_name(problem: &RobotProblem) -> String {
+    match (&problem.file.srdf, &problem.srdf_found) {
+        (Some(name), _) => name.clone(),
+        (None, Some(found)) => found.display().to_string(),
+        (None, None) => String::new(),
+    }
+}
+
+/// The error of an SRDF that cannot be used: where the problem names it, or in the file itself.
+fn srdf_fault(problem: &RobotProblem, e: &UrdfError) -> Error {
+    let help = "name an SRDF of this robot by `srdf` in a robot problem, or say `srdf = false`";
+    match (&problem.srdf_found, &problem.srdf) {
+        (Some(found), Some(text)) => {
+            let kind = mp_io::ErrorKind::Content;
+            let error = match e.line() {
+                Some(line) => mp_io::Error::in_line(kind, found.display(), text, line as usize, e.message()),
+                None => mp_io::Error::new(kind, found.display(), e.message()),
+            };
+            error.help(help).into()
+        }
+        _ => problem.file.fault(RobotPart::Srdf, &e.to_string(), help).into(),
+    }
+}
+
 /// What to do about links that touch though they may.
 pub(super) fn srdf_help(problem: &RobotProblem) -> String {
     let in_srdf = "if these links may touch, say so by <disable_collisions> in";
-    match (&problem.file.srdf, &problem.srdf_beside) {
-        (Some(srdf), _) => format!("{in_srdf} {srdf}"),
-        (None, Some(beside)) => {
-            format!(
-                "{in_srdf} an SRDF: `srdf = \"{beside}\"` in a robot problem takes the one beside the URDF"
-            )
-        }
-        (None, None) => {
-            format!("{in_srdf} an SRDF, named by `srdf` in a robot problem: there is none beside the URDF")
-        }
+    if problem.srdf.is_some() {
+        return format!("{in_srdf} {}", srdf_name(problem));
+    }
+    let urdf = problem.urdf_file.display();
+    let made = format!(
+        "`mp srdf {urdf} --out {}` makes one from samples",
+        problem.urdf_file.with_extension("srdf").display()
+    );
+    match &problem.srdf_beside {
+        Some(beside) => format!(
+            "{in_srdf} an SRDF: `srdf = \"{beside}\"` in a robot problem takes the one beside the URDF; {made}"
+        ),
+        None => format!("{in_srdf} an SRDF: there is none near the URDF, and {made}"),
     }
 }
 

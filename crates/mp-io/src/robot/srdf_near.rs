@@ -1,0 +1,100 @@
+//! The SRDF of a robot that nobody has named: beside the URDF, or where MoveIt's packages have it.
+
+use crate::files::Files;
+use crate::formats::Content;
+use crate::robot::read_robot_text;
+use std::path::{Path, PathBuf};
+
+/// An SRDF that was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FoundSrdf {
+    /// Where it is.
+    pub file: PathBuf,
+    /// Its content.
+    pub text: String,
+}
+
+/// How many folders above that of the URDF are looked at for packages of MoveIt.
+const ABOVE: usize = 3;
+
+/// The SRDF of the robot that `urdf` describes, in the file `file`, and the name of one beside it that may be of another robot.
+///
+/// Looked at are the folder of the URDF, the folder `srdf` in and beside it, and the folder `config` of each `*_moveit_config` in the four
+/// folders from that of the URDF upward. One is of this robot if its `<robot name>` is that of the URDF; among those the one that is called
+/// like the URDF is taken, else the first in this order, then by the alphabet. If there is none, one beside the URDF that is called like
+/// it is taken, whatever robot it names.
+pub(super) fn srdf_near(files: &dyn Files, file: &Path, urdf: &str) -> (Option<FoundSrdf>, Option<String>) {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let own = file.with_extension(Content::RobotSemantics.ending());
+    let mut places = srdfs_in(files, folder);
+    let beside = places.first().cloned();
+    // Not all kinds of files know what else is in a folder.
+    if !places.contains(&own) && files.holds(&own) {
+        places.insert(0, own.clone());
+    }
+    places.extend(srdfs_in(files, &folder.join("srdf")));
+    places.extend(srdfs_in(files, &folder.join("..").join("srdf")));
+    let mut above = folder.to_owned();
+    for _ in 0..=ABOVE {
+        let packages = files.names_in(&above).into_iter().filter(|name| name.ends_with("_moveit_config"));
+        places.extend(packages.flat_map(|name| srdfs_in(files, &above.join(name).join("config"))));
+        above = above.join("..");
+    }
+    let read = |place: PathBuf| {
+        let text = read_robot_text(files, &place).ok()?;
+        Some(FoundSrdf { file: place, text })
+    };
+    let robot = robot_name(urdf);
+    let is_own = |found: &FoundSrdf| robot.is_some() && robot_name(&found.text) == robot;
+    let mut found: Vec<FoundSrdf> = places.into_iter().filter_map(read).collect();
+    let of_robot = found.iter().position(|f| is_own(f) && f.file.file_stem() == own.file_stem());
+    let of_robot = of_robot.or_else(|| found.iter().position(is_own));
+    let chosen = of_robot.or_else(|| found.iter().position(|f| f.file == own));
+    let name = |place: PathBuf| Some(place.file_name()?.to_string_lossy().into_owned());
+    (chosen.map(|at| found.swap_remove(at)), beside.and_then(name))
+}
+
+/// The SRDFs in a folder, by the alphabet.
+fn srdfs_in(files: &dyn Files, folder: &Path) -> Vec<PathBuf> {
+    let is_one =
+        |name: &String| Content::of(Path::new(name)).any(|content| content == Content::RobotSemantics);
+    files.names_in(folder).into_iter().filter(is_one).map(|name| folder.join(name)).collect()
+}
+
+/// The name of the robot in the text of a URDF or SRDF.
+#[must_use]
+pub fn robot_name(text: &str) -> Option<String> {
+    let mut rest = text;
+    loop {
+        rest = &rest[rest.find('<')?..];
+        let skipped =
+            [("<?", "?>"), ("<!--", "-->"), ("<!", ">")].iter().find(|(start, _)| rest.starts_with(start));
+        match skipped {
+            Some((_, end)) => rest = &rest[rest.find(end)? + end.len()..],
+            None => break,
+        }
+    }
+    let tag = &rest[..rest.find('>')?];
+    let value = tag.split_ascii_whitespace().find_map(|part| part.strip_prefix("name="))?;
+    // The name may have spaces.
+    let quote = value.chars().next().filter(|c| matches!(c, '"' | '\''))?;
+    let from = tag.find(&format!("name={quote}"))? + "name=".len() + 1;
+    let value = &tag[from..];
+    Some(value[..value.find(quote)?].to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn robots_have_names() {
+        let of = |text: &str| robot_name(text);
+        assert_eq!(
+            of("<?xml version=\"1.0\"?>\n<!-- <robot name=\"no\"> -->\n<robot\n name='a b'>").unwrap(),
+            "a b"
+        );
+        assert_eq!(of("<robot version=\"1\" name=\"panda\" />").unwrap(), "panda");
+        assert_eq!((of("<robot>"), of(""), of("<robot name=\"x"), of("<!-- ")), (None, None, None, None));
+    }
+}
