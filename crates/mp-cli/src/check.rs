@@ -45,10 +45,7 @@ fn shown(scene: &Scene, given: &Path) -> String {
 
 /// Says whether a configuration is free, and why not.
 fn explain(scene: &Scene, numbers: &str, as_json: bool) -> Result<bool, Error> {
-    let words = numbers.split([' ', ',', '\t']).filter(|word| !word.is_empty());
-    let row =
-        words.map(|word| word.parse::<f64>().map_err(|_| Error::new(format!("`{word}` is not a number"))));
-    let explanation = scene.explain(&row.collect::<Result<Vec<_>, _>>()?)?;
+    let explanation = scene.explain(&crate::input::numbers(numbers)?)?;
     if as_json {
         print_json(&explanation)?;
         return Ok(explanation.free);

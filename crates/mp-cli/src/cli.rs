@@ -4,8 +4,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use mp_batch::Shard;
 use mp_plan::{
-    Length, MetricName, Mode, MotionValidator, PlannerInfo, PortfolioSchedule, RelaxField, Request,
-    positive_number,
+    FreeTurns, Length, MetricName, Mode, MotionValidator, PlannerInfo, PortfolioSchedule, RelaxField,
+    Request, positive_number,
 };
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -37,6 +37,9 @@ pub(crate) enum Command {
     /// Find which links of a robot may touch, and write it as an SRDF, as the Setup Assistant of MoveIt does: those that a joint
     /// connects, that touch at the neutral configuration, always or never, in thousands of configurations.
     Srdf(Srdf),
+    /// Find configurations of an arm that place a link: inverse kinematics. The free ones first, from the nearest to the start on; one on each
+    /// line, as `check --at` takes them.
+    Ik(Ik),
     /// Draw a scene, and a path through it, as a picture, film, page or meshes, with no display.
     Render(Render),
     /// Open the viewer in the browser: look at a scene and a path, edit the scene, and plan.
@@ -248,6 +251,36 @@ pub(crate) struct Srdf {
     /// Leave out links that were never seen to touch, so that they go on being compared: slower, and nothing can be missed.
     #[arg(long)]
     pub(crate) check_never: bool,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Ik {
+    /// A scene with an arm, or a URDF.
+    pub(crate) scene: PathBuf,
+    /// The link to place, such as the tool.
+    #[arg(long, value_name = "LINK")]
+    pub(crate) link: String,
+    /// Where it is to be in the world, "x y z α β γ": metres, then radians about Z, Y and X.
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true, conflicts_with = "position")]
+    pub(crate) pose: Option<String>,
+    /// Where its origin is to be, "x y z", turned in any way.
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
+    pub(crate) position: Option<String>,
+    /// What may turn freely: the link about its own `x`, `y` or `z`, or `all`.
+    #[arg(long, value_name = "AXIS", default_value = "none", requires = "pose", value_parser = parsed::<FreeTurns>)]
+    pub(crate) free: FreeTurns,
+    /// How far the origin may be off along each axis of the pose, metres.
+    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = positive_number)]
+    pub(crate) within: f64,
+    /// At most this many free ones.
+    #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) most: u16,
+    /// Also those in collision.
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// Print one JSON array on standard output.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Clone, Debug, Args)]

@@ -77,3 +77,9 @@ pub(crate) fn judged_path(scene: &Scene, given: &Path) -> Result<(PathRows, Verd
     }
     Ok((path, verdict))
 }
+
+/// The numbers of a text, between spaces or commas.
+pub(crate) fn numbers(text: &str) -> Result<Vec<f64>, Error> {
+    let words = text.split([' ', ',', '\t']).filter(|word| !word.is_empty());
+    words.map(|word| word.parse().map_err(|_| Error::new(format!("`{word}` is not a number")))).collect()
+}

@@ -7,6 +7,7 @@ mod browser;
 mod check;
 mod cli;
 mod files;
+mod ik;
 mod info;
 mod input;
 mod interrupt;
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(args),
         Command::Info(args) => info::run(args),
         Command::Srdf(args) => srdf::run(args),
+        Command::Ik(args) => ik::run(args),
         Command::Render(args) => render::run(args),
         Command::View(args) => view::run(args),
         Command::Scenes => scenes(),

@@ -18,6 +18,22 @@ pub enum FreeTurns {
     All,
 }
 
+impl std::str::FromStr for FreeTurns {
+    type Err = String;
+
+    /// `none`, `x`, `y`, `z` or `all`.
+    fn from_str(word: &str) -> Result<Self, String> {
+        match word {
+            "none" => Ok(Self::None),
+            "x" => Ok(Self::About(0)),
+            "y" => Ok(Self::About(1)),
+            "z" => Ok(Self::About(2)),
+            "all" => Ok(Self::All),
+            other => Err(format!("`free` is `{}`", clipped(other))),
+        }
+    }
+}
+
 /// A place that a link is to have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseEntry {
@@ -82,12 +98,9 @@ impl PoseEntry {
         let free = match table.remove("free") {
             None if whole => FreeTurns::None,
             None => FreeTurns::All,
-            Some(PartText::Text(word)) if whole => match word.as_str() {
-                "x" => FreeTurns::About(0),
-                "y" => FreeTurns::About(1),
-                "z" => FreeTurns::About(2),
-                "all" => FreeTurns::All,
-                other => return fault(format!("`free` is `{}`", clipped(other))),
+            Some(PartText::Text(word)) if whole => match word.parse() {
+                Ok(free) => free,
+                Err(message) => return fault(message),
             },
             Some(PartText::Text(_)) => return fault("a position leaves all turns free already".to_owned()),
             Some(_) => return fault("`free` is a number".to_owned()),

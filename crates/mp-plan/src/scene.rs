@@ -250,6 +250,23 @@ impl Scene {
         self.robot.details().into_iter().chain(notes).collect()
     }
 
+    /// Configurations that place a link of an arm, the free ones first: see [`ArmScene::reaching`](crate::ArmScene::reaching).
+    ///
+    /// # Errors
+    /// As there, and when the robot is no arm whose base stands still.
+    pub fn reaching(
+        &self,
+        place: &mp_io::PoseEntry,
+        most: usize,
+        interrupt: &Interrupt,
+    ) -> Result<Vec<crate::Reached>, Error> {
+        let arm = self.robot::<crate::ArmScene>().ok_or_else(|| {
+            Error::new(format!("{} is no arm whose base stands still", self.name()))
+                .help("only such have links to be placed; one that moves by inputs, or among obstacles that move, is none here")
+        })?;
+        arm.reaching(place, most, interrupt)
+    }
+
     /// The fraction of the space in which the robot is free, estimated from `samples` samples. The same scene gives the same
     /// fraction.
     #[must_use]
