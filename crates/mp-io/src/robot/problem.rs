@@ -91,6 +91,7 @@ impl RobotProblem {
             obstacles.push(PlacedBody { name, file: from, mesh, pose });
         }
         let packages = file.packages.as_ref().map(|name| folder.join(name));
+        crate::trace::problem(&stem(path), obstacles.len());
         Ok(Self { name: stem(path), file, urdf_file, urdf, srdf, srdf_beside, packages, obstacles })
     }
 }
