@@ -1,10 +1,10 @@
 //! The `tracing` events of the crate: at debug level, from functions that are compiled once, and of what is rare. The end of a run is
 //! an event of `mp-cspace`.
 
-use crate::PlannerSpec;
+use std::fmt::Display;
 
 /// A planner was made by name.
-pub(crate) fn made(planner: &PlannerSpec) {
+pub(crate) fn made(planner: &dyn Display) {
     tracing::debug!(%planner, "made");
 }
 
