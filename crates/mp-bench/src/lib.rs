@@ -101,7 +101,9 @@ pub fn run_on(
     }
     if options.suite == Some(Suite::All) {
         // A suite that fails on one rank alone would leave the others waiting.
-        return Err(Error::new("`all` is measured by one process").help("name a suite to measure it on ranks"));
+        return Err(
+            Error::new("`all` is measured by one process").help("name a suite to measure it on ranks")
+        );
     }
     let (complete, shares) = experiment::ranks::with(link, cancel.clone(), || run(options));
     Ok(SuiteOutcome { complete: complete?, shares })
