@@ -19,7 +19,7 @@ const HELP: &str = "\
 Builds and starts the programs of the workspace:
 
   cargo xtask plan | many | merge | view | check | info | render | scenes | completions | man …   the program `mp`: see `cargo xtask plan --help`
-  cargo xtask bench SUITE …     measurements, the program `mp-bench`: see `cargo xtask bench --help`
+  cargo xtask bench [SUITE …]   measurements, the program `mp-bench`; alone it lists the suites
   cargo xtask verify-certificate FILE   replays a certificate, with the program `mp-verify-certificate`
   cargo xtask soak --out DIR …  random problems for every planner under an oracle: see `cargo xtask soak --help`
   cargo xtask wasm              builds the planner inside pages, for `render … --with-planner`

@@ -26,15 +26,17 @@ mod scale;
 mod scaling;
 mod scenes;
 mod spread;
+mod suite;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use experiment::shards;
 pub use mp_plan::Error;
 use std::io::Write;
+use suite::Suite;
 
 /// What to measure, and how: the command line.
 ///
-/// Exit code: 0 measured completely and as expected, 1 otherwise, 2 bad input.
+/// Exit code: 0 measured completely and as expected, or only listed; 1 otherwise, 2 bad input.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "mp-bench",
@@ -43,9 +45,9 @@ use std::io::Write;
     about = "Run benchmarks, and compare with other programs if these are given"
 )]
 pub struct Options {
-    /// What to measure.
+    /// What to measure; without it the suites are listed.
     #[arg(value_name = "SUITE")]
-    suite: Suite,
+    suite: Option<Suite>,
     #[command(flatten)]
     common: options::Common,
     #[command(flatten)]
@@ -64,46 +66,14 @@ pub struct Options {
     assets: assets::Options,
 }
 
-/// A suite of measurements.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Suite {
-    /// RRT-Connect on rigid bodies, to the first solution.
-    Rigid,
-    /// Every planner on shipped scenes, to the first solution.
-    Planners,
-    /// Graded scenes, from easy ones to those that nothing here solves: `auto` and single planners, in processor time.
-    Puzzles,
-    /// Queries between two meshes.
-    Collide,
-    /// The experiment of Baizid et al.: RRT, and RRS, which bends blocked edges with snakes, in four worlds.
-    Rrs,
-    /// Experiments of Jouandeau et al. 2008: natural expansion; RSRT and RRT in growing clutter.
-    Rsrt,
-    /// Roadmaps: corridors of decreasing width, shipped scenes, many queries, growth, pictures.
-    Roadmaps,
-    /// Roadmaps by regions: what they answer, and how evenly their work is spread over ranks.
-    Regions,
-    /// Sweeps and portfolios on 1 to 10,000 ranks: measured costs, replayed.
-    Scale,
-    /// The speed of growth of an RRT without obstacles, against its size.
-    Scaling,
-    /// What proofs of paths cost: certifying, and replaying by `mp-verify-certificate`.
-    Certificates,
-    /// No measurement: generate the shipped scenes, or check that they are up to date.
-    Assets,
-}
-
 impl Options {
     /// What is measured, and how, in a line: the same for all shards.
-    fn identity(&self) -> String {
+    fn identity(&self, suite: Suite) -> String {
         let mut same = self.clone();
         let c = &mut same.common;
         (c.shard, c.threads, c.fresh) = (mp_batch::Shard::WHOLE, None, false);
         (c.out, c.merge, c.peer) = Default::default();
-        format!(
-            "{:?} {:?} {:?} {:?} {:?} {:?}",
-            same.suite, c, same.rsrt, same.roadmaps, same.rrs, same.puzzles
-        )
+        format!("{:?} {:?} {:?} {:?} {:?} {:?}", suite, c, same.rsrt, same.roadmaps, same.rrs, same.puzzles)
     }
 }
 
@@ -129,11 +99,17 @@ pub fn run_on(
     if !link.is_master() {
         output::silence();
     }
+    if options.suite == Some(Suite::All) {
+        // A suite that fails on one rank alone would leave the others waiting.
+        return Err(
+            Error::new("`all` is measured by one process").help("name a suite to measure it on ranks")
+        );
+    }
     let (complete, shares) = experiment::ranks::with(link, cancel.clone(), || run(options));
     Ok(SuiteOutcome { complete: complete?, shares })
 }
 
-/// Runs a suite. True when it was measured completely, and all of what it printed was read.
+/// Runs a suite, or all, or lists them. True when it was measured completely, and all of what it printed was read.
 ///
 /// # Errors
 /// When a scene or a file is not valid, cannot be read or cannot be written.
@@ -142,14 +118,26 @@ pub fn run(options: &Options) -> Result<bool, Error> {
     if common.counted_time {
         clock::count();
     }
-    let (whole, command) = (common.shard == mp_batch::Shard::WHOLE, options.identity());
+    let in_parts = common.shard != mp_batch::Shard::WHOLE || !common.merge.is_empty();
+    match options.suite {
+        // Nothing was asked for but what there is: no error, as for `cargo xtask` alone.
+        None => output::print(&suite::list()).map(|()| true),
+        Some(Suite::All) if in_parts => Err(Error::new("`all` is measured in one piece")
+            .help("measure a suite at a time by --shard and --merge")),
+        Some(suite) => run_suite(suite, options),
+    }
+}
+
+fn run_suite(suite: Suite, options: &Options) -> Result<bool, Error> {
+    let common = &options.common;
+    let (whole, command) = (common.shard == mp_batch::Shard::WHOLE, options.identity(suite));
     if !common.merge.is_empty() {
         shards::begin(&common.out, &shards::merged(&common.merge, &command)?)?;
     }
     if !whole {
         shards::ShardFile::begin(&common.out, &command, common.shard)?;
     }
-    let complete = match options.suite {
+    let complete = match suite {
         Suite::Collide => collide::run(common, &options.collide),
         Suite::Planners => planners::run(common),
         Suite::Puzzles => puzzles::run(common, &options.puzzles),
@@ -162,6 +150,7 @@ pub fn run(options: &Options) -> Result<bool, Error> {
         Suite::Scaling => scaling::run(common),
         Suite::Certificates => certificates::run(common),
         Suite::Assets => assets::run(&options.assets),
+        Suite::All => suite::run_each(&suite::MEASURED, |suite| run_suite(suite, options)),
     };
     let complete = complete?;
     if !whole && !experiment::interrupted() {

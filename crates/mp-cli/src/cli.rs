@@ -270,8 +270,8 @@ pub(crate) struct Ik {
     #[arg(long, value_name = "AXIS", default_value = "none", requires = "pose", value_parser = parsed::<FreeTurns>)]
     pub(crate) free: FreeTurns,
     /// How far the origin may be off along each axis of the pose, metres.
-    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = positive_number)]
-    pub(crate) within: f64,
+    #[arg(long, value_name = "M", value_parser = positive_number)]
+    pub(crate) within: Option<f64>,
     /// At most this many free ones.
     #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) most: u16,

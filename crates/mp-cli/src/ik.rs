@@ -21,7 +21,7 @@ pub(crate) fn run(args: &cli::Ik) -> Result<bool, Error> {
     let entry = PoseEntry {
         link: args.link.clone(),
         pose: std::array::from_fn(|i| place.get(i).copied().unwrap_or(0.0)),
-        within: [args.within; 3],
+        within: [args.within.unwrap_or(0.0); 3],
         free,
     };
     let scene = scene(&args.scene)?;

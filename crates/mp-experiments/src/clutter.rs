@@ -5,6 +5,7 @@
 mod boxes;
 mod robots;
 mod run;
+mod scene_text;
 
 use crate::Result;
 pub use boxes::{LEVELS, Obstacle};
@@ -60,6 +61,43 @@ impl Mover {
         match &self.0 {
             Robot::Flyer(flyer) => flyer.spares(obstacle),
             Robot::Arm(arm) => arm.spares(obstacle),
+        }
+    }
+
+    /// Whether each of these configurations, rows of six numbers as in path files, is free among obstacles.
+    ///
+    /// # Errors
+    /// When an obstacle is not valid.
+    pub fn are_free(&self, obstacles: &[Obstacle], rows: &[[f64; 6]]) -> Result<Vec<bool>> {
+        match &self.0 {
+            Robot::Flyer(flyer) => flyer.are_free(obstacles, rows),
+            Robot::Arm(arm) => arm.are_free(obstacles, rows),
+        }
+    }
+
+    /// The problem with `count` boxes of an instance as the text of a scene file (`docs/formats/rigid-problem.md`, `robot-problem.md`).
+    /// It differs from what is planned for here in two things: its goal is a configuration, the middle of the goal region, and its
+    /// boxes are solid, so that nothing may be wholly inside of one. The scene of the arm names the file of [`urdf`](Self::urdf).
+    ///
+    /// # Errors
+    /// As [`obstacles`](Self::obstacles).
+    pub fn scene_text(&self, count: usize, instance: u64) -> Result<String> {
+        let (who, figure, tables) = match &self.0 {
+            Robot::Flyer(flyer) => ("A bar that flies", 6, flyer.tables()),
+            Robot::Arm(arm) => ("An arm of six joints", 7, arm.tables()),
+        };
+        let boxes = scene_text::obstacles(&self.obstacles(count, instance)?);
+        Ok(format!(
+            "# {who} among {count} boxes, instance {instance}: Figure {figure} of Jouandeau, Touati and Ali Cherif 2008, as rebuilt here.\n\n{tables}{boxes}"
+        ))
+    }
+
+    /// The file of the robot that its scenes name, seen from the folder above theirs, and its text; the free-flyer has none.
+    #[must_use]
+    pub fn urdf(&self) -> Option<(&'static str, String)> {
+        match &self.0 {
+            Robot::Flyer(_) => None,
+            Robot::Arm(arm) => Some((robots::ARM_FILE, arm.urdf())),
         }
     }
 

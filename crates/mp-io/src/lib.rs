@@ -39,6 +39,7 @@ mod robot;
 mod shape;
 mod text;
 mod toml_problem;
+mod trace;
 mod xml;
 
 pub use columns::{Column, matched};

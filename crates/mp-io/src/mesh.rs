@@ -96,7 +96,10 @@ pub fn read_mesh_with(files: &dyn Files, path: &Path, axes: Axes) -> Result<TriM
         return stand_in(&file);
     }
     let remark = &mut |remark: &str| files.note(path, remark);
-    reader(&file, &bytes)?(&file, &bytes, &mut Reading { axes, interrupt: files.interrupt(), remark })
+    let mesh =
+        reader(&file, &bytes)?(&file, &bytes, &mut Reading { axes, interrupt: files.interrupt(), remark })?;
+    crate::trace::mesh(&file, &mesh);
+    Ok(mesh)
 }
 
 /// The triangle mesh of polygons with at least three corners each, read from `file`.

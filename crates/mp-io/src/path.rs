@@ -65,6 +65,7 @@ impl PathFile {
         }
         let row = |line, subject: &str| six(&text, line, subject, "six numbers: x y z α β γ");
         let configurations = configurations(&text, lines, n, "x y z α β γ", row)?;
+        crate::trace::path(file, configurations.len());
         Ok(Self { configurations })
     }
 
@@ -156,6 +157,7 @@ impl JointPath {
             Err(text.error(line, message).expected(expected.as_str()))
         };
         let configurations = configurations(&text, lines, n, &expected, row)?;
+        crate::trace::path(file, configurations.len());
         Ok(Self { configurations })
     }
 

@@ -182,6 +182,7 @@ impl RigidProblem {
         }
         let name = stem(path);
         let (start, goal) = (pose_from_six(start), pose_from_six(goal));
+        crate::trace::problem(&name, obstacles.len());
         Ok(Self { name, space, robot, obstacles, start, goal, bounds })
     }
 }

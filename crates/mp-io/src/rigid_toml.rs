@@ -233,6 +233,7 @@ impl RigidTask {
             goal: pose_from_six(goal),
             bounds,
         };
+        crate::trace::problem(&problem.name, problem.obstacles.len() + movers.len());
         Ok(Self { problem, moving: movers, timing: motion.timing, driven, velocity, goals })
     }
 }

@@ -70,6 +70,7 @@ fn requests() -> Vec<Request> {
     all.push(Request::new("or-rrt-connect").set("step", 1e-9));
     all.push(Request::new("restart-rrt-connect").set("unit", 3));
     all.push(Request::new("shared-rrt").set("batch", 1024));
+    all.push(Request::new("shared-bi-rrt").set("batch", 1024));
     all.push(Request::new("or-shared-rrt").set("batch", 64));
     for name in ["rrt-connect", "rrt-con-con", "rrt-con-ext", "rrt", "aorrtc"] {
         all.push(Request::new(name).set("step", 1e-9));

@@ -1,6 +1,6 @@
 //! What happens is told by `tracing`, by this crate and by those below.
 
-use mp_plan::{Request, Scene};
+use mp_plan::{RelaxField, Request, Scene};
 use std::collections::BTreeSet;
 use std::fmt::{Debug, Write};
 use std::sync::{Arc, Mutex};
@@ -44,22 +44,28 @@ impl Subscriber for Kept {
     fn exit(&self, _: &Id) {}
 }
 
+/// Does something, and looks for what it tells.
+fn told(wanted: &[&str], run: impl FnOnce()) {
+    let kept = Kept::default();
+    tracing::subscriber::with_default(kept.clone(), run);
+    let told = kept.0.lock().unwrap();
+    for wanted in wanted {
+        assert!(told.contains(*wanted), "{wanted} is not among {told:?}");
+    }
+}
+
 #[test]
 fn a_run_is_told_from_loading_to_verifying() {
-    let kept = Kept::default();
     let folder = tempfile::tempdir().unwrap();
     let map = folder.path().join("map");
-    tracing::subscriber::with_default(kept.clone(), || {
-        let scene = Scene::find("easy").unwrap();
-        assert!(scene.plan(&Request::new("rrt-connect").seed(7)).unwrap().solved);
-        let request = Request { roadmap: Some(map), ..Request::new("prm").nodes(20) };
-        scene.roadmap(&request).unwrap();
-    });
-    let told = kept.0.lock().unwrap();
-    for wanted in [
+    let wanted = [
         "mp_plan load",
+        "mp_io: mesh",
+        "mp_io: problem",
+        "mp_robot build",
         "mp_collide build",
         "mp_plan plan",
+        "mp_tree: made",
         "mp_cspace: solved",
         "mp_plan shorten",
         "mp_cspace: simplified",
@@ -68,7 +74,28 @@ fn a_run_is_told_from_loading_to_verifying() {
         "mp_plan roadmap",
         "mp_roadmap: built",
         "mp_store: written",
-    ] {
-        assert!(told.contains(wanted), "{wanted} is not among {told:?}");
-    }
+    ];
+    told(&wanted, || {
+        let scene = Scene::find("easy").unwrap();
+        assert!(scene.plan(&Request::new("rrt-connect").seed(7)).unwrap().solved);
+        let request = Request { roadmap: Some(map), ..Request::new("prm").nodes(20) };
+        scene.roadmap(&request).unwrap();
+    });
+}
+
+#[test]
+fn arms_searches_and_snakes_are_told() {
+    let plan = |scene: &str, request: Request| Scene::find(scene).unwrap().plan(&request).unwrap();
+    told(&["mp_io: problem", "mp_robot urdf", "mp_robot build", "mp_robot: arm", "mp_tree: won"], || {
+        plan("arm", Request::new("or-rrt-connect").seed(1));
+    });
+    told(&["mp_tree: made", "mp_tree: restarted"], || {
+        plan("rrs-high", Request::new("restart-rrt").seed(1).set("unit", 2));
+    });
+    told(&["mp_tree: improved", "mp_cspace: stopped"], || {
+        plan("rrs-high", Request::new("rrt-star").seed(1).iterations(2000));
+    });
+    told(&["mp_snake map", "mp_snake risk", "mp_snake: relaxed"], || {
+        plan("rrs-follow", Request::new("rrt").seed(1).relax(RelaxField::Risk(1.0)));
+    });
 }

@@ -189,6 +189,7 @@ impl<P: Placement> RigidBody<P> {
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
         interrupt: &Interrupt,
     ) -> Result<Self, RobotError> {
+        let _span = tracing::debug_span!("build", triangles = robot.triangles().len()).entered();
         let before = before.map(|before| &*before.shared);
         let same = before.filter(|before| before.robot_mesh == *robot);
         let radii = same.map_or_else(|| BodyRadii::of(robot), |same| same.radii.clone());

@@ -1,5 +1,5 @@
 //! The code that generates the shipped files, bit for bit: every mesh, and the scenes of those meshes, are made here, from
-//! constants. `mp-bench assets` writes them. Scenes and robots without meshes are written by hand, where they are.
+//! constants. `mp-bench assets` writes them. Scenes and robots without meshes are written by hand, where they are, or by mp-experiments.
 //!
 //! Each family of scenes is one file here; `shape` has the solids of which they consist, `scene` turns them into files.
 
@@ -53,8 +53,9 @@ macro_rules! by_hand {
     };
 }
 
-/// The files that are written by hand.
-const BY_HAND: [(&str, &str); 13] = by_hand! {
+/// The files that are written by hand; those called `rsrt-…` by `mp_experiments::clutter`, whose tests compare them.
+const BY_HAND: [(&str, &str); 16] = by_hand! {
+    "robots/rsrt-arm.urdf"
     "robots/six.urdf"
     "robots/wrench.urdf"
     "scenes/accelerations.toml"
@@ -64,6 +65,8 @@ const BY_HAND: [(&str, &str); 13] = by_hand! {
     "scenes/docks.toml"
     "scenes/flyer.toml"
     "scenes/parking.toml"
+    "scenes/rsrt-arm-64.toml"
+    "scenes/rsrt-flyer-64.toml"
     "scenes/unicycle.toml"
     "scenes/velocities.toml"
     "scenes/warehouse.toml"

@@ -53,6 +53,7 @@ fn envelope(from: &[f64], to: &mut [f64], roots: &mut Vec<usize>, bounds: &mut V
 /// `map(|d| d - radius)`.
 #[must_use]
 pub fn signed_distance(mask: &Grid, far: f64) -> Grid {
+    let _span = tracing::debug_span!("distance", cells = mask.values().len()).entered();
     let outside = squared_distance(mask);
     let inside = squared_distance(&mask.clone().map(|v| if v > 0.5 { 0.0 } else { 1.0 }));
     let half = 0.5 * mask.cell();

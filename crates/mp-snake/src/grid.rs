@@ -61,6 +61,7 @@ impl Grid {
         (width, height): (usize, usize),
         mut f: impl FnMut(Vector2<f64>) -> f64,
     ) -> Result<Self, ParameterError> {
+        let _span = tracing::debug_span!("map", width, height).entered();
         let origin = origin.into();
         let middle =
             |i: usize| Vector2::new((i % width.max(1)) as f64 + 0.5, (i / width.max(1)) as f64 + 0.5);

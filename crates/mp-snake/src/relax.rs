@@ -97,7 +97,13 @@ pub fn relax<C: Space>(
             best = Relaxed { path, length: [length, before], energy: [energy, first], iterations };
         }
     }
+    relaxed(curve.len(), best.iterations, best.energy);
     Ok(best)
+}
+
+/// Logs the end. Not generic, so that it is compiled once.
+fn relaxed(nodes: usize, iterations: u32, energy: [f64; 2]) {
+    tracing::debug!(nodes, iterations, from = energy[1], to = energy[0], "relaxed");
 }
 
 /// A step that lowers the energy by less than this part of it gains nothing.

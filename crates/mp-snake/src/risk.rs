@@ -177,6 +177,8 @@ impl RiskMaps {
         motion: MotionNoise,
         sensor: RangeNoise,
     ) -> Result<Self, ParameterError> {
+        let _span =
+            tracing::debug_span!("risk", cells = seen.values().len(), states = path.states.len()).entered();
         let occupied = sensor.occupancy(seen, 1.0)?;
         let passing = motion.checked()?.envelope(path, &occupied);
         let risk = landscape(&passing, &occupied)?;

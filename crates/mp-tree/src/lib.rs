@@ -1,6 +1,7 @@
 //! The rapidly-exploring random tree family: one engine, and the algorithms on it. [`algo`] has the table of them.
 //!
-//! [`SharedTree`] ([`algo::shared_tree`]) is RRT on several threads, which grow one tree together.
+//! [`SharedTree`] ([`algo::shared_tree`]) is RRT on several threads, which grow one tree together; [`SharedBiRrt`]
+//! ([`algo::shared_bi_rrt`]) is Bi-RRT so.
 //! Two meta-planners run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
 //! ([`algo::restarts`]) one after the other. [`build_from`] makes them by name.
 //!
@@ -140,9 +141,11 @@ pub mod algo;
 mod by_name;
 mod engine;
 mod registry;
+mod trace;
 
 pub use algo::or_parallel::OrParallel;
 pub use algo::restarts::{Lengths, Restarts, Schedule};
+pub use algo::shared_bi_rrt::SharedBiRrt;
 pub use algo::shared_tree::SharedTree;
 pub use algo::types::*;
 pub use by_name::{ACCEPT, AnyPlanner, INPUTS, LEVELS, ORDER};

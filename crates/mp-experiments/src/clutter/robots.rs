@@ -1,9 +1,10 @@
 //! The robots of the experiment: a free-flyer, and an arm with six joints.
 
 use super::boxes::{Obstacle, Region, boxes};
+use super::scene_text::{list, urdf};
 use crate::Result;
 use mp_cspace::{Clearance, Factored, MotionValidity, Rn, Se3, Space, Validity};
-use mp_geom::primitives::cuboid;
+use mp_geom::{pose_from_six, primitives::cuboid, short_six_from_pose};
 use mp_robot::{Arm, ArmModel, ArmVerifier, FreeFlyer, Joint, JointKind, Link, Spatial, Verifier};
 use nalgebra::{Isometry3, SVector, UnitQuaternion, Vector3};
 
@@ -49,12 +50,22 @@ pub(super) trait TestRobot: Sync {
         &'a self,
         robot: &Self::Robot,
     ) -> Result<impl MotionValidity<<Self::Space as Space>::State> + Send + use<'a, Self>>;
+    /// The configuration of a row of a path file.
+    fn configuration(&self, row: [f64; 6]) -> <Self::Space as Space>::State;
+    /// The tables `[robot]` and `[motion]` of a scene file, with the goal that is the middle of the goal region here.
+    fn tables(&self) -> String;
     /// Whether an obstacle keeps some clearance from start and goal.
     fn spares(&self, obstacle: &Obstacle) -> Result<bool>;
 
     /// `count` obstacles of an instance; the first n are those of its problem with n obstacles.
     fn obstacles(&self, count: usize, instance: u64) -> Result<Vec<Obstacle>> {
         boxes(&self.setup().region, count, instance, |o| self.spares(o))
+    }
+
+    /// Whether each of the rows of a path file is free among obstacles.
+    fn are_free(&self, obstacles: &[Obstacle], rows: &[[f64; 6]]) -> Result<Vec<bool>> {
+        let mut robot = self.among(obstacles)?;
+        Ok(rows.iter().map(|row| robot.is_valid(&self.configuration(*row))).collect())
     }
 }
 
@@ -108,6 +119,16 @@ impl TestRobot for Flyer {
     ) -> Result<impl MotionValidity<Isometry3<f64>> + Send + use<'a>> {
         Ok(Verifier::<_, Spatial>::new(&self.0.space, robot)?)
     }
+    fn configuration(&self, row: [f64; 6]) -> Isometry3<f64> {
+        pose_from_six(row)
+    }
+    fn tables(&self) -> String {
+        let (sides, low, high) = (list(&BAR), list(&[0.0; 3]), list(&[ROOM; 3]));
+        let [start, goal] = [&self.0.start, &self.0.goal].map(|q| list(&short_six_from_pose(q)));
+        format!(
+            "[robot]\nbox = {sides}\nbounds = [{low}, {high}]\n\n[motion]\nstart = {start}\ngoal = {goal}\n"
+        )
+    }
     fn spares(&self, obstacle: &Obstacle) -> Result<bool> {
         let mut robot = self.among(std::slice::from_ref(obstacle))?;
         Ok([&self.0.start, &self.0.goal].into_iter().all(|q| robot.clearance(q, 0.3) >= 0.3))
@@ -121,6 +142,8 @@ pub(super) struct SixAxes {
     setup: Setup<Rn<6>>,
 }
 
+/// The file of the arm, seen from the folder of the shipped files.
+pub(super) const ARM_FILE: &str = "robots/rsrt-arm.urdf";
 /// The limit of each joint in both directions, radians.
 const TURN: f64 = 2.6;
 /// Distances from the axis of each joint to the tip of the straight arm, metres; rough values for the roll joints.
@@ -142,6 +165,12 @@ impl SixAxes {
         };
         Ok(Self { arm, setup })
     }
+
+    /// The text of [`ARM_FILE`].
+    pub(super) fn urdf(&self) -> String {
+        let about = "The arm of Jouandeau, Touati and Ali Cherif 2008, §4, as rebuilt here: six joints, links of boxes.";
+        urdf("rsrt-arm", about, self.arm.model())
+    }
 }
 
 /// Base, shoulder, elbow and a wrist of three axes: 0.35 m high, then links of 0.5 m, 0.5 m and 0.5 m.
@@ -159,7 +188,7 @@ fn model() -> Result<ArmModel> {
         links: vec![
             link("base", 0.24, 0.15)?,
             link("turret", 0.18, 0.2)?,
-            link("upper arm", 0.12, 0.5)?,
+            link("upper_arm", 0.12, 0.5)?,
             link("forearm", 0.1, 0.3)?,
             link("roll", 0.09, 0.2)?,
             link("wrist", 0.08, 0.2)?,
@@ -167,11 +196,11 @@ fn model() -> Result<ArmModel> {
         ],
         joints: vec![
             joint("pan", "base", "turret", 0.15, Vector3::z()),
-            joint("shoulder", "turret", "upper arm", 0.2, Vector3::y()),
-            joint("elbow", "upper arm", "forearm", 0.5, Vector3::y()),
-            joint("forearm roll", "forearm", "roll", 0.3, Vector3::z()),
-            joint("wrist pitch", "roll", "wrist", 0.2, Vector3::y()),
-            joint("hand roll", "wrist", "hand", 0.2, Vector3::z()),
+            joint("shoulder", "turret", "upper_arm", 0.2, Vector3::y()),
+            joint("elbow", "upper_arm", "forearm", 0.5, Vector3::y()),
+            joint("forearm_roll", "forearm", "roll", 0.3, Vector3::z()),
+            joint("wrist_pitch", "roll", "wrist", 0.2, Vector3::y()),
+            joint("hand_roll", "wrist", "hand", 0.2, Vector3::z()),
         ],
         ..ArmModel::default()
     })
@@ -192,6 +221,13 @@ impl TestRobot for SixAxes {
     }
     fn verifier<'a>(&'a self, robot: &Arm) -> Result<impl MotionValidity<Six> + Send + use<'a>> {
         Ok(ArmVerifier::new(&self.setup.space, robot)?)
+    }
+    fn configuration(&self, row: [f64; 6]) -> Six {
+        row.into()
+    }
+    fn tables(&self) -> String {
+        let [start, goal] = [&self.setup.start, &self.setup.goal].map(|q| list(q.as_slice()));
+        format!("[robot]\nurdf = \"../{ARM_FILE}\"\n\n[motion]\nstart = {start}\ngoal = {goal}\n")
     }
     fn spares(&self, obstacle: &Obstacle) -> Result<bool> {
         let mut robot = self.among(std::slice::from_ref(obstacle))?;

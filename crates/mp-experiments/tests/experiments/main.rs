@@ -3,3 +3,4 @@
 mod clutter;
 mod follow;
 mod noisy_robot;
+mod scenes;

@@ -89,6 +89,7 @@ impl PlanarProblem {
                 "say `walls = [[x, y], [x, y]]`, or `bounds`",
             ));
         };
+        crate::trace::problem(&stem(path), obstacles.len());
         Ok(Self { name: stem(path), file, obstacles, walls, bounds })
     }
 }

@@ -7,7 +7,7 @@ use mp_cspace::{BuildError, Demand};
 use std::fmt;
 
 /// All planners by name: `auto`, planners of trees, planners of roadmaps. The name of a planner of trees may have the prefix `or-` or `restart-`,
-/// and `rrt` also `shared-`: see [`meta_planners`].
+/// and those of some also `shared-`: see [`meta_planners`].
 pub fn planners() -> impl Iterator<Item = &'static PlannerInfo> {
     std::iter::once(&auto::INFO).chain(mp_tree::planners()).chain(roadmaps::planners())
 }

@@ -75,6 +75,8 @@ pub(super) struct SharedArm {
 
 impl SharedArm {
     pub(super) fn new(model: &ArmModel, interrupt: &Interrupt) -> Result<Self, ArmError> {
+        let _span =
+            tracing::debug_span!("build", links = model.links.len(), joints = model.joints.len()).entered();
         let kinematics = Kinematics::new(model)?;
         let mut bodies = Vec::new();
         let (mut first, mut count, mut reach, mut length) = (0, 0_usize, 0.0_f64, 0.0_f64);
@@ -110,6 +112,7 @@ impl SharedArm {
         // Closer than this no motion can be certified.
         let close = 2.0 * robot.tolerance(0.0);
         let (pairs, notes) = pairs(&robot.kinematics, &robot.bodies, &robot.model, close, interrupt)?;
+        tracing::debug!(dof = robot.kinematics.dof(), triangles = count, pairs = pairs.len(), "arm");
         robot.pairs = pairs;
         robot.model.notes.extend(notes);
         Ok(robot)

@@ -52,6 +52,7 @@ impl ArmModel {
         mut mesh: impl FnMut(&str) -> Result<TriMesh, String>,
         interrupt: &Interrupt,
     ) -> Result<Self, UrdfError> {
+        let _span = tracing::debug_span!("urdf", bytes = text.len()).entered();
         let mut interrupt = interrupt.clone();
         let Extract { parts, links, joints, notes } = extract(text, &mut interrupt)?;
         let (mut read_links, mut read_joints) = (Vec::new(), Vec::new());

@@ -58,14 +58,23 @@ impl DiscScene {
     }
 }
 
-/// Adds the four worlds of the paper, and the one in which a robot follows paths.
+/// Adds the four worlds of the paper, the one in which a robot follows paths, and a roomier version of that.
 pub(super) fn add(files: &mut Files) {
     for (name, scene, about) in [
         ("rrs-maze", maze(), "A maze with one way through; 3 × 3 m."),
         ("rrs-low", low(), "17 obstacles; 4 × 3 m."),
         ("rrs-high", high(), "48 obstacles; 7 × 4 m."),
         ("rrs-random", random(0), "A random world of 50 to 80 obstacles; 7 × 4 m."),
-        ("rrs-follow", follow(), "For following paths; 5 × 2 m."),
+        (
+            "rrs-corridor",
+            tight(),
+            "The world of Figure 10 (§6), as rebuilt here, in which paths are followed; 34 obstacles, 5 × 2 m.",
+        ),
+        (
+            "rrs-follow",
+            follow(),
+            "A roomier version of rrs-corridor, for demonstrations: what is said of Figure 10 is measured there. Nine obstacles, 5 × 2 m.",
+        ),
     ] {
         files.insert(format!("scenes/{name}.toml"), scene.text(about).into_bytes());
     }
@@ -99,13 +108,14 @@ fn high() -> DiscScene {
     scattered(scene, 48, [0.15, 0.4], 2.4 * RADIUS, 12)
 }
 
-/// A room of 5 × 2 m with a few obstacles.
-pub fn follow() -> DiscScene {
+/// A roomier version of [`tight`], for demonstrations: a few obstacles.
+fn follow() -> DiscScene {
     let scene = DiscScene { size: [5.0, 2.0], obstacles: vec![], start: [0.3, 1.0], goal: [4.7, 1.0] };
     scattered(scene, 9, [0.15, 0.35], 4.0 * RADIUS, 13)
 }
 
-/// The same room, full of obstacles: passages of 1.3 to 2 widths of the robot tell paths apart.
+/// The world of Figure 10, in which paths are followed (§6): a room of 5 × 2 m full of obstacles, between which passages of 1.3 to 2
+/// widths of the robot tell paths apart. It is ours, as the paper does not describe its own.
 pub fn tight() -> DiscScene {
     let scene = DiscScene { size: [5.0, 2.0], obstacles: vec![], start: [0.3, 1.0], goal: [4.7, 1.0] };
     scattered(scene, 34, [0.12, 0.24], 2.6 * RADIUS, 21)
@@ -252,7 +262,8 @@ mod tests {
             assert_eq!((scene.obstacles.len(), scene.size), (count, size));
             assert!(connected(&scene));
         }
-        assert!(connected(&follow()));
+        assert!(connected(&follow()) && connected(&tight()));
+        assert_eq!((tight().obstacles.len(), tight().size), (34, follow().size));
         for trial in 0..3 {
             let scene = random(trial);
             assert!((50..=80).contains(&scene.obstacles.len()) && connected(&scene));

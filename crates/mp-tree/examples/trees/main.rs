@@ -28,6 +28,7 @@ mod rrt_inputs;
 mod rrt_star;
 mod rsrt;
 mod shared;
+mod shared_bi_rrt;
 mod shared_tree;
 mod t_rrt;
 mod utility_rrt;
@@ -60,6 +61,7 @@ const EXAMPLES: &[Example] = &[
     ("rrt_inputs", rrt_inputs::main),
     ("rrt_star", rrt_star::main),
     ("rsrt", rsrt::main),
+    ("shared_bi_rrt", shared_bi_rrt::main),
     ("shared_tree", shared_tree::main),
     ("t_rrt", t_rrt::main),
     ("utility_rrt", utility_rrt::main),

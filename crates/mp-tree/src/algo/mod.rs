@@ -25,6 +25,9 @@
 //! | [`TRrt`](crate::TRrt) | [`t_rrt`] | from the start | one step toward a sample, if its end does not cost too much more |
 //! | [`Rrs`](crate::Rrs) | [`rrs`] | from the start, of edges that bend | one step toward a sample, around obstacles by a snake |
 //! | [`RrsConnect`](crate::RrsConnect) | [`rrs`] | from start and goal, of edges that bend | as RRT-Connect, around obstacles by snakes |
+//!
+//! [`SharedTree`](crate::SharedTree) ([`shared_tree`]) is RRT, and [`SharedBiRrt`](crate::SharedBiRrt) ([`shared_bi_rrt`]) is Bi-RRT, with
+//! trees that all threads grow.
 
 pub mod aorrtc;
 pub mod cvp_rrt;
@@ -43,6 +46,7 @@ pub mod rrt_connect;
 pub mod rrt_inputs;
 pub mod rrt_star;
 pub mod rsrt;
+pub mod shared_bi_rrt;
 pub mod shared_tree;
 pub mod t_rrt;
 pub mod utility_rrt;

@@ -53,7 +53,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::{BuildError, Parameter, Workers};
+use crate::{BuildError, Parameter, Workers, trace};
 use mp_cspace::{Interrupt, Observer, Path, Planner, Progress, Rng};
 use rand::RngExt;
 use std::any::Any;
@@ -188,7 +188,8 @@ impl<S: Send, P: Planner<S, Edge: Send> + Send> Planner<S> for OrParallel<S, P> 
         let ended = self.runs.iter().enumerate().filter(|(_, run)| run.found.is_some());
         let iterations = |run: &Run<P, _>| run.planner.progress().iterations;
         let winner = ended.map(|(i, run)| (iterations(run), i)).min();
-        let (_, winner) = winner?;
+        let (iterations, winner) = winner?;
+        trace::won(winner, iterations);
         self.winner = Some(winner);
         let mut found = self.runs.iter_mut().map(|run| run.found.take()).collect::<Vec<_>>();
         found.swap_remove(winner)

@@ -68,7 +68,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::{BuildError, Parameter, Settings};
+use crate::{BuildError, Parameter, Settings, trace};
 use mp_cspace::{Event, Observer, Path, Planner, Progress, Rng};
 use rand::RngExt;
 use std::fmt;
@@ -284,6 +284,8 @@ impl<P> Restarts<'_, P> {
                     let rng = Rng::stream(*seed, self.made);
                     let new = Attempt { number: self.made, planner, rng, allowed: 0 };
                     let before = std::mem::replace(&mut self.current, new);
+                    let iterations = self.past.iterations + before.planner.progress().iterations;
+                    trace::restarted(self.made, iterations);
                     if run.is_some() {
                         self.paused.push(before);
                     } else {

@@ -59,85 +59,26 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub use crate::engine::BATCH;
+use crate::engine::Batch;
 use crate::{
-    AppendDistinct, BuildError, Core, Extender, Growing, Grown, Inserter, NearestSelector, Parameter,
-    Problem, Purpose, SearchTree, Selector, Tree, Tuning, Workers,
+    AppendDistinct, BuildError, Core, Grown, NearestSelector, Problem, SearchTree, Tree, Tuning, Workers,
 };
 use mp_cspace::{
-    DefaultNn, Direction, Event, Extension, Interrupt, LocalPlanner, NearestNeighbors, NodeId, Observer,
-    PathOf, Planner, ProblemParts, Progress, Reach, Rng, Space,
+    DefaultNn, Direction, Event, LocalPlanner, NearestNeighbors, NodeId, Observer, PathOf, Planner, Progress,
+    Rng, Space,
 };
-use rand::RngExt;
-use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-
-/// How many samples a batch has.
-pub const BATCH: Parameter = Parameter {
-    name: "batch",
-    range: "a whole number from 1 to 1024",
-    default: "8",
-    doc: "samples per iteration, for any number of threads; their motions are checked in parallel",
-};
-
-/// One sample of a batch, and the extension toward it.
-#[derive(Debug)]
-struct BatchSample<S, L: LocalPlanner<S>> {
-    local: L,
-    interrupt: Interrupt,
-    rng: Rng,
-    target: Option<S>,
-    purpose: Purpose,
-    found: Option<(NodeId, Extension<S, L::Edge>)>,
-    panicked: Option<Box<dyn Any + Send>>,
-}
-
-impl<S: Clone + PartialEq, L: LocalPlanner<S>> BatchSample<S, L> {
-    fn work<C: Space<State = S>, N: NearestNeighbors<C>>(
-        &mut self,
-        (space, step): (&C, f64),
-        points: &[S],
-        index: &N,
-    ) {
-        if self.interrupt.ask() {
-            return;
-        }
-        let target = self.target.get_or_insert_with(|| space.sample_uniform(&mut self.rng));
-        let Some(hit) = index.nearest(space, points, target) else { return };
-        let from = &points[hit.id as usize];
-        let extension = match from == target {
-            true => Extension::Trapped,
-            false => self.local.extend(from, target, Direction::Forward, Reach::Step(step)),
-        };
-        self.found = Some((hit.id, extension));
-    }
-}
-
-/// Inserts an extension found before.
-struct FoundExtension<S, E>(Option<Extension<S, E>>);
-
-impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for FoundExtension<C::State, L::Edge> {
-    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
-        &mut self,
-        from: NodeId,
-        growing: &mut Growing<'_, '_, C, L, Se, A>,
-    ) -> Grown {
-        self.0.take().map_or(Grown::Trapped, |extension| growing.insert(from, extension))
-    }
-}
 
 /// One RRT grown by all threads: see the [module](self).
 #[derive(Debug)]
 pub struct SharedTree<'c, C: Space, L: LocalPlanner<C::State>, N> {
     core: Core<'c, C, L>,
     tree: SearchTree<C, L, NearestSelector<N>, AppendDistinct>,
-    samples: Vec<BatchSample<C::State, L>>,
-    workers: Workers,
-    seed: Option<u64>,
-    drawn: u64,
+    batch: Batch<C, L>,
+    /// The samples of the batch that are goals.
+    aimed: Vec<bool>,
     /// Nodes in the goal, to be verified.
     arrived: Vec<NodeId>,
-    motions: u64,
-    panics: u64,
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree<'c, C, L, N> {
@@ -171,27 +112,13 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         tuning: Tuning,
         mut make: impl FnMut(u64) -> Result<Problem<'c, C, L>, BuildError>,
     ) -> Result<Self, BuildError> {
-        if !(1..=1024).contains(&batch) {
-            let range = BATCH.range.to_owned();
-            return Err(BuildError::OutOfRange { name: BATCH.name, value: batch as f64, range });
-        }
         let core = Core::new(make(0)?, &tuning)?;
-        let sample = |i| {
-            let ProblemParts { local, interrupt, .. } = make(i)?.into_parts();
-            let (rng, purpose) = (Rng::seed(0), Purpose::Explore);
-            Ok(BatchSample { local, interrupt, rng, target: None, purpose, found: None, panicked: None })
-        };
-        let samples = (1..=batch).map(sample).collect::<Result<Vec<_>, BuildError>>()?;
         Ok(Self {
             core,
             tree: SearchTree::new(0, Direction::Forward, NearestSelector(index), AppendDistinct::default()),
-            samples,
-            workers,
-            seed: None,
-            drawn: 0,
+            batch: Batch::new(batch, workers, make)?,
+            aimed: Vec::new(),
             arrived: Vec::new(),
-            motions: 0,
-            panics: 0,
         })
     }
 
@@ -204,7 +131,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
     /// How many samples were lost to a panic of the local planner, without batches in which all were.
     #[must_use]
     pub fn panics(&self) -> u64 {
-        self.panics
+        self.batch.panics()
     }
 
     /// Adds the root and tries the straight motions to the goals.
@@ -217,49 +144,24 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         }
     }
 
-    fn draw(&mut self, seed: u64) {
-        for sample in &mut self.samples {
-            sample.rng = Rng::stream(seed, self.drawn);
-            self.drawn += 1;
-            sample.found = None;
-            sample.target = self.core.aim(&mut sample.rng);
-            sample.purpose = if sample.target.is_some() { Purpose::Join } else { Purpose::Explore };
-        }
-    }
-
-    fn work(&mut self)
-    where
-        L: Send,
-        N: Sync,
-    {
-        let (space, points) = (self.core.checker.space(), self.tree.nodes().states());
-        let (step, index) = (self.core.checker.step(), &self.tree.selector().0);
-        self.workers.each(&mut self.samples, |sample| {
-            let work = AssertUnwindSafe(|| sample.work((space, step), points, index));
-            sample.panicked = catch_unwind(work).err();
+    fn draw(&mut self) {
+        let Self { core, batch, aimed, .. } = self;
+        aimed.clear();
+        batch.draw(|rng| {
+            let goal = core.aim(rng);
+            aimed.push(goal.is_some());
+            goal
         });
-        let panicked = self.samples.iter().filter(|sample| sample.panicked.is_some()).count();
-        if panicked < self.samples.len() {
-            self.panics += panicked as u64;
-        } else if let Some(panic) = self.samples.iter_mut().find_map(|sample| sample.panicked.take()) {
-            resume_unwind(panic);
-        }
     }
 
     fn merge(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        for sample in &mut self.samples {
-            let Some(target) = sample.target.take() else { continue };
-            observer.on(Event::Sampled(&target));
-            let Some((from, extension)) = sample.found.take() else {
-                observer.on(Event::Trapped { tree: 0 });
-                continue;
-            };
+        for i in 0..self.batch.len() {
+            let Some(target) = self.batch.target(i) else { continue };
+            observer.on(Event::Sampled(target));
             let new = self.tree.nodes().len();
-            self.motions += u64::from(*self.tree.nodes().state(from) != target);
-            let mut found = FoundExtension(Some(extension));
-            let grown = self.tree.grow_from(from, &target, &mut self.core.checker, &mut found, rng, observer);
-            let entered = match (sample.purpose, grown) {
-                (Purpose::Join, Grown::Reached(id)) => Some(id),
+            let grown = self.batch.merge(i, &mut self.tree, &mut self.core.checker, rng, observer);
+            let entered = match grown {
+                Grown::Reached(id) if self.aimed[i] => Some(id),
                 _ => {
                     let state = self.tree.nodes().states().get(new);
                     state.is_some_and(|state| self.core.goals.reached(state)).then_some(new as NodeId)
@@ -297,13 +199,14 @@ where
 
     fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         self.core.iterations += 1;
-        let seed = *self.seed.get_or_insert_with(|| rng.random());
+        self.batch.take_seed(rng);
         self.begin(rng, observer);
         if let Some(path) = self.arrive(observer) {
             return Some(path);
         }
-        self.draw(seed);
-        self.work();
+        self.draw();
+        let (space, step) = (self.core.checker.space(), self.core.checker.step());
+        self.batch.work((space, step), &self.tree);
         self.merge(rng, observer);
         self.arrive(observer)
     }
@@ -311,7 +214,7 @@ where
     /// An iteration is a batch.
     fn progress(&self) -> Progress {
         let mut progress = self.core.progress(self.tree.nodes().len());
-        progress.motions += self.motions;
+        progress.motions += self.batch.motions();
         progress
     }
 }

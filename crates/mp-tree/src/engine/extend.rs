@@ -14,6 +14,16 @@ pub enum Grown {
     Reached(NodeId),
 }
 
+impl Grown {
+    /// The node that was added or is the target.
+    pub(crate) fn node(self) -> Option<NodeId> {
+        match self {
+            Self::Trapped => None,
+            Self::Advanced(id) | Self::Reached(id) => Some(id),
+        }
+    }
+}
+
 /// Slot: grows a tree from a selected node toward the target. An extender decides which steps are made; [`Growing`]
 /// makes them.
 pub trait Extender<C: Space, L: LocalPlanner<C::State>> {

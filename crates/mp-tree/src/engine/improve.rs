@@ -3,6 +3,7 @@
 use super::{
     Core, Extender, Grown, Inserter, Purpose, SearchTree, Selector, TargetSampler, Tree, TreePlannerParts,
 };
+use crate::trace;
 use mp_cspace::{
     BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, PathOf, Planner, Problem, Progress,
     Rng, Space, Stop, StopReason,
@@ -120,6 +121,7 @@ where
             };
             if let Some(path) = self.core.path(&mut self.tree, id, observer, pruned) {
                 self.best = cost;
+                trace::improved(cost, self.tree.nodes().len());
                 self.target_sampler.improved(cost);
                 return Some(path);
             }

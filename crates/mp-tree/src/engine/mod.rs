@@ -1,6 +1,7 @@
 //! The engine: trees, the loops that grow them, and a slot for each policy in which variants differ. It does not depend
 //! on any variant.
 
+mod batch;
 mod constructors;
 mod core;
 mod extend;
@@ -13,6 +14,7 @@ mod select;
 mod single;
 mod target;
 mod tree;
+mod tree_pair;
 #[cfg(feature = "serde")]
 mod tree_serde;
 mod tuning;
@@ -20,9 +22,12 @@ mod two;
 mod untried;
 
 pub(crate) use self::core::joined;
+pub(crate) use batch::Batch;
 pub(crate) use constructors::constructors;
+pub(crate) use tree_pair::TreePair;
 
 pub use self::core::Core;
+pub use batch::BATCH;
 pub use extend::{Connect, Extend, Extender, Grown};
 pub use improve::{Improving, improve};
 pub use insert::{Append, AppendApart, AppendDistinct, Inserted, Inserter};

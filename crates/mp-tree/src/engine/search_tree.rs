@@ -1,6 +1,7 @@
 //! One growing tree with its policies, and the loop body every planner of the family shares.
 
 use super::{Extender, Grown, Inserted, Inserter, Purpose, Selector, Tree};
+use crate::trace;
 use mp_cspace::{
     Direction, EdgeChecker, Event, Extension, Hit, LocalPlanner, NodeId, Observer, Reach, Rng, Space,
 };
@@ -20,6 +21,11 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
     /// An empty tree. `index` is its number in events.
     pub fn new(index: usize, direction: Direction, selector: Se, inserter: A) -> Self {
         Self { index, tree: Tree::new(direction), selector, inserter, candidates: Vec::new() }
+    }
+
+    /// Its number in events.
+    pub(crate) fn index(&self) -> usize {
+        self.index
     }
 
     /// The nodes and edges.
@@ -149,7 +155,9 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
                 return false;
             }
             checker.count_rejected();
+            let before = self.tree.len();
             let survivors = self.tree.prune(node);
+            trace::pruned(self.index, before, survivors.len());
             self.selector.pruned(checker.space(), self.tree.states(), &survivors);
             pruned(&survivors);
             observer.on(Event::Rejected);

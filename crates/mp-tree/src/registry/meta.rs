@@ -4,10 +4,11 @@ use crate::algo::or_parallel::{RUNS, SLICE};
 use crate::algo::restarts::{SCHEDULE, UNIT};
 use crate::algo::rrs::{self, Flattened, with_bending_edges};
 use crate::algo::rrt;
+use crate::algo::rrt_connect::ext_ext;
 use crate::algo::shared_tree::BATCH;
 use crate::{
     AnyPlanner, BuildError, OrParallel, Parameter, PlannerInfo, Problem, Restarts, Schedule, Settings,
-    SharedTree, Tuning, Workers, build_with, planner,
+    SharedBiRrt, SharedTree, Tuning, Workers, build_with, planner, trace,
 };
 use mp_cspace::{Interrupt, MotionValidity, NearestNeighbors, Space, Straight};
 use std::fmt;
@@ -38,10 +39,10 @@ const OR: MetaPlanner = MetaPlanner {
 
 const SHARED: MetaPlanner = MetaPlanner {
     prefix: "shared-",
-    summary: "one tree grown by all threads, many samples at a time",
+    summary: "trees grown by all threads, many samples at a time",
     citation: "Carpin and Pagello 2002",
     parameters: &[BATCH],
-    around: Some(&[rrt::INFO.name, rrs::INFO.name]),
+    around: Some(&[rrt::INFO.name, rrs::INFO.name, ext_ext::INFO.name]),
 };
 
 const RESTART: MetaPlanner = MetaPlanner {
@@ -154,6 +155,7 @@ where
 {
     let spec = PlannerSpec::new(name)?;
     spec.check(settings)?;
+    trace::made(&spec);
     let (settings, workers) = (settings.clone(), workers.clone());
     let factory = Factory { make: Arc::new(make), index, settings, workers, spec, interrupt: Arc::default() };
     factory.planner(0)
@@ -219,6 +221,8 @@ where
                 Ok(if info.name == rrs::INFO.name {
                     let make = |_| with_bending_edges(info.name, self.problem()?, &settings);
                     Box::new(Flattened(SharedTree::with_index(batch, workers, index, tuning, make)?))
+                } else if info.name == ext_ext::INFO.name {
+                    Box::new(SharedBiRrt::with_index(batch, workers, index, tuning, |_| self.problem())?)
                 } else {
                     Box::new(SharedTree::with_index(batch, workers, index, tuning, |_| self.problem())?)
                 })

@@ -26,10 +26,11 @@ fn local<'c, C: Space>(
 }
 
 /// Planners that run others, and what they are told beside the step.
-const WRAPPED: [(&str, &str); 7] = [
+const WRAPPED: [(&str, &str); 8] = [
     ("or-rrt-connect", "runs=2"),
     ("or-rrt", "runs=2"),
     ("shared-rrt", "batch=4"),
+    ("shared-bi-rrt", "batch=4"),
     ("restart-rrt-connect", "unit=500"),
     ("or-restart-bi-rrt", "runs=2"),
     ("shared-rrs", "batch=4"),

@@ -12,6 +12,7 @@ mod optimal;
 mod panics;
 mod repeated;
 mod retraction;
+mod shared_bi_rrt;
 mod shared_tree;
 mod slots;
 mod t_rrt;

@@ -306,6 +306,8 @@ fn bad_numbers_and_names_are_refused() {
         assert!(matches!(build(name, "step=0.1"), Err(BuildError::UnknownPlanner { .. })), "{name}");
     }
     build("or-shared-rrt", "batch=3").unwrap();
+    build("or-shared-bi-rrt", "batch=3").unwrap();
+    build("shared-rrt-ext-ext", "balance=2").unwrap();
     assert!(matches!(build("or-", "runs=1"), Err(BuildError::UnknownPlanner { .. })));
     for threads in [0, Workers::MOST + 1] {
         assert!(matches!(Workers::new(threads), Err(BuildError::OutOfRange { name: "threads", .. })));

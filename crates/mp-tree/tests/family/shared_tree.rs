@@ -9,20 +9,20 @@ use rand::RngExt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, mp_cspace::erased::AnyCheck<'c, Vector2<f64>>>;
+pub(crate) type Point = Vector2<f64>;
+pub(crate) type Local<'c> = Straight<'c, Rn<2>, mp_cspace::erased::AnyCheck<'c, Vector2<f64>>>;
 type Shared<'c, L> = SharedTree<'c, Rn<2>, L, KdTree<2>>;
 
-const START: Point = Point::new(0.1, 0.2);
-const GOAL: Point = Point::new(0.9, 0.2);
-const STEP: f64 = 0.1;
+pub(crate) const START: Point = Point::new(0.1, 0.2);
+pub(crate) const GOAL: Point = Point::new(0.9, 0.2);
+pub(crate) const STEP: f64 = 0.1;
 
-fn local<'c>(space: &'c Rn<2>, boxes: &Boxes<2>, resolution: f64) -> Local<'c> {
+pub(crate) fn local<'c>(space: &'c Rn<2>, boxes: &Boxes<2>, resolution: f64) -> Local<'c> {
     let check = Discrete::new(space, boxes.clone(), Length::Absolute(resolution)).unwrap();
     Straight::new(space, Box::new(check))
 }
 
-fn tuning(goal_bias: f64) -> Tuning {
+pub(crate) fn tuning(goal_bias: f64) -> Tuning {
     Tuning { step: Length::Absolute(STEP), goal_bias, ..Tuning::default() }
 }
 
@@ -38,7 +38,7 @@ fn make<'c>(
 
 /// All that an observer sees, as text.
 #[derive(Default)]
-struct Log(String);
+pub(crate) struct Log(pub(crate) String);
 
 impl Observer<Point> for Log {
     fn on(&mut self, event: Event<'_, Point>) {
@@ -160,7 +160,7 @@ fn several_goals_may_be_reached_in_one_batch() {
 }
 
 /// Panics on each call while `trouble` is above zero.
-struct Fragile<'a, 'c>(Local<'c>, &'a AtomicU64);
+pub(crate) struct Fragile<'a, 'c>(pub(crate) Local<'c>, pub(crate) &'a AtomicU64);
 
 impl LocalPlanner<Point> for Fragile<'_, '_> {
     type Edge = ();

@@ -75,7 +75,14 @@ fn solved<S: StateVector>(
 
 /// The planners, and each wrapper once.
 fn names() -> Vec<String> {
-    let wrapped = ["or-rrt", "shared-rrt", "shared-rrs", "restart-rrs-connect", "or-restart-rrt-connect"];
+    let wrapped = [
+        "or-rrt",
+        "shared-rrt",
+        "shared-bi-rrt",
+        "shared-rrs",
+        "restart-rrs-connect",
+        "or-restart-rrt-connect",
+    ];
     planners().iter().map(|info| info.name).chain(wrapped).map(str::to_owned).collect()
 }
 
