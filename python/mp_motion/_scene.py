@@ -43,8 +43,8 @@ File: TypeAlias = str | os.PathLike[str]
 PathRows: TypeAlias = ArrayLike | Report | Finished
 #: What is done to the path that a planner found.
 Finish: TypeAlias = Literal["shorten", "as-found", "relax"]
-#: A number is fixed, a pair is an interval; what is not named is free.
-FreeGoal: TypeAlias = Mapping[str, float | tuple[float, float]]
+#: A number is fixed, a pair is an interval; what is not named is free. Or a place of a link: see :meth:`Scene.arm`.
+FreeGoal: TypeAlias = Mapping[str, float | tuple[float, float]] | Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -263,7 +263,7 @@ class Scene:
         obstacles: Iterable[Body | Shape] = (),
         *,
         goals: Sequence[ArrayLike | FreeGoal] | None = None,
-        srdf: File | None = None,
+        srdf: File | Literal[False] | None = None,
         packages: File | None = None,
         base: ArrayLike | None = None,
         floating_within: ArrayLike | None = None,
@@ -279,13 +279,17 @@ class Scene:
         start : array_like, shape (joints,)
             Radians, or metres for prismatic joints, in the order of the URDF; of a floating base, its pose comes first.
         goal : array_like or mapping
-            All joint values; or a mapping of some to a number or an interval: the others are free.
+            All joint values; or a mapping of some to a number or an interval: the others are free. Or the place of a link in
+            the world: ``{"link": "tool", "pose": pose}`` with a pose of six numbers or (4, 4), also with ``"free"`` (``"x"``,
+            ``"y"``, ``"z"``, ``"all"``: what may turn) and ``"position_tolerance"`` in metres; or ``{"link": "tool",
+            "position": [x, y, z]}``. A path ends at any configuration that reaches it.
         obstacles : iterable of Body or shapes
             What stands still.
         goals : sequence, optional
             In place of `goal`: any one of them.
-        srdf : path or str, optional
-            Which links may touch: a file, or its text.
+        srdf : path or str or False, optional
+            Which links may touch: a file, or its text. If it is left out, one near the URDF is taken if there is one; with
+            False none is.
         packages : path, optional
             The folder that ``package://`` means.
         base : array_like, shape (6,) or (4, 4), optional
@@ -299,7 +303,9 @@ class Scene:
         """
         files: dict[str, bytes] = {}
         robot: dict[str, Any] = {"urdf": _text_or_file(urdf, "robot.urdf", files)}
-        if srdf is not None:
+        if srdf is False:
+            robot["srdf"] = False
+        elif srdf is not None:
             robot["srdf"] = _text_or_file(srdf, "robot.srdf", files)
         if packages is not None:
             robot["packages"] = os.fspath(packages)
@@ -1005,7 +1011,12 @@ def _ends(
     """Return the members of `motion` for one goal or several."""
 
     def one(given: ArrayLike | FreeGoal) -> Any:
-        return dict(given) if isinstance(given, Mapping) else numbers(given)
+        if not isinstance(given, Mapping):
+            return numbers(given)
+        members = dict(given)
+        if isinstance(members.get("link"), str) and "pose" in members:
+            members["pose"] = pose_numbers(members["pose"])
+        return members
 
     if (goal is None) == (goals is None):
         raise Error("there must be either `goal` or `goals`", remedy="give one of them")

@@ -181,6 +181,18 @@ def test_arms_from_text_and_from_files(folder: Path) -> None:
     assert other.plan(seed=1).fingerprint == report.fingerprint
     free = mp.Scene.arm(URDF, [0, 0], {"a": 1.2}, [table])
     assert free.plan(seed=1).solved
+    # The end of the second bar, one metre up and one to the side; then also pointing to the side, by a matrix.
+    tip = URDF.replace("</robot>", '<link name="tip"/><joint name="c" type="fixed"><parent link="lower"/>'
+        '<child link="tip"/><origin xyz="0 0 1"/></joint></robot>')
+    reached = mp.Scene.arm(tip, [0, 0], {"link": "tip", "position": [1, 0, 1]}, srdf=False).plan(seed=1)
+    assert reached.solved and reached.path is not None
+    a, b = reached.path[-1]
+    assert np.allclose([math.sin(a) + math.sin(a + b), math.cos(a) + math.cos(a + b)], [1, 1], atol=1e-8)
+    pose = np.eye(4)
+    pose[:3, :3] = [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]
+    pose[:3, 3] = [1, 0, 1]
+    turned = mp.Scene.arm(tip, [0, 0], {"link": "tip", "pose": pose}).plan(seed=1)
+    assert turned.path is not None and np.allclose(turned.path[-1], [0, math.pi / 2], atol=1e-8)
     high = mp.Scene.arm(URDF, [0, 0], [1.2, 0.4], base=[0, 0, 5, 0, 0, 0])
     assert np.allclose(high.poses([0, 0])[:, 2, 3].max(), 6)
     floating = mp.Scene.arm(

@@ -48,8 +48,7 @@ pub struct PoseEntry {
 }
 
 /// What is expected.
-const EXPECTED: &str = "{ link = \"tool\", pose = [x, y, z, α, β, γ] }, also with `free = \"z\"` (or \"x\", \"y\", \"all\") and \
-                        `position_tolerance = 0.01`; or { link = \"tool\", position = [x, y, z] }";
+const EXPECTED: &str = "{ link = \"tool\", pose = [x, y, z, α, β, γ] }, or `position = [x, y, z]`; also `free = \"z\"` and `position_tolerance = 0.01`";
 
 impl PoseEntry {
     /// Reads the table at `span`, which names a link.

@@ -457,3 +457,37 @@ fn an_srdf_is_made_and_found() {
         assert_eq!(mp(&dir, &bad).code, 2);
     }
 }
+
+#[test]
+fn configurations_that_place_a_link_are_listed() {
+    let dir = dir();
+    let at = ["ik", "two.toml", "--link", "lower", "--position", "0.6 -0.8 0"];
+    let run = mp(&dir, &at);
+    assert!(run.code == 0 && run.stderr.contains("columns: shoulder elbow"), "{run:?}");
+    // What is listed is free, and places the link: the origin of the second bar is at the end of the first.
+    for line in run.stdout.lines() {
+        let numbers: Vec<f64> = line.split(' ').map(|number| number.parse().unwrap()).collect();
+        assert!(
+            (mp_math::cos(numbers[0]) - 0.6).abs() < 1e-8 && (mp_math::sin(numbers[0]) + 0.8).abs() < 1e-8
+        );
+        assert_eq!(mp(&dir, &["check", "two.toml", "--at", line]).code, 0, "{line}");
+    }
+    // With the direction there is one; toward the post it is in collision.
+    let at = ["ik", "two.toml", "--link", "lower", "--pose", "1 0 0 1.5 0 0", "--json"];
+    let all = mp(&dir, &[&at[..], &["--all"]].concat());
+    assert_eq!((all.code, all.json().as_array().unwrap().len()), (0, 1), "{all:?}");
+    assert!(mp(&dir, &["ik", "two.toml", "--link", "lower", "--pose", "1 0 0 0 0 0", "--json"]).code == 1);
+    for (more, words) in [
+        (vec!["--link", "toe", "--position", "1 0 0"], ["no link \"toe\"", "base, upper, lower"]),
+        (vec!["--link", "lower", "--position", "1 0"], ["2 numbers", "x y z"]),
+        (vec!["--link", "lower", "--position", "1 0 x"], ["`x` is not a number", ""]),
+        (vec!["--link", "lower"], ["where the link is to be", "--pose or --position"]),
+        (vec!["--link", "lower", "--position", "4 0 0"], ["cannot get there", "move the goal"]),
+        (vec!["--link", "lower", "--pose", "1 0 0 0 0 0", "--free", "w"], ["`free` is `w`", ""]),
+    ] {
+        let run = mp(&dir, &[&["ik", "two.toml"], &more[..]].concat());
+        assert!(run.code == 2 && words.iter().all(|word| run.stderr.contains(word)), "{run:?}");
+    }
+    let run = mp(&dir, &["ik", "window.env", "--link", "a", "--position", "0 0 0"]);
+    assert!(run.code == 2 && run.stderr.contains("no arm whose base stands still"), "{run:?}");
+}

@@ -10,6 +10,7 @@ mod kinds;
 mod many_queries;
 mod own_robot;
 mod parts;
+mod pose_goals;
 mod relax;
 mod robots;
 mod wrench;
