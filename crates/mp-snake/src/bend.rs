@@ -42,16 +42,16 @@ pub trait Bend<C: Space> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Bending {
     /// The active contour of Baizid et al., step 6: it starts on the straight motion and relaxes in the field.
+    #[default]
     Snake,
-    /// All of the motion moves to one side at once ([`Snake::bulge`]). Nothing relaxes. It is the fastest way to
-    /// bend one motion, and keeps the least clearance.
+    /// Ours, not the paper's: all of the motion moves to one side at once ([`Snake::bulge`]). Nothing relaxes. It is the
+    /// fastest way to bend one motion, and keeps the least clearance.
     Bulge,
-    /// A [bulge](Snake::bulge) is the initial contour, and relaxes. Where that does not become free, the bulge is taken as it
-    /// was laid, if it is free; otherwise a snake starts on the straight motion.
+    /// Ours, not the paper's: a [bulge](Snake::bulge) is the initial contour, and relaxes. Where that does not become free,
+    /// the bulge is taken as it was laid, if it is free; otherwise a snake starts on the straight motion.
     ///
     /// Where no bulge is free, snakes must pay: they are tried while at most 8 of them fail for each one that becomes free,
     /// and 32 more. In a maze of long walls they never do.
-    #[default]
     Hybrid,
 }
 

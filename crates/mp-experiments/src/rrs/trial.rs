@@ -34,7 +34,8 @@ pub type Point = Vector2<f64>;
 pub struct Case {
     /// The world, by name.
     pub world: String,
-    /// The planner, by name: `rrt`, `rrt-upto`, `rrt-connect`, `rrs`, `rrs-upto`, `rrs-eq3`, or `rrs-` and how it bends.
+    /// The planner, by name: `rrt`, `rrt-upto`, `rrt-connect`, `rrs`, `rrs-upto`, `rrs-eq3`, or `rrs-` and how it bends
+    /// if not by snakes, as the paper does.
     pub planner: String,
     /// Δq, centimetres.
     pub step: u32,

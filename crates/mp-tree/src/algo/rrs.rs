@@ -18,14 +18,12 @@
 //! So RRS is [RRT](super::rrt) with the local planner [`SnakePlanner`], and RRS-Connect is
 //! [RRT-Connect](super::rrt_connect) with it: in the tree from the goal edges are bent in forward time. A sample whose end is itself in collision is not
 //! rescued. How a blocked edge bends is a strategy, [`Bending`]:
-//! - `snake`, the paper's step 6: the contour starts on the straight edge and relaxes;
-//! - `bulge`: all of the edge moves to the side to which the obstacle pushes it, in closed form
+//! - `snake`, the default and the paper's step 6: the contour starts on the straight edge and relaxes;
+//! - `bulge`, ours: all of the edge moves to the side to which the obstacle pushes it, in closed form
 //!   ([`Snake::bulge`](mp_snake::Snake::bulge)), with one more corner where it grazes; nothing relaxes;
-//! - `hybrid`, the default: the bulge is the initial contour, and relaxes; where no bulge is free, the straight edge does.
+//! - `hybrid`, ours: the bulge is the initial contour, and relaxes; where no bulge is free, the straight edge does.
 //!
-//! In the paper's four worlds `hybrid` accepts the most samples, needs the fewest iterations, solves the most problems and
-//! keeps the most clearance. `snake` takes down to 0.6 of its time where edges can be bent at all, and more where they cannot;
-//! `bulge` bends an edge the fastest and keeps the least clearance (`docs/results/rrs.md`). A snake stops as
+//! `docs/results/rrs.md` compares them. A snake stops as
 //! soon as it is free with half the range as clearance, or hopeless. The energies are those of [`Snake`](mp_snake::Snake),
 //! with its remarks on the formulas. Other fields than the repulsion of obstacles are given by type
 //! ([`SnakePlanner::with_bend`]).
@@ -41,7 +39,7 @@
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at (RRS-Connect: of sampling a further one) | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //! | `range`: how far obstacles repel | (0, extent of the space] | 3% of the extent |
-//! | `bend`: how blocked edges are bent | `snake`, `bulge`, `hybrid` | `hybrid` |
+//! | `bend`: how blocked edges are bent | `snake`; `bulge`, `hybrid` (ours) | `snake` |
 //! | `snake-steps`: most steps of a snake | 1 to 1,000,000 | 40 |
 //!
 //! Stiffness and spacing follow from the range ([`Params::for_edges`](mp_snake::Params::for_edges)). By name it takes the
@@ -133,8 +131,8 @@ pub const SNAKE_STEPS: Parameter = Parameter {
 pub const BEND: Parameter = Parameter {
     name: "bend",
     range: "snake, bulge or hybrid",
-    default: "hybrid",
-    doc: "how a blocked edge is bent: a snake relaxes, a bulge is laid, or a snake relaxes from a bulge",
+    default: "snake",
+    doc: "how a blocked edge is bent: a snake relaxes (the paper), a bulge is laid, or a snake relaxes from a bulge (ours)",
 };
 
 /// The entry of [`planners`](crate::planners).
