@@ -12,4 +12,5 @@ mod own_robot;
 mod parts;
 mod relax;
 mod robots;
+mod snake_field;
 mod wrench;
