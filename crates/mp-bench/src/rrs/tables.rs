@@ -2,7 +2,7 @@
 
 use super::series::{PLANNERS, Plan, WORLDS};
 use crate::error::Result;
-use crate::experiment::{Log, Table, mean};
+use crate::experiment::{Log, Table, bit, mean};
 use crate::plot::{Axis, ChartCurve, Labels, chart};
 use mp_experiments::rrs::{Case, ITERATIONS, Run};
 
@@ -45,10 +45,8 @@ impl Measures {
         let solved = || runs.iter().filter(|r| r.solved);
         let total = |value: &dyn Fn(&Run) -> f64| runs.iter().map(|r| value(r)).sum::<f64>();
         let iterations = total(&|r| r.iterations as f64);
-        // The root is a node that is not a sample; RRT-Connect has two of them, and may add many nodes for one sample.
-        let roots = if planner == "rrt-connect" { 2.0 } else { 1.0 };
         Some(Measures {
-            accepted: 100.0 * total(&|r| r.nodes as f64 - roots) / iterations.max(1.0),
+            accepted: 100.0 * total(&|r| accepted(planner, r) as f64) / iterations.max(1.0),
             iterations: 100.0
                 * finite_mean(
                     runs.iter().map(|r| if r.solved { r.iterations as f64 } else { ITERATIONS as f64 }),
@@ -70,6 +68,17 @@ impl Measures {
             .map(|n| 1e3 * n / iterations.max(1.0)),
         })
     }
+}
+
+/// Accepted samples: the root is a node that is not a sample. RRT-Connect has two of them, and may add many nodes for one sample.
+fn accepted(planner: &str, run: &Run) -> u64 {
+    let roots = if planner == "rrt-connect" { 2 } else { 1 };
+    (run.nodes as u64).saturating_sub(roots)
+}
+
+/// The number with at most four significant digits.
+fn four_digits(v: f64) -> String {
+    format!("{v:.3e}").parse::<f64>().unwrap_or(v).to_string()
 }
 
 /// The name in files, title, axis label and value of a measure.
@@ -130,21 +139,21 @@ impl<'a> Results<'a> {
         table
     }
 
-    /// A row for each world, step and planner.
+    /// A row for each trial. Lengths and safety are in centimetres, times in milliseconds, with four digits; what is zero or was not
+    /// found is left out.
     pub(super) fn each(&self) -> Table {
-        let heads = ["world", "planner", "step_cm"].into_iter().chain(MEASURES.iter().map(|m| m.0));
-        let mut table = Table::new(heads.chain(["us_per_iteration"]).chain(EDGES));
-        for world in WORLDS {
-            for planner in PLANNERS {
-                for &step in &self.plan.steps {
-                    let Some(measures) = self.measures(world, planner, step) else { continue };
-                    let mut row = vec![world.to_owned(), planner.to_owned(), step.to_string()];
-                    row.extend(MEASURES.iter().map(|m| format!("{:.4}", (m.3)(&measures))));
-                    row.push(format!("{:.4}", measures.per_iteration));
-                    row.extend(measures.edges.map(|n| format!("{n:.2}")));
-                    table.rows.push(row);
-                }
-            }
+        let heads = ["world", "planner", "step", "trial", "solved", "iterations", "accepted"];
+        let mut table = Table::new(heads.into_iter().chain(["length_cm", "safety_cm", "ms"]).chain(EDGES));
+        for case in self.plan.cases() {
+            let Some(run) = self.log.get(&case) else { continue };
+            let mut row = vec![case.world.clone(), case.planner.clone()];
+            row.extend([case.step.to_string(), case.trial.to_string(), bit(run.solved)]);
+            row.extend([run.iterations, accepted(&case.planner, run)].map(|n| n.to_string()));
+            let found = |value: f64| if run.solved { four_digits(100.0 * value) } else { String::new() };
+            row.extend([found(run.length), found(run.safety), four_digits(1e3 * run.seconds)]);
+            let count = |n: u64| if n > 0 { n.to_string() } else { String::new() };
+            row.extend([run.straight, run.bulged, run.relaxed, run.by_snake, run.not_bent].map(count));
+            table.rows.push(row);
         }
         table
     }
@@ -158,7 +167,8 @@ impl<'a> Results<'a> {
             "RRS",
             "hybrid (ours)",
             "bulges (ours)",
-            "in eq. 3",
+            "field=paper (eq. 3)",
+            "field=risk",
             "up to Δq",
             "paper: RRT",
             "RRT",
@@ -175,7 +185,8 @@ impl<'a> Results<'a> {
                 cell("rrs"),
                 cell("rrs-hybrid"),
                 cell("rrs-bulge"),
-                cell("rrs-eq3"),
+                cell("rrs-paper"),
+                cell("rrs-risk"),
                 cell("rrs-upto"),
                 (*rrt).into(),
                 cell("rrt"),
@@ -284,22 +295,24 @@ fn name(planner: &str) -> &'static str {
         "rrs" => "RRS",
         "rrs-hybrid" => "hybrid (ours)",
         "rrs-bulge" => "bulges (ours)",
-        "rrs-eq3" => "RRS in eq. 3 alone",
+        "rrs-paper" => "RRS, field=paper (eq. 3)",
+        "rrs-risk" => "RRS, field=risk",
         "rrt-upto" => "RRT, up to Δq",
         "rrs-upto" => "RRS, up to Δq",
         _ => "RRT-Connect, up to Δq",
     }
 }
 
-/// The columns of edges per thousand samples.
-const EDGES: [&str; 5] = ["straight", "bulge", "relaxed_bulge", "only_snake", "not_bent"];
+/// The columns of how many edges came about in which way.
+const EDGES: [&str; 5] = ["straight", "bulge", "relaxed_bulge", "snake", "not_bent"];
 
 /// The planners whose trials are compared one by one: RRS, and RRT with the same steps.
-const PAIRS: [(&str, &str); 5] = [
+const PAIRS: [(&str, &str); 6] = [
     ("rrs", "rrt"),
     ("rrs-hybrid", "rrt"),
     ("rrs-bulge", "rrt"),
-    ("rrs-eq3", "rrt"),
+    ("rrs-paper", "rrt"),
+    ("rrs-risk", "rrt"),
     ("rrs-upto", "rrt-upto"),
 ];
 
@@ -397,8 +410,13 @@ mod tests {
         let measures = results.measures("low", "rrt", 30).unwrap();
         assert_eq!((measures.iterations, measures.converged), (60.0, 50.0));
         assert!((measures.accepted - 100.0 / 6.0).abs() < 1e-9);
-        assert_eq!(results.summary().rows.len(), 4 * 8);
-        assert_eq!(results.each().rows.len(), 4 * 8 * 2);
+        assert_eq!(results.summary().rows.len(), 4 * 9);
+        let each = results.each();
+        assert_eq!((each.rows.len(), each.head.len()), (4 * 9 * 2 * 2, 15));
+        let row =
+            each.rows.iter().find(|row| row[..4] == ["low", "rrs", "60", "1"].map(String::from)).unwrap();
+        assert_eq!(row[4..10], ["1", "1000", "500", "500", "2", "2"].map(String::from));
+        assert_eq!([four_digits(1234.567), four_digits(0.000_123_46)], ["1235", "0.0001235"]);
         let text = results.markdown();
         // 2 µs by 4 ms in 3,000 iterations.
         assert!((results.per_iteration(&["low"], "rrt") - 8.0 / 6.0).abs() < 1e-9);
