@@ -183,10 +183,15 @@ impl ProblemList {
         if request.roadmap.is_some() {
             return wrong("a problem of a list keeps no roadmap", "leave `roadmap` out");
         }
-        if matches!(request.field, RelaxField::Image(_)) {
+        let named = request.settings.get("field").and_then(|name| name.parse().ok());
+        if [Some(&request.field), named.as_ref()]
+            .into_iter()
+            .flatten()
+            .any(|f| matches!(f, RelaxField::Image(_)))
+        {
             return wrong(
                 "a problem of a list reads no image",
-                "relax in another field: clearance, paper or risk",
+                "take another field: clearance, paper or risk",
             );
         }
         let goals = match (line.goal, line.goals) {

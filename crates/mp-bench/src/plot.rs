@@ -286,6 +286,62 @@ where
     Ok(())
 }
 
+/// Bars of a kind, one for each group of a chart.
+#[derive(Clone, Debug)]
+pub(crate) struct Bars {
+    pub(crate) name: String,
+    /// The height of each bar, and the lower and upper end of its range.
+    pub(crate) heights: Vec<(f64, f64, f64)>,
+}
+
+/// A chart of bars side by side, in groups with these names, as SVG. The x axis has no label.
+///
+/// # Errors
+/// When there is no height to show.
+pub(crate) fn bars(labels: Labels<'_>, groups: &[&str], all: &[Bars]) -> Result<String> {
+    let highest = all.iter().flat_map(|bars| &bars.heights).map(|h| h.2).filter(|h| h.is_finite());
+    let highest = highest.fold(0.0, f64::max);
+    if highest == 0.0 {
+        return Err(Error::new(format!("nothing to draw in the chart `{}`", labels.title)));
+    }
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, (WIDTH, 480)).into_drawing_area();
+        let drawn = || -> std::result::Result<(), DrawingAreaErrorKind<_>> {
+            area.fill(&WHITE)?;
+            let (xs, ys) = (0.0..groups.len() as f64, 0.0..1.05 * highest);
+            let mut chart = builder(&area, labels).build_cartesian_2d(xs, ys)?;
+            // Names are between the marks: each group is one wide.
+            let group = |x: &f64| match (x.fract() - 0.5).abs() < 1e-6 {
+                true => groups[*x as usize].to_owned(),
+                false => String::new(),
+            };
+            let marks = 2 * groups.len() + 1;
+            let mut mesh = chart.configure_mesh();
+            mesh.disable_x_mesh().x_labels(marks).x_label_formatter(&group);
+            mesh.y_desc(labels.y).y_label_formatter(&|v| number(*v)).draw()?;
+            let width = 0.8 / all.len() as f64;
+            for (i, bars) in all.iter().enumerate() {
+                let colour = COLOURS[i % COLOURS.len()];
+                for (k, &(height, low, high)) in bars.heights.iter().enumerate() {
+                    let left = k as f64 + 0.1 + i as f64 * width;
+                    let bar = Rectangle::new([(left, 0.0), (left + 0.92 * width, height)], colour.filled());
+                    chart.draw_series([bar])?;
+                    let middle = left + 0.46 * width;
+                    let range = PathElement::new([(middle, low), (middle, high)], BLACK.stroke_width(1));
+                    chart.draw_series([range])?;
+                }
+                let (x, y) = (WIDTH as i32 - LEGEND as i32 + 12, 56 + 20 * i as i32);
+                area.draw(&Rectangle::new([(x, y - 6), (x + 24, y + 6)], colour.filled()))?;
+                area.draw(&Text::new(bars.name.clone(), (x + 30, y - 6), ("sans-serif", 12)))?;
+            }
+            area.present()
+        };
+        drawn().doing(|| format!("cannot draw the chart `{}`", labels.title))?;
+    }
+    Ok(text)
+}
+
 /// Writes a drawing as SVG and as PNG.
 pub(crate) fn save_drawing(stem: &Path, drawing: &Drawing, size: (usize, usize)) -> Result<()> {
     write_file(&stem.with_extension("svg"), drawing.svg(size).into_error()?.as_bytes())?;
@@ -347,6 +403,18 @@ mod tests {
         assert!(a.contains("curve 0") && a.contains("curve 5") && !a.contains("curve 6"));
         assert!(b.contains("curve 0") && !b.contains("curve 5") && b.contains("curve 7"));
         assert!(chart(labels, [Axis::Even; 2], &(0..7).map(curve).collect::<Vec<_>>()).is_err());
+    }
+
+    #[test]
+    fn bars_have_groups_and_names() {
+        let of = |name: &str, height| Bars {
+            name: name.into(),
+            heights: vec![(height, 0.5, 2.0), (1.0, 0.9, 1.1)],
+        };
+        let labels = Labels { title: "Safety", x: "", y: "cm" };
+        let text = bars(labels, &["maze", "high"], &[of("RRT", 1.0), of("RRS", 1.5)]).unwrap();
+        assert!(["maze", "high", "RRT", "RRS", "cm"].iter().all(|word| text.contains(word)), "{text}");
+        assert!(bars(labels, &["maze"], &[]).is_err());
     }
 
     #[test]

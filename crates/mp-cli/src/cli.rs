@@ -174,9 +174,8 @@ pub(crate) struct Plan {
     #[arg(long)]
     pub(crate) no_shorten: bool,
     /// Instead of shortening the path, remove detours and let a snake relax it in a field: `clearance`, the default (obstacles
-    /// repel); for discs in the plane also `paper` (eq. 3 of Baizid et al.) and `risk` (the landscape of risk of inexact motion
-    /// and sensing; `risk:2` for twice the noise); and in the plane `image:FILE` (dark pixels of a PNG or PGM image over the
-    /// bounds of the robot repel). A picture of a world in the plane shows the field too.
+    /// repel); in the plane also `paper` (eq. 3 of Baizid et al.), `risk` (the landscape of risk of inexact motion and sensing;
+    /// `risk:2` for twice the noise) and `image:FILE` (dark pixels of a PNG or PGM image over the bounds of the robot repel). A picture of a world in the plane shows the field too.
     #[arg(long, value_name = "FIELD", num_args = 0..=1, default_missing_value = "clearance", value_parser = relax_field)]
     pub(crate) relax: Option<RelaxField>,
     /// Also write each scene to this folder as one JSON and two OFF files, for other planners.

@@ -31,5 +31,8 @@ pub type AnyCheck<'c, S> = Box<dyn MotionValidity<S> + Send + 'c>;
 /// A clearance gradient behind a pointer: a closure, as closures are clearance gradients.
 pub type AnyGradient<'c, S> = Box<dyn FnMut(&S, f64, &mut [f64]) -> f64 + Send + 'c>;
 
+/// An energy of states behind a pointer: it writes its gradient, one number per degree of freedom.
+pub type AnyEnergy<'c, S> = Box<dyn FnMut(&S, &mut [f64]) -> f64 + Send + 'c>;
+
 /// The straight local planner of an erased space.
 pub type AnyStraight<'c, S> = Straight<'c, AnySpace<'c, S>, AnyCheck<'c, S>>;

@@ -108,7 +108,7 @@ pub use path::{Path, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
 pub use problem::{
     AnyFlow, AnyProblem, BoxedHints, BoxedVerify, BuildError, Endpoint, Goals, InputSystem,
-    ObstacleKnowledge, Problem, ProblemParts, Verify, Workers,
+    ObstacleKnowledge, Problem, ProblemParts, PushingField, Verify, Workers,
 };
 pub use registry::Demand;
 pub use rng::Rng;

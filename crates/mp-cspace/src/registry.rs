@@ -117,6 +117,12 @@ impl Settings {
         self.0.push((key.to_owned(), value.to_owned()));
     }
 
+    /// The value of a parameter that is set.
+    #[must_use]
+    pub fn text(&self, key: &str) -> Option<&str> {
+        self.0.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
+    }
+
     /// Refuses names that are not parameters of `planner`.
     ///
     /// # Errors
@@ -183,7 +189,7 @@ impl Settings {
         expected: &'static str,
         parse: impl Fn(&str) -> Option<T>,
     ) -> Result<Option<T>, BuildError> {
-        let Some((_, value)) = self.0.iter().find(|(known, _)| known == key) else { return Ok(None) };
+        let Some(value) = self.text(key) else { return Ok(None) };
         match parse(value) {
             Some(parsed) => Ok(Some(parsed)),
             None => Err(malformed(format!("{key}={value}"), expected)),

@@ -181,10 +181,12 @@ impl FromStr for MotionValidator {
     }
 }
 
-/// The field that pushes a path that is relaxed. As text, `clearance`, `paper`, `risk`, `risk:FACTOR` or `image:FILE`.
+/// The field that pushes snakes: a path that is relaxed, and with the setting `field` the edges of the planners `rrs` and
+/// `rrs-connect`. As text, `clearance`, `paper`, `risk`, `risk:FACTOR` or `image:FILE`.
 ///
-/// All but [`Clearance`](Self::Clearance) are images of the plane, for robots in worlds of the plane; `Paper` and `Risk` are
-/// for discs.
+/// All but [`Clearance`](Self::Clearance) are images of the plane, for robots in worlds of the plane: 7.5 cells are as long as the
+/// range, and no side has more than 2048. The image of a world is dark where the robot touches something; where that is a
+/// polygon, at each of 16 rotations.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum RelaxField {
@@ -197,7 +199,8 @@ pub enum RelaxField {
     /// where it is black, blurred by a third of the range.
     Image(PathBuf),
     /// The repulsion of obstacles, and the landscape of risk of the path: where a robot that moves inexactly may hit an obstacle
-    /// that was measured inexactly, from 0 to 1 where the risk is greatest. All deviations are those of a small robot on wheels
+    /// that was measured inexactly, from 0 to 1 where the risk is greatest. Edges of trees have no path yet: there it is the risk of
+    /// [passing everywhere](mp_snake::risk::everywhere). All deviations are those of a small robot on wheels
     /// with a laser, [`MotionNoise`](mp_snake::risk::MotionNoise) and [`RangeNoise`](mp_snake::risk::RangeNoise), times this
     /// factor.
     Risk(f64),
@@ -207,13 +210,10 @@ impl RelaxField {
     /// How each is written, and what it is.
     pub const ALL: [(&'static str, &'static str); 4] = [
         ("clearance", "obstacles repel (the default)"),
-        (
-            "paper",
-            "eq. 3 of Baizid et al.: outlines of obstacles in a blurred image repel (discs in the plane)",
-        ),
+        ("paper", "eq. 3 of Baizid et al.: outlines of obstacles in a blurred image repel (the plane)"),
         (
             "risk",
-            "the landscape of risk of inexact motion and sensing; `risk:2` for twice the noise (discs in the plane)",
+            "the landscape of risk of inexact motion and sensing; `risk:2` for twice the noise (the plane)",
         ),
         (
             "image:FILE",
@@ -423,6 +423,7 @@ impl Request {
 
     fn check_for(&self, planner: &crate::run::planners::PlannerKind) -> Result<(), Error> {
         planner.check(&self.settings())?;
+        planner.field(self)?;
         if let Some(time) = self.budget.time_s
             && (time.is_nan() || time <= 0.0)
         {

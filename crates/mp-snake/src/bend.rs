@@ -1,6 +1,6 @@
 //! How a blocked motion is bent: the strategies of [`SnakePlanner`](crate::SnakePlanner).
 
-use crate::{Bulged, Field, Rest, Snake};
+use crate::{Bulged, Field, Rest, Snake, contour};
 use mp_cspace::{KnownFree, MotionValidity, Space};
 use std::fmt;
 use std::str::FromStr;
@@ -37,21 +37,25 @@ pub trait Bend<C: Space> {
 
 /// How a blocked motion is bent around obstacles.
 ///
-/// A snake in collision stops early when for 6 steps it has not come nearer to freedom. It stops as soon as it is free and
+/// A snake in collision stops early when for 6 steps it has not come nearer to freedom. It is done as soon as it is free and
 /// its nodes have the [clearance](crate::Params::clearance) wanted; if it comes to rest before, it only has to be free.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Bending {
-    /// The active contour of Baizid et al., step 6: it starts on the straight motion and relaxes in the field.
+    /// The active contour of Baizid et al., step 6: it starts on the straight motion and relaxes in the field, from few nodes
+    /// to many. As soon as it is free it relaxes once more, with nodes half the spacing apart, to keep the clearance wanted.
+    ///
+    /// Where it stays blocked, two further attempts start on the straight motion, while at most 8 motions that they do not free
+    /// come to each that they free, and 32 more. All lower the same energy, in steps of other lengths and smoothness.
+    #[default]
     Snake,
-    /// All of the motion moves to one side at once ([`Snake::bulge`]). Nothing relaxes. It is the fastest way to
-    /// bend one motion, and keeps the least clearance.
+    /// Ours, not the paper's: all of the motion moves to one side at once ([`Snake::bulge`]). Nothing relaxes. It is the
+    /// fastest way to bend one motion, and keeps the least clearance.
     Bulge,
-    /// A [bulge](Snake::bulge) is the initial contour, and relaxes. Where that does not become free, the bulge is taken as it
-    /// was laid, if it is free; otherwise a snake starts on the straight motion.
+    /// Ours, not the paper's: a [bulge](Snake::bulge) is the initial contour, and relaxes. Where that does not become free,
+    /// the bulge is taken as it was laid, if it is free; otherwise a snake starts on the straight motion.
     ///
     /// Where no bulge is free, snakes must pay: they are tried while at most 8 of them fail for each one that becomes free,
     /// and 32 more. In a maze of long walls they never do.
-    #[default]
     Hybrid,
 }
 
@@ -59,10 +63,15 @@ pub enum Bending {
 const FAILURES_PER_SUCCESS: u64 = 8;
 const FREE_FAILURES: u64 = 32;
 
+/// Whether what became free so often, and did not so often, is tried again.
+pub(crate) fn pays([freed, failed]: [u64; 2]) -> bool {
+    failed <= FREE_FAILURES + FAILURES_PER_SUCCESS * freed
+}
+
 /// A snake in collision is abandoned when for this many steps its depth has not shrunk by this part of the clearance
 /// wanted.
-const PATIENCE: u32 = 6;
-const GAIN: f64 = 0.1;
+pub(crate) const PATIENCE: u32 = 6;
+pub(crate) const GAIN: f64 = 0.1;
 
 impl Bending {
     /// All of them.
@@ -111,7 +120,7 @@ impl<C: Space> Bend<C> for Bending {
         check: &mut impl MotionValidity<C::State>,
     ) -> (Bent, u32) {
         match self {
-            Self::Snake => named(relaxed(snake, curve, field, check)),
+            Self::Snake => named(contour::freed(snake, curve, field, check)),
             Self::Bulge => match bulged(snake, curve, field, check) {
                 Bulged::Fits => (Bent::Bulge, 0),
                 Bulged::Laid | Bulged::Nowhere => (Bent::Not, 0),
@@ -150,8 +159,7 @@ fn without_bulge<C: Space>(
     field: &mut impl Field<C::State>,
     check: &mut impl MotionValidity<C::State>,
 ) -> (bool, u32) {
-    let [freed, failed] = snake.without_bulge;
-    if failed > FREE_FAILURES + FAILURES_PER_SUCCESS * freed {
+    if !pays(snake.without_bulge) {
         return (false, 0);
     }
     let (mut free, mut steps) = (false, 0);

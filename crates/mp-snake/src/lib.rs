@@ -9,6 +9,7 @@
 //! | deform a curve in any space | [`Snake`], with [`Params`] |
 //! | push it | a [`Field`]: [`Repulsion`] by a clearance gradient, a [`Grid`], a closure, two of them [`With`] each other |
 //! | make fields of pictures | [`Grid`], [`outline_energy`] (eq. 3), [`signed_distance`], [`blurred`], [`laplacian`] |
+//! | make fields of worlds of the plane | [`plane`]: eq. 3, and the risk of passing anywhere |
 //! | estimate risk | [`risk`]: motion noise times range noise, a field and a path cost |
 //! | plan with edges that bend | [`SnakePlanner`], whose edges are [`PolylineEdge`](mp_cspace::PolylineEdge)s |
 //! | choose how they bend | [`Bending`]: by snakes, by bulges, by both; or your own [`Bend`] |
@@ -50,12 +51,14 @@
 mod band;
 mod bend;
 mod bulge;
+mod contour;
 mod distance;
 mod field;
 mod grid;
 mod image;
 mod local;
 mod params;
+pub mod plane;
 mod relax;
 pub mod risk;
 mod snake;

@@ -1,5 +1,6 @@
 //! The parameters of snakes, and their ranges.
 
+use crate::snake::Manner;
 use mp_cspace::{ParameterError, Space};
 use thiserror::Error;
 
@@ -24,7 +25,7 @@ pub enum SnakeError {
 /// | `straighten`: shortens, along the normal | γ of eq. 4 | ≥ 0 | 0.05 |
 /// | `spacing`: between nodes (m) | | > 0 | r/2 |
 /// | `pace`: length of an implicit step (m²) | | > 0 | r² |
-/// | `iterations`: most steps | | ≥ 1 | 40 |
+/// | `iterations`: most steps, at each spacing of the nodes | | ≥ 1 | 40 |
 /// | `tolerance`: converged when no node moves by more than this part of the spacing | | > 0 | 0.01 |
 /// | `clearance`: wanted of a motion that is bent (m) | | ≥ 0 | r/2 |
 ///
@@ -97,10 +98,10 @@ impl Params {
 
     /// The two coefficients of the [matrix](crate::Band) of a step. The weight of the length is added to that of the
     /// membrane: for a curve of even spacing both vary alike across it.
-    pub(crate) fn stiffness(&self) -> [f64; 2] {
-        let square = self.spacing * self.spacing;
-        let first = self.pace * (self.membrane + self.straighten) / square;
-        [first, self.pace * self.plate / (square * square)]
+    pub(crate) fn stiffness(&self, Manner { spacing, pace, .. }: Manner) -> [f64; 2] {
+        let square = spacing * spacing;
+        let first = pace * (self.membrane + self.straighten) / square;
+        [first, pace * self.plate / (square * square)]
     }
 }
 

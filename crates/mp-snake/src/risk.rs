@@ -153,6 +153,28 @@ pub fn landscape(passing: &Grid, occupied: &Grid) -> Result<Grid, ParameterError
     Ok(passing.with_values(product.collect()))
 }
 
+/// The landscape of risk of a robot that may pass everywhere: at each place the probability that a robot which was to end a
+/// straight step of length `way` (m) there, from any direction, touches an obstacle that its range sensor has `seen` from a
+/// metre away.
+///
+/// The cloud in which such steps end, in the mean of all directions, is taken as a Gaussian of the same variance: half the
+/// sum of the variances along the step and across it.
+///
+/// # Errors
+/// When a number of the noise or the step is out of range.
+pub fn everywhere(
+    seen: &Grid,
+    motion: MotionNoise,
+    sensor: RangeNoise,
+    way: f64,
+) -> Result<Grid, ParameterError> {
+    let motion = motion.checked()?;
+    let way = positive("the length of a step", way)?;
+    let [along, across] = [motion.way + motion.way_per_way * way, motion.turn * way];
+    let spread = (0.5 * (along * along + across * across)).sqrt();
+    blurred(&sensor.occupancy(seen, 1.0)?, spread)
+}
+
 /// The landscape of risk of a path, and the two maps that it is the product of: Fig. 1 of the paper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RiskMaps {
@@ -216,6 +238,26 @@ mod tests {
             + Vector2::new(mp_math::cos(0.8), mp_math::sin(0.8)) * 1.2
             + Vector2::new(-mp_math::sin(0.8), mp_math::cos(0.8)) * 0.6;
         assert!(at(across) < polar(0.8 + mp_math::atan(0.6 / 1.2), 1.2));
+    }
+
+    /// The Gaussian of a step from anywhere has the variance of the cloud itself, in the mean of all directions.
+    #[test]
+    fn steps_from_everywhere_spread_as_much() {
+        let noise = MotionNoise { turn: 0.1, turn_per_turn: 0.0, way: 0.03, way_per_way: 0.05 };
+        let sensor = RangeNoise { constant: 1e-3, per_metre: 0.0 };
+        let spike = cells(|p| f64::from(u8::from((p - Vector2::repeat(0.01)).norm() < 0.005)));
+        let second = |grid: &Grid| {
+            let moments = grid.values().iter().enumerate().map(|(n, v)| {
+                let at = Vector2::new((n % 200) as f64, (n / 200) as f64) * 0.02 - Vector2::repeat(2.0);
+                v * at.norm_squared()
+            });
+            moments.sum::<f64>() / grid.values().iter().sum::<f64>()
+        };
+        let from_the_left = cells(|p| noise.density(&Vector2::new(-0.39, 0.01), 0.0, (0.0, 0.4), &p));
+        let [gaussian, cloud] =
+            [everywhere(&spike, noise, sensor, 0.4).unwrap(), from_the_left].map(|g| second(&g));
+        assert!((gaussian / cloud - 1.0).abs() < 0.05, "{gaussian} {cloud}");
+        assert!(everywhere(&spike, noise, sensor, 0.0).is_err());
     }
 
     /// The risk is where the way and an obstacle come near, and a path that keeps away costs less.

@@ -92,11 +92,14 @@ pub struct Moment<'a, S> {
 pub struct Snake<'c, C: Space> {
     pub(crate) space: &'c C,
     params: Params,
+    /// How it moves now, and the bands of each manner so far, by the number of nodes that move.
+    manner: Manner,
+    bands: Vec<(Manner, Vec<Option<Band>>)>,
+    /// The place of this manner among them.
+    used: usize,
     pub(crate) scale: Vec<f64>,
     /// 1 / scale.
     pub(crate) unscale: Vec<f64>,
-    /// By the number of nodes that move.
-    bands: Vec<Option<Band>>,
     now: CurveMeasurement,
     trial: CurveMeasurement,
     /// The displacements of the nodes between the ends.
@@ -112,6 +115,27 @@ pub struct Snake<'c, C: Space> {
     trace: Vec<Energy>,
     /// Contours without a free bulge to begin with: how many became free, and how many did not.
     pub(crate) without_bulge: [u64; 2],
+    /// Contours that further attempts made free, and those that none did.
+    pub(crate) further: [u64; 2],
+}
+
+/// How a snake moves: what may differ from one attempt to lower the same energy to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Manner {
+    /// Distance between nodes (m).
+    pub(crate) spacing: f64,
+    /// Length of an implicit step (m²).
+    pub(crate) pace: f64,
+    /// How much alike neighbouring nodes move: added to the first coefficient of the [matrix](Band) of a step, as if the curve
+    /// were that stiff, but not to its energy.
+    pub(crate) smoothing: f64,
+}
+
+impl Manner {
+    /// That of the parameters.
+    pub(crate) fn of(params: &Params) -> Self {
+        Self { spacing: params.spacing, pace: params.pace, smoothing: 0.0 }
+    }
 }
 
 /// A curve measured: its energy and the forces on it. Numbers are scaled: lengths in the metric.
@@ -172,9 +196,11 @@ impl<'c, C: Space> Snake<'c, C> {
         Ok(Self {
             space,
             params: params.checked()?,
+            manner: Manner::of(&params),
+            bands: vec![(Manner::of(&params), Vec::new())],
+            used: 0,
             scale,
             unscale,
-            bands: Vec::new(),
             now: CurveMeasurement::with_room(dim),
             trial: CurveMeasurement::with_room(dim),
             step: Vec::with_capacity(NODES * dim),
@@ -185,6 +211,7 @@ impl<'c, C: Space> Snake<'c, C> {
             spare: [const { Vec::new() }; 2],
             trace: Vec::new(),
             without_bulge: [0; 2],
+            further: [0; 2],
         })
     }
 
@@ -196,8 +223,17 @@ impl<'c, C: Space> Snake<'c, C> {
 
     /// Makes steps of another length (m²).
     pub(crate) fn set_pace(&mut self, pace: f64) {
-        self.params.pace = pace;
-        self.bands.clear();
+        self.move_by(Manner { pace, ..self.manner });
+    }
+
+    /// Moves in this manner from now on.
+    pub(crate) fn move_by(&mut self, manner: Manner) {
+        self.manner = manner;
+        let known = self.bands.iter().position(|(known, _)| *known == manner);
+        self.used = known.unwrap_or(self.bands.len());
+        if known.is_none() {
+            self.bands.push((manner, Vec::new()));
+        }
     }
 
     /// The space.
@@ -222,13 +258,37 @@ impl<'c, C: Space> Snake<'c, C> {
 
     /// As [`between`](Self::between), into `curve`, which is cleared first.
     pub fn between_into(&self, from: &C::State, to: &C::State, curve: &mut Vec<C::State>) {
-        let wanted = (self.space.distance(from, to) / self.params.spacing).ceil();
-        let parts = wanted.clamp(4.0, (MOST_NODES - 1) as f64) as usize;
+        self.spread_into(from, to, self.params.spacing, 4, curve);
+    }
+
+    /// Lays a straight curve of nodes that are at most `spacing` (m) apart, but at least of so many pieces, into `curve`,
+    /// which is cleared first.
+    pub(crate) fn spread_into(
+        &self,
+        from: &C::State,
+        to: &C::State,
+        spacing: f64,
+        pieces: u32,
+        curve: &mut Vec<C::State>,
+    ) {
+        let wanted = (self.space.distance(from, to) / spacing).ceil();
+        let parts = wanted.clamp(f64::from(pieces), (MOST_NODES - 1) as f64) as usize;
         curve.clear();
         let part = 1.0 / parts as f64;
         curve.push(from.clone());
         curve.extend((1..parts).map(|i| self.space.interpolate(from, to, i as f64 * part)));
         curve.push(to.clone());
+    }
+
+    /// Puts a node into the middle of each piece.
+    pub(crate) fn split(&mut self, curve: &mut Vec<C::State>) {
+        self.next.clear();
+        for pair in curve.windows(2) {
+            let middle = self.space.interpolate(&pair[0], &pair[1], 0.5);
+            self.next.extend([pair[0].clone(), middle]);
+        }
+        self.next.extend(curve.last().cloned());
+        std::mem::swap(curve, &mut self.next);
     }
 
     /// Lays nodes along a polyline into `curve`, which is cleared first: at its corners, and between them at most the
@@ -280,7 +340,7 @@ impl<'c, C: Space> Snake<'c, C> {
             iteration += 1;
             self.aim(&now);
             let dim = self.space.dim();
-            let least = self.params.tolerance * self.params.spacing;
+            let least = self.params.tolerance * self.manner.spacing;
             let farthest = self.step.chunks_exact(dim).map(norm).fold(0.0, f64::max);
             if farthest <= least {
                 break Rest::Converged;
@@ -306,7 +366,7 @@ impl<'c, C: Space> Snake<'c, C> {
         field: &mut impl Field<C::State>,
         measured: &mut CurveMeasurement,
     ) {
-        let (dim, h) = (self.space.dim(), self.params.spacing);
+        let (dim, h) = (self.space.dim(), self.manner.spacing);
         let parts = curve.len().saturating_sub(1);
         let inner = parts.saturating_sub(1);
         if measured.lengths.len() != parts {
@@ -371,7 +431,8 @@ impl<'c, C: Space> Snake<'c, C> {
     /// Computes the implicit step of all nodes, from the forces on the curve.
     fn aim(&mut self, measured: &CurveMeasurement) {
         let (dim, parts) = (self.space.dim(), measured.lengths.len());
-        let Params { membrane, plate, straighten, spacing: h, pace, .. } = self.params;
+        let Params { membrane, plate, straighten, .. } = self.params;
+        let Manner { spacing: h, pace, smoothing } = self.manner;
         // Forces: β/h³ times the fourth difference, with ends that are free to turn, and the rest.
         let (curl, stretch) = (plate / (h * h * h), membrane / h);
         self.step.resize((parts - 1) * dim, 0.0);
@@ -388,11 +449,12 @@ impl<'c, C: Space> Snake<'c, C> {
             }
         }
         let rows = parts - 1;
-        if self.bands.len() <= rows {
-            self.bands.resize(rows + 1, None);
+        let [a, b] = self.params.stiffness(self.manner);
+        let bands = &mut self.bands[self.used].1;
+        if bands.len() <= rows {
+            bands.resize(rows + 1, None);
         }
-        let [a, b] = self.params.stiffness();
-        self.bands[rows].get_or_insert_with(|| Band::new(rows, a, b)).solve(&mut self.step, dim);
+        bands[rows].get_or_insert_with(|| Band::new(rows, a + smoothing, b)).solve(&mut self.step, dim);
     }
 
     /// Takes the largest part of the step that does not raise the energy. Returns that part, or `None` when there is none.

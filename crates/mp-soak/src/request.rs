@@ -24,7 +24,7 @@ pub fn request(draw: &mut Draw, scene: &Scene, planner: Option<&str>) -> Request
     for parameter in parameters {
         if !plain
             && draw.chance(SET)
-            && let Some(value) = value(draw, &parameter)
+            && let Some(value) = value_for(draw, scene, &parameter)
         {
             settings.insert(parameter.name.to_owned(), value);
         }
@@ -120,6 +120,16 @@ fn parameters_of(name: &str) -> Vec<Parameter> {
     }
 }
 
+/// A value of a parameter that suits the scene; `None` where none is known.
+fn value_for(draw: &mut Draw, scene: &Scene, parameter: &Parameter) -> Option<String> {
+    let names: Vec<_> = scene.columns().into_iter().map(|column| column.name).collect();
+    let plane = names == ["x", "y"] || names == ["x", "y", "yaw"];
+    if parameter.name == "field" && plane {
+        return Some((*draw.one(&["paper", "risk", "risk:3"])).to_owned());
+    }
+    value(draw, parameter)
+}
+
 /// A value that the range of a parameter allows, also at its ends; `None` for a range that is not understood.
 fn value(draw: &mut Draw, parameter: &Parameter) -> Option<String> {
     let range = parameter.range;
@@ -138,6 +148,8 @@ fn value(draw: &mut Draw, parameter: &Parameter) -> Option<String> {
         return Some(within(draw, interval).to_string());
     }
     match range {
+        // Of what else it may be, the scene decides.
+        _ if parameter.name == "field" => Some(parameter.default.to_owned()),
         "positive and finite" => Some(draw.logarithmic(1e-9, 1e9).to_string()),
         "positive and finite, in steps" => Some(draw.logarithmic(0.1, 100.0).to_string()),
         "in (0, radius], in steps" => Some(draw.logarithmic(1e-3, 2.0).to_string()),

@@ -33,6 +33,10 @@ fn lists_that_are_not_valid_are_refused_with_their_line() {
         (r#"{"scene": "easy", "request": {"speed": 1}}"#, "unknown field `speed`"),
         (r#"{"scene": "easy", "request": {"roadmap": "map"}}"#, "no roadmap"),
         (r#"{"scene": "easy", "request": {"finish": "relax", "field": "image:a.png"}}"#, "no image"),
+        (
+            r#"{"scene": "easy", "request": {"planner": "rrs", "settings": {"field": "image:a.png"}}}"#,
+            "no image",
+        ),
         (r#"{"scene": "easy", "sede": 1}"#, "unknown field `sede`"),
     ] {
         let e = refused_line(line);

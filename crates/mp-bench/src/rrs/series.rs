@@ -11,10 +11,11 @@ use mp_scenes::source::disc_scenes::disc_scene;
 pub(super) const WORLDS: [&str; 4] = ["maze", "low", "high", "random"];
 
 /// The planners. Most take steps of exactly Δq, as the paper's algorithm says; those with `-upto` steps of at most Δq, as is
-/// customary, and RRT-Connect too. `rrs` bends edges in the way that is the default, `rrs-snake` and `rrs-bulge` in the
-/// way of their name, and `rrs-eq3` by snakes in the field of eq. 3 alone.
-pub(super) const PLANNERS: [&str; 8] =
-    ["rrt", "rrs", "rrs-snake", "rrs-bulge", "rrs-eq3", "rrt-upto", "rrs-upto", "rrt-connect"];
+/// customary, and RRT-Connect too. `rrs` bends edges by snakes, as the paper does, `rrs-hybrid` and `rrs-bulge` in
+/// ways of ours, `rrs-paper` by snakes in the field of eq. 3 alone, and `rrs-risk` in that
+/// of obstacles and risk.
+pub(super) const PLANNERS: [&str; 9] =
+    ["rrt", "rrs", "rrs-hybrid", "rrs-bulge", "rrs-paper", "rrs-risk", "rrt-upto", "rrs-upto", "rrt-connect"];
 
 /// The size of the measurement.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use super::series::{PLANNERS, Plan, WORLDS};
 use crate::error::Result;
-use crate::experiment::{Log, Table, mean};
-use crate::plot::{Axis, ChartCurve, Labels, chart};
+use crate::experiment::{Log, Table, bit, mean};
+use crate::plot::{Axis, Bars, ChartCurve, Labels, bars, chart};
 use mp_experiments::rrs::{Case, ITERATIONS, Run};
 
 /// The runs, for summaries.
@@ -45,10 +45,8 @@ impl Measures {
         let solved = || runs.iter().filter(|r| r.solved);
         let total = |value: &dyn Fn(&Run) -> f64| runs.iter().map(|r| value(r)).sum::<f64>();
         let iterations = total(&|r| r.iterations as f64);
-        // The root is a node that is not a sample; RRT-Connect has two of them, and may add many nodes for one sample.
-        let roots = if planner == "rrt-connect" { 2.0 } else { 1.0 };
         Some(Measures {
-            accepted: 100.0 * total(&|r| r.nodes as f64 - roots) / iterations.max(1.0),
+            accepted: 100.0 * total(&|r| accepted(planner, r) as f64) / iterations.max(1.0),
             iterations: 100.0
                 * finite_mean(
                     runs.iter().map(|r| if r.solved { r.iterations as f64 } else { ITERATIONS as f64 }),
@@ -70,6 +68,17 @@ impl Measures {
             .map(|n| 1e3 * n / iterations.max(1.0)),
         })
     }
+}
+
+/// Accepted samples: the root is a node that is not a sample. RRT-Connect has two of them, and may add many nodes for one sample.
+fn accepted(planner: &str, run: &Run) -> u64 {
+    let roots = if planner == "rrt-connect" { 2 } else { 1 };
+    (run.nodes as u64).saturating_sub(roots)
+}
+
+/// The number with at most four significant digits.
+fn four_digits(v: f64) -> String {
+    format!("{v:.3e}").parse::<f64>().unwrap_or(v).to_string()
 }
 
 /// The name in files, title, axis label and value of a measure.
@@ -130,21 +139,21 @@ impl<'a> Results<'a> {
         table
     }
 
-    /// A row for each world, step and planner.
+    /// A row for each trial. Lengths and safety are in centimetres, times in milliseconds, with four digits; what is zero or was not
+    /// found is left out.
     pub(super) fn each(&self) -> Table {
-        let heads = ["world", "planner", "step_cm"].into_iter().chain(MEASURES.iter().map(|m| m.0));
-        let mut table = Table::new(heads.chain(["us_per_iteration"]).chain(EDGES));
-        for world in WORLDS {
-            for planner in PLANNERS {
-                for &step in &self.plan.steps {
-                    let Some(measures) = self.measures(world, planner, step) else { continue };
-                    let mut row = vec![world.to_owned(), planner.to_owned(), step.to_string()];
-                    row.extend(MEASURES.iter().map(|m| format!("{:.4}", (m.3)(&measures))));
-                    row.push(format!("{:.4}", measures.per_iteration));
-                    row.extend(measures.edges.map(|n| format!("{n:.2}")));
-                    table.rows.push(row);
-                }
-            }
+        let heads = ["world", "planner", "step", "trial", "solved", "iterations", "accepted"];
+        let mut table = Table::new(heads.into_iter().chain(["length_cm", "safety_cm", "ms"]).chain(EDGES));
+        for case in self.plan.cases() {
+            let Some(run) = self.log.get(&case) else { continue };
+            let mut row = vec![case.world.clone(), case.planner.clone()];
+            row.extend([case.step.to_string(), case.trial.to_string(), bit(run.solved)]);
+            row.extend([run.iterations, accepted(&case.planner, run)].map(|n| n.to_string()));
+            let found = |value: f64| if run.solved { four_digits(100.0 * value) } else { String::new() };
+            row.extend([found(run.length), found(run.safety), four_digits(1e3 * run.seconds)]);
+            let count = |n: u64| if n > 0 { n.to_string() } else { String::new() };
+            row.extend([run.straight, run.bulged, run.relaxed, run.by_snake, run.not_bent].map(count));
+            table.rows.push(row);
         }
         table
     }
@@ -156,9 +165,10 @@ impl<'a> Results<'a> {
             "measure",
             "paper: RRS",
             "RRS",
-            "by snakes",
-            "by bulges",
-            "in eq. 3",
+            "hybrid (ours)",
+            "bulges (ours)",
+            "field=paper (eq. 3)",
+            "field=risk",
             "up to Δq",
             "paper: RRT",
             "RRT",
@@ -173,9 +183,10 @@ impl<'a> Results<'a> {
                 format!("{}, {}", m.1, m.2),
                 (*rrs).into(),
                 cell("rrs"),
-                cell("rrs-snake"),
+                cell("rrs-hybrid"),
                 cell("rrs-bulge"),
-                cell("rrs-eq3"),
+                cell("rrs-paper"),
+                cell("rrs-risk"),
                 cell("rrs-upto"),
                 (*rrt).into(),
                 cell("rrt"),
@@ -210,24 +221,15 @@ impl<'a> Results<'a> {
     /// its 95% interval. Lengths and safety are those of trials that both solved.
     fn differences(&self) -> Table {
         let heads = MEASURES.iter().map(|m| format!("{}, {}", m.1, m.2));
-        let mut table = Table::new(["world".into(), "RRS – RRT".into()].into_iter().chain(heads));
+        let mut table = Table::new(["world".into(), "difference".into()].into_iter().chain(heads));
         for world in WORLDS {
             for (planner, other) in PAIRS {
-                let mut row = vec![world.to_owned(), name(planner).to_owned()];
-                row.extend(MEASURES.iter().map(|m| {
-                    let mut differences = Vec::new();
-                    for &step in &self.plan.steps {
-                        for trial in 0..self.plan.trials {
-                            let [a, b] = [planner, other].map(|planner| {
-                                let case = Case { world: world.into(), planner: planner.into(), step, trial };
-                                Measures::of(planner, &[self.log.get(&case)?])
-                                    .filter(|one| (m.3)(one).is_finite())
-                            });
-                            differences.extend(a.zip(b).map(|(a, b)| (m.3)(&a) - (m.3)(&b)));
-                        }
-                    }
-                    interval(&differences)
-                }));
+                let mut row = vec![world.to_owned(), format!("{} less {}", name(planner), name(other))];
+                row.extend(
+                    MEASURES.iter().map(|m| {
+                        interval(&self.by_trial(world, [planner, other], |a, b| (m.3)(a) - (m.3)(b)))
+                    }),
+                );
                 table.rows.push(row);
             }
         }
@@ -258,7 +260,7 @@ impl<'a> Results<'a> {
                     let at = |&step: &u32| Some((f64::from(step), of(&self.measures(world, planner, step)?)));
                     ChartCurve::new(name(planner), i, self.plan.steps.iter().filter_map(at).collect())
                 };
-                let others = ["rrs-bulge", "rrt-connect"];
+                let others = ["rrs-bulge", "rrs-risk", "rrt-connect"];
                 let shown = PLANNERS.iter().filter(|planner| !others.contains(planner));
                 let curves: Vec<ChartCurve> = shown.enumerate().map(curve).collect();
                 let title = format!("{world}: {title}");
@@ -272,7 +274,47 @@ impl<'a> Results<'a> {
                 ));
             }
         }
+        charts.extend(self.averages());
         charts
+    }
+
+    /// Figure 9: the averages of safety and time in each world over all steps, with their 95% intervals over the trials.
+    fn averages(&self) -> Vec<(String, Result<String>)> {
+        let shown = MEASURES.into_iter().filter(|measure| ["safety", "time"].contains(&measure.0));
+        let average = |(file, title, y, of): Measure| {
+            let of_planner = |planner: &str| {
+                let height = |world: &&str| {
+                    let (mean, half) = mean_and_half(&self.by_trial(world, [planner; 2], |one, _| of(one)));
+                    (mean, mean - half, mean + half)
+                };
+                Bars { name: name(planner).to_owned(), heights: WORLDS.iter().map(height).collect() }
+            };
+            let all = ["rrt", "rrs", "rrs-hybrid"].map(of_planner);
+            let title = format!("average {title}");
+            (format!("average-{file}"), bars(Labels { title: &title, x: "", y }, &WORLDS, &all))
+        };
+        shown.map(average).collect()
+    }
+
+    /// For each trial the mean over all steps of a value of two planners' runs, where both have one. Runs of a trial have the same seed, and in
+    /// random worlds the same world, so they are not independent: intervals are over trials.
+    fn by_trial(
+        &self,
+        world: &str,
+        planners: [&str; 2],
+        value: impl Fn(&Measures, &Measures) -> f64,
+    ) -> Vec<f64> {
+        let of_trial = |trial| {
+            let at = |&step: &u32| {
+                let [a, b] = planners.map(|planner| {
+                    let case = Case { world: world.into(), planner: planner.into(), step, trial };
+                    Measures::of(planner, &[self.log.get(&case)?])
+                });
+                Some(value(&a?, &b?)).filter(|v| v.is_finite())
+            };
+            mean(self.plan.steps.iter().filter_map(at))
+        };
+        (0..self.plan.trials).filter_map(of_trial).collect()
     }
 }
 
@@ -281,33 +323,44 @@ fn name(planner: &str) -> &'static str {
     match planner {
         "rrt" => "RRT",
         "rrs" => "RRS",
-        "rrs-snake" => "RRS by snakes",
-        "rrs-bulge" => "RRS by bulges",
-        "rrs-eq3" => "RRS in eq. 3 alone",
+        "rrs-hybrid" => "hybrid (ours)",
+        "rrs-bulge" => "bulges (ours)",
+        "rrs-paper" => "RRS, field=paper (eq. 3)",
+        "rrs-risk" => "RRS, field=risk",
         "rrt-upto" => "RRT, up to Δq",
         "rrs-upto" => "RRS, up to Δq",
         _ => "RRT-Connect, up to Δq",
     }
 }
 
-/// The columns of edges per thousand samples.
-const EDGES: [&str; 5] = ["straight", "bulge", "relaxed_bulge", "only_snake", "not_bent"];
+/// The columns of how many edges came about in which way.
+const EDGES: [&str; 5] = ["straight", "bulge", "relaxed_bulge", "snake", "not_bent"];
 
 /// The planners whose trials are compared one by one: RRS, and RRT with the same steps.
-const PAIRS: [(&str, &str); 5] = [
+const PAIRS: [(&str, &str); 7] = [
     ("rrs", "rrt"),
-    ("rrs-snake", "rrt"),
+    ("rrs", "rrs-hybrid"),
+    ("rrs-hybrid", "rrt"),
     ("rrs-bulge", "rrt"),
-    ("rrs-eq3", "rrt"),
+    ("rrs-paper", "rrt"),
+    ("rrs-risk", "rrt"),
     ("rrs-upto", "rrt-upto"),
 ];
 
+/// The mean, and half of its 95% interval; NaN without values.
+fn mean_and_half(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = mean(values.iter().copied()).unwrap_or(f64::NAN);
+    let spread = values.iter().map(|v| mp_math::powi(v - mean, 2)).sum::<f64>() / (n - 1.0).max(1.0);
+    (mean, 1.96 * (spread / n).sqrt())
+}
+
 /// The mean with its 95% interval, by the normal distribution: there are thousands of values.
 pub(super) fn interval(values: &[f64]) -> String {
-    let n = values.len() as f64;
-    let Some(mean) = mean(values.iter().copied()) else { return "–".into() };
-    let spread = values.iter().map(|v| mp_math::powi(v - mean, 2)).sum::<f64>() / (n - 1.0).max(1.0);
-    let half = 1.96 * (spread / n).sqrt();
+    let (mean, half) = mean_and_half(values);
+    if mean.is_nan() {
+        return "–".into();
+    }
     let digits = if half < 0.0995 {
         3
     } else if half < 0.995 {
@@ -396,8 +449,13 @@ mod tests {
         let measures = results.measures("low", "rrt", 30).unwrap();
         assert_eq!((measures.iterations, measures.converged), (60.0, 50.0));
         assert!((measures.accepted - 100.0 / 6.0).abs() < 1e-9);
-        assert_eq!(results.summary().rows.len(), 4 * 8);
-        assert_eq!(results.each().rows.len(), 4 * 8 * 2);
+        assert_eq!(results.summary().rows.len(), 4 * 9);
+        let each = results.each();
+        assert_eq!((each.rows.len(), each.head.len()), (4 * 9 * 2 * 2, 15));
+        let row =
+            each.rows.iter().find(|row| row[..4] == ["low", "rrs", "60", "1"].map(String::from)).unwrap();
+        assert_eq!(row[4..10], ["1", "1000", "500", "500", "2", "2"].map(String::from));
+        assert_eq!([four_digits(1234.567), four_digits(0.000_123_46)], ["1235", "0.0001235"]);
         let text = results.markdown();
         // 2 µs by 4 ms in 3,000 iterations.
         assert!((results.per_iteration(&["low"], "rrt") - 8.0 / 6.0).abs() < 1e-9);

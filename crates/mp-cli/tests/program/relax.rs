@@ -50,7 +50,7 @@ fn bad_fields_are_explained() {
     dir.write("square.pgm", "P2 2 2 255\n0 0 0 0\n");
     dir.write("no.png", "no picture");
     dir.write("field.json", r#"{"finish": "relax", "field": "wind"}"#);
-    let picture = ["--picture", "x.svg"];
+    let (picture, bent) = (["--picture", "x.svg"], ["plan", "--planner", "rrs"]);
     for (arguments, words) in [
         (vec!["plan", "--relax", "rrs-follow"], ["no field `rrs-follow`", "A scene stands before --relax"]),
         (vec!["plan", "rrs-follow", "--relax", "risk:0"], ["factor of the noise is `0`", "above zero"]),
@@ -59,9 +59,29 @@ fn bad_fields_are_explained() {
         (vec!["plan", "rrs-follow", "--relax", "image:square.pgm"], ["2 × 2 pixels", "2 × 1 pixels"]),
         (
             vec!["plan", "cubicles", "--relax", "paper"],
-            ["for discs in the plane, not for SE3", "`clearance`"],
+            ["for robots of the plane, not for SE3", "`clearance`"],
         ),
-        (vec!["plan", "docks", "--relax", "risk"], ["for discs in the plane, not for SE2", "`clearance`"]),
+        (vec!["plan", "arm", "--relax", "risk"], ["for robots of the plane, not for", "`clearance`"]),
+        (
+            [&bent[..], &["rrs-follow", "--set", "field=wind"]].concat(),
+            ["no field `wind`", "there are: clearance"],
+        ),
+        (
+            [&bent[..], &["rrs-follow", "--set", "field=risk:0"]].concat(),
+            ["factor of the noise is `0`", "above zero"],
+        ),
+        (
+            [&bent[..], &["rrs-follow", "--set", "field=image:gone.png"]].concat(),
+            ["gone.png", "no such file"],
+        ),
+        (
+            [&bent[..], &["rrs-follow", "--set", "field=image:no.png"]].concat(),
+            ["no.png", "neither a PNG nor a PGM"],
+        ),
+        (
+            [&bent[..], &["cubicles", "--set", "field=paper"]].concat(),
+            ["for robots of the plane, not for SE3", "`clearance`"],
+        ),
         (vec!["plan", "crossing", "--relax"], ["no clearance gradient", "leave relaxing out"]),
         (vec!["plan", "rrs-follow", "--request", "field.json"], ["no field `wind`", "is not a request"]),
         ([&["render", "rrs-follow", "--field", "risk"], &picture[..]].concat(), ["of a path", "name a path"]),

@@ -10,7 +10,7 @@ pub use goals::Goals;
 pub use verify::Verify;
 pub use workers::Workers;
 
-use crate::erased::{AnyGeometry, AnyGradient, AnySpace, AnyStraight};
+use crate::erased::{AnyEnergy, AnyGeometry, AnyGradient, AnySpace, AnyStraight};
 use crate::{Interrupt, LocalPlanner, Space, obstacles::ObstacleHints};
 use std::fmt;
 use std::sync::Arc;
@@ -61,12 +61,28 @@ pub struct ObstacleKnowledge<'c, S> {
     pub gradient: Option<AnyGradient<'c, S>>,
     /// The geometry of obstacles: for planners that place the robot at them.
     pub geometry: Option<AnyGeometry<'c, S>>,
+    /// A field of choice, for edges bent by snakes: it pushes in place of the clearance, or beside it.
+    pub field: Option<PushingField<'c, S>>,
+}
+
+/// An energy of states, which edges bent by snakes lower.
+pub struct PushingField<'c, S> {
+    /// The energy (no unit) at a state, and its gradient. Both finite.
+    pub energy: AnyEnergy<'c, S>,
+    /// Whether it pushes alone, without the repulsion of obstacles.
+    pub alone: bool,
+}
+
+impl<S> fmt::Debug for PushingField<'_, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PushingField").field("alone", &self.alone).finish_non_exhaustive()
+    }
 }
 
 /// Nothing is known.
 impl<S> Default for ObstacleKnowledge<'_, S> {
     fn default() -> Self {
-        Self { hints: None, gradient: None, geometry: None }
+        Self { hints: None, gradient: None, geometry: None, field: None }
     }
 }
 
@@ -76,6 +92,7 @@ impl<S> fmt::Debug for ObstacleKnowledge<'_, S> {
             .field("hints", &self.hints.is_some())
             .field("gradient", &self.gradient.is_some())
             .field("geometry", &self.geometry)
+            .field("field", &self.field)
             .finish()
     }
 }

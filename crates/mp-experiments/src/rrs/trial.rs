@@ -3,11 +3,12 @@
 use crate::Result;
 use mp_cspace::{
     Cancel, Clock, DefaultNn, Direction, Extension, Iterations, Length, LocalPlanner, Outcome, Path, Planner,
-    PolylineEdge, Reach, Rn, Rng, Space, Stop, StopReason, Straight, least_clearance,
+    PolylineEdge, Reach, Rn, Rng, Space, Stop, StopReason, Straight, Validity, least_clearance,
 };
 use mp_robot::{DiscRobot, DiscVerifier};
 use mp_scenes::source::disc_scenes::DiscScene;
-use mp_snake::{Bending, Field, Grid, Params, Repulsion, SnakeCounters, SnakePlanner, outline_energy};
+use mp_snake::plane::{occupancy, paper_energy, risk_energy};
+use mp_snake::{Bending, Field, Grid, Params, Repulsion, SnakeCounters, SnakePlanner, With};
 use mp_tree::{BuildError, Problem, Rrt, RrtConnect, Tuning};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -19,10 +20,6 @@ pub const ITERATIONS: u64 = 5000;
 pub const RANGE: f64 = 0.15;
 /// The size of a cell of the clearance map, metres.
 const CELL: f64 = 0.06;
-/// The size of a cell of the image of eq. 3, the deviation σ of its blur, metres, and its weight. The paper gives none.
-const PIXEL: f64 = 0.02;
-const SIGMA: f64 = 0.05;
-const WEIGHT: f64 = 1.0;
 /// The accuracy of the safety of a path, metres.
 const ACCURACY: f64 = 1e-4;
 
@@ -34,7 +31,9 @@ pub type Point = Vector2<f64>;
 pub struct Case {
     /// The world, by name.
     pub world: String,
-    /// The planner, by name: `rrt`, `rrt-upto`, `rrt-connect`, `rrs`, `rrs-upto`, `rrs-eq3`, or `rrs-` and how it bends.
+    /// The planner, by name: `rrt`, `rrt-upto`, `rrt-connect`, `rrs`, `rrs-upto`, `rrs-paper` and
+    /// `rrs-risk` in the field of that name, or `rrs-` and how it bends
+    /// if not by snakes, as the paper does.
     pub planner: String,
     /// Δq, centimetres.
     pub step: u32,
@@ -148,8 +147,8 @@ pub struct PreparedWorld {
     pub robot: DiscRobot,
     /// The signed clearance of the robot, on a grid; it alone guides the snakes.
     pub map: Grid,
-    /// The energy of eq. 3, of the image of the places where the robot is in collision.
-    outlines: Grid,
+    /// The fields `paper` and `risk`, as `mp` makes them: eq. 3, and the risk of passing everywhere.
+    pub fields: [Grid; 2],
 }
 
 impl PreparedWorld {
@@ -173,10 +172,10 @@ impl PreparedWorld {
         };
         let cells = |cell: f64| scene.size.map(|s| (s / cell).round() as usize).into();
         let map = Grid::from_fn([0.0; 2], CELL, cells(CELL), |p| robot.signed_clearance(&p))?;
-        let image =
-            Grid::from_fn([0.0; 2], PIXEL, cells(PIXEL), |p| f64::from(u8::from(map.at(&p).0 <= 0.0)));
-        let outlines = outline_energy(&image?, SIGMA, WEIGHT)?;
-        Ok(Self { scene, robot, map, outlines })
+        let mut checker = robot.clone();
+        let occupied = occupancy(scene.size.map(|size| [0.0, size]), RANGE, |p| !checker.is_valid(&p))?;
+        let fields = [paper_energy(&occupied, RANGE)?, risk_energy(&occupied, RANGE, 1.0)?];
+        Ok(Self { scene, robot, map, fields })
     }
 }
 
@@ -206,10 +205,15 @@ pub fn planned(world: &PreparedWorld, case: &Case, clock: Clock, cancel: &Cancel
                 _ => settings.run(Rrt::new(problem, tuning), |path| path),
             }
         }
-        "rrs-eq3" => {
-            let counters = Cell::default();
-            let planner =
-                rrs(world, &space, step, exactly, world.outlines.clone(), Bending::Snake, &counters);
+        "rrs-paper" => {
+            let (counters, field) = (Cell::default(), world.fields[0].clone());
+            let planner = rrs(world, &space, step, exactly, field, Bending::Snake, &counters);
+            Ok(settings.run(planner, |path| path.flattened())?.map(|run| counted(run, counters.get())))
+        }
+        "rrs-risk" => {
+            let (counters, repulsion) = (Cell::default(), Repulsion::new(&world.map, RANGE)?);
+            let field = With::new(repulsion, world.fields[1].clone(), 1.0)?;
+            let planner = rrs(world, &space, step, exactly, field, Bending::Snake, &counters);
             Ok(settings.run(planner, |path| path.flattened())?.map(|run| counted(run, counters.get())))
         }
         name => {

@@ -3,16 +3,18 @@
 use crate::robot::motion::Counting;
 use crate::{Error, RelaxField, Robot};
 use mp_cspace::erased::AnyGradient;
-use mp_cspace::{Configuration, Path};
+use mp_cspace::{Configuration, Path, PushingField};
 use mp_snake::{Field, Grid, Repulsion, With};
 use nalgebra::Vector2;
+use std::sync::Arc;
 use {
     crate::PathRows,
     crate::path::{state, states},
     mp_cspace::{Space, Validity, registry::Settings},
     mp_io::GridMap,
+    mp_snake::blurred,
+    mp_snake::plane::{BLUR, MOST_CELLS, STRIDE, occupancy, paper_energy, risk_energy},
     mp_snake::risk::{MotionNoise, RangeNoise, RiskMaps},
-    mp_snake::{blurred, outline_energy},
     mp_tree::algo::rrs::RANGE,
     std::sync::atomic::AtomicU64,
 };
@@ -51,25 +53,29 @@ struct OnPlane(Grid);
 
 impl Field<Configuration> for OnPlane {
     fn energy(&mut self, q: &Configuration, gradient: &mut [f64]) -> f64 {
-        let (energy, slope) = self.0.at(&Vector2::new(q[0], q[1]));
-        gradient.fill(0.0);
-        gradient.iter_mut().zip(slope.iter()).for_each(|(g, s)| *g = *s);
-        energy
+        on_plane(&self.0, q, gradient)
     }
+}
+
+fn on_plane(image: &Grid, q: &Configuration, gradient: &mut [f64]) -> f64 {
+    let (energy, slope) = image.at(&Vector2::new(q[0], q[1]));
+    gradient.fill(0.0);
+    gradient.iter_mut().zip(slope.iter()).for_each(|(g, s)| *g = *s);
+    energy
 }
 
 /// Refuses a field that does not suit the robot, or whose file cannot be read.
 pub(crate) fn check(kind: &dyn Robot, field: &RelaxField) -> Result<(), Error> {
     let names: Vec<_> = kind.columns().into_iter().map(|column| column.name).collect();
     let place = matches!(kind.limits()[..], [Some(_), Some(_), ..]);
-    let (suits, whom) = match field {
-        RelaxField::Clearance => return Ok(()),
-        RelaxField::Image(_) => (names == ["x", "y"] || names == ["x", "y", "yaw"], "robots of the plane"),
-        RelaxField::Paper | RelaxField::Risk(_) => (names == ["x", "y"], "discs in the plane"),
-    };
+    if *field == RelaxField::Clearance {
+        return Ok(());
+    }
+    let suits = names == ["x", "y"] || names == ["x", "y", "yaw"];
     if !(suits && place) {
-        return Err(Error::new(format!("the field `{field}` is for {whom}, not for {}", kind.space_name()))
-            .help("take the field `clearance`, which pushes all robots that can be relaxed"));
+        let whom = kind.space_name();
+        return Err(Error::new(format!("the field `{field}` is for robots of the plane, not for {whom}"))
+            .help("take the field `clearance`, which pushes all robots that know their clearance"));
     }
     if let RelaxField::Image(file) = field {
         read_image(file, bounds(kind)?)?;
@@ -94,15 +100,33 @@ pub(crate) fn make<'k>(
     })
 }
 
-/// Cells of images of the plane in a range, and the most cells along a side.
-const CELLS: f64 = 7.5;
-const MOST_CELLS: usize = 2048;
-/// The standard deviation of the blur of images, as a part of the range.
-const BLUR: f64 = 1.0 / 3.0;
-/// The steps of a path in the landscape of risk, as a part of the range.
-const STRIDE: f64 = 5.0 / 3.0;
+/// The rotations at which a robot that turns must touch something for its place to be occupied.
+const ROTATIONS: u32 = 16;
 
-/// The image of a field that has one.
+/// What pushes the edges of trees, beside the repulsion of obstacles or alone. It is made once for each run.
+#[derive(Clone, Debug)]
+pub(crate) struct TreeField {
+    image: Arc<Grid>,
+    alone: bool,
+}
+
+impl TreeField {
+    /// The field that `settings` name, for a robot whose obstacles repel within `range` (m). `None` where that is the clearance.
+    pub(crate) fn new(kind: &dyn Robot, name: &RelaxField, range: f64) -> Result<Option<Self>, Error> {
+        check(kind, name)?;
+        let image = image(kind, name, range, None)?;
+        Ok(image.map(|image| Self { image: Arc::new(image), alone: *name == RelaxField::Paper }))
+    }
+
+    /// The same for a problem.
+    pub(crate) fn pushing<'c>(&self) -> PushingField<'c, Configuration> {
+        let image = Arc::clone(&self.image);
+        let energy = move |q: &Configuration, gradient: &mut [f64]| on_plane(&image, q, gradient);
+        PushingField { energy: Box::new(energy), alone: self.alone }
+    }
+}
+
+/// The image of a field that has one. Without a path the risk is that of passing everywhere.
 fn image(
     kind: &dyn Robot,
     name: &RelaxField,
@@ -113,22 +137,24 @@ fn image(
         return Ok(None);
     }
     let bounds = bounds(kind)?;
+    let turns = kind.columns().len() > 2;
     let occupied = || {
-        let sides = bounds.map(|[low, high]| high - low);
-        let cell = (range / CELLS).max(sides[0].max(sides[1]) / MOST_CELLS as f64);
-        let [width, height] = sides.map(|side| ((side / cell).ceil() as usize).max(2));
         let mut checker = kind.any_checker();
-        let touches = |p: Vector2<f64>| f64::from(u8::from(!checker.is_valid(&kind.state(p.as_slice()))));
-        Grid::from_fn(bounds.map(|[low, _]| low), cell, (width, height), touches)
+        let mut free = |row: &[f64]| checker.is_valid(&kind.state(row));
+        let yaw =
+            |i: u32| f64::from(i) * (std::f64::consts::TAU / f64::from(ROTATIONS)) - std::f64::consts::PI;
+        occupancy(bounds, range, |p| match turns {
+            true => !(0..ROTATIONS).any(|i| free(&[p.x, p.y, yaw(i)])),
+            false => !free(p.as_slice()),
+        })
     };
     Ok(Some(match name {
         RelaxField::Clearance => return Ok(None),
-        RelaxField::Paper => outline_energy(&occupied()?, BLUR * range, 1.0)?,
+        RelaxField::Paper => paper_energy(&occupied()?, range)?,
+        RelaxField::Risk(factor) if path.is_none() => risk_energy(&occupied()?, range, *factor)?,
         RelaxField::Image(file) => blurred(&read_image(file, bounds)?, BLUR * range)?,
         RelaxField::Risk(factor) => {
-            let path = path.ok_or_else(|| {
-                Error::new("the landscape of risk is that of a path, and there is none").help("name a path")
-            })?;
+            let Some(path) = path else { return Ok(None) };
             // Steps of one length, however many states the path has.
             let length = path.length(&kind.any_space());
             let steps = (length / (STRIDE * range)).ceil().clamp(1.0, 1e5);
@@ -195,6 +221,11 @@ pub(crate) fn field(
 ) -> Result<FieldImage, Error> {
     let [x, y] = bounds(kind)?;
     check(kind, name)?;
+    if path.is_none() && matches!(name, RelaxField::Risk(_)) {
+        return Err(
+            Error::new("the landscape of risk is that of a path, and there is none").help("name a path")
+        );
+    }
     let unused = AtomicU64::new(0);
     let knowledge = kind.any_obstacles(&Counting::new(&unused, mp_cspace::Interrupt::never()));
     let gradient =

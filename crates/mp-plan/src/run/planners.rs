@@ -1,9 +1,10 @@
 //! Planners by name: of trees, with meta-planners or without, and of roadmaps.
 
 use super::{auto, roadmaps};
-use crate::{Error, ErrorKind, Robot};
+use crate::{Error, ErrorKind, RelaxField, Request, Robot};
 use mp_cspace::registry::{PlannerInfo, Settings};
 use mp_cspace::{BuildError, Demand};
+use mp_tree::algo::rrs::FIELD;
 use std::fmt;
 
 /// All planners by name: `auto`, planners of trees, planners of roadmaps. The name of a planner of trees may have the prefix `or-` or `restart-`,
@@ -67,6 +68,15 @@ impl PlannerKind {
             Self::Roadmap(info) => settings.check(info)?,
         }
         Ok(())
+    }
+
+    /// The field that pushes its snakes, if it has snakes.
+    pub(crate) fn field(&self, request: &Request) -> Result<Option<RelaxField>, Error> {
+        let snakes = |spec: &mp_tree::PlannerSpec| spec.planner.parameters.contains(&FIELD);
+        match (self, request.settings.get(FIELD.name)) {
+            (Self::Tree(spec), Some(name)) if snakes(spec) => Ok(Some(name.parse()?)),
+            _ => Ok(None),
+        }
     }
 
     /// Refuses a robot that demands what the planner cannot do.

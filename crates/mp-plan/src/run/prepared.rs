@@ -1,5 +1,6 @@
 //! A request prepared for a robot: the space, an index, a verifier, and the problems, planners and stops made from them.
 
+use crate::finish::field::TreeField;
 use crate::goals;
 use crate::possible::{Deadlines, Possible};
 use crate::robot::counted::QueryBudget;
@@ -12,7 +13,7 @@ use crate::{Control, Error, Measured, MotionValidator, Request, Robot};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
     AnyProblem, BuildError, Configuration, Endpoint, Interrupt, Iterations, MotionCheck, MotionValidity,
-    Nodes, ParameterError, Problem, Stop, Straight, Workers, registry::PlannerInfo,
+    Nodes, ObstacleKnowledge, ParameterError, Problem, Stop, Straight, Workers, registry::PlannerInfo,
 };
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -28,6 +29,8 @@ pub(crate) struct Prepared<'k> {
     /// An empty index of it.
     pub(crate) index: AnyIndex<Configuration>,
     verifier: AnyVerifier<'k>,
+    /// What pushes edges that bend, if it is not the clearance.
+    field: Option<TreeField>,
     state: Arc<RunState>,
     /// Planners of roadmaps tell on several threads which queries are not to be counted: see `QueryMeter` of mp-roadmap.
     counts_exactly: bool,
@@ -84,9 +87,16 @@ impl<'k> Prepared<'k> {
     ) -> Result<Self, Error> {
         planner.meets(kind)?;
         let Measured { space, index } = kind.measured(request.metric)?;
+        let field = match planner.field(&request)? {
+            None => None,
+            Some(name) => {
+                let range = request.settings().length_of(&mp_tree::algo::rrs::RANGE, &space)?;
+                TreeField::new(kind, &name, range)?
+            }
+        };
         let (verifier, state) = (kind.any_verifier()?, Arc::clone(state));
         let counts_exactly = matches!(planner, PlannerKind::Roadmap(_));
-        Ok(Self { kind, request, space, index, verifier, state, counts_exactly, members: Vec::new() })
+        Ok(Self { kind, request, space, index, verifier, field, state, counts_exactly, members: Vec::new() })
     }
 
     /// The common count of the queries of all checkers.
@@ -153,7 +163,9 @@ impl<'k> Prepared<'k> {
         let verifier = Verifying { verifier, interrupt: interrupt.clone(), state: &self.state };
         let problem = Problem::new(&self.space, local, verifier, kind.start().clone(), goals::of_kind(kind));
         let problem = problem.map_err(|e| written(kind, e))?;
-        let problem = problem.with_obstacles(kind.any_obstacles(&counting)).with_interrupt(interrupt);
+        let field = self.field.as_ref().map(TreeField::pushing);
+        let known = ObstacleKnowledge { field, ..kind.any_obstacles(&counting) };
+        let problem = problem.with_obstacles(known).with_interrupt(interrupt);
         Ok(match kind.input_system() {
             Some(system) => problem.with_inputs(system),
             None => problem,

@@ -13,4 +13,5 @@ mod parts;
 mod pose_goals;
 mod relax;
 mod robots;
+mod snake_field;
 mod wrench;

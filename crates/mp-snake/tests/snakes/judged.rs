@@ -7,7 +7,7 @@ use mp_cspace::{
     Rng, Space,
 };
 use mp_snake::{
-    Bending, Bulged, Grid, Params, Repulsion, Snake, SnakeCounters, SnakePlanner, blurred, relax,
+    Bend, Bending, Bent, Bulged, Grid, Params, Repulsion, Snake, SnakeCounters, SnakePlanner, blurred, relax,
 };
 use nalgebra::Vector2;
 use rand::RngExt;
@@ -62,6 +62,40 @@ fn bent_edges_are_free() {
     assert!(hybrid.relaxed > 1000 && hybrid.by_snake > 30, "{hybrid:?}");
     assert!(hybrid.bent() > bulge.bent().max(snake.bent()), "{counters:?}");
     assert!(farther > 1.05 * nearer, "{nearer} {farther}");
+}
+
+/// From few nodes to many: a contour keeps its ends, what it calls free is free, and has less energy than the straight motion.
+#[test]
+fn contours_keep_their_ends_and_lower_the_energy() {
+    let space = square();
+    let (mut freed, mut blocked) = (0, 0);
+    for seed in 0..3000 {
+        let mut rng = Rng::seed(seed);
+        let world = World::random(&mut rng);
+        let mut check = world.check(&space);
+        let [from, to] = [(); 2].map(|()| space.sample_uniform(&mut rng));
+        let mut free = |a, b| check.check_motion(a, b).is_free();
+        if !free(&from, &from) || !free(&to, &to) || free(&from, &to) {
+            continue;
+        }
+        let mut snake = Snake::new(&space, Params::for_edges(0.1).unwrap()).unwrap();
+        let mut field = Repulsion::new(world.field(), 0.1).unwrap();
+        let mut curve = snake.between(&from, &to);
+        let (bent, steps) = Bending::Snake.bend(&mut snake, &mut curve, &mut field, &mut check);
+        assert_eq!((curve[0], curve[curve.len() - 1]), (from, to), "seed {seed}");
+        if bent == Bent::Not {
+            blocked += 1;
+            continue;
+        }
+        freed += 1;
+        assert!(bent == Bent::Snake && steps > 0);
+        assert!(Path::straight(curve.clone()).clearance(&mut Judge(&world)).is_some(), "seed {seed}");
+        let parts = (curve.len() - 1) as f64;
+        let straight: Vec<Point> = (0..curve.len()).map(|i| from.lerp(&to, i as f64 / parts)).collect();
+        let [before, after] = [&straight, &curve].map(|curve| snake.energy(curve, &mut field).total());
+        assert!(after < before, "seed {seed}: {before} {after}");
+    }
+    assert!(freed > 700 && 5 * freed > 3 * (freed + blocked), "{freed} of {}", freed + blocked);
 }
 
 fn sum(a: SnakeCounters, b: SnakeCounters) -> SnakeCounters {

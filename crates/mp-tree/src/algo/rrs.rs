@@ -18,16 +18,20 @@
 //! So RRS is [RRT](super::rrt) with the local planner [`SnakePlanner`], and RRS-Connect is
 //! [RRT-Connect](super::rrt_connect) with it: in the tree from the goal edges are bent in forward time. A sample whose end is itself in collision is not
 //! rescued. How a blocked edge bends is a strategy, [`Bending`]:
-//! - `snake`, the paper's step 6: the contour starts on the straight edge and relaxes;
-//! - `bulge`: all of the edge moves to the side to which the obstacle pushes it, in closed form
+//! - `snake`, the default and the paper's step 6: the contour starts on the straight edge and relaxes, from few nodes to many;
+//! - `bulge`, ours: all of the edge moves to the side to which the obstacle pushes it, in closed form
 //!   ([`Snake::bulge`](mp_snake::Snake::bulge)), with one more corner where it grazes; nothing relaxes;
-//! - `hybrid`, the default: the bulge is the initial contour, and relaxes; where no bulge is free, the straight edge does.
+//! - `hybrid`, ours: the bulge is the initial contour, and relaxes; where no bulge is free, the straight edge does.
 //!
-//! In the paper's four worlds `hybrid` accepts the most samples, needs the fewest iterations, solves the most problems and
-//! keeps the most clearance. `snake` takes down to 0.6 of its time where edges can be bent at all, and more where they cannot;
-//! `bulge` bends an edge the fastest and keeps the least clearance (`docs/results/rrs.md`). A snake stops as
-//! soon as it is free with half the range as clearance, or hopeless. The energies are those of [`Snake`](mp_snake::Snake),
-//! with its remarks on the formulas. Other fields than the repulsion of obstacles are given by type
+//! In the paper's four worlds `snake` accepts as many samples as `hybrid`, solves as many problems and keeps as much clearance. It
+//! takes longer, above all among long walls, around which no contour bends; `bulge` bends an edge the fastest and keeps the least
+//! clearance (`docs/results/rrs.md`). A snake stops as soon as it is free, or hopeless; then a free one relaxes until it keeps half
+//! the range as clearance. The energies are those of [`Snake`](mp_snake::Snake),
+//! with its remarks on the formulas.
+//!
+//! What pushes snakes is the repulsion of obstacles by their clearance, or with `field` a field of choice. By name it is the one
+//! that the [problem](mp_cspace::ObstacleKnowledge::field) has: `mp` and `mp-plan` make `paper` (eq. 3), `risk`, `risk:FACTOR` and
+//! `image:FILE` for robots of the plane, as images of the world, once for each run. By type any field pushes
 //! ([`SnakePlanner::with_bend`]).
 //!
 //! **When to use it.** Where the clearance and its gradient are cheap to compute (in the plane, by a distance map, some
@@ -41,8 +45,9 @@
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at (RRS-Connect: of sampling a further one) | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //! | `range`: how far obstacles repel | (0, extent of the space] | 3% of the extent |
-//! | `bend`: how blocked edges are bent | `snake`, `bulge`, `hybrid` | `hybrid` |
-//! | `snake-steps`: most steps of a snake | 1 to 1,000,000 | 40 |
+//! | `bend`: how blocked edges are bent | `snake`; `bulge`, `hybrid` (ours) | `snake` |
+//! | `field`: what pushes snakes | `clearance`, or in the plane `paper`, `risk`, `risk:FACTOR`, `image:FILE` | `clearance` |
+//! | `snake-steps`: most steps of a snake, with each number of nodes | 1 to 1,000,000 | 40 |
 //!
 //! Stiffness and spacing follow from the range ([`Params::for_edges`](mp_snake::Params::for_edges)). By name it takes the
 //! gradient from the [problem](crate::Problem::with_obstacles), and its paths have straight edges between the nodes of the
@@ -107,11 +112,12 @@
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{BuildError, Parameter, PlannerInfo, Problem, Rrt, RrtConnect, Settings, Verify};
-use mp_cspace::erased::AnyGradient;
+use mp_cspace::erased::{AnyEnergy, AnyGradient};
 use mp_cspace::{
-    MotionCheck, MotionValidity, Observer, Path, Planner, PolylineEdge, Progress, Rng, Space, Straight,
+    MotionCheck, MotionValidity, Observer, ObstacleKnowledge, Path, Planner, PolylineEdge, Progress,
+    PushingField, Rng, Space, Straight,
 };
-use mp_snake::{Bending, Params, Repulsion, SnakePlanner};
+use mp_snake::{Bending, Field, Params, Repulsion, SnakePlanner, With};
 
 /// The range within which obstacles push snakes.
 pub const RANGE: Parameter = Parameter {
@@ -126,15 +132,23 @@ pub const SNAKE_STEPS: Parameter = Parameter {
     name: "snake-steps",
     range: "a whole number, 1 to 1000000",
     default: "40",
-    doc: "most steps of a snake that bends one edge",
+    doc: "most steps of a snake that bends one edge, with each number of nodes",
 };
 
 /// How blocked edges are bent.
 pub const BEND: Parameter = Parameter {
     name: "bend",
     range: "snake, bulge or hybrid",
-    default: "hybrid",
-    doc: "how a blocked edge is bent: a snake relaxes, a bulge is laid, or a snake relaxes from a bulge",
+    default: "snake",
+    doc: "how a blocked edge is bent: a snake relaxes (the paper), a bulge is laid, or a snake relaxes from a bulge (ours)",
+};
+
+/// What pushes snakes.
+pub const FIELD: Parameter = Parameter {
+    name: "field",
+    range: "clearance, paper, risk, risk:FACTOR or image:FILE; all but clearance in the plane",
+    default: "clearance",
+    doc: "what pushes snakes: obstacles by their clearance, eq. 3 of the paper, a landscape of risk, or dark pixels",
 };
 
 /// The entry of [`planners`](crate::planners).
@@ -142,7 +156,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrs",
     summary: "RRT whose blocked edges are bent around obstacles by snakes; for many small obstacles",
     citation: "Baizid et al. 2014; Kass, Witkin and Terzopoulos 1988",
-    parameters: &[STEP, GOAL_BIAS, PATIENCE, RANGE, BEND, SNAKE_STEPS],
+    parameters: &[STEP, GOAL_BIAS, PATIENCE, RANGE, BEND, FIELD, SNAKE_STEPS],
     aliases: &[],
     cannot: &[],
 };
@@ -168,7 +182,7 @@ pub mod connect {
         name: "rrs-connect",
         summary: "RRT-Connect whose blocked edges are bent around obstacles by snakes",
         citation: "Baizid et al. 2014; Kuffner and LaValle 2000",
-        parameters: &[STEP, GOAL_BIAS, PATIENCE, RANGE, BEND, SNAKE_STEPS],
+        parameters: &[STEP, GOAL_BIAS, PATIENCE, RANGE, BEND, FIELD, SNAKE_STEPS],
         aliases: &[],
         cannot: NEEDS_BOTH_ENDS,
     };
@@ -184,10 +198,77 @@ pub mod connect {
 }
 
 /// A problem with a local planner that bends blocked edges.
-type BendingProblem<'c, C, M> =
-    Problem<'c, C, SnakePlanner<'c, C, M, Repulsion<AnyGradient<'c, <C as Space>::State>>>>;
+type BendingProblem<'c, C, M> = Problem<'c, C, SnakePlanner<'c, C, M, NamedField<'c, <C as Space>::State>>>;
 
-/// `problem`, for the planner called `planner`, with a local planner that bends blocked edges by the clearance gradient.
+/// What pushes snakes by name.
+pub(crate) enum NamedField<'c, S> {
+    Repulsion(Repulsion<AnyGradient<'c, S>>),
+    Alone(AnyEnergy<'c, S>),
+    Both(With<Repulsion<AnyGradient<'c, S>>, AnyEnergy<'c, S>>),
+}
+
+impl<'c, S> NamedField<'c, S> {
+    /// The field that `settings` name, of what is known of obstacles that repel within `range`.
+    fn new(
+        planner: &'static str,
+        known: ObstacleKnowledge<'c, S>,
+        range: f64,
+        settings: &Settings,
+    ) -> Result<Self, BuildError> {
+        let unmade = |reason: String| BuildError::Unmade { reason };
+        let name = settings.text(FIELD.name).unwrap_or(FIELD.default);
+        let chosen = match (name == FIELD.default, known.field) {
+            (true, _) => None,
+            (false, Some(field)) => Some(field),
+            (false, None) => {
+                return Err(unmade(format!(
+                    "{planner} cannot take the field `{name}`: the problem has no field beside the clearance"
+                )));
+            }
+        };
+        let repulsion = |gradient: Option<AnyGradient<'c, S>>| {
+            let gradient = gradient.ok_or(BuildError::NoGradient { planner })?;
+            Repulsion::new(gradient, range).map_err(|e| unmade(e.to_string()))
+        };
+        Ok(match chosen {
+            None => Self::Repulsion(repulsion(known.gradient)?),
+            Some(PushingField { energy, alone: true }) => Self::Alone(energy),
+            Some(PushingField { energy, alone: false }) => {
+                let both = With::new(repulsion(known.gradient)?, energy, 1.0);
+                Self::Both(both.map_err(|e| unmade(e.to_string()))?)
+            }
+        })
+    }
+}
+
+impl<S> Field<S> for NamedField<'_, S> {
+    #[inline]
+    fn energy(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
+        match self {
+            Self::Repulsion(field) => field.energy(q, gradient),
+            Self::Alone(field) => field(q, gradient),
+            Self::Both(field) => field.energy(q, gradient),
+        }
+    }
+    #[inline]
+    fn clearance(&self) -> Option<f64> {
+        match self {
+            Self::Repulsion(field) => Field::<S>::clearance(field),
+            Self::Alone(_) => None,
+            Self::Both(field) => Field::<S>::clearance(field),
+        }
+    }
+    #[inline]
+    fn clearance_at(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
+        match self {
+            Self::Repulsion(field) => field.clearance_at(q, gradient),
+            Self::Alone(_) => f64::INFINITY,
+            Self::Both(field) => field.clearance_at(q, gradient),
+        }
+    }
+}
+
+/// `problem`, for the planner called `planner`, with a local planner that bends blocked edges in the field that `settings` name.
 pub(crate) fn with_bending_edges<'c, C, M>(
     planner: &'static str,
     mut problem: Problem<'c, C, Straight<'c, C, M>>,
@@ -197,7 +278,7 @@ where
     C: Space<State: 'c>,
     M: MotionValidity<C::State> + Send + 'c,
 {
-    let field = problem.take_obstacles().gradient.ok_or(BuildError::NoGradient { planner })?;
+    let known = problem.take_obstacles();
     let parts = problem.into_parts();
     let space = parts.space;
     let range = settings.length_of(&RANGE, space)?;
@@ -205,11 +286,11 @@ where
     let params = Params::for_edges(range).map_err(|e| unmade(e.to_string()))?;
     let iterations = settings.count_of(&SNAKE_STEPS)?;
     let iterations = u32::try_from(iterations).unwrap_or(u32::MAX);
-    let repulsion = Repulsion::new(field, range).map_err(|e| unmade(e.to_string()))?;
+    let field = NamedField::new(planner, known, range, settings)?;
     let bend = settings.choice(BEND.name, BEND.range, |name| name.parse().ok())?.unwrap_or_default();
     let params = Params { iterations, ..params };
     let local: SnakePlanner<'_, C, M, _> =
-        SnakePlanner::with_bend(space, parts.local.check, repulsion, params, bend)
+        SnakePlanner::with_bend(space, parts.local.check, field, params, bend)
             .map_err(|e| unmade(e.to_string()))?;
     let problem = Problem::new(space, local, Boxed(parts.verify), parts.start, parts.goals)?;
     Ok(problem.with_interrupt(parts.interrupt))
