@@ -16,6 +16,7 @@ mod output;
 mod peer;
 mod planners;
 mod plot;
+mod published;
 mod puzzles;
 mod regions;
 mod rigid;
