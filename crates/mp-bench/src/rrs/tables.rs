@@ -142,7 +142,7 @@ impl<'a> Results<'a> {
     /// A row for each trial. Lengths and safety are in centimetres, times in milliseconds, with four digits; what is zero or was not
     /// found is left out.
     pub(super) fn each(&self) -> Table {
-        let heads = ["world", "planner", "step", "trial", "solved", "iterations", "accepted"];
+        let heads = ["world", "planner", "step_cm", "trial", "solved", "iterations", "accepted"];
         let mut table = Table::new(heads.into_iter().chain(["length_cm", "safety_cm", "ms"]).chain(EDGES));
         for case in self.plan.cases() {
             let Some(run) = self.log.get(&case) else { continue };
@@ -461,7 +461,7 @@ mod tests {
         assert!((results.per_iteration(&["low"], "rrt") - 8.0 / 6.0).abs() < 1e-9);
         assert!(text.contains("| low | 1.50 | 1.00 |"), "{text}");
         assert!(text.contains("mean 67.1") && text.contains("50.0 (50.0 – 50.0)"), "{text}");
-        assert_eq!(results.charts().len(), 24);
+        assert_eq!(results.charts().len(), 26);
         assert!(results.charts().iter().all(|(_, chart)| chart.is_ok()));
     }
 }

@@ -217,7 +217,7 @@ fn faults_of_files_have_their_line() {
         (MOVING, "{ x = 3.5 }", "{ z = 3.5 }", 7, "`z`, which the robot does not have"),
         (MOVING, "{ x = 3.5 }", "{ x = [3.5, 3] }", 7, "from 3.5 to 3"),
         (MOVING, "{ x = 3.5 }", "{}", 7, "asks for nothing"),
-        (MOVING, "{ x = 3.5 }", "{ x = \"far\" }", 7, "a goal is a list of numbers"),
+        (MOVING, "{ x = 3.5 }", "{ x = \"far\" }", 7, "neither a number nor an interval"),
         (
             MOVING,
             "disc = 0.1\n",
