@@ -2,7 +2,7 @@
 
 #![cfg(test)]
 
-use crate::experiment::{Median, mean};
+use crate::experiment::mean;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -123,24 +123,26 @@ fn numbers_of_rrs_are_those_of_the_raw_results() {
 
 #[test]
 fn numbers_of_roadmaps_are_those_of_the_raw_results() {
-    let coverage = rows("roadmaps-coverage", ["scene", "visib_nodes", "prm_connected_nodes"]);
-    let ratio = |scene: &str| {
-        let such = coverage.iter().filter(|[s, ..]| s == scene);
-        let median = |of: fn(&[String; 3]) -> &String| {
-            let value = |row| if String::is_empty(of(row)) { f64::INFINITY } else { number(of(row)) };
-            Median::of(such.clone().map(value)).unwrap().median
-        };
-        median(|row| &row[2]) / median(|row| &row[1])
+    let solved = |experiment: &str, generation: &str| {
+        let runs = rows(experiment, ["checks", "generation", "connection", "solved"]);
+        let such = runs.iter().filter(|[checks, made, connection, _]| {
+            checks == "certified" && made == generation && connection != "turns where far"
+        });
+        such.filter(|[.., solved]| solved == "1").count()
     };
-    let [maze, easy] = ["maze", "easy"].map(ratio);
-    says("roadmaps.md", &format!("PRM needs {maze:.1} to {easy:.0} times the nodes"));
-
-    let growth = rows("roadmaps-growth", ["nodes", "growth: exponent"]);
-    let [nodes, exponent] = growth.last().unwrap();
-    says("roadmaps.md", &format!("at {nodes} nodes the exponent is {exponent}"));
-
-    let queries = rows("roadmaps-queries", ["asked", "nodes", "answered"]);
-    let all = queries.iter().filter(|[asked, nodes, _]| asked == "roadmap" && nodes == "500");
-    let share = mean(all.map(|[.., answered]| 100.0 - 100.0 * number(answered))).unwrap();
-    says("roadmaps.md", &format!("With 500 nodes {share:.0}% of the queries go"));
+    let [free, uniform, contact] =
+        ["obprm free", "uniform", "obprm contact"].map(|made| solved("roadmaps-contact", made));
+    let text = format!(
+        "its free nodes solve {free} of 140 runs, uniform samples {uniform}; its contact nodes {contact}"
+    );
+    says("roadmaps.md", &text);
+    let [salvaged, alone] = ["uniform, salvaged", "uniform"].map(|made| solved("roadmaps-geometry", made));
+    says("roadmaps.md", &format!("{salvaged} of 140 against {alone}, interval of the difference"));
+    let runs = rows("roadmaps-ends", ["scene", "generation", "solved"]);
+    let alpha = |generation: &str| {
+        let such = runs.iter().filter(|[scene, made, _]| scene == "alpha-1.5" && made == generation);
+        such.filter(|[.., solved]| solved == "1").count()
+    };
+    assert_eq!(["gaussian", "prm", "obprm free"].map(alpha), [0; 3]);
+    says("roadmaps.md", &format!("Gaussian samples with them {} of 20", alpha("gaussian, trees")));
 }
