@@ -182,8 +182,11 @@ def test_arms_from_text_and_from_files(folder: Path) -> None:
     free = mp.Scene.arm(URDF, [0, 0], {"a": 1.2}, [table])
     assert free.plan(seed=1).solved
     # The end of the second bar, one metre up and one to the side; then also pointing to the side, by a matrix.
-    tip = URDF.replace("</robot>", '<link name="tip"/><joint name="c" type="fixed"><parent link="lower"/>'
-        '<child link="tip"/><origin xyz="0 0 1"/></joint></robot>')
+    tip = URDF.replace(
+        "</robot>",
+        '<link name="tip"/><joint name="c" type="fixed"><parent link="lower"/>'
+        '<child link="tip"/><origin xyz="0 0 1"/></joint></robot>',
+    )
     reached = mp.Scene.arm(tip, [0, 0], {"link": "tip", "position": [1, 0, 1]}, srdf=False).plan(seed=1)
     assert reached.solved and reached.path is not None
     a, b = reached.path[-1]

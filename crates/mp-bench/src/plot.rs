@@ -319,6 +319,7 @@ pub(crate) fn bars(labels: Labels<'_>, groups: &[&str], all: &[Bars]) -> Result<
             let marks = 2 * groups.len() + 1;
             let mut mesh = chart.configure_mesh();
             mesh.disable_x_mesh().x_labels(marks).x_label_formatter(&group);
+            mesh.light_line_style(WHITE).bold_line_style(RGBColor(0xdd, 0xe1, 0xe6));
             mesh.y_desc(labels.y).y_label_formatter(&|v| number(*v)).draw()?;
             let width = 0.8 / all.len() as f64;
             for (i, bars) in all.iter().enumerate() {

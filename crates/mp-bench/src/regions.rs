@@ -161,7 +161,7 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
         }
     }
     let text = format!("{}\n\n{}\n", answers.markdown(), balance.markdown());
-    lab.report("regions", &text, &answers)?;
+    lab.report("regions", &text, &answers.made_at(log.commits(&cases)))?;
     Ok(log.each(&cases).count() == cases.len())
 }
 

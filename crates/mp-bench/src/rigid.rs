@@ -145,7 +145,7 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
             }),
         ],
     );
-    lab.report("rigid", &summary.markdown(), &each)?;
+    lab.report("rigid", &summary.markdown(), &each.made_at(log.commits(&cases)))?;
     Ok(solved)
 }
 

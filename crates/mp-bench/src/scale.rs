@@ -37,6 +37,8 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
     let mut each = Table::new(["experiment", "case", "seed", "solved", "seconds", "iterations"]);
     each.rows.extend(problems.rows());
     each.rows.extend(lengths.rows());
-    lab.report(&lab.name("scale"), &(text.join("\n\n") + "\n"), &each)?;
+    let mut commits = problems.commits.clone();
+    lengths.commits.iter().for_each(|(commit, runs)| *commits.entry(commit.clone()).or_default() += runs);
+    lab.report(&lab.name("scale"), &(text.join("\n\n") + "\n"), &each.made_at(commits))?;
     Ok(true)
 }

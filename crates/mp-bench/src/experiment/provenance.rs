@@ -3,6 +3,7 @@
 use super::table::Table;
 use crate::clock;
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::process::Command;
 use std::sync::OnceLock;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -68,7 +69,8 @@ fn command(arguments: impl Iterator<Item = String>) -> String {
 /// The processor and the number of its cores.
 fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let info = mp_store::read(Path::new("/proc/cpuinfo"), 1 << 24).unwrap_or_default();
+    let info = String::from_utf8_lossy(&info);
     let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
     let model = model.map_or(std::env::consts::ARCH, |(_, model)| model.trim());
     format!("{model}, {cores} {}, {}", if cores == 1 { "core" } else { "cores" }, std::env::consts::OS)

@@ -30,6 +30,11 @@ impl Table {
         table
     }
 
+    /// The table, of runs that were made at these commits.
+    pub(crate) fn made_at(self, commits: BTreeMap<String, usize>) -> Self {
+        Self { commits, ..self }
+    }
+
     /// The table in Markdown.
     pub(crate) fn markdown(&self) -> String {
         let line = |cells: &[String]| format!("| {} |", cells.join(" | "));

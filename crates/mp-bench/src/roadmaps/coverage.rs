@@ -178,14 +178,13 @@ fn each(log: &Log<Case, Measured>, cases: &[Case]) -> Table {
     let of_columns =
         ["visib", "prm_seen", "prm_connected"].map(|what| columns.map(|column| format!("{what}_{column}")));
     let mut table = Table::new(heads.map(str::to_owned).into_iter().chain(of_columns.into_iter().flatten()));
-    table.commits = log.commits(cases);
     for (case, run) in log.each(cases) {
         let own = [run.guards, run.estimate, run.seen.any, run.seen.largest].map(|v| v.to_string());
         let names = [case.scene.clone(), case.seed.to_string()];
         let all = [Some(&run.few), run.many[0].as_ref(), run.many[1].as_ref()].map(needed);
         table.rows.push(names.into_iter().chain(own).chain(all.into_iter().flatten()).collect());
     }
-    table
+    table.made_at(log.commits(cases))
 }
 
 /// The medians of each scene.

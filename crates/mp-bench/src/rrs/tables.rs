@@ -155,7 +155,7 @@ impl<'a> Results<'a> {
             row.extend([run.straight, run.bulged, run.relaxed, run.by_snake, run.not_bent].map(count));
             table.rows.push(row);
         }
-        table
+        table.made_at(self.log.commits(&self.plan.cases()))
     }
 
     /// The values in the paper, and those measured.
@@ -290,7 +290,7 @@ impl<'a> Results<'a> {
                 Bars { name: name(planner).to_owned(), heights: WORLDS.iter().map(height).collect() }
             };
             let all = ["rrt", "rrs", "rrs-hybrid"].map(of_planner);
-            let title = format!("average {title}");
+            let title = format!("Average {title}");
             (format!("average-{file}"), bars(Labels { title: &title, x: "", y }, &WORLDS, &all))
         };
         shown.map(average).collect()

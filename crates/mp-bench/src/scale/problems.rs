@@ -6,6 +6,7 @@ use crate::experiment::{Lab, bit};
 use crate::options::Common;
 use mp_plan::{Budget, Control, Request, Scene};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Scenes of all kinds of robots.
 const SCENES: [&str; 20] = [
@@ -54,6 +55,8 @@ pub(super) struct Cost {
 pub(super) struct Costs {
     pub(super) name: &'static str,
     pub(super) runs: Vec<(Case, Cost)>,
+    /// The commits at which they were measured, and how many at each.
+    pub(super) commits: BTreeMap<String, usize>,
 }
 
 impl Costs {
@@ -110,5 +113,6 @@ pub(super) fn measured_as(
         },
     )?;
     let runs = log.each(cases).map(|(case, cost)| (case.clone(), *cost)).collect();
-    Ok(complete.then_some(Costs { name, runs }))
+    let commits = log.commits(cases);
+    Ok(complete.then_some(Costs { name, runs, commits }))
 }
