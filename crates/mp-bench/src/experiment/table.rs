@@ -55,11 +55,39 @@ impl Table {
         lines.collect()
     }
 
+    /// Reads comma-separated values; lines that begin with `#` are left out.
+    pub(crate) fn parse(text: &str) -> Self {
+        let mut lines = text.lines().filter(|line| !line.starts_with('#')).map(cells);
+        let mut table = Self::new(lines.next().unwrap_or_default());
+        table.rows.extend(lines);
+        table
+    }
+
+    /// The cells of a column, by its heading.
+    pub(crate) fn column(&self, head: &str) -> Option<impl Iterator<Item = &str>> {
+        let at = self.head.iter().position(|name| name == head)?;
+        Some(self.rows.iter().map(move |row| row.get(at).map_or("", String::as_str)))
+    }
+
     /// The comma-separated values as a file: before them, in lines that begin with `#`, what made them.
     pub(crate) fn csv_file(&self) -> String {
         let head = provenance::lines(self).into_iter().map(|(name, text)| format!("# {name}: {text}\n"));
         head.collect::<String>() + &self.csv()
     }
+}
+
+/// The cells of a line of comma-separated values; those with commas are in quotes.
+fn cells(line: &str) -> Vec<String> {
+    let (mut cells, mut quoted) = (vec![String::new()], false);
+    for c in line.chars() {
+        match (c, cells.last_mut()) {
+            ('"', _) => quoted = !quoted,
+            (',', _) if !quoted => cells.push(String::new()),
+            (c, Some(cell)) => cell.push(c),
+            (_, None) => {}
+        }
+    }
+    cells
 }
 
 /// A boolean as a table cell: 1 or 0.
@@ -85,6 +113,9 @@ mod tests {
         let same = Table::of(["1,5"], &[("a", &|v| (*v).to_owned()), ("b", &|_| "x".to_owned())]);
         assert_eq!((&same.head, &same.rows), (&table.head, &table.rows));
         assert_eq!(table.csv(), "a,b\n\"1,5\",x\n");
+        let read = Table::parse(&format!("# commit: x\n{}", table.csv()));
+        assert_eq!((&read.head, &read.rows), (&table.head, &table.rows));
+        assert!(read.column("b").unwrap().eq(["x"]) && read.column("c").is_none());
         assert_eq!(table.markdown(), "| a | b |\n| --- | --- |\n| 1,5 | x |");
         assert_eq!(sections(2, &[("T", table)]), "## T\n\n| a | b |\n| --- | --- |\n| 1,5 | x |\n");
     }
