@@ -78,6 +78,31 @@ const PATIENCE: usize = 12;
 const SAME: f64 = 1e-3;
 
 /// Solves a [`PoseGoal`] for an arm whose base stands still.
+///
+/// The end of two bars of a metre, one metre to the side and one up, with the elbow on either side:
+/// ```
+/// use mp_robot::{ArmModel, FreeTurn, InverseKinematics, Joint, JointKind, Kinematics, Link, PoseGoal};
+/// use nalgebra::{Isometry3, Vector3};
+///
+/// let turn = JointKind::Revolute { low: -3.0, high: 3.0 };
+/// let along = Isometry3::translation(1.0, 0.0, 0.0);
+/// let model = ArmModel {
+///     links: ["base", "upper", "lower", "tip"].map(Link::new).to_vec(),
+///     joints: vec![
+///         Joint::new("shoulder", "base", "upper", turn).axis(Vector3::z()),
+///         Joint::new("elbow", "upper", "lower", turn).axis(Vector3::z()).at(along),
+///         Joint::new("end", "lower", "tip", JointKind::Fixed).at(along),
+///     ],
+///     ..ArmModel::default()
+/// };
+/// let kinematics = Kinematics::new(&model)?;
+/// let goal = PoseGoal { free: FreeTurn::All, ..PoseGoal::new("tip", Isometry3::translation(1.0, 1.0, 0.0)) };
+/// let mut solver = InverseKinematics::new(&kinematics, goal).ok_or("there is no such link")?;
+/// let mut shoulders: Vec<f64> = solver.solutions(100, 10).iter().map(|q| q.as_slice()[0]).collect();
+/// shoulders.sort_by(f64::total_cmp);
+/// assert!(shoulders.len() == 2 && shoulders[0].abs() < 1e-6 && (shoulders[1] - 1.570_796).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct InverseKinematics<'a> {
     kinematics: &'a Kinematics,
@@ -232,39 +257,37 @@ impl<'a> InverseKinematics<'a> {
         None
     }
 
-    /// A step against `error` within the limits. `None` when no joint can move.
+    /// A step against `error` within the limits; `None` when none is left. Joints that would leave their limits stay there, and the
+    /// others do their part.
     fn step(&self, q: &Configuration, error: &Vector6<f64>, damping: f64) -> Option<Configuration> {
         let mut held = vec![false; self.columns.len()];
-        for _ in 0..3 {
+        loop {
             let mut normal: Matrix6<f64> = SMatrix::identity() * damping.max(1e-14);
             for (column, _) in self.columns.iter().zip(&held).filter(|(_, held)| !**held) {
                 normal += column * column.transpose();
             }
             let weights = normal.cholesky()?.solve(error);
-            let (mut to, mut again) = (q.clone(), false);
-            for (i, column) in self.columns.iter().enumerate().filter(|(i, _)| !held[*i]).collect::<Vec<_>>()
-            {
-                let by = column.dot(&weights);
-                let (at, moved) = (q.as_slice()[i], q.as_slice()[i] + by);
-                to.as_mut_slice()[i] = match self.space.ranges()[i] {
+            let (mut to, mut pressed) = (q.clone(), false);
+            for (i, column) in self.columns.iter().enumerate() {
+                if held[i] {
+                    continue;
+                }
+                let (at, moved) = (q.as_slice()[i], q.as_slice()[i] + column.dot(&weights));
+                let within = match self.space.ranges()[i] {
                     JointRange::Circle => moved,
-                    JointRange::Interval { low, high } => {
-                        let inside = moved.clamp(low, high);
-                        // At a limit and pressed against it: the others do its part.
-                        if inside == at && moved != at {
-                            held[i] = true;
-                            again = true;
-                        }
-                        inside
-                    }
+                    JointRange::Interval { low, high } => moved.clamp(low, high),
                 };
+                held[i] = within == at && moved != at;
+                pressed |= held[i];
+                to.as_mut_slice()[i] = within;
             }
-            if !again {
+            if !pressed {
                 return Some(to);
             }
+            if held.iter().all(|held| *held) {
+                return None;
+            }
         }
-        let free = held.iter().any(|held| !held);
-        free.then(|| q.clone())
     }
 
     /// The next start: first where the search begins, then points of the Halton sequence.
