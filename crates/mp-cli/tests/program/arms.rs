@@ -421,14 +421,14 @@ fn an_srdf_is_made_and_found() {
     let run = refused(&dir);
     assert!(run.code == 2 && run.stderr.contains("other.srdf") && run.stderr.contains("base"), "{run:?}");
     // One of another robot is not taken, but one called like the URDF is; and `false` takes none.
-    dir.write(in_package, &apart.replace("clumsy", "other"));
+    dir.write(in_package, apart.replace("clumsy", "other"));
     assert_eq!(refused(&dir).code, 0);
-    dir.write("clumsy_description/urdf/arm.srdf", &apart.replace("clumsy", "other"));
+    dir.write("clumsy_description/urdf/arm.srdf", apart.replace("clumsy", "other"));
     assert_eq!(refused(&dir).code, 2);
     let problem = dir.read("clumsy.toml");
-    dir.write("none.toml", &problem.replace("SRDF", "srdf = false"));
+    dir.write("none.toml", problem.replace("SRDF", "srdf = false"));
     assert_eq!(mp(&dir, &["plan", "none.toml", "--out", "p.txt"]).code, 0);
-    dir.write("true.toml", &problem.replace("SRDF", "srdf = true"));
+    dir.write("true.toml", problem.replace("SRDF", "srdf = true"));
     let run = mp(&dir, &["plan", "true.toml", "--out", "p.txt"]);
     assert!(
         run.code == 2 && run.stderr.contains("true.toml:3:") && run.stderr.contains("names no file"),
