@@ -91,7 +91,7 @@ fn numbers_of_rrs_are_those_of_the_raw_results() {
     let solved = |planner| over_steps("maze", planner, |sum| sum[1] / sum[0]);
     says("rrs.md", &format!("in the maze {:.0} against {:.0}% in the mean", solved("rrs"), solved("rrt")));
 
-    let driven = rows("rrs-follow", ["path", "executed_m"]);
+    let driven = rows("rrs-follow", ["path", "executed"]);
     let collisions = |path: &str| driven.iter().filter(|[p, m]| p == path && number(m) <= 0.0).count();
     let [relaxed, found, rrt] = ["rrs relaxed", "rrs", "rrt relaxed"].map(collisions);
     says(
