@@ -1013,7 +1013,7 @@ def _ends(
     def one(given: ArrayLike | FreeGoal) -> Any:
         if not isinstance(given, Mapping):
             return numbers(given)
-        members = dict(given)
+        members: dict[str, Any] = dict(given)
         if isinstance(members.get("link"), str) and "pose" in members:
             members["pose"] = pose_numbers(members["pose"])
         return members
