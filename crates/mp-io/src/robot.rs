@@ -13,7 +13,7 @@ use crate::drive::{DriveTable, Driven};
 use crate::error::Error;
 use crate::files::decode;
 use crate::shape::{ShapeEntry, Shaped};
-use crate::toml_problem::{GoalEntry, MotionPlaces, MotionTable, TomlText};
+use crate::toml_problem::{GoalEntry, MotionPlaces, MotionTable, StartEntry, TomlText};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -33,6 +33,31 @@ pub struct ObstacleEntry {
     pub pose: [f64; 6],
 }
 
+/// Something that a link carries, of a [`RobotFile`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct AttachedEntry {
+    /// Its name: that of a link of its own.
+    pub name: String,
+    /// The link that carries it.
+    pub link: String,
+    /// Its shape, and where it is in the text.
+    pub(crate) shape: (ShapeEntry, Range<usize>),
+    /// x, y, z, α, β, γ in the frame of the link.
+    pub pose: [f64; 6],
+    /// The links that it may touch, besides those that never move relative to it.
+    pub may_touch: Vec<String>,
+    place: Range<usize>,
+}
+
+/// Which joints move, where not all do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MovingJoints {
+    /// Those of a group of the SRDF.
+    Group(String),
+    /// These.
+    Listed(Vec<String>),
+}
+
 /// The content of a robot problem file; the files that it names are not yet read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotFile {
@@ -48,22 +73,30 @@ pub struct RobotFile {
     pub base: [f64; 6],
     /// The lower and the upper corner (m) of the box in which the origin of the root link moves, if the base floats.
     pub floating: Option<[[f64; 3]; 2]>,
+    /// The lower and the upper corner (m) of the rectangle in which the origin of the root link moves, if the base moves in the plane.
+    pub planar: Option<[[f64; 2]; 2]>,
     /// Whether the meshes of the robot are solids; other shapes always are.
     pub solid: bool,
     /// Limits that replace those of the URDF, by joint. Equal ones hold the joint.
     pub limits: Vec<(String, [f64; 2])>,
+    /// Joints that are held, and where (rad or m).
+    pub hold: Vec<(String, f64)>,
+    /// Which joints move; all that are not held when it is not given.
+    pub moving: Option<MovingJoints>,
     /// How far (rad or m) the start may be beyond a limit; 0 when it is not given.
     pub limit_tolerance: f64,
     /// How the robot moves, if it moves by inputs.
     pub driven: Option<Driven>,
-    /// The joint values at the start; first the six numbers of the pose of the base, if it floats. For a robot with accelerations, its velocities may follow.
-    pub start: Vec<f64>,
+    /// The joint values at the start; first the numbers of the pose of the base, if it moves. For a robot with accelerations, its velocities may follow.
+    pub start: StartEntry,
     /// The goals, at least one.
     pub goals: Vec<GoalEntry>,
     /// How far from the goal a number of the last configuration may be; 0 when it is not given.
     pub tolerance: f64,
     /// The obstacles.
     pub obstacles: Vec<ObstacleEntry>,
+    /// What links carry.
+    pub attached: Vec<AttachedEntry>,
     places: Places,
     text: String,
     file: String,
@@ -78,6 +111,8 @@ struct Places {
     base: Range<usize>,
     motion: MotionPlaces,
     limits: Vec<Range<usize>>,
+    hold: Vec<Range<usize>>,
+    moving: Range<usize>,
 }
 
 /// A part of a [`RobotFile`] that an error can point at.
@@ -97,15 +132,23 @@ pub enum RobotPart {
     Goal(usize),
     /// The limits of this index.
     Limits(usize),
+    /// The held joint of this index.
+    Hold(usize),
+    /// Which joints move.
+    Moving,
+    /// What is attached, of this index.
+    Attached(usize),
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
     robot: Spanned<RobotTable>,
-    motion: MotionTable,
+    motion: MotionTable<StartEntry>,
     #[serde(default)]
     obstacle: Vec<Spanned<Shaped<ObstacleTable>>>,
+    #[serde(default)]
+    attached: Vec<Spanned<Shaped<AttachedTable>>>,
 }
 
 #[derive(Deserialize)]
@@ -120,6 +163,10 @@ struct RobotTable {
     bounds: Option<Spanned<Corners>>,
     #[serde(default)]
     limits: BTreeMap<String, Spanned<[f64; 2]>>,
+    #[serde(default)]
+    hold: BTreeMap<String, Spanned<f64>>,
+    group: Option<Spanned<String>>,
+    joints: Option<Spanned<Vec<String>>>,
     limit_tolerance: Option<Spanned<f64>>,
     kind: Option<Spanned<String>>,
     duration: Option<Spanned<f64>>,
@@ -135,12 +182,12 @@ enum SrdfEntry {
     Is(bool),
 }
 
-/// The lower and the upper corner of a box.
-type Corners = [[f64; 3]; 2];
+/// The lower and the upper corner of a box, or of a rectangle.
+type Corners = [Vec<f64>; 2];
 
-/// Where the base stands, or that it floats.
+/// Where the base stands, or how it moves.
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "expected six numbers, `[x, y, z, α, β, γ]`, or \"floating\"")]
+#[serde(untagged, expecting = "expected six numbers, `[x, y, z, α, β, γ]`, \"planar\" or \"floating\"")]
 enum BaseEntry {
     Pose([f64; 6]),
     Word(String),
@@ -153,6 +200,16 @@ pub(crate) struct ObstacleTable {
     pose: Option<Spanned<[f64; 6]>>,
 }
 
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AttachedTable {
+    name: Option<String>,
+    link: String,
+    pose: Option<Spanned<[f64; 6]>>,
+    #[serde(default)]
+    may_touch: Vec<String>,
+}
+
 impl RobotFile {
     /// Reads `bytes`, the content of a robot problem that errors call `file`. No other file is read.
     ///
@@ -161,7 +218,7 @@ impl RobotFile {
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
         let source = TomlText { file, text, guide: GUIDE };
-        let File { robot, motion, obstacle } = source.read()?;
+        let File { robot, motion, obstacle, attached } = source.read()?;
         let robot_span = robot.span();
         let robot = robot.into_inner();
         let table = DriveTable {
@@ -173,7 +230,8 @@ impl RobotFile {
         };
         let driven = table.read(&source, &robot_span, &["velocities", "accelerations"])?;
         let base_span = robot.base.as_ref().map_or(0..0, Spanned::span);
-        let (base, floating) = base_of(&source, robot.base, robot.bounds)?;
+        let Base { pose: base, floating, planar } = base_of(&source, robot.base, robot.bounds)?;
+        let (moving, moving_span) = moving_of(&source, robot.group, robot.joints)?;
         let srdf_span = robot.srdf.as_ref().map_or(0..0, Spanned::span);
         let (srdf, without_srdf) = match robot.srdf.map(Spanned::into_inner) {
             Some(SrdfEntry::Name(name)) => (Some(name), false),
@@ -198,6 +256,19 @@ impl RobotFile {
             places_of_limits.push(span);
             limits.push((joint, [low, high]));
         }
+        let (mut hold, mut places_of_hold) = (Vec::new(), Vec::new());
+        for (joint, value) in robot.hold {
+            let (what, span) = (format!("the held joint {}", crate::text::clipped(&joint)), value.span());
+            source.check(&what, &[*value.get_ref()], &span)?;
+            if limits.iter().any(|(limited, _)| *limited == joint) {
+                let message = format!("{what} has limits too");
+                return Err(source
+                    .error(&span, message)
+                    .expected("a joint in `limits` or in `hold`, not both"));
+            }
+            places_of_hold.push(span);
+            hold.push((joint, value.into_inner()));
+        }
         let limit_tolerance = robot.limit_tolerance.as_ref().map_or(0.0, |spanned| *spanned.get_ref());
         if let Some(spanned) = &robot.limit_tolerance {
             source.check("the tolerance of limits", &[limit_tolerance], &spanned.span())?;
@@ -207,7 +278,8 @@ impl RobotFile {
                 return Err(source.error(&spanned.span(), message).expected(expected));
             }
         }
-        let state = |what: &str, q: &Spanned<Vec<f64>>| source.check(what, q.get_ref(), &q.span());
+        let state =
+            |what: &str, q: &Spanned<StartEntry>| source.check(what, &q.get_ref().numbers(), &q.span());
         let motion = motion.read(&source, false, state)?;
         if let (None, Some(place)) = (&driven, &motion.places.tolerance) {
             let message = "only robots that move by inputs need a tolerance";
@@ -219,6 +291,7 @@ impl RobotFile {
             return Err(source.error(place, message).expected("no `speed` in [motion]"));
         }
         let obstacles = obstacle.iter().enumerate().map(|(i, table)| entry(&source, i, table));
+        let attached = attached.iter().enumerate().map(|(i, table)| attached_entry(&source, i, table));
         let places = Places {
             urdf: robot.urdf.span(),
             srdf: srdf_span,
@@ -226,6 +299,8 @@ impl RobotFile {
             base: base_span,
             motion: motion.places,
             limits: places_of_limits,
+            hold: places_of_hold,
+            moving: moving_span,
         };
         Ok(Self {
             urdf: robot.urdf.into_inner(),
@@ -235,13 +310,17 @@ impl RobotFile {
             solid: robot.solid,
             base,
             floating,
+            planar,
             limits,
+            hold,
+            moving,
             limit_tolerance,
             driven,
             start: motion.start,
             goals: motion.goals,
             tolerance: motion.tolerance,
             obstacles: obstacles.collect::<Result<_, _>>()?,
+            attached: attached.collect::<Result<_, _>>()?,
             places,
             text: text.to_owned(),
             file: file.to_owned(),
@@ -259,6 +338,9 @@ impl RobotFile {
             RobotPart::Start => &self.places.motion.start,
             RobotPart::Goal(i) => self.places.motion.goal(i),
             RobotPart::Limits(i) => self.places.limits.get(i).unwrap_or(&self.places.urdf),
+            RobotPart::Hold(i) => self.places.hold.get(i).unwrap_or(&self.places.urdf),
+            RobotPart::Moving => &self.places.moving,
+            RobotPart::Attached(i) => self.attached.get(i).map_or(&self.places.urdf, |entry| &entry.place),
         };
         self.fault_at(span, message, help)
     }
@@ -273,57 +355,120 @@ impl RobotFile {
     }
 }
 
-/// The pose of the base, and its bounds if it floats.
+/// Where the base stands, or in which bounds it moves.
+#[derive(Default)]
+struct Base {
+    pose: [f64; 6],
+    floating: Option<[[f64; 3]; 2]>,
+    planar: Option<[[f64; 2]; 2]>,
+}
+
 fn base_of(
     source: &TomlText<'_>,
     base: Option<Spanned<BaseEntry>>,
     bounds: Option<Spanned<Corners>>,
-) -> Result<([f64; 6], Option<Corners>), Error> {
+) -> Result<Base, Error> {
     let span = base.as_ref().map_or(0..0, Spanned::span);
-    let floats = match base.map(Spanned::into_inner) {
-        Some(BaseEntry::Word(word)) if word == "floating" => true,
-        Some(BaseEntry::Word(word)) => {
-            let message = format!("the base is `{}`", crate::text::clipped(&word));
-            return Err(source
-                .error(&span, message)
-                .expected("six numbers, `[x, y, z, α, β, γ]`, or \"floating\""));
-        }
+    let word = match base.map(Spanned::into_inner) {
+        Some(BaseEntry::Word(word)) => Some(word),
         Some(BaseEntry::Pose(pose)) => {
             source.check("the base", &pose, &span)?;
             if let Some(bounds) = bounds {
                 let message = "the base stands still, but has bounds";
                 return Err(source
                     .error(&bounds.span(), message)
-                    .expected("`base = \"floating\"` beside them"));
+                    .expected("`base = \"floating\"` or `base = \"planar\"` beside them"));
             }
-            return Ok((pose, None));
+            return Ok(Base { pose, ..Base::default() });
         }
-        None => false,
+        None => None,
     };
-    match (floats, bounds) {
-        (true, Some(bounds)) => {
-            let ([low, high], span) = (*bounds.get_ref(), bounds.span());
-            source.check("the bounds of the base", &[low, high].concat(), &span)?;
-            if (0..3).all(|i| low[i] < high[i]) {
-                return Ok(([0.0; 6], Some([low, high])));
-            }
-            let message = "the bounds of the base enclose nothing";
-            Err(source
-                .error(&span, message)
-                .expected("the lower corner, then the upper: `[[x, y, z], [x, y, z]]`"))
+    match (word.as_deref(), bounds) {
+        (Some("floating"), Some(bounds)) => {
+            let floating = Some(corners(source, &bounds, "`[[x, y, z], [x, y, z]]`")?);
+            Ok(Base { floating, ..Base::default() })
         }
-        (true, None) => {
+        (Some("planar"), Some(bounds)) => {
+            let planar = Some(corners(source, &bounds, "`[[x, y], [x, y]]`")?);
+            Ok(Base { planar, ..Base::default() })
+        }
+        (Some("floating"), None) => {
             let message = "the base floats without bounds";
             Err(source.error(&span, message).expected(
                 "`bounds = [[x, y, z], [x, y, z]]` beside it: the box in which the origin of the root link moves",
             ))
         }
-        (false, Some(bounds)) => {
-            let message = "there are bounds of a base that stands still";
-            Err(source.error(&bounds.span(), message).expected("`base = \"floating\"` beside them"))
+        (Some("planar"), None) => {
+            let message = "the base moves in the plane without bounds";
+            Err(source.error(&span, message).expected(
+                "`bounds = [[x, y], [x, y]]` beside it: the rectangle in which the origin of the root link moves",
+            ))
         }
-        (false, None) => Ok(([0.0; 6], None)),
+        (Some(word), _) => {
+            let message = format!("the base is `{}`", crate::text::clipped(word));
+            let expected = "six numbers, `[x, y, z, α, β, γ]`, \"planar\" or \"floating\"";
+            Err(source.error(&span, message).expected(expected))
+        }
+        (None, Some(bounds)) => {
+            let message = "there are bounds of a base that stands still";
+            let expected = "`base = \"floating\"` or `base = \"planar\"` beside them";
+            Err(source.error(&bounds.span(), message).expected(expected))
+        }
+        (None, None) => Ok(Base::default()),
     }
+}
+
+/// The corners of the bounds of a base, with `N` numbers each.
+fn corners<const N: usize>(
+    source: &TomlText<'_>,
+    bounds: &Spanned<Corners>,
+    expected: &str,
+) -> Result<[[f64; N]; 2], Error> {
+    let (given, span) = (bounds.get_ref(), bounds.span());
+    source.check("the bounds of the base", &given.concat(), &span)?;
+    let expected = format!("the lower corner, then the upper: {expected}");
+    let [Ok(low), Ok(high)] = given.each_ref().map(|corner| <[f64; N]>::try_from(corner.as_slice())) else {
+        let message = format!("a corner of the bounds of the base does not have {N} numbers");
+        return Err(source.error(&span, message).expected(expected));
+    };
+    if (0..N).all(|i| low[i] < high[i]) {
+        return Ok([low, high]);
+    }
+    Err(source.error(&span, "the bounds of the base enclose nothing").expected(expected))
+}
+
+/// Which joints move, and where that is said.
+fn moving_of(
+    source: &TomlText<'_>,
+    group: Option<Spanned<String>>,
+    joints: Option<Spanned<Vec<String>>>,
+) -> Result<(Option<MovingJoints>, Range<usize>), Error> {
+    match (group, joints) {
+        (Some(_), Some(joints)) => {
+            let message = "there is a group and a list of joints";
+            Err(source.error(&joints.span(), message).expected("`group` or `joints`, not both"))
+        }
+        (Some(group), None) => Ok((Some(MovingJoints::Group(group.get_ref().clone())), group.span())),
+        (None, Some(joints)) if joints.get_ref().is_empty() => {
+            Err(source.error(&joints.span(), "no joint moves").expected("the names of one or more joints"))
+        }
+        (None, Some(joints)) => Ok((Some(MovingJoints::Listed(joints.get_ref().clone())), joints.span())),
+        (None, None) => Ok((None, 0..0)),
+    }
+}
+
+/// What is attached by the table at `span`.
+fn attached_entry(
+    source: &TomlText<'_>,
+    index: usize,
+    table: &Spanned<Shaped<AttachedTable>>,
+) -> Result<AttachedEntry, Error> {
+    let own = &table.get_ref().own;
+    let name = own.name.clone().unwrap_or_else(|| format!("attached {}", index + 1));
+    let shape = table.get_ref().shape(source, &name, &table.span())?;
+    let pose = source.six("the pose", own.pose.clone())?;
+    let (link, may_touch, place) = (own.link.clone(), own.may_touch.clone(), table.span());
+    Ok(AttachedEntry { name, link, shape, pose, may_touch, place })
 }
 
 /// The obstacle of the table at `span`.

@@ -97,6 +97,44 @@ pub enum GoalEntry {
     Named(BTreeMap<String, GoalPart>),
     /// A link of an arm at a place.
     Pose(PoseEntry),
+    /// A state of an arm that its SRDF names.
+    State(String),
+}
+
+/// The start of a robot made of links and joints, as a problem gives it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a start is a list of numbers, a table of joints, such as { joint1 = 0.5 }, where the others are at zero, or the name of \
+                 a state of the SRDF, such as \"home\""
+)]
+pub enum StartEntry {
+    /// All numbers of a configuration, in order.
+    All(Vec<f64>),
+    /// Some of them, by name; the others are zero, or the limit nearest to zero.
+    Named(BTreeMap<String, f64>),
+    /// A state that the SRDF names.
+    State(String),
+}
+
+impl StartEntry {
+    /// All numbers of the configuration; none when they are given by names.
+    #[must_use]
+    pub fn row(&self) -> &[f64] {
+        match self {
+            Self::All(values) => values,
+            Self::Named(_) | Self::State(_) => &[],
+        }
+    }
+
+    /// Its numbers, for checks of their size.
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        match self {
+            Self::All(values) => values.clone(),
+            Self::Named(values) => values.values().copied().collect(),
+            Self::State(_) => Vec::new(),
+        }
+    }
 }
 
 impl GoalEntry {
@@ -140,6 +178,13 @@ impl GoalEntry {
                     names.join(", ")
                 ),
             ]),
+            Self::State(state) => Err([
+                format!("{what} is the state `{}`", clipped(state)),
+                format!(
+                    "numbers of a configuration ({}): only robots made of links and joints have states, in their SRDF",
+                    names.join(", ")
+                ),
+            ]),
         }
     }
 
@@ -148,7 +193,7 @@ impl GoalEntry {
     pub fn values(&self) -> Option<&[f64]> {
         match self {
             Self::All(values) => Some(values),
-            Self::Named(_) | Self::Pose(_) => None,
+            Self::Named(_) | Self::Pose(_) | Self::State(_) => None,
         }
     }
 
@@ -157,6 +202,7 @@ impl GoalEntry {
         match self {
             Self::All(values) => values.clone(),
             Self::Pose(goal) => [&goal.pose[..], &goal.within].concat(),
+            Self::State(_) => Vec::new(),
             Self::Named(parts) => parts
                 .values()
                 .flat_map(|part| match part {
@@ -174,10 +220,11 @@ impl GoalEntry {
 #[serde(
     untagged,
     expecting = "a goal is a list of numbers, or a table of the numbers that are fixed, such as { x = 1.0, y = [2.0, 2.5] }, or of a \
-                 link and its pose, such as { link = \"tool\", pose = [0.4, 0, 0.3, 0, 3.14, 0] }"
+                 link and its pose, such as { link = \"tool\", pose = [0.4, 0, 0.3, 0, 3.14, 0] }, or the name of a state of an SRDF"
 )]
 enum GoalText {
     All(Vec<f64>),
+    State(String),
     Named(BTreeMap<String, PartText>),
 }
 
@@ -195,8 +242,8 @@ pub(crate) enum PartText {
 /// The table `motion` of a problem.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct MotionTable {
-    start: Spanned<Vec<f64>>,
+pub(crate) struct MotionTable<S = Vec<f64>> {
+    start: Spanned<S>,
     goal: Option<Spanned<GoalText>>,
     goals: Option<Spanned<Vec<Spanned<GoalText>>>>,
     tolerance: Option<Spanned<f64>>,
@@ -207,8 +254,8 @@ pub(crate) struct MotionTable {
 }
 
 /// The start and the goals of a problem, at least one, and their places.
-pub(crate) struct Motion {
-    pub(crate) start: Vec<f64>,
+pub(crate) struct Motion<S = Vec<f64>> {
+    pub(crate) start: S,
     pub(crate) goals: Vec<GoalEntry>,
     /// How far a number of the last configuration may be from that of the goal; 0 when it is not given.
     pub(crate) tolerance: f64,
@@ -245,15 +292,15 @@ impl MotionPlaces {
     }
 }
 
-impl MotionTable {
+impl<S> MotionTable<S> {
     /// The start and the goals; `check` checks the numbers of the start, and takes its name in errors. `by_inputs` says that the
     /// robot moves by inputs among obstacles that move: then it has times, and no speed.
     pub(crate) fn read(
         self,
         text: &TomlText<'_>,
         by_inputs: bool,
-        check: impl Fn(&str, &Spanned<Vec<f64>>) -> Result<(), Error>,
-    ) -> Result<Motion, Error> {
+        check: impl Fn(&str, &Spanned<S>) -> Result<(), Error>,
+    ) -> Result<Motion<S>, Error> {
         check("the start", &self.start)?;
         let goals = match (self.goal, self.goals) {
             (Some(goal), None) => vec![goal],
@@ -281,6 +328,7 @@ impl MotionTable {
             let span = goal.span();
             let goal = match goal.into_inner() {
                 GoalText::All(values) => GoalEntry::All(values),
+                GoalText::State(name) => GoalEntry::State(name),
                 GoalText::Named(parts) if parts.is_empty() => {
                     let message = "the goal asks for nothing";
                     return Err(text

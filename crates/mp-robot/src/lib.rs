@@ -59,8 +59,8 @@ mod verify;
 
 pub use arm::{
     Arm, ArmContact, ArmError, ArmGap, ArmModel, ArmVerifier, AttachedLink, Coordinate, FreeTurn,
-    IK_PRECISION, InverseKinematics, Joint, JointFrame, JointKind, Kinematics, Link, Mimic, PoseGoal,
-    SampledPair, SampledPairs, TouchReason, UrdfError,
+    IK_PRECISION, InverseKinematics, Joint, JointFrame, JointKind, Kinematics, Link, Mimic, NamedState,
+    PLANAR_NUMBERS, PoseGoal, SampledPair, SampledPairs, SrdfGroups, TouchReason, UrdfError,
 };
 pub use counters::CheckCounters;
 pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};

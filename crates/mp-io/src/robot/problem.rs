@@ -31,6 +31,8 @@ pub struct RobotProblem {
     pub packages: Option<PathBuf>,
     /// The obstacles. Round shapes are meshes that contain them.
     pub obstacles: Vec<PlacedBody>,
+    /// What links carry, each in the frame of its link; in the order of the file.
+    pub attached: Vec<PlacedBody>,
 }
 
 impl RobotProblem {
@@ -46,8 +48,13 @@ impl RobotProblem {
     pub fn same_robot(&self, other: &Self) -> bool {
         let (a, b) = (&self.file, &other.file);
         (&self.urdf_file, &self.urdf, &self.srdf) == (&other.urdf_file, &other.urdf, &other.srdf)
-            && (&self.packages, a.base, a.floating) == (&other.packages, b.base, b.floating)
+            && (&self.packages, a.base, a.floating, a.planar)
+                == (&other.packages, b.base, b.floating, b.planar)
             && (&a.limits, &self.srdf_beside) == (&b.limits, &other.srdf_beside)
+            && (&a.hold, &a.attached) == (&b.hold, &b.attached)
+            // Where not all joints move, the start may say where the others are held.
+            && (&a.moving, &b.moving) == (&None, &None)
+            && self.attached == other.attached
             && (a.limit_tolerance, b.limit_tolerance, a.solid) == (0.0, 0.0, b.solid)
     }
 
@@ -93,16 +100,19 @@ impl RobotProblem {
                 None => srdf_beside = beside,
             }
         }
-        let (mut obstacles, mut meshes) = (Vec::new(), Meshes::new(files, path));
-        for entry in &file.obstacles {
-            let (from, mesh) = meshes.of(&file.source(), &entry.name, &entry.shape)?;
-            let (name, pose) = (entry.name.clone(), pose_from_six(entry.pose));
-            obstacles.push(PlacedBody { name, file: from, mesh, pose });
-        }
+        let mut meshes = Meshes::new(files, path);
+        let mut body = |name: &String, shape, pose| {
+            let (from, mesh) = meshes.of(&file.source(), name, shape)?;
+            Ok::<_, Error>(PlacedBody { name: name.clone(), file: from, mesh, pose: pose_from_six(pose) })
+        };
+        let obstacles = file.obstacles.iter().map(|entry| body(&entry.name, &entry.shape, entry.pose));
+        let obstacles: Vec<_> = obstacles.collect::<Result<_, _>>()?;
+        let attached = file.attached.iter().map(|entry| body(&entry.name, &entry.shape, entry.pose));
+        let attached = attached.collect::<Result<_, _>>()?;
         let packages = file.packages.as_ref().map(|name| folder.join(name));
         let name = stem(path);
         crate::trace::problem(&name, obstacles.len());
-        Ok(Self { name, file, urdf_file, urdf, srdf, srdf_found, srdf_beside, packages, obstacles })
+        Ok(Self { name, file, urdf_file, urdf, srdf, srdf_found, srdf_beside, packages, obstacles, attached })
     }
 }
 

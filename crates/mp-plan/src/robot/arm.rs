@@ -1,35 +1,35 @@
 //! Arms, and other trees of links, among meshes; their base stands still or floats.
 
 mod choose_ends;
+mod ends;
+mod named;
 mod pose_goals;
 mod read;
 
 use super::model::{ModelBody, ModelFrame, ModelPair, MotionModel, Step, seven};
 use super::{
-    Appearance, Body, BodyShape, Column, Contact, Counted, Description, DrivenScene, End, Measured, Motion,
-    Queries, SpeedBound, hints_and_gradient, no_metric,
+    Appearance, Body, BodyShape, Column, Contact, Counted, Description, End, Measured, Motion, Queries,
+    SpeedBound, hints_and_gradient, no_metric,
 };
 use crate::goals::{GoalPart, examples, rows, turning};
 use crate::numbers::plain_row;
 use crate::path::continued;
 use crate::robot::motion::TypedMotion;
 use crate::{Error, MetricName, brief, plain};
+use ends::{Ends, wrong_count};
 use mp_cspace::{
     Configuration, Euclidean, Factored, FloatingJoints, Interrupt, Interrupted, JointRange, Joints,
     Manhattan, MotionClearance, ObstacleKnowledge, Path, ScaledEuclidean, Space, TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, continued_six, pose_from_six, six_from_pose};
-use mp_io::{Disk, Files, GoalEntry, PlacedBody, RobotPart, RobotProblem};
+use mp_io::{Disk, Files, PlacedBody, RobotPart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, JointKind};
 use nalgebra::Isometry3;
+use named::NamedValues;
 pub use pose_goals::Reached;
 pub(crate) use read::model_of;
 use read::{srdf_help, what};
-use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
-
-/// Where the angle β of a base that floats is among the numbers of a configuration.
-const BETA: usize = 4;
 
 /// The space of a robot made of links and joints: [`Joints`] if its base stands still, [`FloatingJoints`] if it floats.
 pub trait LinkedSpace: Factored<State = Configuration> + TrueMetric + Clone + Debug + Send + 'static {
@@ -233,82 +233,28 @@ impl<C: LinkedSpace> LinkedScene<C> {
     /// As [`from_problem_in`](Self::from_problem_in). The arm is that of the scene `before`, if that has the same among other obstacles.
     pub(crate) fn from_problem_after(
         files: &dyn Files,
-        problem: RobotProblem,
+        mut problem: RobotProblem,
         before: Option<&Self>,
     ) -> Result<Self, Error> {
-        let of = &|e: Error| e.context(what(&problem));
         let known =
             before.filter(|before| before.source.as_ref().is_some_and(|known| known.same_robot(&problem)));
         let (arm, said) = match known {
             Some(before) => {
+                let (kinematics, model) = (before.arm.kinematics(), before.arm.model());
+                let named = NamedValues::of(&problem)?;
+                named::resolve(&mut problem, &named, kinematics, model)?;
                 let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
                 (before.arm.among_until(bodies, &files.interrupt())?, before.said.clone())
             }
-            None => Self::arm_of(files, &problem)?,
+            None => Self::arm_of(files, &mut problem)?,
         };
-        let names = Self::names(&arm);
-        let file = &problem.file;
-        let driven = file.driven.as_ref();
-        let state_names = driven.map_or_else(|| names.clone(), |driven| driven.state_names(&names));
-        let fault = |part, [message, help]: [String; 2]| Error::from(file.fault(part, &message, &help));
-        if file.start.len() != state_names.len()
-            && let Some(wrong) = wrong_count("the start", &file.start, &names)
-        {
-            return Err(fault(RobotPart::Start, wrong));
-        }
-        let floats = arm.kinematics().floats();
-        if floats && driven.is_some() {
-            let message = "a robot whose base floats cannot move by inputs here".to_owned();
-            let help = "leave `kind` out, or give the base a place: `base = [x, y, z, α, β, γ]`".to_owned();
-            return Err(fault(RobotPart::Robot, [message, help]));
-        }
-        let (mut parts, mut entries, mut of_goals) = (Vec::new(), Vec::new(), Vec::new());
-        for (i, goal) in file.goals.iter().enumerate() {
-            if let (GoalEntry::Pose(entry), None, Ok(joints)) = (goal, driven, arm.space()) {
-                let start = joints.wrapped(&within(joints.ranges(), &file.start).into());
-                let found = pose_goals::goals(&arm, &joints, entry, &start, &files.interrupt());
-                let (configurations, sentence) = found.map_err(|wrong| fault(RobotPart::Goal(i), wrong))?;
-                let exactly = |q: &Configuration| q.iter().map(|x| GoalPart::Exactly(*x)).collect();
-                parts.extend(configurations.iter().map(exactly));
-                entries.resize(parts.len(), i);
-                of_goals.push(sentence);
-                continue;
-            }
-            if let Some(values) = goal.values()
-                && values.len() != state_names.len()
-                && let Some(wrong) = wrong_count("the goal", values, &names)
-            {
-                return Err(fault(RobotPart::Goal(i), wrong));
-            }
-            let goal = goal.parts("the goal", &state_names, names.len(), file.tolerance);
-            let goal = goal.map_err(|wrong| fault(RobotPart::Goal(i), wrong))?;
-            let steep = match goal.get(BETA) {
-                Some(GoalPart::Between([low, high])) => *low < -FRAC_PI_2 || *high > FRAC_PI_2,
-                Some(GoalPart::Exactly(v)) => file.goals[i].values().is_none() && v.abs() > FRAC_PI_2,
-                _ => false,
-            };
-            if floats && steep {
-                let message = "beta of a goal that leaves something free is beyond a quarter turn".to_owned();
-                return Err(fault(RobotPart::Goal(i), [message, "give beta from -π/2 to π/2".to_owned()]));
-            }
-            parts.push(goal);
-            entries.push(i);
-        }
-        if let Some(driven) = driven {
-            driven.check(&names).map_err(|wrong| fault(RobotPart::Robot, wrong))?;
-            let exact = |goal: &Vec<GoalPart>| goal.iter().any(|part| matches!(part, GoalPart::Exactly(_)));
-            if let Some(i) = parts.iter().position(exact) {
-                let message = "a robot that moves by inputs cannot reach these numbers exactly".to_owned();
-                let help = "say `tolerance = 0.1` in [motion], or give intervals: { joint = [1.0, 1.2] }";
-                return Err(fault(RobotPart::Goal(i), [message, help.to_owned()]));
-            }
-        }
-        parts.iter_mut().for_each(|goal| goal.truncate(names.len()));
-        let (start, first) = (file.start[..names.len()].to_vec(), vec![file.start[..names.len()].to_vec()]);
+        let Ends { start, goals: parts, entries, said: of_goals } =
+            Self::ends(&problem, &arm, &files.interrupt())?;
         let goals = rows(&parts);
+        let first = vec![start.clone()];
         let given = goals.as_ref().unwrap_or(&first);
         let scene = Self::assembled(problem.name.clone(), arm, problem.obstacles.clone(), &start, given);
-        let scene = scene.map_err(of)?;
+        let scene = scene.map_err(|e| e.context(what(&problem)))?;
         let mut scene = Self { source: Some(Box::new(problem)), entries, said, of_goals, ..scene };
         if goals.is_none() {
             scene.goals = examples(&scene, &parts);
@@ -366,38 +312,10 @@ impl<C: LinkedSpace> LinkedScene<C> {
     }
 }
 
-impl ArmScene {
-    /// The same arm, moved by inputs as its file says; `None` when the file says nothing of it.
-    ///
-    /// # Errors
-    /// When the arm cannot move so.
-    pub fn driven(&self) -> Result<Option<DrivenScene>, Error> {
-        let Some(file) = self.source.as_ref().map(|problem| &problem.file) else { return Ok(None) };
-        let Some(driven) = &file.driven else { return Ok(None) };
-        let names: Vec<_> = self.arm.coordinates().iter().map(|c| c.name.clone()).collect();
-        let state_names = driven.state_names(&names);
-        let parts =
-            file.goals.iter().map(|goal| goal.parts("the goal", &state_names, names.len(), file.tolerance));
-        let parts =
-            parts.collect::<Result<_, _>>().map_err(|[message, help]| Error::new(message).help(help))?;
-        let velocity = file.start[names.len()..].to_vec();
-        DrivenScene::new(self.clone(), driven, &velocity, parts).map(Some)
-    }
-}
-
 /// Whether the joint of that name slides.
 fn slides(arm: &Arm, name: &str) -> bool {
     let joint = arm.model().joints.iter().find(|joint| joint.name == name);
     joint.is_some_and(|joint| matches!(joint.kind, JointKind::Prismatic { .. }))
-}
-
-/// An error message and a remedy if a configuration has the wrong length.
-fn wrong_count(what: &str, values: &[f64], names: &[String]) -> Option<[String; 2]> {
-    let (found, joints) = (values.len(), names.len());
-    (found != joints).then(|| {
-        let message = format!("{what} has {found} numbers; a configuration of this robot has {joints}");
-        [message, format!("in order: {}", names.join(", "))]
-    })
 }
 
 impl SpeedBound for ArmScene {
@@ -528,8 +446,10 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         Some((format!("{} and {}", gap.link, gap.other), gap.distance))
     }
     fn remedy(&self, touching: &[Contact]) -> Option<String> {
-        let own = touching.iter().any(|touch| touch.with_itself);
-        self.source.as_deref().filter(|_| own).map(srdf_help)
+        let own = touching.iter().filter(|touch| touch.with_itself);
+        let pairs: Vec<_> =
+            own.map(|touch| [touch.part.as_deref().unwrap_or_default(), &touch.other]).collect();
+        self.source.as_deref().filter(|_| !pairs.is_empty()).map(|problem| srdf_help(problem, &pairs))
     }
     fn enclosures(&self, q: &Configuration) -> Vec<[String; 2]> {
         self.arm.clone().enclosures(q.as_slice())

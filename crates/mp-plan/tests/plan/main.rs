@@ -1,5 +1,6 @@
 //! Scenes planned in, in one program: each would link all of the library again.
 
+mod attached;
 mod auto;
 mod clearance;
 mod constrained;
@@ -14,4 +15,5 @@ mod pose_goals;
 mod relax;
 mod robots;
 mod snake_field;
+mod which_joints;
 mod wrench;

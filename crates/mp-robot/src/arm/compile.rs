@@ -84,7 +84,7 @@ pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
 fn floating(bounds: &Aabb, coordinates: &[Coordinate]) -> Result<Se3, ArmError> {
     let taken = coordinates.iter().find(|c| BASE_NUMBERS.contains(&c.name.as_str()));
     if let Some(Coordinate { name, .. }) = taken {
-        return Err(ArmError::BaseName { joint: name.clone() });
+        return Err(ArmError::BaseName { joint: name.clone(), taken: BASE_NUMBERS.join(", ") });
     }
     let far = bounds.min.coords.amax().max(bounds.max.coords.amax());
     // Written so that NaN is refused.

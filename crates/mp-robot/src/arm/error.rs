@@ -58,14 +58,16 @@ pub enum ArmError {
         /// The joints.
         joints: String,
     },
-    /// A joint of a floating robot is called like a number of the pose of the base.
+    /// A joint of a robot whose base moves is called like a number of the pose of the base.
     #[error(
-        "joint \"{joint}\" is called like a number of the pose of the base, which floats: x, y, z, alpha, beta and gamma are \
-         taken, so give the joint another name"
+        "joint \"{joint}\" is called like a number of the pose of the base, which moves: {taken} are taken, so give the joint \
+         another name"
     )]
     BaseName {
         /// The joint.
         joint: String,
+        /// The names of those numbers.
+        taken: String,
     },
     /// The space of the joints alone was asked for, but the base floats.
     #[error("the base of this robot floats: its space is that of `Arm::floating_space`")]
@@ -148,6 +150,28 @@ pub enum ArmError {
         /// The name asked for.
         joint: String,
         /// Why the joint takes no limits, or which joints there are.
+        why: String,
+    },
+    /// A joint shall be held where it cannot be.
+    #[error("joint \"{joint}\" shall be held at {value}, but may be from {low} to {high}")]
+    Held {
+        /// The joint.
+        joint: String,
+        /// Where it shall be held (rad or m).
+        value: f64,
+        /// Its lower limit.
+        low: f64,
+        /// Its upper limit.
+        high: f64,
+    },
+    /// Something shall be attached to a link that does not exist, or under a name that is taken.
+    #[error("\"{name}\" cannot be attached to the link \"{link}\": {why}")]
+    Attached {
+        /// What shall be attached.
+        name: String,
+        /// The link.
+        link: String,
+        /// Why it cannot be.
         why: String,
     },
     /// A joint cannot mimic another.
@@ -261,11 +285,12 @@ impl ArmError {
         match self {
             Self::Duplicate { what, name } | Self::Origin { what, name, .. } => Some((what, name)),
             Self::UnknownLink { joint, .. }
-            | Self::BaseName { joint }
+            | Self::BaseName { joint, .. }
             | Self::Loop { joint, .. }
             | Self::Axis { joint, .. }
             | Self::Limits { joint, .. }
             | Self::NoSuchCoordinate { joint, .. }
+            | Self::Held { joint, .. }
             | Self::Mimic { joint, .. } => Some(("joint", joint)),
             Self::TwoParents { second, .. } => Some(("joint", second)),
             Self::TwoRoots { second, .. } => Some(("link", second)),

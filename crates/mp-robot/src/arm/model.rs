@@ -61,7 +61,8 @@ impl JointKind {
     }
 
     /// The value of a joint that cannot move because its limits are equal.
-    pub(super) fn held(self) -> Option<f64> {
+    #[must_use]
+    pub fn held(self) -> Option<f64> {
         self.limits().filter(|[low, high]| low == high).map(|[low, _]| low)
     }
 }
@@ -178,6 +179,8 @@ pub struct ArmModel {
     /// Pairs of links that may touch and overlap, besides those of rigid bodies that a joint connects. With `None`, the pairs
     /// that always touch are found by sampling.
     pub may_touch: Option<Vec<(String, String)>>,
+    /// Pairs of links that may touch besides, whether pairs are given or found.
+    pub may_also_touch: Vec<(String, String)>,
     /// Pairs of links that must not touch, whatever else is said of them, unless they never move relative to each other.
     pub kept_apart: Vec<(String, String)>,
     /// What was ignored when the model was read from a file, in sentences for people. Empty for models made in code.
@@ -192,6 +195,7 @@ impl Default for ArmModel {
             base: Isometry3::identity(),
             floating: None,
             may_touch: None,
+            may_also_touch: Vec::new(),
             kept_apart: Vec::new(),
             notes: Vec::new(),
         }

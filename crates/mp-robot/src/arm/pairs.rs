@@ -46,7 +46,8 @@ pub(super) fn pairs(
         });
         found.collect::<Result<BTreeSet<_>, ArmError>>()
     };
-    let allowed = keys(model.may_touch.as_deref().unwrap_or_default())?;
+    let mut allowed = keys(model.may_touch.as_deref().unwrap_or_default())?;
+    allowed.append(&mut keys(&model.may_also_touch)?);
     let kept = keys(&model.kept_apart)?;
     let on = |body: &LinkBody| body.chain.steps.iter().rev().map(|step| step.frame).collect();
     let above: Vec<Vec<usize>> = bodies.iter().map(on).collect();

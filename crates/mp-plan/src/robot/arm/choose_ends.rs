@@ -5,7 +5,7 @@ use super::{ArmScene, Configuration, slides};
 use crate::robot::Counted;
 use crate::{Error, brief};
 use mp_cspace::{Certified, Clearance, Halton, JointRange, Joints, MotionValidity, Rng, Sampler, Space};
-use mp_io::{Files, GoalEntry, RobotProblem};
+use mp_io::{Files, GoalEntry, RobotProblem, StartEntry};
 use mp_robot::{Arm, Coordinate};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -22,7 +22,7 @@ impl ArmScene {
         files: &dyn Files,
         mut problem: RobotProblem,
     ) -> Result<(Self, Vec<String>), Error> {
-        let (arm, said) = Self::arm_of(files, &problem)?;
+        let (arm, said) = Self::arm_of(files, &mut problem)?;
         let space = arm.space()?;
         let wanted = Configuration::from(arm.kinematics().neutral());
         let none = || {
@@ -30,7 +30,7 @@ impl ArmScene {
                 "no configuration was found in which the links do not touch: {}",
                 at_zero(&arm, &wanted)
             );
-            Error::new(message).help(srdf_help(&problem)).context(what(&problem))
+            Error::new(message).help(srdf_help(&problem, &[])).context(what(&problem))
         };
         let interrupt = files.interrupt();
         let search = arm.clone().with_interrupt(interrupt.clone());
@@ -70,11 +70,11 @@ impl ArmScene {
             ),
         ];
         let notes = said.iter().cloned().chain(chosen).collect();
-        problem.file.start = start.as_slice().to_vec();
+        problem.file.start = StartEntry::All(start.as_slice().to_vec());
         let goals = [goal.as_slice().to_vec()];
         problem.file.goals = vec![GoalEntry::All(goals[0].clone())];
         let (name, obstacles) = (problem.name.clone(), problem.obstacles.clone());
-        let scene = Self::assembled(name, arm, obstacles, &problem.file.start, &goals)?;
+        let scene = Self::assembled(name, arm, obstacles, start.as_slice(), &goals)?;
         Ok((Self { source: Some(Box::new(problem)), said, ..scene }, notes))
     }
 }

@@ -23,13 +23,6 @@ pub struct Reached {
     pub free: bool,
 }
 
-/// What [`ArmScene::reaching`](crate::ArmScene::reaching) found.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Reaching {
-    /// The free configurations, then the others; each part by its distance from where the search began.
-    pub(super) all: Vec<(Configuration, bool)>,
-}
-
 /// The goal as the solver takes it.
 fn goal_of(entry: &PoseEntry) -> PoseGoal {
     let free = match entry.free {
@@ -40,7 +33,8 @@ fn goal_of(entry: &PoseEntry) -> PoseGoal {
     PoseGoal { within: entry.within, free, ..PoseGoal::new(&entry.link, pose_from_six(entry.pose)) }
 }
 
-/// The configurations of `arm` that reach `entry`, from searches that begin at `from`: up to `enough` free ones, or all that are found.
+/// The configurations of `arm` that reach `entry` and whether each is free, from searches that begin at `from`: up to `enough` free ones,
+/// or all that are found. The free ones come first, each part by its distance from there.
 ///
 /// # Errors
 /// What is wrong, and what to do: there is no such link, nothing moves it, it is out of reach or beyond limits, or the work was
@@ -52,7 +46,7 @@ pub(super) fn reaching(
     from: &Configuration,
     enough: usize,
     interrupt: &Interrupt,
-) -> Result<Reaching, [String; 2]> {
+) -> Result<Vec<(Configuration, bool)>, [String; 2]> {
     let kinematics = arm.kinematics();
     let link = &entry.link;
     if !kinematics.links().any(|name| name == link) {
@@ -101,7 +95,7 @@ pub(super) fn reaching(
     all.sort_by(|(a, a_free), (b, b_free)| {
         b_free.cmp(a_free).then(space.distance(from, a).total_cmp(&space.distance(from, b)))
     });
-    Ok(Reaching { all })
+    Ok(all)
 }
 
 /// The free configurations that reach a goal of a problem, and a sentence about them.
@@ -116,17 +110,17 @@ pub(super) fn goals(
     interrupt: &Interrupt,
 ) -> Result<(Vec<Configuration>, String), [String; 2]> {
     let found = reaching(arm, space, entry, from, ENOUGH, interrupt)?;
-    let free: Vec<_> = found.all.iter().filter(|(_, free)| *free).map(|(q, _)| q.clone()).collect();
+    let free: Vec<_> = found.iter().filter(|(_, free)| *free).map(|(q, _)| q.clone()).collect();
     if free.is_empty() {
         let mut arm = arm.clone();
-        let least = found.all.iter().map(|(q, _)| arm.explain(q.as_slice()));
+        let least = found.iter().map(|(q, _)| arm.explain(q.as_slice()));
         let deepest =
             |contacts: &Vec<mp_robot::ArmContact>| contacts.iter().map(|c| c.depth).fold(0.0, f64::max);
         let least = least.min_by(|a, b| deepest(a).total_cmp(&deepest(b))).unwrap_or_default();
         let named =
             least.iter().take(3).map(|c| format!("{} in {} ({} m deep)", c.link, c.other, brief(c.depth)));
         let named: Vec<_> = named.collect();
-        let what = count(found.all.len(), "configuration");
+        let what = count(found.len(), "configuration");
         let by = match named.is_empty() {
             true => "closer to something than can be proved".to_owned(),
             false => format!("in collision; the least of them has {}", named.join(", ")),
@@ -141,7 +135,7 @@ pub(super) fn goals(
         "the goal is a place of \"{}\": {} of {} that reach it are free; a path ends at any of them",
         entry.link,
         free.len(),
-        count(found.all.len(), "configuration")
+        count(found.len(), "configuration")
     );
     Ok((free, said))
 }
@@ -162,6 +156,6 @@ impl super::ArmScene {
         let found = reaching(&self.arm, &self.space, entry, &self.start, enough, interrupt);
         let found = found.map_err(|[message, help]| Error::new(message).help(help))?;
         let reached = |(q, free): (Configuration, bool)| Reached { row: q.as_slice().to_vec(), free };
-        Ok(found.all.into_iter().map(reached).collect())
+        Ok(found.into_iter().map(reached).collect())
     }
 }

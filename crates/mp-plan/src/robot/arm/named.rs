@@ -1,0 +1,128 @@
+//! Ends of a problem that are given by names: of joints, or of states of the SRDF.
+
+use super::{LinkedSpace, read};
+use crate::{Error, count};
+use mp_cspace::FloatingJoints;
+use mp_io::{GoalEntry, RobotPart, RobotProblem, StartEntry};
+use mp_robot::{ArmModel, Kinematics, SrdfGroups};
+use std::collections::BTreeMap;
+
+/// The values of joints by name (rad or m).
+type Values = BTreeMap<String, f64>;
+
+/// What a problem calls by names: the groups and states of its SRDF, and the joints that its start names.
+#[derive(Debug, Default)]
+pub(super) struct NamedValues {
+    groups: SrdfGroups,
+    start: Values,
+}
+
+impl NamedValues {
+    /// Those of a problem.
+    ///
+    /// # Errors
+    /// When the SRDF is none, or has no state of the name that the start has.
+    pub(super) fn of(problem: &RobotProblem) -> Result<Self, Error> {
+        let file = &problem.file;
+        let by_name = matches!(file.start, StartEntry::Named(_) | StartEntry::State(_))
+            || file.moving.is_some()
+            || file.goals.iter().any(|goal| matches!(goal, GoalEntry::State(_)));
+        let groups = match problem.srdf.as_ref().filter(|_| by_name) {
+            Some(text) => SrdfGroups::from_srdf(text).map_err(|e| read::srdf_fault(problem, &e))?,
+            None => SrdfGroups::default(),
+        };
+        let mut named = Self { groups, start: Values::new() };
+        named.start = match &file.start {
+            StartEntry::All(_) => Values::new(),
+            StartEntry::Named(values) => values.clone(),
+            StartEntry::State(state) => named.state(problem, RobotPart::Start, state)?,
+        };
+        Ok(named)
+    }
+
+    /// The groups of the SRDF.
+    pub(super) fn groups(&self) -> &SrdfGroups {
+        &self.groups
+    }
+
+    /// The value that the start has for a joint, if it names that.
+    pub(super) fn value(&self, joint: &str) -> Option<f64> {
+        self.start.get(joint).copied()
+    }
+
+    /// The values of a state: of all groups that have one of this name, where they differ those of the group that moves.
+    fn state(&self, problem: &RobotProblem, part: RobotPart, name: &str) -> Result<Values, Error> {
+        let (mut states, file) = (Vec::new(), &problem.file);
+        states.extend(self.groups.states().iter().filter(|state| state.name == name));
+        if states.is_empty() {
+            let mut known: Vec<_> = self.groups.states().iter().map(|state| state.name.as_str()).collect();
+            known.sort_unstable();
+            known.dedup();
+            let help = match (&problem.srdf, known.is_empty()) {
+                (None, _) => "give numbers, or an SRDF by `srdf` in [robot]: there is none".to_owned(),
+                (_, true) => "give numbers: the SRDF names no states".to_owned(),
+                _ => format!("the SRDF has the states {}", known.join(", ")),
+            };
+            return Err(file.fault(part, &format!("there is no state \"{name}\""), &help).into());
+        }
+        let moves = |group: &str| matches!(&file.moving, Some(mp_io::MovingJoints::Group(moving)) if *moving == group);
+        states.sort_by_key(|state| moves(&state.group));
+        Ok(states.into_iter().flat_map(|state| state.values.iter().cloned()).collect())
+    }
+}
+
+/// Gives the start and the goals of a problem that are given by names as numbers. Returns what is to be said of them.
+///
+/// # Errors
+/// When there is no such state or no such joint.
+pub(super) fn resolve(
+    problem: &mut RobotProblem,
+    named: &NamedValues,
+    kinematics: &Kinematics,
+    model: &ArmModel,
+) -> Result<Vec<String>, Error> {
+    let base = if kinematics.floats() { <FloatingJoints as LinkedSpace>::BASE } else { &[] };
+    let names: Vec<&str> = base
+        .iter()
+        .map(|(name, _)| *name)
+        .chain(kinematics.coordinates().iter().map(|c| c.name.as_str()))
+        .collect();
+    let zeros = [vec![0.0; base.len()], kinematics.neutral()].concat();
+    let row = |values: &Values| -> Vec<f64> {
+        names.iter().zip(&zeros).map(|(name, zero)| *values.get(*name).unwrap_or(zero)).collect()
+    };
+    let mut said = Vec::new();
+    let mut tell = |state: &str, values: &Values| {
+        let missing: Vec<_> = names.iter().filter(|name| !values.contains_key(**name)).copied().collect();
+        if !missing.is_empty() {
+            let numbers = count(missing.len(), "number");
+            said.push(format!("the state \"{state}\" leaves out {numbers}, which are at zero or the limit nearest to it: {}", missing.join(", ")));
+        }
+    };
+    match problem.file.start.clone() {
+        StartEntry::All(_) => {}
+        StartEntry::Named(values) => {
+            let held = |name: &str| {
+                model.joints.iter().any(|joint| joint.name == name && joint.kind.held().is_some())
+            };
+            if let Some(stray) = values.keys().find(|joint| !names.contains(&joint.as_str()) && !held(joint))
+            {
+                let message = format!("the start names `{stray}`, which the robot does not have");
+                let help = format!("in order: {}", names.join(", "));
+                return Err(problem.file.fault(RobotPart::Start, &message, &help).into());
+            }
+            problem.file.start = StartEntry::All(row(&values));
+        }
+        StartEntry::State(state) => {
+            tell(&state, &named.start);
+            problem.file.start = StartEntry::All(row(&named.start));
+        }
+    }
+    for i in 0..problem.file.goals.len() {
+        let GoalEntry::State(state) = &problem.file.goals[i] else { continue };
+        let values = named.state(problem, RobotPart::Goal(i), state)?;
+        tell(state, &values);
+        problem.file.goals[i] = GoalEntry::All(row(&values));
+    }
+    Ok(said)
+}

@@ -1,0 +1,104 @@
+//! Things that a link carries.
+
+use crate::which_joints::{SRDF, URDF};
+use mp_io::InMemory;
+use mp_plan::{Interrupt, PathRows, Request, Scene};
+use std::path::Path;
+
+fn load(more: &str, srdf: bool) -> Result<Scene, mp_plan::Error> {
+    let of_srdf = if srdf { "srdf = \"r.srdf\"\n" } else { "" };
+    let problem = format!("[robot]\nurdf = \"r.urdf\"\n{of_srdf}hold = {{ raise = 0.2 }}\n{more}");
+    let at = move |name: &str| match name {
+        "p.toml" => Some(problem.clone()),
+        "r.urdf" => Some(URDF.to_owned()),
+        "r.srdf" => Some(SRDF.to_owned()),
+        _ => None,
+    };
+    Scene::load_from(&InMemory(at), Path::new("p.toml"))
+}
+
+/// A pole that the finger carries crosswise.
+const POLE: &str =
+    "[[attached]]\nname = \"pole\"\nlink = \"tip\"\nbox = [0.04, 0.8, 0.04]\npose = [0.18, 0, 0, 0, 0, 0]\n";
+const MOTION: &str = "[motion]\nstart = [-1, 0.1, 0]\ngoal = [1, -0.1, 0]\n";
+/// Two posts between which the bars pass.
+const POSTS: &str = "[[obstacle]]\nname = \"post\"\nbox = [0.05, 0.05, 3]\npose = [2.2, 0.2, 0, 0, 0, 0]\n";
+
+#[test]
+fn what_is_carried_collides_as_the_robot_does() {
+    let pole_at = |y: f64| {
+        format!(
+            "{MOTION}{POLE}[[obstacle]]\nname = \"post\"\nbox = [0.05, 0.05, 3]\npose = [2.18, {y}, 0, 0, 0, 0]\n"
+        )
+    };
+    let straight = |y: f64| {
+        let scene = load(&pole_at(y).replace("start = [-1, 0.1, 0]", "start = [0, 0, 0]"), true).unwrap();
+        scene.check_ends().err().map(|e| e.report())
+    };
+    assert!(straight(0.35).unwrap().contains("pole"));
+    assert!(straight(0.5).is_none());
+    // Planned, verified, and proved again by the certificate, on which the pole is a body.
+    let scene = load(&format!("{MOTION}{POLE}{POSTS}"), true).unwrap();
+    let report = scene.plan(&Request::new("rrt-connect").iterations(20_000)).unwrap();
+    assert!(report.solved && report.verified);
+    let rows = PathRows { format: scene.path_format(), columns: scene.columns(), rows: report.path.unwrap() };
+    let certificate = scene.certificate(&rows, 0.0, &Interrupt::never()).unwrap();
+    assert!(certificate.to_json().contains("\"pole\""));
+    // Without it the same path may be straight.
+    let without = load(&format!("{MOTION}{POSTS}"), true).unwrap();
+    assert!(without.check(&rows).unwrap().free);
+}
+
+#[test]
+fn what_is_carried_must_not_touch_the_robot_but_where_it_may() {
+    for srdf in [true, false] {
+        // The bar that carries the finger is one joint away from it, and would not be compared with the finger.
+        let on_bar = |may: &str| {
+            let boxed =
+                format!("[[attached]]\nname = \"box\"\nlink = \"tip\"\nbox = [0.3, 0.1, 0.1]\n{may}\n");
+            load(&format!("{MOTION}{boxed}"), srdf).unwrap()
+        };
+        let error = on_bar("").check_ends().unwrap_err().report();
+        assert!(error.contains("box") && error.contains("may_touch = [\"lower\"]"), "{error}");
+        on_bar("may_touch = [\"lower\"]").check_ends().unwrap();
+        // Things on one link do not collide with each other, those on two do.
+        let two = |link: &str, x: f64| {
+            let second = format!(
+                "[[attached]]\nname = \"other\"\nlink = \"{link}\"\nsphere = 0.1\npose = [{x}, 0, 0.3, 0, 0, 0]\nmay_touch = [\"lower\", \"tip\"]\n"
+            );
+            let first = "[[attached]]\nname = \"first\"\nlink = \"tip\"\nsphere = 0.1\npose = [0.1, 0, 0, 0, 0, 0]\nmay_touch = [\"lower\"]\n";
+            load(&format!("{MOTION}{first}{second}"), srdf).unwrap().check_ends().err().map(|e| e.report())
+        };
+        assert!(two("tip", 0.2).is_none());
+        assert!(two("lower", 1.05).unwrap().contains("other"));
+        assert!(two("lower", 0.5).is_none());
+    }
+}
+
+#[test]
+fn what_is_carried_can_be_a_goal() {
+    let goal = "[motion]\nstart = [-1, 0.1, 0]\ngoal = { link = \"pole\", position = [1.2, 1.2, 0.5] }\n";
+    let scene = load(&format!("{goal}{POLE}"), true).unwrap();
+    assert!(scene.goals().len() > 2);
+    let report = scene.plan(&Request::new("rrt-connect").iterations(20_000)).unwrap();
+    assert!(report.solved && report.verified);
+}
+
+#[test]
+fn what_cannot_be_attached_is_an_error_at_its_place() {
+    for (attached, words) in [
+        ("link = \"tipp\"\nsphere = 0.1", ["p.toml:8:", "\"tipp\"", "upper"]),
+        ("link = \"tip\"\nsphere = 0.1\nmay_touch = [\"tap\"]", ["p.toml:8:", "\"tap\"", "upper"]),
+        ("name = \"upper\"\nlink = \"tip\"\nsphere = 0.1", ["p.toml:8:", "of that name", "another"]),
+        ("link = \"tip\"", ["p.toml:8:", "attached 1", "shape"]),
+        ("sphere = 0.1", ["p.toml:8:", "link", "robot-problem.md"]),
+        ("link = \"tip\"\nsphere = 0.1\npose = [0, 0, nan, 0, 0, 0]", ["p.toml:11:", "NaN", "finite"]),
+        ("link = \"tip\"\nmesh = \"none.stl\"", ["p.toml:10:", "none.stl", ""]),
+    ] {
+        let error = match load(&format!("{MOTION}[[attached]]\n{attached}\n"), true) {
+            Err(error) => error.report(),
+            Ok(_) => panic!("{attached} is no error"),
+        };
+        assert!(words.iter().all(|word| error.contains(word)), "{attached}: {error}");
+    }
+}

@@ -1,0 +1,178 @@
+//! Which joints of a robot move: held ones, groups, states with names, and bases that move in the plane.
+
+use mp_io::InMemory;
+use mp_plan::{Request, Scene};
+use std::path::Path;
+
+/// A lift with two bars of a metre that turn about z one above the other, and a finger that slides.
+pub(crate) const URDF: &str = r#"<robot name="two">
+<link name="base"><collision><geometry><box size="0.3 0.3 0.02"/></geometry></collision></link>
+<link name="lift"/>
+<link name="upper"><collision><origin xyz="0.5 0 0.1"/><geometry><box size="0.9 0.1 0.1"/></geometry></collision></link>
+<link name="lower"><collision><origin xyz="0.5 0 0.3"/><geometry><box size="0.9 0.1 0.1"/></geometry></collision></link>
+<link name="tip"><collision><origin xyz="0.1 0 0"/><geometry><box size="0.1 0.02 0.02"/></geometry></collision></link>
+<joint name="raise" type="prismatic"><parent link="base"/><child link="lift"/><axis xyz="0 0 1"/><limit lower="0.1" upper="0.4" velocity="1"/></joint>
+<joint name="shoulder" type="revolute"><parent link="lift"/><child link="upper"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
+<joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>
+<limit lower="-2.5" upper="2.5" velocity="1"/></joint>
+<joint name="finger" type="prismatic"><parent link="lower"/><child link="tip"/><origin xyz="1 0 0.3"/><limit lower="0" upper="0.1" velocity="1"/></joint>
+</robot>"#;
+
+pub(crate) const SRDF: &str = r#"<robot name="two">
+<group name="arm"><chain base_link="lift" tip_link="lower"/></group>
+<group name="hand"><link name="tip"/></group>
+<group name="both"><group name="arm"/><group name="hand"/></group>
+<group name="around"><group name="around"/></group>
+<group name="toes"><joint name="of the world"/><link name="toe"/></group>
+<group name="apart"><chain base_link="tip" tip_link="lift"/></group>
+<group_state name="home" group="arm"><joint name="shoulder" value="0.8"/><joint name="elbow" value="0.2"/></group_state>
+<group_state name="home" group="hand"><joint name="finger" value="0.05"/></group_state>
+<group_state name="up" group="both"><joint name="raise" value="0.3"/><joint name="shoulder" value="-0.5"/></group_state>
+</robot>"#;
+
+fn load(robot: &str, motion: &str) -> Result<Scene, mp_plan::Error> {
+    let problem = format!("[robot]\nurdf = \"r.urdf\"\nsrdf = \"r.srdf\"\n{robot}\n[motion]\n{motion}\n");
+    let at = move |name: &str| match name {
+        "p.toml" => Some(problem.clone()),
+        "r.urdf" => Some(URDF.to_owned()),
+        "r.srdf" => Some(SRDF.to_owned()),
+        _ => None,
+    };
+    Scene::load_from(&InMemory(at), Path::new("p.toml"))
+}
+
+fn names(scene: &Scene) -> Vec<String> {
+    scene.columns().into_iter().map(|column| column.name).collect()
+}
+
+fn path(scene: &Scene) -> Vec<Vec<f64>> {
+    let report = scene.plan(&Request::new("rrt-connect").iterations(20_000)).unwrap();
+    assert!(report.solved && report.verified);
+    report.path.unwrap()
+}
+
+#[test]
+fn held_joints_have_no_numbers() {
+    let scene = load("hold = { raise = 0.3, finger = 0 }", "start = [0, 0]\ngoal = [1, 1]").unwrap();
+    assert_eq!(names(&scene), ["shoulder", "elbow"]);
+    // A bar that is at the height of the arm when raised, and not otherwise.
+    let bar = "\n[[obstacle]]\nbox = [0.1, 0.1, 0.02]\npose = [0.5, 0.5, 0.2, 0, 0, 0]";
+    let goal = |hold: &str| {
+        load(
+            &format!("hold = {{ raise = {hold}, finger = 0 }}"),
+            &format!("start = [0, 0]\ngoal = [0.785, 0]{bar}"),
+        )
+    };
+    assert!(goal("0.3").unwrap().check_ends().is_ok());
+    assert!(goal("0.1").unwrap().check_ends().is_err());
+    // A hair beyond the limit is at the limit.
+    assert!(load("hold = { raise = 0.4000004 }", "start = [0, 0, 0]\ngoal = [1, 1, 0]").is_ok());
+}
+
+#[test]
+fn a_group_or_a_list_moves_and_the_others_are_held() {
+    let scene = load("group = \"arm\"", "start = \"home\"\ngoal = { elbow = 1 }").unwrap();
+    assert_eq!(names(&scene), ["shoulder", "elbow"]);
+    assert_eq!(scene.start(), [0.8, 0.2]);
+    // Held where the state has it, else at zero, or the limit nearest to it.
+    assert!(
+        scene.notes().iter().any(|note| note.contains("raise at 0.1, finger at 0.05")),
+        "{:?}",
+        scene.notes()
+    );
+    let held = load("group = \"arm\"\nhold = { finger = 0.02 }", "start = \"up\"\ngoal = \"home\"").unwrap();
+    assert!(held.notes().iter().any(|note| note.contains("held are raise at 0.3")), "{:?}", held.notes());
+    assert_eq!(path(&held).last().unwrap(), &[0.8, 0.2]);
+    let scene =
+        load("joints = [\"finger\", \"raise\"]", "start = { finger = 0.05, shoulder = 1 }\ngoal = [0.2, 0]")
+            .unwrap();
+    assert_eq!(names(&scene), ["raise", "finger"]);
+    assert_eq!(scene.start(), [0.1, 0.05]);
+    assert!(scene.notes().iter().any(|note| note.contains("shoulder at 1, elbow at 0")));
+    assert_eq!(names(&load("group = \"hand\"", "start = [0]\ngoal = [0.1]").unwrap()), ["finger"]);
+    assert_eq!(
+        names(&load("group = \"both\"", "start = \"home\"\ngoal = [1, 1, 0]").unwrap()),
+        ["shoulder", "elbow", "finger"]
+    );
+}
+
+#[test]
+fn states_of_several_groups_are_one() {
+    let scene = load("", "start = \"home\"\ngoals = [\"up\", [0.1, 1, 1, 0]]").unwrap();
+    assert_eq!(scene.start(), [0.1, 0.8, 0.2, 0.05]);
+    assert_eq!(scene.goals()[0], [0.3, -0.5, 0.0, 0.0]);
+    assert!(
+        scene
+            .notes()
+            .iter()
+            .any(|note| note.contains("\"up\" leaves out 2 numbers") && note.contains("elbow, finger"))
+    );
+}
+
+#[test]
+fn a_base_in_the_plane_drives_around_what_is_in_the_way() {
+    let robot = "base = \"planar\"\nbounds = [[-3, -3], [3, 3]]\ngroup = \"arm\"";
+    let wall = "\n[[obstacle]]\nname = \"wall\"\nbox = [0.2, 4, 1]\npose = [0, 1, 0.5, 0, 0, 0]";
+    let scene =
+        load(robot, &format!("start = {{ x = -2, shoulder = 2, elbow = 1 }}\ngoal = [2, 0, 1, 2, 1]{wall}"))
+            .unwrap();
+    assert_eq!(names(&scene), ["x", "y", "theta", "shoulder", "elbow"]);
+    assert_eq!(scene.start(), [-2.0, 0.0, 0.0, 2.0, 1.0]);
+    let path = path(&scene);
+    // The wall ends at y = -1 and the base is 0.3 m wide.
+    let across = path.windows(2).find(|edge| edge[0][0] < 0.0 && edge[1][0] >= 0.0).unwrap();
+    assert!(across[0][1].min(across[1][1]) < -1.0, "{across:?}");
+    // Its tool as a goal, which the base comes near to.
+    let tool =
+        load(robot, "start = [-2, 0, 0, 0.5, 0.5]\ngoal = { link = \"tip\", position = [2.5, 2.5, 0.4] }")
+            .unwrap();
+    assert!(tool.goals().len() > 4);
+    // The base is compared with obstacles, as it moves.
+    let on_wall = load(robot, &format!("start = [0, 0, 0, 2, 1]\ngoal = [2, 0, 1, 2, 1]{wall}")).unwrap();
+    assert!(on_wall.check_ends().unwrap_err().report().contains("base"));
+}
+
+#[test]
+fn what_cannot_be_is_an_error_at_its_place() {
+    let motion = "start = [0.1, 0, 0, 0]\ngoal = [0.2, 0, 0, 0]";
+    for (robot, motion, words) in [
+        ("hold = { lift = 0.2 }", motion, ["p.toml:4:", "no joint \"lift\"", "raise"]),
+        ("hold = { raise = 0.5 }", motion, ["p.toml:4:", "at 0.5", "from 0.1 to 0.4"]),
+        ("hold = { raise = nan }", motion, ["p.toml:4:", "NaN", "finite"]),
+        (
+            "hold = { raise = 0.2 }\nlimits = { raise = [0.1, 0.2] }",
+            motion,
+            ["p.toml:4:", "limits too", "not both"],
+        ),
+        ("group = \"legs\"", motion, ["p.toml:4:", "no group \"legs\"", "arm"]),
+        ("group = \"toes\"", motion, ["p.toml:4:", "\"toe\"", "does not have"]),
+        ("group = \"apart\"", motion, ["p.toml:4:", "no such chain", "lift"]),
+        ("group = \"around\"", motion, ["p.toml:4:", "no joint", "moves"]),
+        ("group = \"arm\"\njoints = [\"raise\"]", motion, ["p.toml:5:", "group and a list", "not both"]),
+        ("joints = []", motion, ["p.toml:4:", "no joint moves", "names"]),
+        ("joints = [\"wrist\"]", motion, ["p.toml:4:", "\"wrist\"", "shoulder"]),
+        (
+            "joints = [\"raise\"]\nlimits = { raise = [0.2, 0.2] }",
+            motion,
+            ["p.toml:4:", "raise", "does not move"],
+        ),
+        ("", "start = \"house\"\ngoal = [0.2, 0, 0, 0]", ["p.toml:6:", "no state \"house\"", "home, up"]),
+        ("", "start = [0.1, 0, 0, 0]\ngoal = \"house\"", ["p.toml:7:", "no state \"house\"", "home, up"]),
+        ("", "start = { wrist = 1 }\ngoal = [0.2, 0, 0, 0]", ["p.toml:6:", "`wrist`", "shoulder"]),
+        ("", "start = 5\ngoal = [0.2, 0, 0, 0]", ["p.toml:6:", "a start is", "\"home\""]),
+        ("base = \"planar\"", motion, ["p.toml:4:", "without bounds", "[[x, y], [x, y]]"]),
+        (
+            "base = \"planar\"\nbounds = [[0, 0, 0], [1, 1, 1]]",
+            motion,
+            ["p.toml:5:", "2 numbers", "[[x, y], [x, y]]"],
+        ),
+        ("base = \"planar\"\nbounds = [[0, 0], [0, 1]]", motion, ["p.toml:5:", "enclose nothing", "lower"]),
+        ("base = \"round\"", motion, ["p.toml:4:", "`round`", "planar"]),
+    ] {
+        let error = match load(robot, motion) {
+            Err(error) => error.report(),
+            Ok(_) => panic!("{robot} {motion} is no error"),
+        };
+        assert!(words.iter().all(|word| error.contains(word)), "{robot} {motion}: {error}");
+    }
+}

@@ -1,0 +1,173 @@
+//! Groups of joints, and states with names, from SRDF text.
+
+use super::xml::{Text, some};
+use super::{ArmModel, JointKind, UrdfError};
+use roxmltree::Node;
+use std::collections::BTreeSet;
+
+/// A state with a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedState {
+    /// Its name.
+    pub name: String,
+    /// The group that it is of.
+    pub group: String,
+    /// Joints and their values (rad or m).
+    pub values: Vec<(String, f64)>,
+}
+
+/// A member of a group.
+#[derive(Clone, Debug, PartialEq)]
+enum Member {
+    Joint(String),
+    /// The joint above this link.
+    Link(String),
+    /// The joints between two links.
+    Chain {
+        base: String,
+        tip: String,
+    },
+    Group(String),
+}
+
+/// The groups and named states of an SRDF.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SrdfGroups {
+    groups: Vec<(String, Vec<Member>)>,
+    states: Vec<NamedState>,
+}
+
+impl SrdfGroups {
+    /// Those of an SRDF.
+    ///
+    /// # Errors
+    /// [`UrdfError::Syntax`] when the text is not an SRDF, or a value is no number.
+    pub fn from_srdf(text: &str) -> Result<Self, UrdfError> {
+        let text = Text::new("an SRDF", text)?;
+        let document = text.parse()?;
+        let named = |node: &Node<'_, '_>, name: &str| match node.attribute(name) {
+            Some(value) => Ok(value.to_owned()),
+            None => Err(text.error(node, format!("<{}> has no attribute {name}", node.tag_name().name()))),
+        };
+        let mut found = Self::default();
+        for node in document.root_element().children().filter(Node::is_element) {
+            match node.tag_name().name() {
+                "group" => {
+                    let mut members = Vec::new();
+                    for member in node.children().filter(Node::is_element) {
+                        members.push(match member.tag_name().name() {
+                            "joint" => Member::Joint(named(&member, "name")?),
+                            "link" => Member::Link(named(&member, "name")?),
+                            "group" => Member::Group(named(&member, "name")?),
+                            "chain" => Member::Chain {
+                                base: named(&member, "base_link")?,
+                                tip: named(&member, "tip_link")?,
+                            },
+                            _ => continue,
+                        });
+                    }
+                    found.groups.push((named(&node, "name")?, members));
+                }
+                "group_state" => {
+                    let mut values = Vec::new();
+                    for joint in node.children().filter(|child| child.has_tag_name("joint")) {
+                        let (name, value) = (named(&joint, "name")?, named(&joint, "value")?);
+                        // Joints with several numbers have several values here.
+                        let mut numbers = value.split_ascii_whitespace().map(str::parse::<f64>);
+                        match (numbers.next(), numbers.next()) {
+                            (Some(Ok(number)), None) if number.is_finite() => values.push((name, number)),
+                            (Some(Ok(_)), Some(_)) => {}
+                            _ => return Err(text.error(&joint, format!("\"{value}\" is no finite number"))),
+                        }
+                    }
+                    found.states.push(NamedState {
+                        name: named(&node, "name")?,
+                        group: named(&node, "group")?,
+                        values,
+                    });
+                }
+                _ => {}
+            }
+        }
+        Ok(found)
+    }
+
+    /// The names of the groups.
+    pub fn groups(&self) -> impl Iterator<Item = &str> {
+        self.groups.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// The states.
+    #[must_use]
+    pub fn states(&self) -> &[NamedState] {
+        &self.states
+    }
+
+    /// The joints of a group that can move by themselves, in the order of the model, with those of the groups in it.
+    ///
+    /// # Errors
+    /// What is wrong, in a sentence: there is no such group, it names what the robot does not have, or nothing of it moves.
+    pub fn joints(&self, model: &ArmModel, group: &str) -> Result<Vec<String>, String> {
+        let mut joints = BTreeSet::new();
+        let (mut left, mut seen) = (vec![group], BTreeSet::new());
+        while let Some(name) = left.pop() {
+            if !seen.insert(name) {
+                continue;
+            }
+            let Some((_, members)) = self.groups.iter().find(|(known, _)| known == name) else {
+                let known: Vec<_> = self.groups().map(str::to_owned).collect();
+                return Err(match known.is_empty() {
+                    true => format!("there is no group \"{name}\", as there are no groups"),
+                    false => format!("there is no group \"{name}\"; the groups are {}", some(&known)),
+                });
+            };
+            for member in members {
+                match member {
+                    Member::Group(inner) => left.push(inner),
+                    Member::Joint(joint) => match model.joints.iter().position(|j| j.name == *joint) {
+                        Some(i) => drop(joints.insert(i)),
+                        // The joint between the robot and the world is not in a URDF.
+                        None => continue,
+                    },
+                    Member::Link(link) => joints.extend(above(model, link, name)?),
+                    Member::Chain { base, tip } => joints.extend(chain(model, base, tip, name)?),
+                }
+            }
+        }
+        let moves = |i: &usize| {
+            let joint = &model.joints[*i];
+            joint.mimic.is_none() && joint.kind != JointKind::Fixed && joint.kind.held().is_none()
+        };
+        let found: Vec<_> = joints.into_iter().filter(moves).map(|i| model.joints[i].name.clone()).collect();
+        match found.is_empty() {
+            true => Err(format!("no joint of the group \"{group}\" moves by itself")),
+            false => Ok(found),
+        }
+    }
+}
+
+/// The joint above a link, if it has one.
+fn above(model: &ArmModel, link: &str, group: &str) -> Result<Option<usize>, String> {
+    match model.links.iter().any(|known| known.name == *link) {
+        true => Ok(model.joints.iter().position(|joint| joint.child == *link)),
+        false => {
+            Err(format!("the group \"{group}\" names the link \"{link}\", which the robot does not have"))
+        }
+    }
+}
+
+/// The joints from the link `base` down to the link `tip`.
+fn chain(model: &ArmModel, base: &str, tip: &str, group: &str) -> Result<Vec<usize>, String> {
+    above(model, base, group)?;
+    let (mut joints, mut link) = (Vec::new(), tip);
+    while link != base {
+        let Some(joint) = above(model, link, group)?.filter(|_| joints.len() <= model.joints.len()) else {
+            return Err(format!(
+                "the group \"{group}\" has a chain from \"{base}\" to \"{tip}\", which are in no such chain"
+            ));
+        };
+        joints.push(joint);
+        link = &model.joints[joint].parent;
+    }
+    Ok(joints)
+}

@@ -1,0 +1,53 @@
+//! Joints that are held, so that fewer joints move.
+
+use super::{ArmError, ArmModel, Kinematics};
+
+/// A joint that is to be held beyond a limit by no more than this (rad or m) is held at the limit.
+const HAIR: f64 = 1e-6;
+
+impl ArmModel {
+    /// The same robot with the joint held at `value` (rad or m): it has no number in a configuration.
+    ///
+    /// # Errors
+    /// [`ArmError::NoSuchCoordinate`] when there is no such joint, or it is fixed or mimics another; [`ArmError::Held`] when the
+    /// value is beyond its limits.
+    pub fn holding(self, joint: &str, value: f64) -> Result<Self, ArmError> {
+        let known = self.joints.iter().find(|known| known.name == joint);
+        let [low, high] = known.and_then(|joint| joint.kind.limits()).unwrap_or([value; 2]);
+        let at = value.max(low).min(high);
+        // Written so that NaN is refused.
+        let near = (at - value).abs() <= HAIR;
+        if near {
+            self.with_limits(joint, at, at)
+        } else {
+            Err(ArmError::Held { joint: joint.to_owned(), value, low, high })
+        }
+    }
+
+    /// The same robot of which no other joints move than those of `joints`, and where the others are held: where `at` says, else at
+    /// zero, or at the limit nearest to zero.
+    ///
+    /// # Errors
+    /// As [`holding`](Self::holding), and when the model is not valid.
+    pub fn with_only(
+        self,
+        joints: &[String],
+        at: impl Fn(&str) -> Option<f64>,
+    ) -> Result<(Self, Vec<(String, f64)>), ArmError> {
+        let kinematics = Kinematics::new(&self)?;
+        let coordinates = kinematics.coordinates();
+        if let Some(stray) = joints.iter().find(|name| coordinates.iter().all(|c| c.name != **name)) {
+            // What is wrong with it is known there.
+            let known = self.joints.iter().find(|joint| joint.name == *stray);
+            let held = known.and_then(|joint| joint.kind.held());
+            return self.holding(stray, held.unwrap_or_default()).and_then(|_| {
+                let why = "its limits are equal, so that it does not move".to_owned();
+                Err(ArmError::NoSuchCoordinate { joint: stray.clone(), why })
+            });
+        }
+        let others = coordinates.iter().zip(kinematics.neutral()).filter(|(c, _)| !joints.contains(&c.name));
+        let held: Vec<_> = others.map(|(c, zero)| (c.name.clone(), at(&c.name).unwrap_or(zero))).collect();
+        let model = held.iter().try_fold(self, |model, (joint, value)| model.holding(joint, *value))?;
+        Ok((model, held))
+    }
+}
