@@ -21,6 +21,7 @@ from ._results import Results, read_results
 from ._roadmap import Roadmap
 from ._scene import Options, Scene
 from ._shapes import (
+    Attached,
     Body,
     Box,
     Capsule,
@@ -43,6 +44,7 @@ from ._shapes import (
 )
 
 __all__ = [
+    "Attached",
     "Body",
     "Box",
     "Cancel",

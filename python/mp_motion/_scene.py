@@ -23,6 +23,7 @@ from ._progress import Progress, reporter
 from ._report import Column, Explanation, Finished, Report, Verdict, explanation, verdict
 from ._roadmap import Roadmap
 from ._shapes import (
+    Attached,
     Array,
     Body,
     Circle,
@@ -30,6 +31,7 @@ from ._shapes import (
     Polygon,
     Rectangle,
     Shape,
+    attached_members,
     body_members,
     plain,
     planar_members,
@@ -166,7 +168,7 @@ class Scene:
         Parameters
         ----------
         document : mapping
-            The tables of the file: ``robot``, ``motion``, ``obstacle``, ``moving``, ``world``. Values may be arrays.
+            The tables of the file: ``robot``, ``motion``, ``obstacle``, ``attached``, ``moving``, ``world``. Values may be arrays.
         files : mapping, optional
             Contents of files that the document names. Others are read from the disk.
         name : str
@@ -258,16 +260,21 @@ class Scene:
     def arm(
         cls,
         urdf: File,
-        start: ArrayLike,
-        goal: ArrayLike | FreeGoal | None = None,
+        start: ArrayLike | Mapping[str, float] | str,
+        goal: ArrayLike | FreeGoal | str | None = None,
         obstacles: Iterable[Body | Shape] = (),
         *,
-        goals: Sequence[ArrayLike | FreeGoal] | None = None,
+        goals: Sequence[ArrayLike | FreeGoal | str] | None = None,
+        attached: Iterable[Attached] = (),
         srdf: File | Literal[False] | None = None,
         packages: File | None = None,
         base: ArrayLike | None = None,
+        planar_within: ArrayLike | None = None,
         floating_within: ArrayLike | None = None,
         limits: Mapping[str, tuple[float, float]] | None = None,
+        hold: Mapping[str, float] | None = None,
+        group: str | None = None,
+        joints: Sequence[str] | None = None,
         name: str = "scene",
     ) -> Scene:
         """Make a scene of an arm, or of a body with joints that flies freely, among obstacles.
@@ -276,10 +283,11 @@ class Scene:
         ----------
         urdf : path or str
             The robot: a file, or the text of a URDF.
-        start : array_like, shape (joints,)
-            Radians, or metres for prismatic joints, in the order of the URDF; of a floating base, its pose comes first.
-        goal : array_like or mapping
-            All joint values; or a mapping of some to a number or an interval: the others are free. Or the place of a link in
+        start : array_like, shape (joints,), or mapping or str
+            Radians, or metres for prismatic joints, in the order of the URDF; of a base that moves, its pose comes first. Or the
+            values of some joints, where the others are at zero or the limit nearest to it; or the name of a state of the SRDF.
+        goal : array_like or mapping or str
+            All joint values, or the name of a state of the SRDF; or a mapping of some to a number or an interval: the others are free. Or the place of a link in
             the world: ``{"link": "tool", "pose": pose}`` with a pose of six numbers or (4, 4), also with ``"free"`` (``"x"``,
             ``"y"``, ``"z"``, ``"all"``: what may turn) and ``"position_tolerance"`` in metres; or ``{"link": "tool",
             "position": [x, y, z]}``. A path ends at any configuration that reaches it.
@@ -287,6 +295,8 @@ class Scene:
             What stands still.
         goals : sequence, optional
             In place of `goal`: any one of them.
+        attached : iterable of Attached
+            What links carry.
         srdf : path or str or False, optional
             Which links may touch: a file, or its text. If it is left out, one near the URDF is taken if there is one; with
             False none is.
@@ -294,10 +304,19 @@ class Scene:
             The folder that ``package://`` means.
         base : array_like, shape (6,) or (4, 4), optional
             The pose of the root link.
+        planar_within : array_like, shape (2, 2), optional
+            The base moves in the plane z = 0: the lowest and the highest corner of where its origin may be, metres. Configurations
+            begin with x, y and the angle then.
         floating_within : array_like, shape (2, 3), optional
             The base floats: the lowest and the highest corner of where its origin may be, metres.
         limits : mapping, optional
             Limits of joints in place of those of the URDF.
+        hold : mapping, optional
+            Joints that do not move, and where they are.
+        group : str, optional
+            Only the joints of this group of the SRDF move.
+        joints : sequence of str, optional
+            Only these joints move.
         name : str
             What reports call the scene.
         """
@@ -309,18 +328,22 @@ class Scene:
             robot["srdf"] = _text_or_file(srdf, "robot.srdf", files)
         if packages is not None:
             robot["packages"] = os.fspath(packages)
-        if limits is not None:
-            robot["limits"] = dict(limits)
-        if floating_within is not None:
-            if base is not None:
-                raise Error("a base that floats has no pose", remedy="leave out `base`")
-            robot |= {"base": "floating", "bounds": np.asarray(floating_within, dtype=np.float64)}
-        elif base is not None:
+        given = {"limits": limits, "hold": hold, "group": group, "joints": joints}
+        robot |= {key: plain(value) for key, value in given.items() if value is not None}
+        moves = {"floating": floating_within, "planar": planar_within}
+        moving = {how: within for how, within in moves.items() if within is not None}
+        if len(moving) + (base is not None) > 1:
+            raise Error("a base that moves has no pose", remedy="give one of `base`, `planar_within` and `floating_within`")
+        for how, within in moving.items():
+            robot |= {"base": how, "bounds": np.asarray(within, dtype=np.float64)}
+        if base is not None:
             robot["base"] = pose_numbers(base)
+        named = isinstance(start, (str, Mapping))
         document = {
             "robot": robot,
-            "motion": {"start": _ordered(start)} | _ends(goal, goals, plain),
+            "motion": {"start": plain(start) if named else _ordered(start)} | _ends(goal, goals, plain),
             "obstacle": [body_members(body, files) for body in obstacles],
+            "attached": [attached_members(body, files) for body in attached],
         }
         return cls.from_dict(document, files=files, name=name)
 
@@ -1004,13 +1027,13 @@ def _ordered(configuration: ArrayLike) -> Array:
 
 
 def _ends(
-    goal: ArrayLike | FreeGoal | None,
-    goals: Sequence[ArrayLike | FreeGoal] | None,
+    goal: ArrayLike | FreeGoal | str | None,
+    goals: Sequence[ArrayLike | FreeGoal | str] | None,
     numbers: Callable[[Any], Any],
 ) -> dict[str, Any]:
     """Return the members of `motion` for one goal or several."""
 
-    def one(given: ArrayLike | FreeGoal) -> Any:
+    def one(given: ArrayLike | FreeGoal | str) -> Any:
         if not isinstance(given, Mapping):
             return numbers(given)
         members: dict[str, Any] = dict(given)

@@ -359,6 +359,31 @@ class Body:
 
 
 @dataclass(frozen=True)
+class Attached:
+    """A body that a link of an arm carries.
+
+    Parameters
+    ----------
+    shape : Mesh, Box, Sphere, Cylinder, Capsule, Cone, Hull, Points or HeightField
+        Its shape.
+    link : str
+        The link that carries it.
+    pose : array_like, shape (6,) or (4, 4)
+        Where it is in the frame of the link: ``x y z α β γ`` (m, rad) or a matrix. By default the origin.
+    name : str, optional
+        What messages call it, and goals.
+    may_touch : sequence of str
+        Links that it may touch, such as the fingers that hold it.
+    """
+
+    shape: Shape
+    link: str
+    pose: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    name: str | None = None
+    may_touch: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
 class Disc:
     """A disc in the plane, as a robot.
 
@@ -464,6 +489,12 @@ def body_members(body: Body | Shape, files: dict[str, bytes]) -> dict[str, Any]:
     body = body if isinstance(body, Body) else Body(body)
     name = {} if body.name is None else {"name": body.name}
     return name | shape_members(body.shape, files) | {"pose": pose_numbers(body.pose)}
+
+
+def attached_members(body: Attached, files: dict[str, bytes]) -> dict[str, Any]:
+    """Members of what a link carries in a scene file. Meshes go into `files`."""
+    members = body_members(Body(body.shape, body.pose, body.name), files)
+    return members | {"link": body.link, "may_touch": list(body.may_touch)}
 
 
 def planar_members(shape: Rectangle | Circle | Polygon) -> dict[str, Any]:

@@ -208,6 +208,32 @@ def test_arms_from_text_and_from_files(folder: Path) -> None:
     assert floating.plan(seed=1).solved
 
 
+SRDF = """<robot name="two"><group name="first"><joint name="a"/></group>
+  <group_state name="up" group="first"><joint name="a" value="0.1"/></group_state></robot>"""
+
+
+def test_arms_of_which_not_all_moves_and_that_carry_something() -> None:
+    held = mp.Scene.arm(URDF, {"b": 0.2}, "up", srdf=SRDF, group="first")
+    assert [c.name for c in held.columns] == ["a"] and np.allclose(held.goals, [[0.1]])
+    also = mp.Scene.arm(URDF, [0], [1], hold={"a": np.float64(0.3)})
+    assert [c.name for c in also.columns] == ["b"]
+    assert [c.name for c in mp.Scene.arm(URDF, [0], [1], joints=["b"]).columns] == ["b"]
+    plank = mp.Attached(mp.Box(0.02, 1, 0.02), "lower", [0, 0, 1.02, 0, 0, 0], "plank", may_touch=["upper"])
+    post = mp.Body(mp.Box(0.1, 0.1, 3), [0, 0.4, 2, 0, 0, 0], "post")
+    assert mp.Scene.arm(URDF, [0, 0], [1, 0.4], [post]).is_free([0, 0])
+    scene = mp.Scene.arm(URDF, [1, 0.4], [1.2, 0.4], [post], attached=[plank])
+    assert not scene.is_free([0, 0]) and scene.plan(seed=1).solved
+    driving = mp.Scene.arm(URDF, [-1, 0, 0, 0.5, 0], [1, 0, 0, 0.5, 0], [post], planar_within=[[-2, -2], [2, 2]])
+    assert [c.name for c in driving.columns] == ["x", "y", "theta", "a", "b"] and driving.plan(seed=1).solved
+    with pytest.raises(mp.Error, match="no pose"):
+        mp.Scene.arm(URDF, [0] * 5, [1] * 5, base=[0] * 6, planar_within=[[-2, -2], [2, 2]])
+    robots = [{"name": "left", "urdf": "two.urdf"}, {"name": "right", "urdf": "two.urdf", "base": [0, 3, 0, 0, 0, 0]}]
+    both = mp.Scene.from_dict(
+        {"robot": robots, "motion": {"start": [0, 0, 0, 0], "goal": {"left/a": 1, "right/b": 1}}}, files={"two.urdf": URDF}
+    )
+    assert [c.name for c in both.columns] == ["left/a", "left/b", "right/a", "right/b"]
+
+
 @pytest.mark.parametrize("name", ["easy", "arm", "rrs-low", "wrench", "parking", "crossing"])
 def test_scenes_and_reports_pickle(name: str) -> None:
     scene = mp.Scene(name)

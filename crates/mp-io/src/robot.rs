@@ -1,21 +1,22 @@
 //! Robot problems: an arm, obstacles, a start and goals, in TOML.
 
+mod entry;
 mod problem;
 mod srdf_near;
 #[cfg(test)]
 mod tests;
 mod urdf_mesh;
 
-pub use problem::{RobotProblem, read_robot_text};
+pub use entry::{MovingJoints, RobotEntry, RobotPart};
+use entry::{RobotTables, robots_of};
+pub use problem::{DescribedRobot, RobotProblem, read_robot_text};
 pub use srdf_near::{FoundSrdf, robot_name};
 
-use crate::drive::{DriveTable, Driven};
 use crate::error::Error;
 use crate::files::decode;
 use crate::shape::{ShapeEntry, Shaped};
 use crate::toml_problem::{GoalEntry, MotionPlaces, MotionTable, StartEntry, TomlText};
 use serde::Deserialize;
-use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -49,44 +50,11 @@ pub struct AttachedEntry {
     place: Range<usize>,
 }
 
-/// Which joints move, where not all do.
-#[derive(Clone, Debug, PartialEq)]
-pub enum MovingJoints {
-    /// Those of a group of the SRDF.
-    Group(String),
-    /// These.
-    Listed(Vec<String>),
-}
-
 /// The content of a robot problem file; the files that it names are not yet read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotFile {
-    /// The name of the URDF file.
-    pub urdf: String,
-    /// The name of the SRDF file.
-    pub srdf: Option<String>,
-    /// Whether there is to be none, so that none is looked for.
-    pub without_srdf: bool,
-    /// The folder that `package://` means.
-    pub packages: Option<String>,
-    /// The pose of the root link, six numbers; zeros if the base floats.
-    pub base: [f64; 6],
-    /// The lower and the upper corner (m) of the box in which the origin of the root link moves, if the base floats.
-    pub floating: Option<[[f64; 3]; 2]>,
-    /// The lower and the upper corner (m) of the rectangle in which the origin of the root link moves, if the base moves in the plane.
-    pub planar: Option<[[f64; 2]; 2]>,
-    /// Whether the meshes of the robot are solids; other shapes always are.
-    pub solid: bool,
-    /// Limits that replace those of the URDF, by joint. Equal ones hold the joint.
-    pub limits: Vec<(String, [f64; 2])>,
-    /// Joints that are held, and where (rad or m).
-    pub hold: Vec<(String, f64)>,
-    /// Which joints move; all that are not held when it is not given.
-    pub moving: Option<MovingJoints>,
-    /// How far (rad or m) the start may be beyond a limit; 0 when it is not given.
-    pub limit_tolerance: f64,
-    /// How the robot moves, if it moves by inputs.
-    pub driven: Option<Driven>,
+    /// The robots, at least one.
+    pub robots: Vec<RobotEntry>,
     /// The joint values at the start; first the numbers of the pose of the base, if it moves. For a robot with accelerations, its velocities may follow.
     pub start: StartEntry,
     /// The goals, at least one.
@@ -97,45 +65,20 @@ pub struct RobotFile {
     pub obstacles: Vec<ObstacleEntry>,
     /// What links carry.
     pub attached: Vec<AttachedEntry>,
-    places: Places,
+    places: MotionPlaces,
     text: String,
     file: String,
 }
 
-/// Where things are in the text.
-#[derive(Clone, Debug, PartialEq)]
-struct Places {
-    urdf: Range<usize>,
-    srdf: Range<usize>,
-    robot: Range<usize>,
-    base: Range<usize>,
-    motion: MotionPlaces,
-    limits: Vec<Range<usize>>,
-    hold: Vec<Range<usize>>,
-    moving: Range<usize>,
-}
-
 /// A part of a [`RobotFile`] that an error can point at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RobotPart {
-    /// The name of the URDF.
-    Urdf,
-    /// The name of the SRDF.
-    Srdf,
-    /// The table `robot`.
-    Robot,
-    /// The base.
-    Base,
+pub enum RobotFilePart {
+    /// A part of the robot of this index.
+    Robot(usize, RobotPart),
     /// The start.
     Start,
     /// The goal of this index.
     Goal(usize),
-    /// The limits of this index.
-    Limits(usize),
-    /// The held joint of this index.
-    Hold(usize),
-    /// Which joints move.
-    Moving,
     /// What is attached, of this index.
     Attached(usize),
 }
@@ -143,54 +86,12 @@ pub enum RobotPart {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    robot: Spanned<RobotTable>,
+    robot: Spanned<RobotTables>,
     motion: MotionTable<StartEntry>,
     #[serde(default)]
     obstacle: Vec<Spanned<Shaped<ObstacleTable>>>,
     #[serde(default)]
     attached: Vec<Spanned<Shaped<AttachedTable>>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RobotTable {
-    urdf: Spanned<String>,
-    srdf: Option<Spanned<SrdfEntry>>,
-    packages: Option<String>,
-    #[serde(default)]
-    solid: bool,
-    base: Option<Spanned<BaseEntry>>,
-    bounds: Option<Spanned<Corners>>,
-    #[serde(default)]
-    limits: BTreeMap<String, Spanned<[f64; 2]>>,
-    #[serde(default)]
-    hold: BTreeMap<String, Spanned<f64>>,
-    group: Option<Spanned<String>>,
-    joints: Option<Spanned<Vec<String>>>,
-    limit_tolerance: Option<Spanned<f64>>,
-    kind: Option<Spanned<String>>,
-    duration: Option<Spanned<f64>>,
-    speeds: Option<Spanned<Vec<f64>>>,
-    accelerations: Option<Spanned<Vec<f64>>>,
-}
-
-/// The name of an SRDF, or that there is to be none.
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "expected the name of an SRDF, or `false` for none")]
-enum SrdfEntry {
-    Name(String),
-    Is(bool),
-}
-
-/// The lower and the upper corner of a box, or of a rectangle.
-type Corners = [Vec<f64>; 2];
-
-/// Where the base stands, or how it moves.
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "expected six numbers, `[x, y, z, α, β, γ]`, \"planar\" or \"floating\"")]
-enum BaseEntry {
-    Pose([f64; 6]),
-    Word(String),
 }
 
 #[derive(Deserialize)]
@@ -219,69 +120,13 @@ impl RobotFile {
         let text = decode(file, bytes)?;
         let source = TomlText { file, text, guide: GUIDE };
         let File { robot, motion, obstacle, attached } = source.read()?;
-        let robot_span = robot.span();
-        let robot = robot.into_inner();
-        let table = DriveTable {
-            kind: robot.kind,
-            duration: robot.duration,
-            speeds: robot.speeds,
-            accelerations: robot.accelerations,
-            ..DriveTable::default()
-        };
-        let driven = table.read(&source, &robot_span, &["velocities", "accelerations"])?;
-        let base_span = robot.base.as_ref().map_or(0..0, Spanned::span);
-        let Base { pose: base, floating, planar } = base_of(&source, robot.base, robot.bounds)?;
-        let (moving, moving_span) = moving_of(&source, robot.group, robot.joints)?;
-        let srdf_span = robot.srdf.as_ref().map_or(0..0, Spanned::span);
-        let (srdf, without_srdf) = match robot.srdf.map(Spanned::into_inner) {
-            Some(SrdfEntry::Name(name)) => (Some(name), false),
-            Some(SrdfEntry::Is(false)) => (None, true),
-            Some(SrdfEntry::Is(true)) => {
-                return Err(source.error(&srdf_span, "`srdf = true` names no file").expected(
-                    "the name of an SRDF; without `srdf` one near the URDF is taken, if there is one, and with `false` none",
-                ));
-            }
-            None => (None, false),
-        };
-        let (mut limits, mut places_of_limits) = (Vec::new(), Vec::new());
-        for (joint, range) in robot.limits {
-            let (what, span) = (format!("the limits of {}", crate::text::clipped(&joint)), range.span());
-            let [low, high] = *range.get_ref();
-            source.check(&what, &[low, high], &span)?;
-            if low > high {
-                let message = format!("{what} are {low} to {high}");
-                let expected = "the lower one first, below the upper, or equal ones, which hold the joint";
-                return Err(source.error(&span, message).expected(expected));
-            }
-            places_of_limits.push(span);
-            limits.push((joint, [low, high]));
-        }
-        let (mut hold, mut places_of_hold) = (Vec::new(), Vec::new());
-        for (joint, value) in robot.hold {
-            let (what, span) = (format!("the held joint {}", crate::text::clipped(&joint)), value.span());
-            source.check(&what, &[*value.get_ref()], &span)?;
-            if limits.iter().any(|(limited, _)| *limited == joint) {
-                let message = format!("{what} has limits too");
-                return Err(source
-                    .error(&span, message)
-                    .expected("a joint in `limits` or in `hold`, not both"));
-            }
-            places_of_hold.push(span);
-            hold.push((joint, value.into_inner()));
-        }
-        let limit_tolerance = robot.limit_tolerance.as_ref().map_or(0.0, |spanned| *spanned.get_ref());
-        if let Some(spanned) = &robot.limit_tolerance {
-            source.check("the tolerance of limits", &[limit_tolerance], &spanned.span())?;
-            if limit_tolerance < 0.0 {
-                let message = format!("the tolerance of limits is {limit_tolerance}");
-                let expected = "a number of at least zero: radians, or metres for joints that slide";
-                return Err(source.error(&spanned.span(), message).expected(expected));
-            }
-        }
+        let robots = robots_of(&source, robot)?;
         let state =
             |what: &str, q: &Spanned<StartEntry>| source.check(what, &q.get_ref().numbers(), &q.span());
         let motion = motion.read(&source, false, state)?;
-        if let (None, Some(place)) = (&driven, &motion.places.tolerance) {
+        if let (true, Some(place)) =
+            (robots.iter().all(|robot| robot.driven.is_none()), &motion.places.tolerance)
+        {
             let message = "only robots that move by inputs need a tolerance";
             let expected = "intervals in the goal: { joint = [1.0, 1.2] }, or no tolerance";
             return Err(source.error(place, message).expected(expected));
@@ -292,168 +137,45 @@ impl RobotFile {
         }
         let obstacles = obstacle.iter().enumerate().map(|(i, table)| entry(&source, i, table));
         let attached = attached.iter().enumerate().map(|(i, table)| attached_entry(&source, i, table));
-        let places = Places {
-            urdf: robot.urdf.span(),
-            srdf: srdf_span,
-            robot: robot_span,
-            base: base_span,
-            motion: motion.places,
-            limits: places_of_limits,
-            hold: places_of_hold,
-            moving: moving_span,
-        };
         Ok(Self {
-            urdf: robot.urdf.into_inner(),
-            srdf,
-            without_srdf,
-            packages: robot.packages,
-            solid: robot.solid,
-            base,
-            floating,
-            planar,
-            limits,
-            hold,
-            moving,
-            limit_tolerance,
-            driven,
+            robots,
             start: motion.start,
             goals: motion.goals,
             tolerance: motion.tolerance,
             obstacles: obstacles.collect::<Result<_, _>>()?,
             attached: attached.collect::<Result<_, _>>()?,
-            places,
+            places: motion.places,
             text: text.to_owned(),
             file: file.to_owned(),
         })
     }
 
+    /// What the names of links and joints of the robot number `i` begin with: nothing if it is the only one.
+    #[must_use]
+    pub fn prefix(&self, i: usize) -> String {
+        let name = self.robots.get(i).filter(|_| self.robots.len() > 1).and_then(|robot| robot.name.as_ref());
+        name.map_or_else(String::new, |name| format!("{name}/"))
+    }
+
     /// An error about a part of the file, for faults that are found only when the robot is made.
     #[must_use]
-    pub fn fault(&self, part: RobotPart, message: &str, help: &str) -> Error {
+    pub fn fault(&self, part: RobotFilePart, message: &str, help: &str) -> Error {
         let span = match part {
-            RobotPart::Urdf => &self.places.urdf,
-            RobotPart::Srdf => &self.places.srdf,
-            RobotPart::Robot => &self.places.robot,
-            RobotPart::Base => &self.places.base,
-            RobotPart::Start => &self.places.motion.start,
-            RobotPart::Goal(i) => self.places.motion.goal(i),
-            RobotPart::Limits(i) => self.places.limits.get(i).unwrap_or(&self.places.urdf),
-            RobotPart::Hold(i) => self.places.hold.get(i).unwrap_or(&self.places.urdf),
-            RobotPart::Moving => &self.places.moving,
-            RobotPart::Attached(i) => self.attached.get(i).map_or(&self.places.urdf, |entry| &entry.place),
+            RobotFilePart::Robot(i, part) => {
+                self.robots.get(i).map_or(&self.places.start, |robot| robot.places.of(part))
+            }
+            RobotFilePart::Start => &self.places.start,
+            RobotFilePart::Goal(i) => self.places.goal(i),
+            RobotFilePart::Attached(i) => {
+                self.attached.get(i).map_or(&self.places.start, |entry| &entry.place)
+            }
         };
-        self.fault_at(span, message, help)
+        self.source().error(span, message).help(help)
     }
 
     /// The text, for errors.
     fn source(&self) -> TomlText<'_> {
         TomlText { file: &self.file, text: &self.text, guide: GUIDE }
-    }
-
-    fn fault_at(&self, span: &Range<usize>, message: &str, help: &str) -> Error {
-        self.source().error(span, message).help(help)
-    }
-}
-
-/// Where the base stands, or in which bounds it moves.
-#[derive(Default)]
-struct Base {
-    pose: [f64; 6],
-    floating: Option<[[f64; 3]; 2]>,
-    planar: Option<[[f64; 2]; 2]>,
-}
-
-fn base_of(
-    source: &TomlText<'_>,
-    base: Option<Spanned<BaseEntry>>,
-    bounds: Option<Spanned<Corners>>,
-) -> Result<Base, Error> {
-    let span = base.as_ref().map_or(0..0, Spanned::span);
-    let word = match base.map(Spanned::into_inner) {
-        Some(BaseEntry::Word(word)) => Some(word),
-        Some(BaseEntry::Pose(pose)) => {
-            source.check("the base", &pose, &span)?;
-            if let Some(bounds) = bounds {
-                let message = "the base stands still, but has bounds";
-                return Err(source
-                    .error(&bounds.span(), message)
-                    .expected("`base = \"floating\"` or `base = \"planar\"` beside them"));
-            }
-            return Ok(Base { pose, ..Base::default() });
-        }
-        None => None,
-    };
-    match (word.as_deref(), bounds) {
-        (Some("floating"), Some(bounds)) => {
-            let floating = Some(corners(source, &bounds, "`[[x, y, z], [x, y, z]]`")?);
-            Ok(Base { floating, ..Base::default() })
-        }
-        (Some("planar"), Some(bounds)) => {
-            let planar = Some(corners(source, &bounds, "`[[x, y], [x, y]]`")?);
-            Ok(Base { planar, ..Base::default() })
-        }
-        (Some("floating"), None) => {
-            let message = "the base floats without bounds";
-            Err(source.error(&span, message).expected(
-                "`bounds = [[x, y, z], [x, y, z]]` beside it: the box in which the origin of the root link moves",
-            ))
-        }
-        (Some("planar"), None) => {
-            let message = "the base moves in the plane without bounds";
-            Err(source.error(&span, message).expected(
-                "`bounds = [[x, y], [x, y]]` beside it: the rectangle in which the origin of the root link moves",
-            ))
-        }
-        (Some(word), _) => {
-            let message = format!("the base is `{}`", crate::text::clipped(word));
-            let expected = "six numbers, `[x, y, z, α, β, γ]`, \"planar\" or \"floating\"";
-            Err(source.error(&span, message).expected(expected))
-        }
-        (None, Some(bounds)) => {
-            let message = "there are bounds of a base that stands still";
-            let expected = "`base = \"floating\"` or `base = \"planar\"` beside them";
-            Err(source.error(&bounds.span(), message).expected(expected))
-        }
-        (None, None) => Ok(Base::default()),
-    }
-}
-
-/// The corners of the bounds of a base, with `N` numbers each.
-fn corners<const N: usize>(
-    source: &TomlText<'_>,
-    bounds: &Spanned<Corners>,
-    expected: &str,
-) -> Result<[[f64; N]; 2], Error> {
-    let (given, span) = (bounds.get_ref(), bounds.span());
-    source.check("the bounds of the base", &given.concat(), &span)?;
-    let expected = format!("the lower corner, then the upper: {expected}");
-    let [Ok(low), Ok(high)] = given.each_ref().map(|corner| <[f64; N]>::try_from(corner.as_slice())) else {
-        let message = format!("a corner of the bounds of the base does not have {N} numbers");
-        return Err(source.error(&span, message).expected(expected));
-    };
-    if (0..N).all(|i| low[i] < high[i]) {
-        return Ok([low, high]);
-    }
-    Err(source.error(&span, "the bounds of the base enclose nothing").expected(expected))
-}
-
-/// Which joints move, and where that is said.
-fn moving_of(
-    source: &TomlText<'_>,
-    group: Option<Spanned<String>>,
-    joints: Option<Spanned<Vec<String>>>,
-) -> Result<(Option<MovingJoints>, Range<usize>), Error> {
-    match (group, joints) {
-        (Some(_), Some(joints)) => {
-            let message = "there is a group and a list of joints";
-            Err(source.error(&joints.span(), message).expected("`group` or `joints`, not both"))
-        }
-        (Some(group), None) => Ok((Some(MovingJoints::Group(group.get_ref().clone())), group.span())),
-        (None, Some(joints)) if joints.get_ref().is_empty() => {
-            Err(source.error(&joints.span(), "no joint moves").expected("the names of one or more joints"))
-        }
-        (None, Some(joints)) => Ok((Some(MovingJoints::Listed(joints.get_ref().clone())), joints.span())),
-        (None, None) => Ok((None, 0..0)),
     }
 }
 

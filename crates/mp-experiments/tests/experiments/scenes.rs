@@ -67,7 +67,7 @@ fn a_loaded_scene_has_the_same_free_configurations() {
     agree(MOVERS[0], &poses, |row| flyer.is_valid(&pose_from_six(row)));
 
     let problem = RobotProblem::load(file(ARM)).unwrap();
-    let model = ArmModel::from_urdf(&problem.urdf, |_| Err("it has no meshes".into())).unwrap();
+    let model = ArmModel::from_urdf(&problem.robots[0].urdf, |_| Err("it has no meshes".into())).unwrap();
     let mut arm = Arm::new(&model, bodies(&problem.obstacles)).unwrap();
     agree(MOVERS[1], &rows(800, [0.0; 6], [2.6; 6]), |row| arm.is_valid(&SVector::from(row)));
 }

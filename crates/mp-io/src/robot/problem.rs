@@ -1,22 +1,17 @@
 //! Robot problems and the files they name.
 
 use super::srdf_near::srdf_near;
-use super::{RobotFile, RobotPart};
+use super::{RobotEntry, RobotFile, RobotFilePart, RobotPart};
 use crate::error::Error;
 use crate::files::{Disk, Files, MAX_TEXT_BYTES, stem};
 use crate::problem::PlacedBody;
 use crate::shape::Meshes;
 use mp_geom::pose_from_six;
-use nalgebra::Isometry3;
 use std::path::{Path, PathBuf};
 
-/// An arm, obstacles, a start and goals; all files are read except the meshes of the robot.
-#[derive(Clone, Debug)]
-pub struct RobotProblem {
-    /// The name of the file, without extension.
-    pub name: String,
-    /// The content of the file.
-    pub file: RobotFile,
+/// A robot of a problem: its description, with the files that it names but for its meshes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DescribedRobot {
     /// Where the URDF is.
     pub urdf_file: PathBuf,
     /// The content of the URDF.
@@ -29,6 +24,19 @@ pub struct RobotProblem {
     pub srdf_beside: Option<String>,
     /// The folder that `package://` means.
     pub packages: Option<PathBuf>,
+    /// Whether its meshes are solids.
+    pub solid: bool,
+}
+
+/// Arms, obstacles, a start and goals; all files are read except the meshes of the robots.
+#[derive(Clone, Debug)]
+pub struct RobotProblem {
+    /// The name of the file, without extension.
+    pub name: String,
+    /// The content of the file.
+    pub file: RobotFile,
+    /// The robots, in the order of the file.
+    pub robots: Vec<DescribedRobot>,
     /// The obstacles. Round shapes are meshes that contain them.
     pub obstacles: Vec<PlacedBody>,
     /// What links carry, each in the frame of its link; in the order of the file.
@@ -36,26 +44,21 @@ pub struct RobotProblem {
 }
 
 impl RobotProblem {
-    /// The pose of the root link in the world.
+    /// Whether both problems have the same robots: of the same files with the same descriptions, at the same places, with the same
+    /// limits, none of which are for a start.
     #[must_use]
-    pub fn base(&self) -> Isometry3<f64> {
-        pose_from_six(self.file.base)
-    }
-
-    /// Whether both problems have the same robot: of the same files with the same descriptions, at the same place, with the same limits,
-    /// none of which are for a start.
-    #[must_use]
-    pub fn same_robot(&self, other: &Self) -> bool {
+    pub fn same_robots(&self, other: &Self) -> bool {
+        let same = |(a, b): (&RobotEntry, &RobotEntry)| {
+            (&a.name, a.base, a.floating, a.planar) == (&b.name, b.base, b.floating, b.planar)
+                && (&a.limits, &a.hold, &a.driven) == (&b.limits, &b.hold, &b.driven)
+                && (a.limit_tolerance, b.limit_tolerance) == (0.0, 0.0)
+                // Where not all joints move, the start may say where the others are held.
+                && (&a.moving, &b.moving) == (&None, &None)
+        };
         let (a, b) = (&self.file, &other.file);
-        (&self.urdf_file, &self.urdf, &self.srdf) == (&other.urdf_file, &other.urdf, &other.srdf)
-            && (&self.packages, a.base, a.floating, a.planar)
-                == (&other.packages, b.base, b.floating, b.planar)
-            && (&a.limits, &self.srdf_beside) == (&b.limits, &other.srdf_beside)
-            && (&a.hold, &a.attached) == (&b.hold, &b.attached)
-            // Where not all joints move, the start may say where the others are held.
-            && (&a.moving, &b.moving) == (&None, &None)
-            && self.attached == other.attached
-            && (a.limit_tolerance, b.limit_tolerance, a.solid) == (0.0, 0.0, b.solid)
+        self.robots == other.robots
+            && a.robots.iter().zip(&b.robots).all(same)
+            && (&a.attached, &self.attached) == (&b.attached, &other.attached)
     }
 
     /// Reads a robot problem, its URDF and SRDF and the meshes of obstacles. File names are relative to the problem
@@ -80,26 +83,8 @@ impl RobotProblem {
     pub(crate) fn of_bytes(files: &dyn Files, path: &Path, bytes: &[u8]) -> Result<Self, Error> {
         let file = RobotFile::parse(&path.display().to_string(), bytes)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let text = |part: RobotPart, name: &str| {
-            let place = folder.join(name);
-            match read_robot_text(files, &place) {
-                Ok(text) => Ok((place, text)),
-                Err(e) => Err(unusable(&file, part, &e)),
-            }
-        };
-        let (urdf_file, urdf) = text(RobotPart::Urdf, &file.urdf)?;
-        let srdf = match &file.srdf {
-            Some(name) => Some(text(RobotPart::Srdf, name)?.1),
-            None => None,
-        };
-        let (mut srdf, mut srdf_found, mut srdf_beside) = (srdf, None, None);
-        if srdf.is_none() {
-            let (found, beside) = srdf_near(files, &urdf_file, &urdf);
-            match found.filter(|_| !file.without_srdf) {
-                Some(found) => (srdf, srdf_found) = (Some(found.text), Some(found.file)),
-                None => srdf_beside = beside,
-            }
-        }
+        let robots = (0..file.robots.len()).map(|i| described(files, folder, &file, i));
+        let robots = robots.collect::<Result<_, _>>()?;
         let mut meshes = Meshes::new(files, path);
         let mut body = |name: &String, shape, pose| {
             let (from, mesh) = meshes.of(&file.source(), name, shape)?;
@@ -109,11 +94,37 @@ impl RobotProblem {
         let obstacles: Vec<_> = obstacles.collect::<Result<_, _>>()?;
         let attached = file.attached.iter().map(|entry| body(&entry.name, &entry.shape, entry.pose));
         let attached = attached.collect::<Result<_, _>>()?;
-        let packages = file.packages.as_ref().map(|name| folder.join(name));
         let name = stem(path);
         crate::trace::problem(&name, obstacles.len());
-        Ok(Self { name, file, urdf_file, urdf, srdf, srdf_found, srdf_beside, packages, obstacles, attached })
+        Ok(Self { name, file, robots, obstacles, attached })
     }
+}
+
+/// The robot number `i` of a file in `folder`.
+fn described(files: &dyn Files, folder: &Path, file: &RobotFile, i: usize) -> Result<DescribedRobot, Error> {
+    let entry = &file.robots[i];
+    let text = |part: RobotPart, name: &str| {
+        let place = folder.join(name);
+        match read_robot_text(files, &place) {
+            Ok(text) => Ok((place, text)),
+            Err(e) => Err(unusable(file, RobotFilePart::Robot(i, part), &e)),
+        }
+    };
+    let (urdf_file, urdf) = text(RobotPart::Urdf, &entry.urdf)?;
+    let srdf = match &entry.srdf {
+        Some(name) => Some(text(RobotPart::Srdf, name)?.1),
+        None => None,
+    };
+    let (mut srdf, mut srdf_found, mut srdf_beside) = (srdf, None, None);
+    if srdf.is_none() {
+        let (found, beside) = srdf_near(files, &urdf_file, &urdf);
+        match found.filter(|_| !entry.without_srdf) {
+            Some(found) => (srdf, srdf_found) = (Some(found.text), Some(found.file)),
+            None => srdf_beside = beside,
+        }
+    }
+    let packages = entry.packages.as_ref().map(|name| folder.join(name));
+    Ok(DescribedRobot { urdf_file, urdf, srdf, srdf_found, srdf_beside, packages, solid: entry.solid })
 }
 
 /// The text of a URDF or SRDF, in the encoding that it declares.
@@ -126,6 +137,6 @@ pub fn read_robot_text(files: &dyn Files, path: &Path) -> Result<String, Error> 
 }
 
 /// The error of a file that cannot be used, at the place that names it.
-fn unusable(file: &RobotFile, part: RobotPart, e: &Error) -> Error {
+fn unusable(file: &RobotFile, part: RobotFilePart, e: &Error) -> Error {
     file.fault(part, &format!("this file is not usable: {e}"), e.remedy_of_named_file()).with_kind(e.kind())
 }

@@ -24,9 +24,9 @@ fn folder(problem: &str) -> (tempfile::TempDir, std::path::PathBuf) {
 fn a_problem_and_its_files() {
     let (_dir, path) = folder(GOOD);
     let problem = RobotProblem::load(&path).unwrap();
-    assert_eq!((problem.name.as_str(), problem.urdf.as_str()), ("task", "<robot name=\"arm\"/>"));
-    assert_eq!(problem.base().translation.z, 0.5);
-    assert_eq!(problem.file.limits, [("elbow".to_owned(), [-1.0, 1.5])]);
+    assert_eq!((problem.name.as_str(), problem.robots[0].urdf.as_str()), ("task", "<robot name=\"arm\"/>"));
+    assert_eq!(problem.file.robots[0].pose().translation.z, 0.5);
+    assert_eq!(problem.file.robots[0].limits, [("elbow".to_owned(), [-1.0, 1.5])]);
     assert_eq!(problem.file.goals, [vec![1.0, 0.0], vec![0.0, -1.0]].map(crate::GoalEntry::All));
     let names: Vec<_> = problem.obstacles.iter().map(|o| o.name.as_str()).collect();
     assert_eq!(names, ["table", "obstacle 2", "obstacle 3", "obstacle 4"]);
@@ -34,7 +34,7 @@ fn a_problem_and_its_files() {
     assert_eq!(sizes[0], [0.5, 1.0, 0.05].into());
     assert!(sizes[1].x >= 0.25 && sizes[1].x < 0.256 && problem.obstacles[1].pose.translation.x == 1.0);
     assert!(sizes[3].x >= 0.1 && sizes[3].z == 0.5);
-    let error = problem.file.fault(RobotPart::Goal(1), "no", "move it");
+    let error = problem.file.fault(RobotFilePart::Goal(1), "no", "move it");
     assert_eq!((error.line(), error.column(), error.remedy()), (Some(8), Some(18), Some("move it")));
 }
 
@@ -149,12 +149,13 @@ fn a_base_floats_within_bounds() {
         RobotProblem::load(path)
     };
     let problem = at("base = \"floating\"\nbounds = [[-1, -2, 0], [1, 2, 3.5]]").unwrap();
-    assert_eq!(problem.file.floating, Some([[-1.0, -2.0, 0.0], [1.0, 2.0, 3.5]]));
-    assert_eq!(problem.file.fault(RobotPart::Base, "no", "").line(), Some(3));
-    assert_eq!(at("").unwrap().file.floating, None);
+    assert_eq!(problem.file.robots[0].floating, Some([[-1.0, -2.0, 0.0], [1.0, 2.0, 3.5]]));
+    assert_eq!(problem.file.fault(RobotFilePart::Robot(0, RobotPart::Base), "no", "").line(), Some(3));
+    assert_eq!(at("").unwrap().file.robots[0].floating, None);
     for (text, line, words) in [
         ("base = \"floating\"", 3, "without bounds"),
-        ("base = \"planar\"", 3, "`planar`"),
+        ("base = \"planar\"", 3, "without bounds"),
+        ("base = \"round\"", 3, "`round`"),
         ("base = [0, 0, 1]", 3, "floating"),
         ("bounds = [[0, 0, 0], [1, 1, 1]]", 3, "stands still"),
         ("base = [0, 0, 0, 0, 0, 0]\nbounds = [[0, 0, 0], [1, 1, 1]]", 4, "stands still"),
@@ -172,7 +173,7 @@ fn meshes_are_found() {
     let package = dir.path().join("parts/meshes");
     std::fs::create_dir_all(&package).unwrap();
     std::fs::copy(dir.path().join("wall.off"), package.join("a.off")).unwrap();
-    let mut problem = RobotProblem::load(&path).unwrap();
+    let mut problem = RobotProblem::load(&path).unwrap().robots.remove(0);
     for name in ["wall.off", "parts/meshes/a.off", "package://parts/meshes/a.off"] {
         assert!(problem.mesh(name).is_ok(), "{name}");
     }
@@ -203,7 +204,7 @@ fn packages_are_found_where_they_are_installed() {
     std::fs::create_dir_all(at("tasks")).unwrap();
     let text = "[robot]\nurdf = \"../prefix/share/robot/urdf/arm.urdf\"\n[motion]\nstart = [0]\ngoal = [1]\n";
     std::fs::write(at("tasks/task.toml"), text).unwrap();
-    let mut problem = RobotProblem::load(at("tasks/task.toml")).unwrap();
+    let mut problem = RobotProblem::load(at("tasks/task.toml")).unwrap().robots.remove(0);
     let found = [
         "../meshes/arm.off",
         "package://robot/meshes/arm.off",
@@ -306,7 +307,7 @@ fn robots_and_problems_in_toml_keep_the_axes_of_collada_and_scenes_turn_them() {
             assert!(off < 1e-12, "{what} of {asset}: {aabb:?}");
         };
         let arm = RobotProblem::load_from(&files, "arm.toml".as_ref()).unwrap();
-        is("a link", &arm.mesh_from(&files, "post.dae").unwrap(), upright);
+        is("a link", &arm.robots[0].mesh_from(&files, "post.dae").unwrap(), upright);
         is("an obstacle beside an arm", &arm.obstacles[0].mesh, upright);
         let body = crate::RigidTask::load_from(&files, "body.toml".as_ref()).unwrap();
         is("a body", &body.problem.robot.mesh, upright);

@@ -1,13 +1,13 @@
 //! Finding the meshes that a URDF names: files relative to it, and files of packages.
 
-use super::RobotProblem;
+use super::DescribedRobot;
 use crate::files::{Disk, Files};
 use crate::mesh::{Axes, read_mesh_with, solid_mesh};
 use crate::problem::{MAX_COORDINATE, vertex_beyond};
 use mp_geom::TriMesh;
 use std::path::{Path, PathBuf};
 
-impl RobotProblem {
+impl DescribedRobot {
     /// Reads a mesh that the URDF names: a file relative to the URDF, `file://` and an absolute name, or
     /// `package://PACKAGE/NAME`. A package is searched in the folder of packages that the problem gives, or else in the
     /// folders above the URDF, as `PACKAGE/NAME` and `share/PACKAGE/NAME`, and as `NAME` where the folder is called
@@ -28,7 +28,7 @@ impl RobotProblem {
     pub fn mesh_from(&self, files: &dyn Files, name: &str) -> Result<TriMesh, String> {
         let place = self.place_of(files, name)?;
         let read = read_mesh_with(files, &place, Axes::OfFile);
-        let read = read.and_then(|mesh| match self.file.solid && !files.only_reads() {
+        let read = read.and_then(|mesh| match self.solid && !files.only_reads() {
             true => solid_mesh(&place.display().to_string(), mesh),
             false => Ok(mesh),
         });

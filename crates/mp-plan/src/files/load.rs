@@ -118,7 +118,7 @@ impl Scene {
 
 /// The scene of an arm, whose base stands still or floats.
 fn arm(files: &dyn Files, problem: RobotProblem, before: Option<&Scene>) -> Result<Scene, Error> {
-    if problem.file.floating.is_some() {
+    if problem.file.robots.iter().any(|robot| robot.floating.is_some()) {
         let before = before.and_then(Scene::robot);
         let scene = crate::FloatingScene::from_problem_after(files, problem, before)?;
         let notes = scene.said();

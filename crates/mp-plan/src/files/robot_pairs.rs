@@ -31,7 +31,10 @@ impl RobotPairs {
         let model = model_of(&files as &dyn Files, &problem)?;
         let pairs = model.sampled_pairs(interrupt);
         let pairs = pairs.map_err(|e| Error::new(e.to_string()).context(file.display().to_string()))?;
-        Ok(Self { robot: robot_name(&problem.urdf).unwrap_or_else(|| problem.name.clone()), pairs })
+        Ok(Self {
+            robot: problem.robots.first().and_then(|robot| robot_name(&robot.urdf)).unwrap_or(problem.name),
+            pairs,
+        })
     }
 
     /// The SRDF: see [`SampledPairs::srdf`].

@@ -22,7 +22,7 @@ use mp_cspace::{
     Manhattan, MotionClearance, ObstacleKnowledge, Path, ScaledEuclidean, Space, TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, continued_six, pose_from_six, six_from_pose};
-use mp_io::{Disk, Files, PlacedBody, RobotPart, RobotProblem};
+use mp_io::{DescribedRobot, Disk, Files, PlacedBody, RobotFilePart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, JointKind};
 use nalgebra::Isometry3;
 use named::NamedValues;
@@ -237,7 +237,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
         before: Option<&Self>,
     ) -> Result<Self, Error> {
         let known =
-            before.filter(|before| before.source.as_ref().is_some_and(|known| known.same_robot(&problem)));
+            before.filter(|before| before.source.as_ref().is_some_and(|known| known.same_robots(&problem)));
         let (arm, said) = match known {
             Some(before) => {
                 let (kinematics, model) = (before.arm.kinematics(), before.arm.model());
@@ -480,8 +480,8 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         let error = match &self.source {
             Some(problem) => {
                 let part = match end {
-                    End::Start => RobotPart::Start,
-                    End::Goal(i) => RobotPart::Goal(self.entries.get(i).copied().unwrap_or(i)),
+                    End::Start => RobotFilePart::Start,
+                    End::Goal(i) => RobotFilePart::Goal(self.entries.get(i).copied().unwrap_or(i)),
                 };
                 problem.file.fault(part, &message, &help).into()
             }
@@ -525,9 +525,8 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
             ("base".to_owned(), base),
             ("pairs".to_owned(), format!("{pairs} of links must not touch")),
         ];
-        if let Some(problem) = &self.source {
-            details.insert(0, ("urdf".to_owned(), problem.urdf_file.display().to_string()));
-        }
+        let urdf = |robot: &DescribedRobot| ("urdf".to_owned(), robot.urdf_file.display().to_string());
+        details.splice(0..0, self.source.iter().flat_map(|problem| problem.robots.iter().map(urdf)));
         let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
         details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
         // Those that are said are among the notes of the scene.

@@ -14,6 +14,7 @@ mod parts;
 mod pose_goals;
 mod relax;
 mod robots;
+mod several_robots;
 mod snake_field;
 mod which_joints;
 mod wrench;

@@ -15,6 +15,7 @@ mod planar_base;
 mod robot;
 mod sampled;
 mod srdf;
+mod together;
 mod travel;
 #[cfg(feature = "urdf")]
 mod urdf;

@@ -159,7 +159,7 @@ impl SharedArm {
         }
     }
 
-    fn checked_pairs(&self) -> impl Iterator<Item = [&str; 2]> {
+    pub(super) fn checked_pairs(&self) -> impl Iterator<Item = [&str; 2]> {
         self.pairs.iter().map(|pair| pair.bodies.map(|body| self.name(body)))
     }
 

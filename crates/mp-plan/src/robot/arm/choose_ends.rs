@@ -53,7 +53,11 @@ impl ArmScene {
             true => "",
             false => ", or rather the nearest configuration found at which no links touch",
         };
-        let file = problem.urdf_file.file_name().map(|name| name.to_string_lossy().into_owned());
+        let file = problem
+            .robots
+            .first()
+            .and_then(|robot| robot.urdf_file.file_name())
+            .map(|name| name.to_string_lossy().into_owned());
         let chosen = [
             format!(
                 "{} is a robot alone. Every joint starts at zero, or at the limit nearest to zero{}",

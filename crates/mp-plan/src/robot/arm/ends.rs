@@ -5,7 +5,7 @@ use crate::goals::GoalPart;
 use crate::robot::DrivenScene;
 use crate::{Error, Interrupt};
 use mp_cspace::Configuration;
-use mp_io::{GoalEntry, RobotFile, RobotPart, RobotProblem};
+use mp_io::{GoalEntry, RobotFile, RobotFilePart, RobotPart, RobotProblem};
 use mp_robot::Arm;
 use std::f64::consts::FRAC_PI_2;
 
@@ -31,23 +31,23 @@ impl<C: LinkedSpace> LinkedScene<C> {
     /// When the length of a configuration does not fit the robot, or a goal cannot be reached by it: with the line of the file.
     pub(super) fn ends(problem: &RobotProblem, arm: &Arm, interrupt: &Interrupt) -> Result<Ends, Error> {
         let (file, names) = (&problem.file, Self::names(arm));
-        let (driven, row) = (file.driven.as_ref(), file.start.row());
+        let (driven, row) = (file.robots[0].driven.as_ref(), file.start.row());
         let state_names = driven.map_or_else(|| names.clone(), |driven| driven.state_names(&names));
         let floats = arm.kinematics().floats();
         if row.len() != state_names.len()
             && let Some(wrong) = wrong_count("the start", row, &names)
         {
-            return Err(fault(file, RobotPart::Start, wrong));
+            return Err(fault(file, RobotFilePart::Start, wrong));
         }
         if floats && driven.is_some() {
             let message = "a robot whose base floats cannot move by inputs here".to_owned();
             let help = "leave `kind` out, or give the base a place: `base = [x, y, z, α, β, γ]`".to_owned();
-            return Err(fault(file, RobotPart::Robot, [message, help]));
+            return Err(fault(file, RobotFilePart::Robot(0, RobotPart::Robot), [message, help]));
         }
         let start = row[..names.len()].to_vec();
         let mut ends = Ends { start, goals: Vec::new(), entries: Vec::new(), said: Vec::new() };
         for (i, goal) in file.goals.iter().enumerate() {
-            let wrong = |wrong| fault(file, RobotPart::Goal(i), wrong);
+            let wrong = |wrong| fault(file, RobotFilePart::Goal(i), wrong);
             if let (GoalEntry::Pose(entry), None, Ok(joints)) = (goal, driven, arm.space()) {
                 let start = joints.wrapped(&within(joints.ranges(), row).into());
                 let found = pose_goals::goals(arm, &joints, entry, &start, interrupt);
@@ -61,12 +61,14 @@ impl<C: LinkedSpace> LinkedScene<C> {
             ends.entries.resize(ends.goals.len(), i);
         }
         if let Some(driven) = driven {
-            driven.check(&names).map_err(|wrong| fault(file, RobotPart::Robot, wrong))?;
+            driven
+                .check(&names)
+                .map_err(|wrong| fault(file, RobotFilePart::Robot(0, RobotPart::Robot), wrong))?;
             let exact = |goal: &Vec<GoalPart>| goal.iter().any(|part| matches!(part, GoalPart::Exactly(_)));
             if let Some(i) = ends.goals.iter().position(exact) {
                 let message = "a robot that moves by inputs cannot reach these numbers exactly".to_owned();
                 let help = "say `tolerance = 0.1` in [motion], or give intervals: { joint = [1.0, 1.2] }";
-                return Err(fault(file, RobotPart::Goal(i), [message, help.to_owned()]));
+                return Err(fault(file, RobotFilePart::Goal(i), [message, help.to_owned()]));
             }
         }
         ends.goals.iter_mut().for_each(|goal| goal.truncate(names.len()));
@@ -74,7 +76,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
     }
 }
 
-fn fault(file: &RobotFile, part: RobotPart, [message, help]: [String; 2]) -> Error {
+fn fault(file: &RobotFile, part: RobotFilePart, [message, help]: [String; 2]) -> Error {
     file.fault(part, &message, &help).into()
 }
 
@@ -121,7 +123,7 @@ impl ArmScene {
     /// When the arm cannot move so.
     pub fn driven(&self) -> Result<Option<DrivenScene>, Error> {
         let Some(file) = self.source.as_ref().map(|problem| &problem.file) else { return Ok(None) };
-        let Some(driven) = &file.driven else { return Ok(None) };
+        let Some(driven) = &file.robots[0].driven else { return Ok(None) };
         let names: Vec<_> = self.arm.coordinates().iter().map(|c| c.name.clone()).collect();
         let state_names = driven.state_names(&names);
         let parts =

@@ -3,17 +3,18 @@
 use super::{LinkedSpace, read};
 use crate::{Error, count};
 use mp_cspace::FloatingJoints;
-use mp_io::{GoalEntry, RobotPart, RobotProblem, StartEntry};
+use mp_io::{GoalEntry, MovingJoints, RobotFilePart, RobotProblem, StartEntry};
 use mp_robot::{ArmModel, Kinematics, SrdfGroups};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The values of joints by name (rad or m).
 type Values = BTreeMap<String, f64>;
 
-/// What a problem calls by names: the groups and states of its SRDF, and the joints that its start names.
+/// What a problem calls by names: the groups and states of the SRDFs of its robots, and the joints that its start names.
 #[derive(Debug, Default)]
 pub(super) struct NamedValues {
-    groups: SrdfGroups,
+    /// Those of each robot.
+    groups: Vec<SrdfGroups>,
     start: Values,
 }
 
@@ -21,28 +22,30 @@ impl NamedValues {
     /// Those of a problem.
     ///
     /// # Errors
-    /// When the SRDF is none, or has no state of the name that the start has.
+    /// When an SRDF is none, or has no state of the name that the start has.
     pub(super) fn of(problem: &RobotProblem) -> Result<Self, Error> {
         let file = &problem.file;
         let by_name = matches!(file.start, StartEntry::Named(_) | StartEntry::State(_))
-            || file.moving.is_some()
+            || file.robots.iter().any(|robot| robot.moving.is_some())
             || file.goals.iter().any(|goal| matches!(goal, GoalEntry::State(_)));
-        let groups = match problem.srdf.as_ref().filter(|_| by_name) {
-            Some(text) => SrdfGroups::from_srdf(text).map_err(|e| read::srdf_fault(problem, &e))?,
-            None => SrdfGroups::default(),
-        };
-        let mut named = Self { groups, start: Values::new() };
+        let groups = problem.robots.iter().enumerate().map(|(i, robot)| {
+            match robot.srdf.as_ref().filter(|_| by_name) {
+                Some(text) => SrdfGroups::from_srdf(text).map_err(|e| read::srdf_fault(problem, i, &e)),
+                None => Ok(SrdfGroups::default()),
+            }
+        });
+        let mut named = Self { groups: groups.collect::<Result<_, _>>()?, start: Values::new() };
         named.start = match &file.start {
             StartEntry::All(_) => Values::new(),
             StartEntry::Named(values) => values.clone(),
-            StartEntry::State(state) => named.state(problem, RobotPart::Start, state)?,
+            StartEntry::State(state) => named.state(problem, RobotFilePart::Start, state)?,
         };
         Ok(named)
     }
 
-    /// The groups of the SRDF.
-    pub(super) fn groups(&self) -> &SrdfGroups {
-        &self.groups
+    /// The groups of the SRDF of a robot.
+    pub(super) fn groups(&self, robot: usize) -> &SrdfGroups {
+        &self.groups[robot]
     }
 
     /// The value that the start has for a joint, if it names that.
@@ -50,24 +53,30 @@ impl NamedValues {
         self.start.get(joint).copied()
     }
 
-    /// The values of a state: of all groups that have one of this name, where they differ those of the group that moves.
-    fn state(&self, problem: &RobotProblem, part: RobotPart, name: &str) -> Result<Values, Error> {
-        let (mut states, file) = (Vec::new(), &problem.file);
-        states.extend(self.groups.states().iter().filter(|state| state.name == name));
-        if states.is_empty() {
-            let mut known: Vec<_> = self.groups.states().iter().map(|state| state.name.as_str()).collect();
-            known.sort_unstable();
-            known.dedup();
-            let help = match (&problem.srdf, known.is_empty()) {
-                (None, _) => "give numbers, or an SRDF by `srdf` in [robot]: there is none".to_owned(),
-                (_, true) => "give numbers: the SRDF names no states".to_owned(),
-                _ => format!("the SRDF has the states {}", known.join(", ")),
-            };
-            return Err(file.fault(part, &format!("there is no state \"{name}\""), &help).into());
+    /// The values of a state: of all robots and groups that have one of this name, where they differ those of the group that moves.
+    fn state(&self, problem: &RobotProblem, part: RobotFilePart, name: &str) -> Result<Values, Error> {
+        let (mut values, mut known) = (Values::new(), BTreeSet::new());
+        let mut found = false;
+        for (i, groups) in self.groups.iter().enumerate() {
+            let (prefix, moving) = (problem.file.prefix(i), &problem.file.robots[i].moving);
+            known.extend(groups.states().iter().map(|state| state.name.as_str()));
+            let mut states: Vec<_> = groups.states().iter().filter(|state| state.name == name).collect();
+            states.sort_by_key(
+                |state| matches!(moving, Some(MovingJoints::Group(group)) if *group == state.group),
+            );
+            found |= !states.is_empty();
+            let all = states.into_iter().flat_map(|state| &state.values);
+            values.extend(all.map(|(joint, value)| (format!("{prefix}{joint}"), *value)));
         }
-        let moves = |group: &str| matches!(&file.moving, Some(mp_io::MovingJoints::Group(moving)) if *moving == group);
-        states.sort_by_key(|state| moves(&state.group));
-        Ok(states.into_iter().flat_map(|state| state.values.iter().cloned()).collect())
+        if found {
+            return Ok(values);
+        }
+        let help = match (problem.robots.iter().any(|robot| robot.srdf.is_some()), known.is_empty()) {
+            (false, _) => "give numbers, or an SRDF by `srdf` in [robot]: there is none".to_owned(),
+            (_, true) => "give numbers: the SRDF names no states".to_owned(),
+            _ => format!("the SRDF has the states {}", known.into_iter().collect::<Vec<_>>().join(", ")),
+        };
+        Err(problem.file.fault(part, &format!("there is no state \"{name}\""), &help).into())
     }
 }
 
@@ -109,7 +118,7 @@ pub(super) fn resolve(
             {
                 let message = format!("the start names `{stray}`, which the robot does not have");
                 let help = format!("in order: {}", names.join(", "));
-                return Err(problem.file.fault(RobotPart::Start, &message, &help).into());
+                return Err(problem.file.fault(RobotFilePart::Start, &message, &help).into());
             }
             problem.file.start = StartEntry::All(row(&values));
         }
@@ -120,7 +129,7 @@ pub(super) fn resolve(
     }
     for i in 0..problem.file.goals.len() {
         let GoalEntry::State(state) = &problem.file.goals[i] else { continue };
-        let values = named.state(problem, RobotPart::Goal(i), state)?;
+        let values = named.state(problem, RobotFilePart::Goal(i), state)?;
         tell(state, &values);
         problem.file.goals[i] = GoalEntry::All(row(&values));
     }

@@ -3,33 +3,74 @@
 use super::named::{NamedValues, resolve};
 use super::{HAIR, LinkedScene, LinkedSpace};
 use crate::{Error, brief, count, plain};
-use mp_cspace::{FloatingJoints, Interrupt, JointRange};
-use mp_geom::{Aabb, TriMesh};
-use mp_io::{Files, MovingJoints, RobotPart, RobotProblem};
+use mp_cspace::{FloatingJoints, JointRange};
+use mp_geom::Aabb;
+use mp_io::{DescribedRobot, Files, MovingJoints, RobotEntry, RobotFilePart, RobotPart, RobotProblem};
 use mp_robot::{Arm, ArmError, ArmModel, Kinematics, UrdfError};
 
-/// The robot of a problem, without what its SRDF says.
+/// One robot of a problem.
+#[derive(Clone, Copy)]
+struct One<'a> {
+    problem: &'a RobotProblem,
+    index: usize,
+    entry: &'a RobotEntry,
+    described: &'a DescribedRobot,
+}
+
+impl One<'_> {
+    /// An error about a part of the robot in the file of the problem.
+    fn fault(self, part: RobotPart, message: impl ToString, help: &str) -> Error {
+        self.problem.file.fault(RobotFilePart::Robot(self.index, part), &message.to_string(), help).into()
+    }
+}
+
+/// The robots of a problem.
+fn robots(problem: &RobotProblem) -> impl Iterator<Item = One<'_>> {
+    let all = problem.file.robots.iter().zip(&problem.robots).enumerate();
+    all.map(move |(index, (entry, described))| One { problem, index, entry, described })
+}
+
+/// The robot of a problem that has one, without what its SRDF says.
+///
+/// # Errors
+/// When its URDF or its limits are not valid, or there are several robots.
 pub(crate) fn model_of(files: &dyn Files, problem: &RobotProblem) -> Result<ArmModel, Error> {
-    let mut mesh = |name: &str| problem.mesh_from(files, name);
-    let mut model = from_urdf(problem, &mut mesh, &files.interrupt())?;
-    model.base = problem.base();
-    model.floating = problem.file.floating.map(|[low, high]| Aabb::new(low.into(), high.into()));
-    for (i, (joint, [low, high])) in problem.file.limits.iter().enumerate() {
-        model = model.with_limits(joint, *low, *high).map_err(|e| {
-            problem.file.fault(RobotPart::Limits(i), &e.to_string(), "name joints as the URDF does")
-        })?;
+    let mut all = robots(problem);
+    match (all.next(), all.next()) {
+        (Some(robot), None) => described(files, robot),
+        _ => {
+            Err(Error::new(format!("{} has several robots", problem.name))
+                .help("name the URDF of one of them"))
+        }
+    }
+}
+
+/// The model of the URDF of a robot, at its place and with its limits.
+fn described(files: &dyn Files, robot: One<'_>) -> Result<ArmModel, Error> {
+    let One { entry, described, .. } = robot;
+    let mesh = |name: &str| described.mesh_from(files, name);
+    let mut model = ArmModel::from_urdf_until(&described.urdf, mesh, &files.interrupt())
+        .map_err(|e| in_urdf(described, e.line().map(|line| line as usize), e.message(), e.remedy()))?;
+    model.base = entry.pose();
+    model.floating = entry.floating.map(|[low, high]| Aabb::new(low.into(), high.into()));
+    for (i, (joint, [low, high])) in entry.limits.iter().enumerate() {
+        let limited = model.with_limits(joint, *low, *high);
+        model = limited.map_err(|e| robot.fault(RobotPart::Limits(i), e, NAMES))?;
     }
     Ok(model)
 }
 
-/// The model with what the SRDF of the problem says. Notes say what was found and what is not read.
-fn with_srdf(model: ArmModel, problem: &RobotProblem) -> Result<ArmModel, Error> {
-    let Some(srdf) = &problem.srdf else { return Ok(model) };
+/// What to do about names that a robot does not have.
+const NAMES: &str = "name links and joints as the URDF does";
+
+/// The model with what the SRDF of its robot says. Notes say what was found and what is not read.
+fn with_srdf(model: ArmModel, robot: One<'_>) -> Result<ArmModel, Error> {
+    let Some(srdf) = &robot.described.srdf else { return Ok(model) };
     let before = model.notes.len();
-    let mut model = model.with_srdf(srdf).map_err(|e| srdf_fault(problem, &e))?;
-    let name = srdf_name(problem);
+    let mut model = model.with_srdf(srdf).map_err(|e| srdf_fault(robot.problem, robot.index, &e))?;
+    let name = srdf_name(robot.problem, robot.index);
     model.notes[before..].iter_mut().for_each(|note| *note = format!("{name}: {note}"));
-    if problem.srdf_found.is_some() {
+    if robot.described.srdf_found.is_some() {
         let pairs = count(model.may_touch.as_ref().map_or(0, Vec::len), "pair");
         let note = format!(
             "{name} was found: it lets {pairs} of links touch. A robot problem names another by `srdf`, or says `srdf = false`"
@@ -40,24 +81,23 @@ fn with_srdf(model: ArmModel, problem: &RobotProblem) -> Result<ArmModel, Error>
 }
 
 /// The model of which only those joints move that the problem lets move. Notes say which others are held, and where.
-fn with_moving(mut model: ArmModel, problem: &RobotProblem, named: &NamedValues) -> Result<ArmModel, Error> {
-    let file = &problem.file;
-    for (i, (joint, value)) in file.hold.iter().enumerate() {
+fn with_moving(mut model: ArmModel, robot: One<'_>, named: &NamedValues) -> Result<ArmModel, Error> {
+    for (i, (joint, value)) in robot.entry.hold.iter().enumerate() {
         let held = model.holding(joint, *value);
-        model =
-            held.map_err(|e| file.fault(RobotPart::Hold(i), &e.to_string(), "name joints as the URDF does"))?;
+        model = held.map_err(|e| robot.fault(RobotPart::Hold(i), e, NAMES))?;
     }
     let wrong = |message: String| {
         let help = "name a group of the SRDF, or joints that move by themselves: `joints = [\"joint1\", \"joint2\"]`";
-        Error::from(file.fault(RobotPart::Moving, &message, help))
+        robot.fault(RobotPart::Moving, message, help)
     };
-    let joints = match &file.moving {
+    let joints = match &robot.entry.moving {
         None => return Ok(model),
         Some(MovingJoints::Listed(joints)) => joints.clone(),
-        Some(MovingJoints::Group(group)) => named.groups().joints(&model, group).map_err(wrong)?,
+        Some(MovingJoints::Group(group)) => named.groups(robot.index).joints(&model, group).map_err(wrong)?,
     };
-    let (mut model, held) =
-        model.with_only(&joints, |joint| named.value(joint)).map_err(|e| wrong(e.to_string()))?;
+    let prefix = robot.problem.file.prefix(robot.index);
+    let at = |joint: &str| named.value(&format!("{prefix}{joint}"));
+    let (mut model, held) = model.with_only(&joints, at).map_err(|e| wrong(e.to_string()))?;
     if !held.is_empty() {
         let listed = held.iter().take(8).map(|(joint, value)| format!("{joint} at {}", plain(*value)));
         let more = held.len().saturating_sub(8);
@@ -72,49 +112,79 @@ fn with_moving(mut model: ArmModel, problem: &RobotProblem, named: &NamedValues)
 fn with_attached(mut model: ArmModel, problem: &RobotProblem) -> Result<ArmModel, Error> {
     for (i, (entry, body)) in problem.file.attached.iter().zip(&problem.attached).enumerate() {
         let attached = model.attached(&body.name, &body.mesh, &entry.link, &body.pose, &entry.may_touch);
-        model = attached.map_err(|e| {
-            problem.file.fault(RobotPart::Attached(i), &e.to_string(), "name links as the URDF does")
-        })?;
+        let wrong = |e: ArmError| problem.file.fault(RobotFilePart::Attached(i), &e.to_string(), NAMES);
+        model = attached.map_err(wrong)?;
     }
     Ok(model)
+}
+
+/// The robots of a problem as one, and how many of its notes are about what was ignored in URDFs.
+fn together(
+    files: &dyn Files,
+    problem: &RobotProblem,
+    named: &NamedValues,
+) -> Result<(ArmModel, usize), Error> {
+    let (mut all, mut ignored) = (Vec::new(), Vec::new());
+    for robot in robots(problem) {
+        let mut model = described(files, robot)?;
+        let prefix = problem.file.prefix(robot.index);
+        ignored.extend(std::mem::take(&mut model.notes));
+        let mut model = with_moving(model, robot, named)?;
+        if let Some([low, high]) = robot.entry.planar {
+            let help = "give that joint of the URDF another name";
+            model = model.with_planar_base(low, high).map_err(|e| robot.fault(RobotPart::Base, e, help))?;
+        }
+        all.push((prefix, with_srdf(model, robot)?));
+    }
+    let mut model = match (all.pop(), all.is_empty()) {
+        (Some((_, only)), true) => only,
+        (last, _) => {
+            all.extend(last);
+            for ((_, model), robot) in all.iter().zip(robots(problem)) {
+                Kinematics::new(model).map_err(|e| wrong_model(problem, robot.index, "", &e))?;
+            }
+            ArmModel::together(all, &files.interrupt()).map_err(|e| wrong_arm(problem, &e))?
+        }
+    };
+    let count = ignored.len();
+    model.notes.splice(0..0, ignored);
+    Ok((with_attached(model, problem)?, count))
+}
+
+/// The error of a model that is not valid, in the URDF that it is of.
+fn wrong_arm(problem: &RobotProblem, e: &ArmError) -> Error {
+    let (_, name) = e.element().unwrap_or_default();
+    let of = |i: &usize| name.starts_with(&problem.file.prefix(*i));
+    let index = (0..problem.robots.len()).find(of).unwrap_or_default();
+    wrong_model(problem, index, &problem.file.prefix(index), e)
+}
+
+/// The same of the robot `index`, of which names begin with `prefix`.
+fn wrong_model(problem: &RobotProblem, index: usize, prefix: &str, e: &ArmError) -> Error {
+    let robot = &problem.robots[index];
+    let line = e
+        .element()
+        .and_then(|(element, name)| line_of(&robot.urdf, element, name.strip_prefix(prefix).unwrap_or(name)));
+    in_urdf(robot, line, e.to_string(), "correct the links and joints of the URDF")
 }
 
 impl<C: LinkedSpace> LinkedScene<C> {
     /// The arm of a problem among its obstacles, and what decides which joints move and which links may touch. The start and the goals
     /// of the problem that are given by names are numbers then.
     pub(super) fn arm_of(files: &dyn Files, problem: &mut RobotProblem) -> Result<(Arm, Vec<String>), Error> {
-        let model = model_of(files, problem)?;
-        let of_urdf = model.notes.len();
         let named = NamedValues::of(problem)?;
-        let mut model = with_moving(model, problem, &named)?;
-        if let Some([low, high]) = problem.file.planar {
-            let moved = model.with_planar_base(low, high);
-            model = moved.map_err(|e| {
-                problem.file.fault(
-                    RobotPart::Base,
-                    &e.to_string(),
-                    "give that joint of the URDF another name",
-                )
-            })?;
-        }
-        let mut model = with_attached(with_srdf(model, problem)?, problem)?;
-        let in_urdf = |problem: &RobotProblem, e: ArmError| {
-            let line = e.element().and_then(|(element, name)| line_of(&problem.urdf, element, name));
-            in_urdf(problem, line, e.to_string(), "correct the links and joints of the URDF")
-        };
-        let kinematics = Kinematics::new(&model).map_err(|e| in_urdf(problem, e))?;
+        let (mut model, ignored) = together(files, problem, &named)?;
+        let kinematics = Kinematics::new(&model).map_err(|e| wrong_arm(problem, &e))?;
         let resolved = resolve(problem, &named, &kinematics, &model)?;
         model.notes.extend(resolved);
-        if problem.file.limit_tolerance > 0.0 {
-            model = with_start(model, &kinematics, problem).map_err(|e| in_urdf(problem, e))?;
-        }
+        let model = with_start(model, &kinematics, problem).map_err(|e| wrong_arm(problem, &e))?;
         let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
-        let arm = Arm::new_until(&model, bodies, &files.interrupt()).map_err(|e| in_urdf(problem, e))?;
+        let arm = Arm::new_until(&model, bodies, &files.interrupt()).map_err(|e| wrong_arm(problem, &e))?;
         let notes = &arm.model().notes;
         for note in notes {
-            tracing::info!("{}: {note}", problem.urdf_file.display());
+            tracing::info!("{}: {note}", problem.name);
         }
-        let said = notes[of_urdf..].to_vec();
+        let said = notes[ignored..].to_vec();
         Ok((arm, said))
     }
 }
@@ -126,11 +196,16 @@ fn with_start(
     problem: &RobotProblem,
 ) -> Result<ArmModel, ArmError> {
     let base = if kinematics.floats() { <FloatingJoints as LinkedSpace>::BASE.len() } else { 0 };
+    let tolerance = |name: &str| {
+        let mut all = problem.file.robots.iter().enumerate();
+        let own = all.find(|(i, _)| name.starts_with(&problem.file.prefix(*i)));
+        own.map_or(0.0, |(_, entry)| entry.limit_tolerance)
+    };
     for (coordinate, x) in kinematics.coordinates().iter().zip(problem.file.start.row().iter().skip(base)) {
         let JointRange::Interval { low, high } = coordinate.range else { continue };
         let limit = x.clamp(low, high);
-        let beyond = (x - limit).abs();
-        if beyond > HAIR && beyond <= problem.file.limit_tolerance + HAIR {
+        let (beyond, tolerance) = ((x - limit).abs(), tolerance(&coordinate.name));
+        if tolerance > 0.0 && beyond > HAIR && beyond <= tolerance + HAIR {
             let (name, beyond) = (&coordinate.name, brief(beyond));
             model.notes.push(format!(
                 "the start has \"{name}\" {beyond} beyond its limit {}: paths may go that far",
@@ -142,14 +217,15 @@ fn with_start(
     Ok(model)
 }
 
-/// What fails when the robot of a problem cannot be made.
+/// What fails when the robots of a problem cannot be made.
 pub(super) fn what(problem: &RobotProblem) -> String {
-    format!("cannot make a robot of {}", problem.urdf_file.display())
+    let files: Vec<_> = problem.robots.iter().map(|robot| robot.urdf_file.display().to_string()).collect();
+    format!("cannot make a robot of {}", files.join(" and "))
 }
 
-/// The name of the SRDF of a problem, in messages.
-fn srdf_name(problem: &RobotProblem) -> String {
-    match (&problem.file.srdf, &problem.srdf_found) {
+/// The name of the SRDF of a robot of a problem, in messages.
+fn srdf_name(problem: &RobotProblem, robot: usize) -> String {
+    match (&problem.file.robots[robot].srdf, &problem.robots[robot].srdf_found) {
         (Some(name), _) => name.clone(),
         (None, Some(found)) => found.display().to_string(),
         (None, None) => String::new(),
@@ -157,9 +233,9 @@ fn srdf_name(problem: &RobotProblem) -> String {
 }
 
 /// The error of an SRDF that cannot be used: where the problem names it, or in the file itself.
-pub(super) fn srdf_fault(problem: &RobotProblem, e: &UrdfError) -> Error {
+pub(super) fn srdf_fault(problem: &RobotProblem, robot: usize, e: &UrdfError) -> Error {
     let help = "name an SRDF of this robot by `srdf` in a robot problem, or say `srdf = false`";
-    match (&problem.srdf_found, &problem.srdf) {
+    match (&problem.robots[robot].srdf_found, &problem.robots[robot].srdf) {
         (Some(found), Some(text)) => {
             let kind = mp_io::ErrorKind::Content;
             let error = match e.line() {
@@ -168,7 +244,7 @@ pub(super) fn srdf_fault(problem: &RobotProblem, e: &UrdfError) -> Error {
             };
             error.help(help).into()
         }
-        _ => problem.file.fault(RobotPart::Srdf, &e.to_string(), help).into(),
+        _ => problem.file.fault(RobotFilePart::Robot(robot, RobotPart::Srdf), &e.to_string(), help).into(),
     }
 }
 
@@ -183,15 +259,23 @@ pub(super) fn srdf_help(problem: &RobotProblem, touching: &[[&str; 2]]) -> Strin
         return format!("if they may touch, say `may_touch = [\"{link}\"]` where \"{thing}\" is attached");
     }
     let in_srdf = "if these links may touch, say so by <disable_collisions> in";
-    if problem.srdf.is_some() {
-        return format!("{in_srdf} {}", srdf_name(problem));
+    // Those of one robot: links of different ones are never allowed to touch.
+    let of = |links: &[&str; 2]| {
+        (0..problem.robots.len())
+            .find(|i| links.iter().all(|link| link.starts_with(&problem.file.prefix(*i))))
+    };
+    let own = if touching.is_empty() { Some(0) } else { touching.iter().find_map(of) };
+    let Some(index) = own else { return "move one of the robots, or its base".to_owned() };
+    let robot = &problem.robots[index];
+    if robot.srdf.is_some() {
+        return format!("{in_srdf} {}", srdf_name(problem, index));
     }
-    let urdf = problem.urdf_file.display();
+    let urdf = robot.urdf_file.display();
     let made = format!(
         "`mp srdf {urdf} --out {}` makes one from samples",
-        problem.urdf_file.with_extension("srdf").display()
+        robot.urdf_file.with_extension("srdf").display()
     );
-    match &problem.srdf_beside {
+    match &robot.srdf_beside {
         Some(beside) => format!(
             "{in_srdf} an SRDF: `srdf = \"{beside}\"` in a robot problem takes the one beside the URDF; {made}"
         ),
@@ -199,21 +283,11 @@ pub(super) fn srdf_help(problem: &RobotProblem, touching: &[[&str; 2]]) -> Strin
     }
 }
 
-/// The model of a URDF. `mesh` finds its meshes.
-fn from_urdf(
-    problem: &RobotProblem,
-    mesh: impl FnMut(&str) -> Result<TriMesh, String>,
-    interrupt: &Interrupt,
-) -> Result<ArmModel, Error> {
-    ArmModel::from_urdf_until(&problem.urdf, mesh, interrupt)
-        .map_err(|e| in_urdf(problem, e.line().map(|line| line as usize), e.message(), e.remedy()))
-}
-
-/// An error in the URDF of a problem, in a line if that is known.
-fn in_urdf(problem: &RobotProblem, line: Option<usize>, message: String, remedy: &str) -> Error {
-    let (kind, file) = (mp_io::ErrorKind::Content, problem.urdf_file.display());
+/// An error in the URDF of a robot, in a line if that is known.
+fn in_urdf(robot: &DescribedRobot, line: Option<usize>, message: String, remedy: &str) -> Error {
+    let (kind, file) = (mp_io::ErrorKind::Content, robot.urdf_file.display());
     let error = match line {
-        Some(line) => mp_io::Error::in_line(kind, file, &problem.urdf, line, message),
+        Some(line) => mp_io::Error::in_line(kind, file, &robot.urdf, line, message),
         None => mp_io::Error::new(kind, file, message),
     };
     error.help(remedy).into()
