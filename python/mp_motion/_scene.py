@@ -168,7 +168,7 @@ class Scene:
         Parameters
         ----------
         document : mapping
-            The tables of the file: ``robot``, ``motion``, ``obstacle``, ``attached``, ``moving``, ``world``. Values may be arrays.
+            The tables of the file: ``robot``, ``motion``, ``obstacle``, ``attached``, ``then``, ``moving``, ``world``. Values may be arrays.
         files : mapping, optional
             Contents of files that the document names. Others are read from the disk.
         name : str
@@ -513,6 +513,37 @@ class Scene:
         False
         """
         return self._from(self._native.keeping(float(clearance)), self._robot)
+
+    @property
+    def parts_left(self) -> int:
+        """How many parts of the motion come after this one: see :meth:`next_part`."""
+        return self._native.parts_left
+
+    def next_part(self, end: ArrayLike) -> Scene | None:
+        """Return the scene of the next part of the motion, in which something may be attached to a link or put down.
+
+        Parameters
+        ----------
+        end : array_like, shape (numbers,)
+            Where this part has ended: the last row of its path.
+
+        Returns
+        -------
+        Scene or None
+            None when this is the last part.
+
+        Examples
+        --------
+        >>> scene = mp.Scene("carry")
+        >>> paths = []
+        >>> while scene is not None:
+        ...     paths.append(scene.plan().path)
+        ...     scene = scene.next_part(paths[-1][-1])
+        >>> len(paths)
+        3
+        """
+        native = self._native.next_part([float(x) for x in np.asarray(end, dtype=np.float64)])
+        return None if native is None else self._from(native, self._robot)
 
     @property
     def clearance_kept(self) -> float:
@@ -986,6 +1017,7 @@ def _restored(
     shipped: str | None,
     main: str | None,
     files: dict[str, bytes],
+    parts: list[list[float]],
     ends: tuple[list[float], list[list[float]]] | None,
     clearance: float = 0.0,
 ) -> Scene:
@@ -996,6 +1028,8 @@ def _restored(
         native = _mp.Scene.from_files(main, files, False)
     else:
         raise Error("the scene was not made from files, and cannot be read back")
+    for end in parts:
+        native = native.next_part(end) or native
     return Scene._from((native if ends is None else native.with_ends(*ends)).keeping(clearance))
 
 

@@ -52,6 +52,8 @@ pub(crate) struct Scene {
     given: Given,
     /// The name of a shipped scene.
     shipped: Option<String>,
+    /// Where the parts of its motion before it have ended.
+    parts: Vec<Vec<f64>>,
     /// Start and goals in place of those of the files, as they were given.
     ends: Option<Ends>,
     /// Of an own robot, the exception that one of its functions raised.
@@ -115,6 +117,7 @@ impl Scene {
             scene,
             given: Given { disk: on_disk, ..Given::default() },
             shipped,
+            parts: Vec::new(),
             ends: None,
             failure: None,
         })
@@ -133,7 +136,7 @@ impl Scene {
             let scene = mp_plan::Scene::load_from(&Until { files: &given, interrupt }, &main)?;
             Ok(scene)
         })?;
-        Ok(Self { scene, given, shipped: None, ends: None, failure: None })
+        Ok(Self { scene, given, shipped: None, parts: Vec::new(), ends: None, failure: None })
     }
 
     /// The scene of an own robot.
@@ -141,7 +144,14 @@ impl Scene {
     fn own(robot: own::Given, start: Vec<f64>, goals: Vec<Vec<f64>>) -> PyResult<Self> {
         let (robot, failure) = Own::new(robot, &start, &goals).to_python()?;
         let scene = mp_plan::Scene::new(robot);
-        Ok(Self { scene, given: Given::default(), shipped: None, ends: None, failure: Some(failure) })
+        Ok(Self {
+            scene,
+            given: Given::default(),
+            shipped: None,
+            parts: Vec::new(),
+            ends: None,
+            failure: Some(failure),
+        })
     }
 
     /// With another start and other goals.
@@ -155,19 +165,37 @@ impl Scene {
         Ok(Self { scene: self.scene.keeping(clearance).to_python()?, ..self.clone() })
     }
 
+    /// How many parts of its motion come after this one.
+    #[getter]
+    fn parts_left(&self) -> usize {
+        self.scene.parts_left()
+    }
+
+    /// The next part of its motion, when this one has ended at the row `end`.
+    fn next_part(&self, py: Python<'_>, end: Vec<f64>) -> PyResult<Option<Self>> {
+        let cancel = mp_plan::Cancel::new();
+        let interrupt = Interrupt::new(cancel.clone());
+        let next = || self.scene.next_part(&end, &interrupt);
+        let (next, raised) = self.work(py, &cancel, None, |_| next())?;
+        raised.map_or(Ok(()), Err)?;
+        let parts = [&self.parts[..], &[end]].concat();
+        Ok(next.to_python()?.map(|scene| Self { scene, parts, ends: None, ..self.clone() }))
+    }
+
     /// The clearance (m) that it keeps.
     #[getter]
     fn clearance_kept(&self) -> f64 {
         self.scene.clearance_kept()
     }
 
-    /// What makes the scene again: the name of a shipped scene or of the main file, the contents of all files, other start and goals, and
-    /// the clearance kept.
+    /// What makes the scene again: the name of a shipped scene or of the main file, the contents of all files, where the parts before it
+    /// have ended, other start and goals, and the clearance kept.
     #[expect(clippy::type_complexity, reason = "the state of a pickle, which only `mp_motion` reads")]
     fn state<'py>(
         &self,
         py: Python<'py>,
-    ) -> PyResult<(Option<String>, Option<PathBuf>, Bound<'py, PyDict>, Option<Ends>, f64)> {
+    ) -> PyResult<(Option<String>, Option<PathBuf>, Bound<'py, PyDict>, Vec<Vec<f64>>, Option<Ends>, f64)>
+    {
         let files = PyDict::new(py);
         if self.shipped.is_none() {
             for path in self.scene.inputs() {
@@ -176,7 +204,14 @@ impl Scene {
             }
         }
         let main = self.scene.file().map(Path::to_owned);
-        Ok((self.shipped.clone(), main, files, self.ends.clone(), self.scene.clearance_kept()))
+        Ok((
+            self.shipped.clone(),
+            main,
+            files,
+            self.parts.clone(),
+            self.ends.clone(),
+            self.scene.clearance_kept(),
+        ))
     }
 
     #[getter]

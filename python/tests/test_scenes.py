@@ -234,6 +234,23 @@ def test_arms_of_which_not_all_moves_and_that_carry_something() -> None:
     assert [c.name for c in both.columns] == ["left/a", "left/b", "right/a", "right/b"]
 
 
+def test_motions_of_several_parts() -> None:
+    scene = mp.Scene("carry")
+    assert scene.parts_left == 2
+    first = scene.plan(seed=1)
+    assert first.path is not None
+    second = scene.next_part(first.path[-1])
+    assert second is not None and second.parts_left == 1 and np.array_equal(second.start, first.path[-1])
+    report = second.plan(seed=1)
+    again = pickle.loads(pickle.dumps(second))
+    assert again.plan(seed=1).fingerprint == report.fingerprint and again.parts_left == 1
+    assert report.path is not None
+    third = second.next_part(report.path[-1])
+    assert third is not None and third.next_part(third.start) is None
+    with pytest.raises(mp.Error):
+        scene.next_part([0.0])
+
+
 @pytest.mark.parametrize("name", ["easy", "arm", "rrs-low", "wrench", "parking", "crossing"])
 def test_scenes_and_reports_pickle(name: str) -> None:
     scene = mp.Scene(name)

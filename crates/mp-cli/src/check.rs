@@ -4,30 +4,58 @@ use crate::cli::Check;
 use crate::input::{path, refuse_two_standard_inputs, scene};
 use crate::interrupt;
 use crate::output::{Claims, note, print, print_json, write};
-use mp_plan::{Error, Interrupt, Scene, brief, plain};
+use mp_plan::{Error, Interrupt, PathRows, Scene, brief, plain};
 use std::path::Path;
 
-/// Verifies a path, or explains a configuration. True when the path or configuration is free.
+/// Verifies paths, or explains a configuration. True when the paths or the configuration are free.
 pub(crate) fn run(args: &Check) -> Result<bool, Error> {
-    refuse_two_standard_inputs(&args.scene, args.path.as_deref())?;
+    args.paths.iter().try_for_each(|path| refuse_two_standard_inputs(&args.scene, Some(path)))?;
     let scene = scene(&args.scene)?.keeping(args.clearance.unwrap_or(0.0))?;
     if let Some(numbers) = &args.at {
         return explain(&scene, numbers, args.json);
     }
-    let Some(file) = &args.path else { return Err(Error::new("name a path")) };
+    let (parts, given) = (1 + scene.parts_left(), args.paths.len());
+    if given > parts {
+        let message = format!(
+            "{given} paths are given, and the motion has {parts} part{}",
+            if parts == 1 { "" } else { "s" }
+        );
+        return Err(Error::new(message).help("name one path, or those of the parts of the motion in order"));
+    }
     if let Some(certificate) = &args.certificate {
+        if given > 1 {
+            return Err(Error::new("--certificate: there are several paths").help("name one path"));
+        }
         let mut claims = Claims::default();
         scene.inputs_on_disk().iter().for_each(|file| claims.input(file));
-        claims.input(file);
+        args.paths.iter().for_each(|file| claims.input(file));
         claims.output("--certificate", certificate)?;
     }
-    let rows = path(&scene, file)?;
-    let mut verdict = scene.check(&rows)?;
+    let (mut scene, mut free) = (scene, true);
+    for (i, file) in args.paths.iter().enumerate() {
+        let rows = path(&scene, file)?;
+        free &= one(args, &scene, (file, &rows))?;
+        if i + 1 < given
+            && let Some(end) = rows.rows.last()
+            && let Some(next) = scene.next_part(end, &Interrupt::new(interrupt::flag()))?
+        {
+            scene = next;
+        }
+    }
+    if given < parts {
+        note(&format!("the motion has {parts} parts: the paths of {given} were checked"));
+    }
+    Ok(free)
+}
+
+/// Verifies one path. True when it is free.
+fn one(args: &Check, scene: &Scene, (file, rows): (&Path, &PathRows)) -> Result<bool, Error> {
+    let mut verdict = scene.check(rows)?;
     if let (Some(file), true) = (&args.certificate, verdict.free) {
-        let certificate = scene.certificate(&rows, verdict.clearance, &Interrupt::new(interrupt::flag()))?;
+        let certificate = scene.certificate(rows, verdict.clearance, &Interrupt::new(interrupt::flag()))?;
         write(file, certificate.to_json().as_bytes())?;
     }
-    (verdict.scene, verdict.path) = (shown(&scene, &args.scene), file.display().to_string());
+    (verdict.scene, verdict.path) = (shown(scene, &args.scene), file.display().to_string());
     match args.json {
         true => print_json(&verdict)?,
         false => {

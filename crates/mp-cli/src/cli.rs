@@ -220,11 +220,11 @@ pub(crate) struct Merge {
 pub(crate) struct Check {
     /// A scene file, or the name of a shipped scene; `-` for standard input.
     pub(crate) scene: PathBuf,
-    /// A path: text, `.json` or `.csv`; `-` for standard input.
+    /// A path: text, `.json` or `.csv`; `-` for standard input. Of a motion of several parts, the paths of its parts in order.
     #[arg(required_unless_present = "at")]
-    pub(crate) path: Option<PathBuf>,
+    pub(crate) paths: Vec<PathBuf>,
     /// Explain this configuration instead: numbers separated by blanks or commas.
-    #[arg(long, value_name = "NUMBERS", conflicts_with = "path", allow_hyphen_values = true)]
+    #[arg(long, value_name = "NUMBERS", conflicts_with = "paths", allow_hyphen_values = true)]
     pub(crate) at: Option<String>,
     /// The clearance from obstacles that is asked for, metres: what comes nearer is not free.
     #[arg(long, value_name = "M", value_parser = positive_number)]

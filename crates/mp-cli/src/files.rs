@@ -83,22 +83,23 @@ impl Files {
     }
 
     /// Refuses files that cannot be written, have no known format, or are claimed already, before any work is done. With
-    /// `routes`, each of that number of routes has files of its own.
+    /// `several`, each of that number of routes or parts has files of its own.
     pub(crate) fn claim(
         &self,
         claims: &mut Claims,
         scene: &Scene,
         seed: u64,
-        routes: Option<u16>,
+        several: Option<usize>,
     ) -> Result<(), Error> {
         let (out, picture) = self.of(scene.name(), seed);
         let certificate = self.certificate(scene.name(), seed);
         for (option, file) in [("--out", &out), ("--picture", &picture), ("--certificate", &certificate)] {
-            match (file, routes) {
+            match (file, several) {
                 (None, _) => {}
                 (Some(file), None) => claims.output(option, file)?,
-                (Some(file), Some(count)) => (1..=usize::from(count))
-                    .try_for_each(|number| claims.output(option, &numbered(file, number)))?,
+                (Some(file), Some(count)) => {
+                    (1..=count).try_for_each(|number| claims.output(option, &numbered(file, number)))?
+                }
             }
         }
         if let Some(out) = out.as_ref().filter(|out| !is_standard(out)) {

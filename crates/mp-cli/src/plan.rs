@@ -49,6 +49,9 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
         scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
     let jobs: Vec<(usize, u64)> =
         (0..scenes.len()).flat_map(|i| (request.seed..=last).map(move |seed| (i, seed))).collect();
+    if jobs.len() > 1 || args.portfolio.is_some() || args.routes.is_some() {
+        refuse_parts(&scenes)?;
+    }
     check_files(args, &files, &scenes, &jobs)?;
     for scene in &scenes {
         for odd in scene.check_ends()? {
@@ -65,9 +68,14 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     if let (Some(count), [scene], [request]) = (args.routes, scenes.as_slice(), requests.as_slice()) {
         return routes(args, scene, request, count, (&cancel, spent), &files);
     }
+    if let ([scene], [request]) = (scenes.as_slice(), requests.as_slice())
+        && scene.parts_left() > 0
+    {
+        return parts(args, scene, request, (&cancel, spent), &files);
+    }
     // Runs have a thread each when there are several.
     let threads = if single { args.threads } else { 1 };
-    let settings = RunSettings { args, files: &files, watched: single, threads };
+    let settings = RunSettings { args, files: &files, watched: single, threads, part: None };
     let job = |(i, seed): (usize, u64)| one(&scenes[i], &requests[i], seed, (&cancel, spent), &settings);
     let mut reports = match jobs.as_slice() {
         [] => Vec::new(),
@@ -110,6 +118,15 @@ fn refuse_several(args: &Plan, named: &[PathBuf]) -> Result<(), Error> {
         return Err(Error::new("--out -: there is a file for each route").help("name a file"));
     }
     Ok(())
+}
+
+/// Refuses motions of several parts among several runs.
+fn refuse_parts(scenes: &[Scene]) -> Result<(), Error> {
+    match scenes.iter().find(|scene| scene.parts_left() > 0) {
+        None => Ok(()),
+        Some(scene) => Err(Error::new(format!("the motion of {} has several parts", scene.name()))
+            .help("plan it alone, without --runs, --routes and --portfolio")),
+    }
 }
 
 /// Loads the scenes. Returns those that are ready, and a report for each that was interrupted.
@@ -191,6 +208,40 @@ fn routes(
     Ok(solved >= usize::from(count))
 }
 
+/// Plans the parts of a motion one after the other, and writes each to files of its own. True when all are solved.
+fn parts(
+    args: &Plan,
+    scene: &Scene,
+    request: &Request,
+    (cancel, mut spent): (&Cancel, Duration),
+    files: &Files,
+) -> Result<bool, Error> {
+    let (mut reports, mut scene, count) = (Vec::new(), scene.clone(), 1 + scene.parts_left());
+    let name = scene.name().to_owned();
+    let interrupt = Interrupt::new(cancel.clone());
+    for number in 1..=count {
+        let part = Some((number, name.clone()));
+        let settings = RunSettings { args, files, watched: true, threads: args.threads, part };
+        let report = one(&scene, request, request.seed, (cancel, spent), &settings)?;
+        spent = Duration::ZERO;
+        let end = report.path.as_ref().and_then(|path| path.last().cloned());
+        reports.push(report);
+        let Some(end) = end else { break };
+        let Some(next) = scene.next_part(&end, &interrupt)? else { break };
+        next.check_ends().map_err(|e| e.context(format!("part {} of {count}", number + 1)))?;
+        scene = next;
+    }
+    let solved = reports.len() == count && reports.iter().all(|report| report.solved);
+    if args.json {
+        print_json(&Runs::new(reports))?;
+    } else {
+        for (i, report) in reports.iter().enumerate() {
+            print(&format!("part {} of {count}\n{}", i + 1, summary(report)))?;
+        }
+    }
+    Ok(solved)
+}
+
 /// Refuses outputs that cannot be written, that are inputs, and two outputs in the same file.
 fn check_files(args: &Plan, files: &Files, scenes: &[Scene], jobs: &[(usize, u64)]) -> Result<(), Error> {
     let mut claims = Claims::default();
@@ -203,7 +254,9 @@ fn check_files(args: &Plan, files: &Files, scenes: &[Scene], jobs: &[(usize, u64
         claims.output("--checkpoint", file)?;
     }
     for &(i, seed) in jobs {
-        files.claim(&mut claims, &scenes[i], seed, args.routes)?;
+        let parts = 1 + scenes[i].parts_left();
+        let several = args.routes.map(usize::from).or((parts > 1).then_some(parts));
+        files.claim(&mut claims, &scenes[i], seed, several)?;
     }
     if let Some(folder) = &args.export {
         for file in scenes.iter().flat_map(|scene| mp_io::exported_files(scene.name())) {
@@ -219,6 +272,8 @@ struct RunSettings<'a> {
     files: &'a Files,
     watched: bool,
     threads: u16,
+    /// The number of a part of a motion, and the name of the scene of the first one.
+    part: Option<(usize, String)>,
 }
 
 impl RunSettings<'_> {
@@ -245,10 +300,15 @@ fn one(
     settings: &RunSettings<'_>,
 ) -> Result<Report, Error> {
     let RunSettings { files, watched, threads, .. } = *settings;
+    let (name, named) = match &settings.part {
+        Some((number, name)) => (name.as_str(), Some(*number)),
+        None => (scene.name(), None),
+    };
+    let named = |file: PathBuf| named.map_or(file.clone(), |number| numbered(&file, number));
     let began = mp_plan::Clock::default().now();
     let request = Request { seed, ..request.clone() };
     let mut line = Line::new(scene.name(), request.budget.time_s, watched);
-    let (out, file) = files.of(scene.name(), seed);
+    let [out, file] = <[_; 2]>::from(files.of(name, seed)).map(|file| file.map(named));
     let drawing = drawing(scene, &request, file.as_deref(), threads);
     let picture =
         file.map(|file| Ok::<_, Error>((Picture::of(scene, &file, &drawing, true)?, file))).transpose()?;
@@ -264,7 +324,7 @@ fn one(
         line.say("writing the path");
         write_path(&mut report, &path, &file)?;
     }
-    if let Some(file) = files.certificate(scene.name(), seed) {
+    if let Some(file) = files.certificate(name, seed).map(named) {
         line.say("writing the certificate");
         let interrupt = time_limit(&request, cancel, began.saturating_sub(spent));
         let certificate = scene.certificate(&path, report.clearance.unwrap_or(0.0), &interrupt)?;

@@ -64,8 +64,8 @@ pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
 pub use problem_file::ProblemFile;
 pub use rigid_toml::{RigidMoving, RigidTask};
 pub use robot::{
-    AttachedEntry, DescribedRobot, FoundSrdf, MovingJoints, ObstacleEntry, RobotEntry, RobotFile,
-    RobotFilePart, RobotPart, RobotProblem, read_robot_text, robot_name,
+    AttachedEntry, DescribedRobot, FoundSrdf, MovingJoints, ObstacleEntry, PartChange, PartEntry, RobotEntry,
+    RobotFile, RobotFilePart, RobotPart, RobotProblem, read_robot_text, robot_name,
 };
 pub use shape::ShapeEntry;
 pub use toml_problem::{GoalEntry, GoalPart, StartEntry, Timing};

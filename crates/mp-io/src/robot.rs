@@ -1,6 +1,7 @@
 //! Robot problems: an arm, obstacles, a start and goals, in TOML.
 
 mod entry;
+mod parts;
 mod problem;
 mod srdf_near;
 #[cfg(test)]
@@ -9,6 +10,8 @@ mod urdf_mesh;
 
 pub use entry::{MovingJoints, RobotEntry, RobotPart};
 use entry::{RobotTables, robots_of};
+pub use parts::{PartChange, PartEntry};
+use parts::{PartTable, part_of};
 pub use problem::{DescribedRobot, RobotProblem, read_robot_text};
 pub use srdf_near::{FoundSrdf, robot_name};
 
@@ -65,6 +68,10 @@ pub struct RobotFile {
     pub obstacles: Vec<ObstacleEntry>,
     /// What links carry.
     pub attached: Vec<AttachedEntry>,
+    /// Which part of the motion this is, from 1.
+    pub part: usize,
+    /// The parts of the motion after this one.
+    pub parts: Vec<PartEntry>,
     places: MotionPlaces,
     text: String,
     file: String,
@@ -81,6 +88,8 @@ pub enum RobotFilePart {
     Goal(usize),
     /// What is attached, of this index.
     Attached(usize),
+    /// The next part of the motion.
+    Next,
 }
 
 #[derive(Deserialize)]
@@ -92,6 +101,8 @@ struct File {
     obstacle: Vec<Spanned<Shaped<ObstacleTable>>>,
     #[serde(default)]
     attached: Vec<Spanned<Shaped<AttachedTable>>>,
+    #[serde(default)]
+    then: Vec<Spanned<PartTable>>,
 }
 
 #[derive(Deserialize)]
@@ -119,7 +130,7 @@ impl RobotFile {
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
         let source = TomlText { file, text, guide: GUIDE };
-        let File { robot, motion, obstacle, attached } = source.read()?;
+        let File { robot, motion, obstacle, attached, then } = source.read()?;
         let robots = robots_of(&source, robot)?;
         let state =
             |what: &str, q: &Spanned<StartEntry>| source.check(what, &q.get_ref().numbers(), &q.span());
@@ -144,6 +155,8 @@ impl RobotFile {
             tolerance: motion.tolerance,
             obstacles: obstacles.collect::<Result<_, _>>()?,
             attached: attached.collect::<Result<_, _>>()?,
+            part: 1,
+            parts: then.into_iter().map(|table| part_of(&source, table)).collect::<Result<_, _>>()?,
             places: motion.places,
             text: text.to_owned(),
             file: file.to_owned(),
@@ -166,6 +179,7 @@ impl RobotFile {
             }
             RobotFilePart::Start => &self.places.start,
             RobotFilePart::Goal(i) => self.places.goal(i),
+            RobotFilePart::Next => self.parts.first().map_or(&self.places.start, |part| &part.place),
             RobotFilePart::Attached(i) => {
                 self.attached.get(i).map_or(&self.places.start, |entry| &entry.place)
             }

@@ -222,7 +222,7 @@ impl GoalEntry {
     expecting = "a goal is a list of numbers, or a table of the numbers that are fixed, such as { x = 1.0, y = [2.0, 2.5] }, or of a \
                  link and its pose, such as { link = \"tool\", pose = [0.4, 0, 0.3, 0, 3.14, 0] }, or the name of a state of an SRDF"
 )]
-enum GoalText {
+pub(crate) enum GoalText {
     All(Vec<f64>),
     State(String),
     Named(BTreeMap<String, PartText>),
@@ -280,7 +280,7 @@ pub struct Timing {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MotionPlaces {
     pub(crate) start: Range<usize>,
-    goals: Vec<Range<usize>>,
+    pub(crate) goals: Vec<Range<usize>>,
     pub(crate) tolerance: Option<Range<usize>>,
     pub(crate) speed: Option<Range<usize>>,
 }
@@ -302,6 +302,39 @@ impl<S> MotionTable<S> {
         check: impl Fn(&str, &Spanned<S>) -> Result<(), Error>,
     ) -> Result<Motion<S>, Error> {
         check("the start", &self.start)?;
+        let goals = Goals { goal: self.goal, goals: self.goals }.read(text, &self.start.span())?;
+        let places = MotionPlaces {
+            start: self.start.span(),
+            goals: goals.iter().map(|(_, place)| place.clone()).collect(),
+            tolerance: self.tolerance.as_ref().map(Spanned::span),
+            speed: self.speed.as_ref().map(Spanned::span),
+        };
+        let goals = goals.into_iter().map(|(goal, _)| goal).collect();
+        let tolerance = match &self.tolerance {
+            None => 0.0,
+            Some(given) => {
+                text.positive("the tolerance", &[*given.get_ref()], &given.span())?;
+                *given.get_ref()
+            }
+        };
+        let timing = timing(text, by_inputs, self.speed, self.start_time, self.goal_time, self.horizon)?;
+        Ok(Motion { start: self.start.into_inner(), goals, tolerance, timing, places })
+    }
+}
+
+/// A goal, or several, of a table that may have others.
+pub(crate) struct Goals {
+    pub(crate) goal: Option<Spanned<GoalText>>,
+    pub(crate) goals: Option<Spanned<Vec<Spanned<GoalText>>>>,
+}
+
+impl Goals {
+    /// The goals, at least one, and where each is. Without any the error is at `place`.
+    pub(crate) fn read(
+        self,
+        text: &TomlText<'_>,
+        place: &Range<usize>,
+    ) -> Result<Vec<(GoalEntry, Range<usize>)>, Error> {
         let goals = match (self.goal, self.goals) {
             (Some(goal), None) => vec![goal],
             (None, Some(goals)) if !goals.get_ref().is_empty() => goals.into_inner(),
@@ -314,60 +347,44 @@ impl<S> MotionTable<S> {
             }
             (None, None) => {
                 let message = "the motion has no goal";
-                let expected = "`goal = [...]` beside `start`";
-                return Err(text.error(&self.start.span(), message).expected(expected));
+                return Err(text.error(place, message).expected("`goal = [...]` beside `start`"));
             }
         };
-        let places = MotionPlaces {
-            start: self.start.span(),
-            goals: goals.iter().map(Spanned::span).collect(),
-            tolerance: self.tolerance.as_ref().map(Spanned::span),
-            speed: self.speed.as_ref().map(Spanned::span),
-        };
-        let goals = goals.into_iter().map(|goal| {
-            let span = goal.span();
-            let goal = match goal.into_inner() {
-                GoalText::All(values) => GoalEntry::All(values),
-                GoalText::State(name) => GoalEntry::State(name),
-                GoalText::Named(parts) if parts.is_empty() => {
-                    let message = "the goal asks for nothing";
-                    return Err(text
-                        .error(&span, message)
-                        .expected("at least one number, such as { x = 1.0 }"));
-                }
-                GoalText::Named(parts) if matches!(parts.get("link"), Some(PartText::Text(_))) => {
-                    GoalEntry::Pose(PoseEntry::read(text, parts, &span)?)
-                }
-                GoalText::Named(parts) => {
-                    let parts = parts.into_iter().map(|(name, part)| match part {
-                        PartText::Exactly(v) => Ok((name, GoalPart::Exactly(v))),
-                        PartText::Between(range) => {
-                            let what = format!("{} of the goal", clipped(&name));
-                            Ok((name, GoalPart::Between(interval(text, &what, range, &span)?)))
-                        }
-                        PartText::Numbers(_) | PartText::Text(_) => {
-                            let message =
-                                format!("{} of the goal is neither a number nor an interval", clipped(&name));
-                            Err(text.error(&span, message).expected("such as { x = 1.0, y = [2.0, 2.5] }"))
-                        }
-                    });
-                    GoalEntry::Named(parts.collect::<Result<_, Error>>()?)
-                }
-            };
-            text.check("the goal", &goal.numbers(), &span)?;
-            Ok(goal)
-        });
-        let goals = goals.collect::<Result<_, Error>>()?;
-        let tolerance = match &self.tolerance {
-            None => 0.0,
-            Some(given) => {
-                text.positive("the tolerance", &[*given.get_ref()], &given.span())?;
-                *given.get_ref()
-            }
-        };
-        let timing = timing(text, by_inputs, self.speed, self.start_time, self.goal_time, self.horizon)?;
-        Ok(Motion { start: self.start.into_inner(), goals, tolerance, timing, places })
+        goals.into_iter().map(|goal| one_goal(text, goal)).collect()
     }
+}
+
+/// A goal, and where it is.
+fn one_goal(text: &TomlText<'_>, goal: Spanned<GoalText>) -> Result<(GoalEntry, Range<usize>), Error> {
+    let span = goal.span();
+    let goal = match goal.into_inner() {
+        GoalText::All(values) => GoalEntry::All(values),
+        GoalText::State(name) => GoalEntry::State(name),
+        GoalText::Named(parts) if parts.is_empty() => {
+            let message = "the goal asks for nothing";
+            return Err(text.error(&span, message).expected("at least one number, such as { x = 1.0 }"));
+        }
+        GoalText::Named(parts) if matches!(parts.get("link"), Some(PartText::Text(_))) => {
+            GoalEntry::Pose(PoseEntry::read(text, parts, &span)?)
+        }
+        GoalText::Named(parts) => {
+            let parts = parts.into_iter().map(|(name, part)| match part {
+                PartText::Exactly(v) => Ok((name, GoalPart::Exactly(v))),
+                PartText::Between(range) => {
+                    let what = format!("{} of the goal", clipped(&name));
+                    Ok((name, GoalPart::Between(interval(text, &what, range, &span)?)))
+                }
+                PartText::Numbers(_) | PartText::Text(_) => {
+                    let message =
+                        format!("{} of the goal is neither a number nor an interval", clipped(&name));
+                    Err(text.error(&span, message).expected("such as { x = 1.0, y = [2.0, 2.5] }"))
+                }
+            });
+            GoalEntry::Named(parts.collect::<Result<_, Error>>()?)
+        }
+    };
+    text.check("the goal", &goal.numbers(), &span)?;
+    Ok((goal, span))
 }
 
 /// An interval whose ends are in order.

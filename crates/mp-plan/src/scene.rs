@@ -267,6 +267,24 @@ impl Scene {
         arm.reaching(place, most, interrupt)
     }
 
+    /// How many parts of the motion come after this one: zero, but for arms whose problem says so.
+    #[must_use]
+    pub fn parts_left(&self) -> usize {
+        self.robot::<crate::ArmScene>().map_or(0, crate::ArmScene::parts_left)
+    }
+
+    /// The scene of the next part of the motion: see [`ArmScene::next_part`](crate::ArmScene::next_part).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn next_part(&self, end: &[f64], interrupt: &Interrupt) -> Result<Option<Self>, Error> {
+        let Some(arm) = self.robot::<crate::ArmScene>() else { return Ok(None) };
+        let Some(next) = arm.next_part(end, interrupt)? else { return Ok(None) };
+        let (notes, kept) = (next.said(), self.clearance_kept());
+        let scene = Self { robot: Arc::new(next), notes: notes.into(), ..self.clone() };
+        if kept > 0.0 { scene.keeping(kept) } else { Ok(scene) }.map(Some)
+    }
+
     /// The fraction of the space in which the robot is free, estimated from `samples` samples. The same scene gives the same
     /// fraction.
     #[must_use]

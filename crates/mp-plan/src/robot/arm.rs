@@ -3,6 +3,7 @@
 mod choose_ends;
 mod ends;
 mod named;
+mod parts;
 mod pose_goals;
 mod read;
 
@@ -248,8 +249,17 @@ impl<C: LinkedSpace> LinkedScene<C> {
             }
             None => Self::arm_of(files, &mut problem)?,
         };
-        let Ends { start, goals: parts, entries, said: of_goals } =
-            Self::ends(&problem, &arm, &files.interrupt())?;
+        Self::with_ends_of(problem, arm, said, &files.interrupt())
+    }
+
+    /// The scene of a problem, none of whose ends is given by a name any more, and of its arm.
+    fn with_ends_of(
+        problem: RobotProblem,
+        arm: Arm,
+        said: Vec<String>,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Error> {
+        let Ends { start, goals: parts, entries, said: of_goals } = Self::ends(&problem, &arm, interrupt)?;
         let goals = rows(&parts);
         let first = vec![start.clone()];
         let given = goals.as_ref().unwrap_or(&first);

@@ -102,3 +102,85 @@ fn what_cannot_be_attached_is_an_error_at_its_place() {
         assert!(words.iter().all(|word| error.contains(word)), "{attached}: {error}");
     }
 }
+
+/// A cube that is taken from one place, carried around a wall and put down at another.
+const CARRY: &str = "[motion]\nstart = [-1, 0.1, 0]\ngoal = [-0.5, 0, 0.05]\n\
+    [[obstacle]]\nname = \"cube\"\nbox = [0.1, 0.1, 0.1]\npose = [2.0009, -1.0931, 0.5, 0, 0, 0]\n\
+    [[obstacle]]\nname = \"wall\"\nbox = [0.4, 0.05, 3]\npose = [2.2, 0, 0, 0, 0, 0]\n\
+    [[then]]\nattach = \"cube\"\nto = \"tip\"\ngoal = { shoulder = 0.6, elbow = 0 }\n\
+    [[then]]\ndetach = \"cube\"\ngoal = [1, 0.5, 0]\n";
+
+#[test]
+fn a_motion_of_several_parts_carries_something() {
+    let mut scene = load(CARRY, true).unwrap();
+    let (never, mut ends) = (Interrupt::never(), Vec::new());
+    for (left, name) in [(2, "p"), (1, "p-2"), (0, "p-3")] {
+        assert_eq!((scene.parts_left(), scene.name()), (left, name));
+        let cube = scene.bodies().into_iter().find(|body| body.name == "cube").unwrap();
+        assert_eq!(cube.pose.is_none(), left == 1, "an obstacle before and after, a link in between");
+        let report = scene.plan(&Request::new("rrt-connect").iterations(20_000)).unwrap();
+        assert!(report.solved && report.verified, "{name}");
+        let path = report.path.unwrap();
+        if let Some(end) = ends.last() {
+            assert_eq!(&path[0], end);
+        }
+        ends.push(path.last().unwrap().clone());
+        match scene.next_part(ends.last().unwrap(), &never).unwrap() {
+            Some(next) => scene = next,
+            None => assert_eq!(left, 0),
+        }
+    }
+    // Put down where the tip has carried it: 2.2 m along a bar at 0.6 rad, as far from the tip as it was taken.
+    let cube = scene.bodies().into_iter().find(|body| body.name == "cube").unwrap().pose.unwrap();
+    let at = cube.translation.vector;
+    let far = (2.0009_f64 * 2.0009 + 1.0931 * 1.0931).sqrt() - 0.05 + ends[1][2];
+    assert!((at.xy().norm() - far).abs() < 1e-4 && (at.y.atan2(at.x) - 0.6).abs() < 1e-4, "{at}");
+    // What is carried is in the way: straight from one side of the wall to the other it would hit it.
+    let second = load(CARRY, true).unwrap().next_part(&ends[0], &never).unwrap().unwrap();
+    let rows = vec![ends[0].clone(), vec![0.6, 0.0, ends[0][2]]];
+    let straight = PathRows { format: second.path_format(), columns: second.columns(), rows };
+    assert!(!second.check(&straight).unwrap().free);
+}
+
+#[test]
+fn parts_that_cannot_be_are_errors_at_their_place() {
+    let with = |then: &str| {
+        let motion = CARRY.split("[[then]]").next().unwrap();
+        load(&format!("{motion}[[then]]\n{then}\n"), true)
+    };
+    for (then, words) in [
+        ("attach = \"cube\"\ngoal = [0, 0, 0]", ["p.toml:16:", "to no link", "`to = "]),
+        (
+            "attach = \"cube\"\nto = \"tip\"\ndetach = \"cube\"\ngoal = [0, 0, 0]",
+            ["p.toml:16:", "attaches and detaches", "two parts"],
+        ),
+        ("to = \"tip\"\ngoal = [0, 0, 0]", ["p.toml:16:", "nothing is attached", "`attach = "]),
+        ("attach = \"cube\"\nto = \"tip\"", ["p.toml:16:", "no goal", "`goal ="]),
+        (
+            "attach = \"cube\"\nto = \"tip\"\ngoal = []\nspeed = 1",
+            ["p.toml:20:", "speed", "robot-problem.md"],
+        ),
+    ] {
+        let error = with(then).map(|_| ()).unwrap_err().report();
+        assert!(words.iter().all(|word| error.contains(word)), "{then}: {error}");
+    }
+    for (then, words) in [
+        (
+            "attach = \"cub\"\nto = \"tip\"\ngoal = [0, 0, 0]",
+            ["p.toml:16:", "no obstacle \"cub\"", "cube, wall"],
+        ),
+        ("attach = \"cube\"\nto = \"tipp\"\ngoal = [0, 0, 0]", ["p.toml:16:", "no link \"tipp\"", ""]),
+        (
+            "attach = \"cube\"\nto = \"tip\"\nmay_touch = [\"toe\"]\ngoal = [0, 0, 0]",
+            ["p.toml:16:", "\"toe\"", "upper"],
+        ),
+        ("detach = \"cube\"\ngoal = [0, 0, 0]", ["p.toml:16:", "nothing is attached", "there are none"]),
+        ("goal = [0, 0]", ["p.toml:17:", "2 numbers", "shoulder"]),
+        ("goal = \"nowhere\"", ["p.toml:17:", "no state", "home"]),
+    ] {
+        let error = with(then).unwrap().next_part(&[-0.5, 0.0, 0.05], &Interrupt::never());
+        let error = error.map(|_| ()).unwrap_err().report();
+        assert!(words.iter().all(|word| error.contains(word)), "{then}: {error}");
+    }
+    assert!(with("goal = [0, 0, 0]").unwrap().next_part(&[0.0], &Interrupt::never()).is_err());
+}

@@ -39,4 +39,15 @@ impl ArmModel {
         self.joints.push(Joint::new(name, to, name, JointKind::Fixed).at(*pose));
         Ok(self)
     }
+
+    /// The same robot without what is [attached](Self::attached) under this name.
+    #[must_use]
+    pub fn detached(mut self, name: &str) -> Self {
+        let is_other = |(a, b): &(String, String)| a != name && b != name;
+        self.may_also_touch.retain(is_other);
+        self.kept_apart.retain(is_other);
+        self.links.retain(|link| link.name != name);
+        self.joints.retain(|joint| joint.child != name);
+        self
+    }
 }
