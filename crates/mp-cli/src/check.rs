@@ -10,7 +10,7 @@ use std::path::Path;
 /// Verifies a path, or explains a configuration. True when the path or configuration is free.
 pub(crate) fn run(args: &Check) -> Result<bool, Error> {
     refuse_two_standard_inputs(&args.scene, args.path.as_deref())?;
-    let scene = scene(&args.scene)?.keeping(args.clearance.unwrap_or(0.0))?;
+    let scene = scene(&args.scene, &args.changes.of_problem())?.keeping(args.clearance.unwrap_or(0.0))?;
     if let Some(numbers) = &args.at {
         return explain(&scene, numbers, args.json);
     }

@@ -33,6 +33,12 @@ impl ProblemFile {
         let (file, bytes) = (path.display().to_string(), files.read(path, MAX_TEXT_BYTES)?);
         let text = TomlText { file: &file, text: decode(&file, &bytes)?, guide: GUIDE };
         let tables: toml::Table = text.read()?;
+        if tables.get("robot").is_some_and(toml::Value::is_array) {
+            let at = text.text.find("[[robot]]").unwrap_or(0);
+            return Err(text.error(&(at..at + "[[robot]]".len()), "a problem has one robot, in `[robot]`").help(
+                "write `[robot]`; several arms that move together are one URDF, in which fixed joints carry them",
+            ));
+        }
         let robot = tables.get("robot").and_then(toml::Value::as_table);
         Ok(if tables.contains_key("world") {
             Self::World(Box::new(PlanarProblem::of_bytes(files, path, &bytes)?))
@@ -78,6 +84,11 @@ mod tests {
         }
         let links = "# box = 1\n[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = []\ngoal = []\n";
         assert!(matches!(load(links), Ok(ProblemFile::Links(_))));
+        let several = load(&links.replace("[robot]", "[[robot]]")).unwrap_err();
+        assert!(
+            several.line() == Some(2) && several.remedy().is_some_and(|r| r.contains("one URDF")),
+            "{several}"
+        );
         let error = load("[robot\nbox = 1").unwrap_err();
         assert!(
             error.line() == Some(1) && error.remedy().is_some_and(|r| r.contains("docs/formats")),

@@ -2,12 +2,14 @@
 
 mod problem;
 mod srdf_near;
+mod states;
 #[cfg(test)]
 mod tests;
 mod urdf_mesh;
 
 pub use problem::{RobotProblem, read_robot_text};
 pub use srdf_near::{FoundSrdf, robot_name};
+pub use states::{NamedState, named_states};
 
 use crate::drive::{DriveTable, Driven};
 use crate::error::Error;
@@ -57,8 +59,11 @@ pub struct RobotFile {
     /// How the robot moves, if it moves by inputs.
     pub driven: Option<Driven>,
     /// The joint values at the start; first the six numbers of the pose of the base, if it floats. For a robot with accelerations, its velocities may follow.
+    /// Empty for one that is chosen here, as for a URDF alone.
     pub start: Vec<f64>,
-    /// The goals, at least one.
+    /// The name of a state in the SRDF at the start, in place of numbers: see [`RobotProblem::with_states`].
+    pub start_state: Option<String>,
+    /// The goals, at least one. An empty list of numbers is one that is chosen here, as for a URDF alone.
     pub goals: Vec<GoalEntry>,
     /// How far from the goal a number of the last configuration may be; 0 when it is not given.
     pub tolerance: f64,
@@ -151,6 +156,7 @@ enum BaseEntry {
 pub(crate) struct ObstacleTable {
     name: Option<String>,
     pose: Option<Spanned<[f64; 6]>>,
+    at: Option<Spanned<[f64; 3]>>,
 }
 
 impl RobotFile {
@@ -239,6 +245,7 @@ impl RobotFile {
             limit_tolerance,
             driven,
             start: motion.start,
+            start_state: motion.start_state,
             goals: motion.goals,
             tolerance: motion.tolerance,
             obstacles: obstacles.collect::<Result<_, _>>()?,
@@ -335,6 +342,17 @@ pub(crate) fn entry(
     let own = &table.get_ref().own;
     let name = own.name.clone().unwrap_or_else(|| format!("obstacle {}", index + 1));
     let shape = table.get_ref().shape(source, &name, &table.span())?;
-    let pose = source.six("the pose", own.pose.clone())?;
+    let pose = match (&own.pose, &own.at) {
+        (Some(_), Some(at)) => {
+            let message = format!("{} has a pose, and a position", crate::text::clipped(&name));
+            return Err(source.error(&at.span(), message).expected("`pose` or `at`, not both"));
+        }
+        (None, Some(at)) => {
+            source.check("the position", at.get_ref(), &at.span())?;
+            let [x, y, z] = *at.get_ref();
+            [x, y, z, 0.0, 0.0, 0.0]
+        }
+        (pose, None) => source.six("the pose", pose.clone())?,
+    };
     Ok(ObstacleEntry { name, shape, pose })
 }

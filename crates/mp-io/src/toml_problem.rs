@@ -1,5 +1,6 @@
 //! Problems in TOML: the place of every value, so that errors can point at it, and the table of start and goals.
 
+use crate::changes::{help_of, option_at};
 use crate::error::{Error, ErrorKind};
 use crate::pose_goal::PoseEntry;
 use crate::problem::MAX_COORDINATE;
@@ -27,8 +28,7 @@ impl TomlText<'_> {
             // The parser's message may have several lines; an error has one.
             let message = e.message().split_whitespace().collect::<Vec<_>>().join(" ");
             let message = crate::text::clipped_to(&message, 300);
-            let length = span.end.saturating_sub(span.start).max(1);
-            Error::at(ErrorKind::Format, self.file, self.text, span.start, length, message).help(self.guide)
+            self.error(&span, message).with_kind(ErrorKind::Format)
         })
     }
 
@@ -44,8 +44,11 @@ impl TomlText<'_> {
     /// An error at `span`.
     pub(crate) fn error(&self, span: &Range<usize>, message: impl Into<String>) -> Error {
         let length = span.end.saturating_sub(span.start).max(1);
-        Error::at(ErrorKind::Content, self.file, self.text, span.start, length, message.into())
-            .help(self.guide)
+        let error = Error::at(ErrorKind::Content, self.file, self.text, span.start, length, message.into());
+        match option_at(self.text, span.start) {
+            Some(option) => error.in_option(option).help(help_of(option)),
+            None => error.help(self.guide),
+        }
     }
 
     /// Refuses numbers that are not finite or beyond [`MAX_COORDINATE`].
@@ -97,6 +100,8 @@ pub enum GoalEntry {
     Named(BTreeMap<String, GoalPart>),
     /// A link of an arm at a place.
     Pose(PoseEntry),
+    /// A state of an arm, by its name in the SRDF.
+    State(String),
 }
 
 impl GoalEntry {
@@ -133,6 +138,10 @@ impl GoalEntry {
                 }
                 Ok(names.iter().map(|name| parts.get(name).copied().map_or(GoalPart::Free, about)).collect())
             }
+            Self::State(name) => Err([
+                format!("{what} is the name of a state, `{}`", clipped(name)),
+                format!("numbers ({}): only robots with an SRDF have states", names.join(", ")),
+            ]),
             Self::Pose(pose) => Err([
                 format!("{what} is a place of the link `{}`", clipped(&pose.link)),
                 format!(
@@ -148,7 +157,7 @@ impl GoalEntry {
     pub fn values(&self) -> Option<&[f64]> {
         match self {
             Self::All(values) => Some(values),
-            Self::Named(_) | Self::Pose(_) => None,
+            Self::Named(_) | Self::Pose(_) | Self::State(_) => None,
         }
     }
 
@@ -156,6 +165,7 @@ impl GoalEntry {
     fn numbers(&self) -> Vec<f64> {
         match self {
             Self::All(values) => values.clone(),
+            Self::State(_) => Vec::new(),
             Self::Pose(goal) => [&goal.pose[..], &goal.within].concat(),
             Self::Named(parts) => parts
                 .values()
@@ -179,6 +189,18 @@ impl GoalEntry {
 enum GoalText {
     All(Vec<f64>),
     Named(BTreeMap<String, PartText>),
+    State(String),
+}
+
+/// The text of a start.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a start is a list of numbers, or the name of a state in the SRDF of the robot"
+)]
+enum StartText {
+    All(Vec<f64>),
+    State(String),
 }
 
 /// The text of one number of a goal.
@@ -196,7 +218,7 @@ pub(crate) enum PartText {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MotionTable {
-    start: Spanned<Vec<f64>>,
+    start: Spanned<StartText>,
     goal: Option<Spanned<GoalText>>,
     goals: Option<Spanned<Vec<Spanned<GoalText>>>>,
     tolerance: Option<Spanned<f64>>,
@@ -209,6 +231,8 @@ pub(crate) struct MotionTable {
 /// The start and the goals of a problem, at least one, and their places.
 pub(crate) struct Motion {
     pub(crate) start: Vec<f64>,
+    /// The name of the state at the start, if there are no numbers.
+    pub(crate) start_state: Option<String>,
     pub(crate) goals: Vec<GoalEntry>,
     /// How far a number of the last configuration may be from that of the goal; 0 when it is not given.
     pub(crate) tolerance: f64,
@@ -246,15 +270,21 @@ impl MotionPlaces {
 }
 
 impl MotionTable {
-    /// The start and the goals; `check` checks the numbers of the start, and takes its name in errors. `by_inputs` says that the
-    /// robot moves by inputs among obstacles that move: then it has times, and no speed.
+    /// The start and the goals; `check` checks the numbers of the start, and takes its name in errors; a start that is the
+    /// name of a state has none. `by_inputs` says that the robot moves by inputs among obstacles that move: then it has times, and no speed.
     pub(crate) fn read(
         self,
         text: &TomlText<'_>,
         by_inputs: bool,
         check: impl Fn(&str, &Spanned<Vec<f64>>) -> Result<(), Error>,
     ) -> Result<Motion, Error> {
-        check("the start", &self.start)?;
+        let span = self.start.span();
+        let (start, start_state) = match self.start.into_inner() {
+            StartText::All(values) => (values, None),
+            StartText::State(name) => (Vec::new(), Some(name)),
+        };
+        let start = Spanned::new(span, start);
+        check("the start", &start)?;
         let goals = match (self.goal, self.goals) {
             (Some(goal), None) => vec![goal],
             (None, Some(goals)) if !goals.get_ref().is_empty() => goals.into_inner(),
@@ -268,11 +298,11 @@ impl MotionTable {
             (None, None) => {
                 let message = "the motion has no goal";
                 let expected = "`goal = [...]` beside `start`";
-                return Err(text.error(&self.start.span(), message).expected(expected));
+                return Err(text.error(&start.span(), message).expected(expected));
             }
         };
         let places = MotionPlaces {
-            start: self.start.span(),
+            start: start.span(),
             goals: goals.iter().map(Spanned::span).collect(),
             tolerance: self.tolerance.as_ref().map(Spanned::span),
             speed: self.speed.as_ref().map(Spanned::span),
@@ -281,6 +311,7 @@ impl MotionTable {
             let span = goal.span();
             let goal = match goal.into_inner() {
                 GoalText::All(values) => GoalEntry::All(values),
+                GoalText::State(name) => GoalEntry::State(name),
                 GoalText::Named(parts) if parts.is_empty() => {
                     let message = "the goal asks for nothing";
                     return Err(text
@@ -318,7 +349,7 @@ impl MotionTable {
             }
         };
         let timing = timing(text, by_inputs, self.speed, self.start_time, self.goal_time, self.horizon)?;
-        Ok(Motion { start: self.start.into_inner(), goals, tolerance, timing, places })
+        Ok(Motion { start: start.into_inner(), start_state, goals, tolerance, timing, places })
     }
 }
 

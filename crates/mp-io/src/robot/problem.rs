@@ -102,7 +102,10 @@ impl RobotProblem {
         let packages = file.packages.as_ref().map(|name| folder.join(name));
         let name = stem(path);
         crate::trace::problem(&name, obstacles.len());
-        Ok(Self { name, file, urdf_file, urdf, srdf, srdf_found, srdf_beside, packages, obstacles })
+        let problem =
+            Self { name, file, urdf_file, urdf, srdf, srdf_found, srdf_beside, packages, obstacles };
+        problem.check_states()?;
+        Ok(problem)
     }
 }
 

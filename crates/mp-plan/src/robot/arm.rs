@@ -236,7 +236,6 @@ impl<C: LinkedSpace> LinkedScene<C> {
         problem: RobotProblem,
         before: Option<&Self>,
     ) -> Result<Self, Error> {
-        let of = &|e: Error| e.context(what(&problem));
         let known =
             before.filter(|before| before.source.as_ref().is_some_and(|known| known.same_robot(&problem)));
         let (arm, said) = match known {
@@ -247,6 +246,8 @@ impl<C: LinkedSpace> LinkedScene<C> {
             None => Self::arm_of(files, &problem)?,
         };
         let names = Self::names(&arm);
+        let neutral = [vec![0.0; C::BASE.len()], arm.kinematics().neutral().to_vec()].concat();
+        let problem = problem.with_states(&names, &neutral)?;
         let file = &problem.file;
         let driven = file.driven.as_ref();
         let state_names = driven.map_or_else(|| names.clone(), |driven| driven.state_names(&names));
@@ -308,7 +309,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
         let goals = rows(&parts);
         let given = goals.as_ref().unwrap_or(&first);
         let scene = Self::assembled(problem.name.clone(), arm, problem.obstacles.clone(), &start, given);
-        let scene = scene.map_err(of)?;
+        let scene = scene.map_err(|e| e.context(what(&problem)))?;
         let mut scene = Self { source: Some(Box::new(problem)), entries, said, of_goals, ..scene };
         if goals.is_none() {
             scene.goals = examples(&scene, &parts);
