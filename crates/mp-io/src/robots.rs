@@ -7,7 +7,7 @@ use std::env;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// A description of a robot with joints that move.
+/// A description of a robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FoundRobot {
     /// The name of its file, without ending.
@@ -78,6 +78,14 @@ impl RobotPath {
     /// All robots, in the order of the folders, then of their files. A file that several folders of the path hold is there once.
     #[must_use]
     pub fn all(&self) -> Vec<FoundRobot> {
+        let mut robots = self.descriptions();
+        robots.retain(|robot| robot.joints > 0);
+        robots
+    }
+
+    /// As [`all`](Self::all), and descriptions without joints that move, such as tables.
+    #[must_use]
+    pub fn descriptions(&self) -> Vec<FoundRobot> {
         let mut known = BTreeSet::new();
         let robots = self.folders.iter().flat_map(|folder| descriptions_below(folder, &|_| true));
         robots.filter(|robot| known.insert(robot.file.clone())).collect()
@@ -97,8 +105,10 @@ impl RobotPath {
                     .parent()
                     .is_some_and(|folder| folder.ends_with(wanted.parent().unwrap_or(Path::new(""))))
         };
-        let found = self.folders.iter().map(|folder| descriptions_below(folder, &is_it));
-        found.into_iter().find(|robots| !robots.is_empty()).unwrap_or_default()
+        let arms = |folder: &PathBuf| -> Vec<FoundRobot> {
+            descriptions_below(folder, &is_it).into_iter().filter(|robot| robot.joints > 0).collect()
+        };
+        self.folders.iter().map(arms).find(|robots| !robots.is_empty()).unwrap_or_default()
     }
 }
 
@@ -165,12 +175,12 @@ fn is_description(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(Content::Robot.ending()))
 }
 
-/// The robot of a file, if it has joints that move.
+/// The robot of a file.
 fn described(file: PathBuf) -> Option<FoundRobot> {
     let bytes = mp_store::read(&file, MAX_BYTES).ok()?;
     let joints = moving_joints(&String::from_utf8_lossy(&bytes));
     let name = file.file_stem()?.to_string_lossy().into_owned();
-    (joints > 0).then_some(FoundRobot { name, file, joints })
+    Some(FoundRobot { name, file, joints })
 }
 
 /// How many joints of a URDF move on their own.
@@ -184,14 +194,17 @@ fn moving_joints(urdf: &str) -> usize {
             _ => part.split_once("-->").map_or("", |(_, rest)| rest),
         })
         .collect();
-    let moves = |joint: &&str| {
+    let moves = |joint: &str| {
         let (tag, inside) = joint.split_once('>').unwrap_or((joint, ""));
         let inside = if tag.ends_with('/') { "" } else { inside.split("</joint").next().unwrap_or(inside) };
-        let kinds = ["revolute", "continuous", "prismatic"];
         let is = |kind: &str| tag.contains(&format!("\"{kind}\"")) || tag.contains(&format!("'{kind}'"));
-        joint.starts_with(char::is_whitespace) && kinds.into_iter().any(is) && !inside.contains("<mimic")
+        match joint.starts_with(char::is_whitespace) && !inside.contains("<mimic") {
+            true if is("planar") => 3,
+            true => usize::from(["revolute", "continuous", "prismatic"].into_iter().any(is)),
+            false => 0,
+        }
     };
-    text.split("<joint").skip(1).filter(moves).count()
+    text.split("<joint").skip(1).map(moves).sum()
 }
 
 #[cfg(test)]
