@@ -21,6 +21,7 @@ mod puzzles;
 mod regions;
 mod rigid;
 mod roadmaps;
+mod robots;
 mod rrs;
 mod rsrt;
 mod scale;
@@ -63,6 +64,8 @@ pub struct Options {
     rrs: rrs::Options,
     #[command(flatten)]
     puzzles: puzzles::Options,
+    #[command(flatten)]
+    robots: robots::Options,
     #[command(flatten)]
     assets: assets::Options,
 }
@@ -150,6 +153,7 @@ fn run_suite(suite: Suite, options: &Options) -> Result<bool, Error> {
         Suite::Scale => scale::run(common),
         Suite::Scaling => scaling::run(common),
         Suite::Certificates => certificates::run(common),
+        Suite::Robots => robots::run(common, &options.robots),
         Suite::Assets => assets::run(&options.assets),
         Suite::All => suite::run_each(&suite::MEASURED, |suite| run_suite(suite, options)),
     };

@@ -30,6 +30,8 @@ pub(crate) enum Suite {
     Scaling,
     /// What proofs of paths cost: certifying, and replaying by `mp-verify-certificate`.
     Certificates,
+    /// Descriptions of robots below a folder: which are planned for, and why not the rest.
+    Robots,
     /// No measurement: generate the shipped scenes, or check that they are up to date.
     Assets,
     /// All measurements, one after the other; what fails is said at the end.
@@ -66,6 +68,7 @@ impl Suite {
             Self::Scale => ["10 min", "30 s"],
             Self::Scaling => ["10 min", "1 min"],
             Self::Certificates => ["2 min", "30 s"],
+            Self::Robots => ["10 min", "2 min"],
             Self::Assets => ["10 s", "10 s"],
             Self::All => ["days", "20 min"],
         }
@@ -126,7 +129,7 @@ mod tests {
                 list.lines().any(|l| l.starts_with(&format!("  {name} ")) && l.ends_with(&what)),
                 "{name}"
             );
-            let alone = [Suite::Assets, Suite::All].contains(suite);
+            let alone = [Suite::Robots, Suite::Assets, Suite::All].contains(suite);
             assert!(MEASURED.contains(suite) != alone && !what.is_empty(), "{name}");
         }
     }

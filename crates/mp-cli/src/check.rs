@@ -10,7 +10,7 @@ use std::path::Path;
 /// Verifies paths, or explains a configuration. True when the paths or the configuration are free.
 pub(crate) fn run(args: &Check) -> Result<bool, Error> {
     args.paths.iter().try_for_each(|path| refuse_two_standard_inputs(&args.scene, Some(path)))?;
-    let scene = scene(&args.scene)?.keeping(args.clearance.unwrap_or(0.0))?;
+    let scene = scene(&args.scene, &args.changes.of_problem())?.keeping(args.clearance.unwrap_or(0.0))?;
     if let Some(numbers) = &args.at {
         return explain(&scene, numbers, args.json);
     }

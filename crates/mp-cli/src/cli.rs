@@ -3,6 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use mp_batch::Shard;
+use mp_io::ProblemChanges;
 use mp_plan::{
     FreeTurns, Length, MetricName, Mode, MotionValidator, PlannerInfo, PortfolioSchedule, RelaxField,
     Request, positive_number,
@@ -46,6 +47,9 @@ pub(crate) enum Command {
     View(View),
     /// List the shipped scenes.
     Scenes,
+    /// List the robots that can be named: URDFs in the folders of `MP_ROBOTS`, `ROS_PACKAGE_PATH` and `AMENT_PREFIX_PATH`, the cache of
+    /// `robot_descriptions` for Python (`ROBOT_DESCRIPTIONS_CACHE`), and the packages of Python.
+    Robots(Robots),
     /// Run benchmarks, with the program `mp-bench`.
     #[command(disable_help_flag = true)]
     Bench(Passed),
@@ -64,7 +68,8 @@ pub(crate) enum Command {
 
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Plan {
-    /// Scene files, or names of shipped scenes (default: the shipped sample); `-` for standard input.
+    /// Scene files, or names of shipped scenes or robots (default: the shipped sample); `-` for standard input. `mp scenes` and `mp
+    /// robots` list names.
     #[arg(value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
     /// Which planner. With `or-` before its name, independent runs of it race on all threads; with `restart-`, it
@@ -181,6 +186,32 @@ pub(crate) struct Plan {
     /// Also write each scene to this folder as one JSON and two OFF files, for other planners.
     #[arg(long, value_name = "DIR")]
     pub(crate) export: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) changes: Changes,
+}
+
+/// What replaces or joins parts of a scene.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "The problem")]
+pub(crate) struct Changes {
+    /// Another start: numbers separated by commas or blanks, or the name of a state in the SRDF of the robot.
+    #[arg(long, alias = "start", value_name = "START", allow_hyphen_values = true)]
+    pub(crate) from: Option<String>,
+    /// Another goal, in place of all others; with several, a path ends at any of them. Numbers, a name, or what stands in a goal of a
+    /// problem, such as "link = 'hand', pose = [0.5, 0, 0.3, 0, 3.14, 0]".
+    #[arg(long, alias = "goal", value_name = "GOAL", allow_hyphen_values = true)]
+    pub(crate) to: Vec<String>,
+    /// One more obstacle: what stands in an obstacle of a problem, such as "box = [0.4, 0.4, 0.02], at = [0.5, 0, 0.3]".
+    #[arg(long, value_name = "OBSTACLE")]
+    pub(crate) obstacle: Vec<String>,
+}
+
+impl Changes {
+    /// As libraries take them.
+    pub(crate) fn of_problem(&self) -> ProblemChanges {
+        let Self { from, to, obstacle } = self.clone();
+        ProblemChanges { from, to, obstacles: obstacle }
+    }
 }
 
 #[derive(Clone, Debug, Args)]
@@ -235,6 +266,8 @@ pub(crate) struct Check {
     /// Print one JSON object on standard output.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) changes: Changes,
 }
 
 #[derive(Clone, Debug, Args)]
@@ -271,6 +304,12 @@ pub(crate) struct Ik {
     /// How far the origin may be off along each axis of the pose, metres.
     #[arg(long, value_name = "M", value_parser = positive_number)]
     pub(crate) within: Option<f64>,
+    /// Where searches begin, and what the free ones are sorted by: see `mp plan --from`.
+    #[arg(long, value_name = "START", allow_hyphen_values = true)]
+    pub(crate) from: Option<String>,
+    /// One more obstacle: see `mp plan --obstacle`.
+    #[arg(long, value_name = "OBSTACLE")]
+    pub(crate) obstacle: Vec<String>,
     /// At most this many free ones.
     #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) most: u16,
@@ -283,12 +322,23 @@ pub(crate) struct Ik {
 }
 
 #[derive(Clone, Debug, Args)]
+pub(crate) struct Robots {
+    /// Only robots with this in their names.
+    pub(crate) word: Option<String>,
+    /// Print one JSON array on standard output.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Debug, Args)]
 pub(crate) struct Info {
     /// A mesh, scene or path file, or the name of a shipped scene.
     pub(crate) file: PathBuf,
     /// Print one JSON object on standard output.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) changes: Changes,
 }
 
 #[derive(Clone, Debug, Args)]
@@ -304,6 +354,8 @@ pub(crate) struct Render {
     pub(crate) picture: PathBuf,
     #[command(flatten)]
     pub(crate) drawing: Drawing,
+    #[command(flatten)]
+    pub(crate) changes: Changes,
 }
 
 /// How pictures and films are drawn.
@@ -380,6 +432,8 @@ pub(crate) struct View {
     /// The folder where the page saves files [default: that of the scene, or the current one].
     #[arg(long, value_name = "DIR")]
     pub(crate) folder: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) changes: Changes,
 }
 
 /// Arguments for another program.

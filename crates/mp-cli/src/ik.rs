@@ -3,6 +3,7 @@
 use crate::input::{numbers, scene};
 use crate::output::{note, print, print_json};
 use crate::{cli, interrupt};
+use mp_io::ProblemChanges;
 use mp_plan::{Error, FreeTurns, Interrupt, PoseEntry, count};
 
 /// Prints the configurations that place a link. True when there is a free one, or any if all are asked for.
@@ -24,7 +25,9 @@ pub(crate) fn run(args: &cli::Ik) -> Result<bool, Error> {
         within: [args.within.unwrap_or(0.0); 3],
         free,
     };
-    let scene = scene(&args.scene)?;
+    let changes =
+        ProblemChanges { from: args.from.clone(), to: Vec::new(), obstacles: args.obstacle.clone() };
+    let scene = scene(&args.scene, &changes)?;
     let mut found = scene.reaching(&entry, args.most.into(), &Interrupt::new(interrupt::flag()))?;
     let in_all = found.len();
     if !args.all {

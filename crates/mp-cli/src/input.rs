@@ -1,6 +1,7 @@
 //! Scenes and paths from files and from standard input.
 
 use crate::output::note;
+use mp_io::ProblemChanges;
 pub(crate) use mp_plan::is_standard;
 use mp_plan::{Error, Interrupt, PathFileKind, PathRows, Scene, StopReason, Verdict};
 use std::path::Path;
@@ -23,8 +24,8 @@ pub(crate) fn refuse_two_standard_inputs(scene: &Path, path: Option<&Path>) -> R
 
 /// The scene that an argument names; `-` is standard input. What was chosen for a robot or a map alone is said to the person
 /// watching.
-pub(crate) fn scene(given: &Path) -> Result<Scene, Error> {
-    let scene = read(given, &Interrupt::never())?;
+pub(crate) fn scene(given: &Path, changes: &ProblemChanges) -> Result<Scene, Error> {
+    let scene = read(given, changes, &Interrupt::never())?;
     scene.notes().iter().for_each(|line| note(&format!("note: {line}")));
     Ok(scene)
 }
@@ -33,8 +34,12 @@ pub(crate) fn scene(given: &Path) -> Result<Scene, Error> {
 ///
 /// # Errors
 /// Inside: what ended it, if it was interrupted.
-pub(crate) fn scene_until(given: &Path, interrupt: &Interrupt) -> Result<Result<Scene, StopReason>, Error> {
-    let scene = read(given, interrupt);
+pub(crate) fn scene_until(
+    given: &Path,
+    changes: &ProblemChanges,
+    interrupt: &Interrupt,
+) -> Result<Result<Scene, StopReason>, Error> {
+    let scene = read(given, changes, interrupt);
     if let Ok(scene) = &scene {
         // Whether it was interrupted is asked below.
         let _ = scene.make_ready(interrupt);
@@ -47,10 +52,10 @@ pub(crate) fn scene_until(given: &Path, interrupt: &Interrupt) -> Result<Result<
     Ok(Ok(scene))
 }
 
-fn read(given: &Path, interrupt: &Interrupt) -> Result<Scene, Error> {
+fn read(given: &Path, changes: &ProblemChanges, interrupt: &Interrupt) -> Result<Scene, Error> {
     match is_standard(given) {
-        true => Scene::parse_until("stdin", &standard_input()?, Path::new(""), interrupt),
-        false => Scene::find_until(given, interrupt),
+        true => Scene::parse_changed("stdin", &standard_input()?, Path::new(""), changes, interrupt),
+        false => Scene::find_changed(given, changes, interrupt),
     }
 }
 

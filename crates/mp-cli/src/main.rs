@@ -22,6 +22,7 @@ mod programs;
 mod progress;
 mod render;
 mod request;
+mod robots;
 mod srdf;
 mod text;
 mod view;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(args),
         Command::View(args) => view::run(args),
         Command::Scenes => scenes(),
+        Command::Robots(args) => robots::run(args),
         Command::Bench(args) => programs::run(programs::BENCH, args),
         Command::VerifyCertificate(args) => programs::verify_certificate(args),
         Command::Completions { shell } => completions(*shell),

@@ -10,6 +10,7 @@ use crate::request::{request, request_for};
 use crate::text::{caption, summary, table};
 use crate::{interrupt, memory};
 use mp_batch::{Portfolio, PortfolioOptions};
+use mp_io::ProblemChanges;
 use mp_plan::{
     Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Report, Request, Runs,
     Scene, StopReason, StoppedBy, in_parallel, make_folder,
@@ -44,7 +45,8 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let last = request.seed.checked_add(u64::from(args.runs) - 1);
     let last = last.ok_or_else(|| Error::new(format!("the seeds from {} on are too large", request.seed)))?;
     refuse_several(args, &named)?;
-    let (scenes, not_loaded) = load(&named, &request, &cancel)?;
+    let changes = args.changes.of_problem();
+    let (scenes, not_loaded) = load(&named, &changes, &request, &cancel)?;
     let requests =
         scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
     let jobs: Vec<(usize, u64)> =
@@ -114,6 +116,9 @@ fn refuse_several(args: &Plan, named: &[PathBuf]) -> Result<(), Error> {
             return Err(Error::new(message).help("name one scene, without --runs"));
         }
     }
+    if !args.changes.of_problem().is_empty() && named.len() > 1 {
+        return Err(Error::new("--from, --to and --obstacle are for one scene").help("name one scene"));
+    }
     if args.routes.is_some() && args.out.as_deref().is_some_and(is_standard) {
         return Err(Error::new("--out -: there is a file for each route").help("name a file"));
     }
@@ -130,13 +135,18 @@ fn refuse_parts(scenes: &[Scene]) -> Result<(), Error> {
 }
 
 /// Loads the scenes. Returns those that are ready, and a report for each that was interrupted.
-fn load(named: &[PathBuf], request: &Request, cancel: &Cancel) -> Result<(Vec<Scene>, Vec<Report>), Error> {
+fn load(
+    named: &[PathBuf],
+    changes: &ProblemChanges,
+    request: &Request,
+    cancel: &Cancel,
+) -> Result<(Vec<Scene>, Vec<Report>), Error> {
     let (mut scenes, mut not_loaded) = (Vec::new(), Vec::new());
     for given in named {
         // Each scene may take the whole time.
         let clock = mp_plan::Clock::default();
         let began = clock.now();
-        match scene_until(given, &time_limit(request, cancel, began))? {
+        match scene_until(given, changes, &time_limit(request, cancel, began))? {
             Ok(scene) => scenes.push(scene.for_request(request)?),
             Err(reason) => {
                 let name = given.file_stem().unwrap_or(given.as_os_str()).to_string_lossy();

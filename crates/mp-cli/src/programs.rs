@@ -44,7 +44,7 @@ pub(crate) fn verify_certificate(args: &Passed) -> Result<bool, Error> {
     }
     let Some(named) = named else { return run(VERIFY_CERTIFICATE, args) };
     let named = PathBuf::from(named);
-    let scene = scene(&named)?;
+    let scene = scene(&named, &mp_io::ProblemChanges::default())?;
     let file = file.ok_or_else(|| {
         Error::new("no certificate is named").help("mp verify-certificate FILE --scene SCENE")
     })?;

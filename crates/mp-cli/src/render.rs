@@ -12,7 +12,7 @@ use mp_plan::{Cancel, Error};
 /// warning.
 pub(crate) fn run(args: &Render) -> Result<bool, Error> {
     refuse_two_standard_inputs(&args.scene, args.path.as_deref())?;
-    let scene = scene(&args.scene)?;
+    let scene = scene(&args.scene, &args.changes.of_problem())?;
     let picture = Picture::of(&scene, &args.picture, &args.drawing, args.path.is_some())?;
     let mut claims = Claims::default();
     scene.inputs_on_disk().iter().chain(&args.path).for_each(|file| claims.input(file));

@@ -79,8 +79,15 @@ fn opening(args: &View) -> Result<Opening, Error> {
                 .help("leave the path out, or name the scene that the file was made from")),
         };
     }
-    let scene =
-        if is_mesh_file(given) { mp_view::scene_of_mesh(&mp_io::Disk, given)? } else { scene(given)? };
+    if is_mesh_file(given) && !args.changes.of_problem().is_empty() {
+        return Err(Error::new(format!("{} is a mesh: it has no start, goal or obstacles", given.display()))
+            .help("leave out --from, --to and --obstacle"));
+    }
+    let scene = if is_mesh_file(given) {
+        mp_view::scene_of_mesh(&mp_io::Disk, given)?
+    } else {
+        scene(given, &args.changes.of_problem())?
+    };
     let path = args.path.as_ref().map(|file| judged_path(&scene, file)).transpose()?;
     let path = path.map(|(path, _)| path);
     Ok(Opening { scene: Some(scene), path, folder: Some(folder), ..Opening::default() })

@@ -133,6 +133,12 @@ impl Error {
         self
     }
 
+    /// An error in the text of an option, instead of in a line of a file.
+    pub(crate) fn in_option(mut self, option: &str) -> Self {
+        (self.0.file, self.0.position, self.0.excerpt) = (option.to_owned(), None, None);
+        self
+    }
+
     /// Adds the place at which another file names the file in error.
     pub(crate) fn cited_at(mut self, place: String) -> Self {
         self.0.cited_at = Some(one_line(&place, MAX_FILE));

@@ -15,6 +15,7 @@
 //! proportion to its size. Files are written whole or not at all. Lengths are metres and
 //! angles radians. The formats are documented in `docs/formats/`.
 
+mod changes;
 mod columns;
 mod csv;
 mod document;
@@ -36,12 +37,14 @@ mod problem;
 mod problem_file;
 mod rigid_toml;
 mod robot;
+mod robots;
 mod shape;
 mod text;
 mod toml_problem;
 mod trace;
 mod xml;
 
+pub use changes::ProblemChanges;
 pub use columns::{Column, matched};
 pub use csv::{csv_text, parse_csv};
 pub use document::{DocumentBody, DocumentShape, SceneDocument};
@@ -67,5 +70,6 @@ pub use robot::{
     AttachedEntry, DescribedRobot, FoundSrdf, MovingJoints, ObstacleEntry, PartChange, PartEntry, RobotEntry,
     RobotFile, RobotFilePart, RobotPart, RobotProblem, read_robot_text, robot_name,
 };
+pub use robots::{FoundRobot, RobotPath};
 pub use shape::ShapeEntry;
 pub use toml_problem::{GoalEntry, GoalPart, StartEntry, Timing};

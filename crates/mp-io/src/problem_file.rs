@@ -33,10 +33,20 @@ impl ProblemFile {
         let (file, bytes) = (path.display().to_string(), files.read(path, MAX_TEXT_BYTES)?);
         let text = TomlText { file: &file, text: decode(&file, &bytes)?, guide: GUIDE };
         let tables: toml::Table = text.read()?;
+        let world = tables.contains_key("world");
+        let is_body = |robot: &toml::Table| shape::names().any(|shape| robot.contains_key(shape));
+        let several = tables.get("robot").and_then(toml::Value::as_array);
+        let bodies = |robots: &Vec<toml::Value>| robots.iter().filter_map(toml::Value::as_table).any(is_body);
+        if several.is_some_and(|robots| world || bodies(robots)) {
+            let at = text.text.find("[[robot]]").unwrap_or(0);
+            return Err(text
+                .error(&(at..at + "[[robot]]".len()), "this problem has one robot, in `[robot]`")
+                .help("write `[robot]`; only robots made of links and joints plan together"));
+        }
         let robot = tables.get("robot").and_then(toml::Value::as_table);
-        Ok(if tables.contains_key("world") {
+        Ok(if world {
             Self::World(Box::new(PlanarProblem::of_bytes(files, path, &bytes)?))
-        } else if robot.is_some_and(|robot| shape::names().any(|shape| robot.contains_key(shape))) {
+        } else if robot.is_some_and(is_body) {
             Self::Body(Box::new(RigidTask::of_bytes(files, path, &bytes)?))
         } else {
             Self::Links(Box::new(RobotProblem::of_bytes(files, path, &bytes)?))
@@ -78,6 +88,13 @@ mod tests {
         }
         let links = "# box = 1\n[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = []\ngoal = []\n";
         assert!(matches!(load(links), Ok(ProblemFile::Links(_))));
+        assert!(matches!(load(&links.replace("[robot]", "[[robot]]")), Ok(ProblemFile::Links(_))));
+        let bodies = format!("# two\n[[robot]]\nbox = [1, 1, 1]\n[[robot]]\nbox = [1, 1, 1]\n{ends}");
+        let several = load(&bodies).unwrap_err();
+        assert!(
+            several.line() == Some(2) && several.remedy().is_some_and(|r| r.contains("links and joints")),
+            "{several}"
+        );
         let error = load("[robot\nbox = 1").unwrap_err();
         assert!(
             error.line() == Some(1) && error.remedy().is_some_and(|r| r.contains("docs/formats")),

@@ -110,6 +110,7 @@ struct File {
 pub(crate) struct ObstacleTable {
     name: Option<String>,
     pose: Option<Spanned<[f64; 6]>>,
+    at: Option<Spanned<[f64; 3]>>,
 }
 
 #[derive(Deserialize)]
@@ -216,6 +217,17 @@ pub(crate) fn entry(
     let own = &table.get_ref().own;
     let name = own.name.clone().unwrap_or_else(|| format!("obstacle {}", index + 1));
     let shape = table.get_ref().shape(source, &name, &table.span())?;
-    let pose = source.six("the pose", own.pose.clone())?;
+    let pose = match (&own.pose, &own.at) {
+        (Some(_), Some(at)) => {
+            let message = format!("{} has a pose, and a position", crate::text::clipped(&name));
+            return Err(source.error(&at.span(), message).expected("`pose` or `at`, not both"));
+        }
+        (None, Some(at)) => {
+            source.check("the position", at.get_ref(), &at.span())?;
+            let [x, y, z] = *at.get_ref();
+            [x, y, z, 0.0, 0.0, 0.0]
+        }
+        (pose, None) => source.six("the pose", pose.clone())?,
+    };
     Ok(ObstacleEntry { name, shape, pose })
 }

@@ -1,5 +1,6 @@
 //! Problems in TOML: the place of every value, so that errors can point at it, and the table of start and goals.
 
+use crate::changes::{help_of, option_at};
 use crate::error::{Error, ErrorKind};
 use crate::pose_goal::PoseEntry;
 use crate::problem::MAX_COORDINATE;
@@ -27,8 +28,7 @@ impl TomlText<'_> {
             // The parser's message may have several lines; an error has one.
             let message = e.message().split_whitespace().collect::<Vec<_>>().join(" ");
             let message = crate::text::clipped_to(&message, 300);
-            let length = span.end.saturating_sub(span.start).max(1);
-            Error::at(ErrorKind::Format, self.file, self.text, span.start, length, message).help(self.guide)
+            self.error(&span, message).with_kind(ErrorKind::Format)
         })
     }
 
@@ -44,8 +44,11 @@ impl TomlText<'_> {
     /// An error at `span`.
     pub(crate) fn error(&self, span: &Range<usize>, message: impl Into<String>) -> Error {
         let length = span.end.saturating_sub(span.start).max(1);
-        Error::at(ErrorKind::Content, self.file, self.text, span.start, length, message.into())
-            .help(self.guide)
+        let error = Error::at(ErrorKind::Content, self.file, self.text, span.start, length, message.into());
+        match option_at(self.text, span.start) {
+            Some(option) => error.in_option(option).help(help_of(option)),
+            None => error.help(self.guide),
+        }
     }
 
     /// Refuses numbers that are not finite or beyond [`MAX_COORDINATE`].

@@ -11,9 +11,30 @@ const MAX_NAMESPACES: usize = 64;
 
 /// The text of an XML file, if it is one that is parsed in time and memory in proportion to its size.
 pub(crate) fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Error> {
-    let text = decode_xml(file, bytes)?;
+    // Programs in C write the zero byte that ends their texts.
+    let end = bytes.iter().rposition(|b| *b != 0).map_or(0, |last| last + 1);
+    let is_wide = bytes.len() > 1 && (bytes[..2].contains(&0) || bytes.starts_with(b"\xff\xfe"));
+    let text = decode_xml(file, if is_wide { bytes } else { &bytes[..end] })?;
     refuse_floods(file, &text)?;
-    Ok(text)
+    Ok(without_late_declaration(text))
+}
+
+/// The text with blanks in place of a declaration that blanks or comments precede: most readers of XML pass over it.
+fn without_late_declaration(text: Cow<'_, str>) -> Cow<'_, str> {
+    let mut rest = text.trim_start();
+    while let Some(end) = rest.strip_prefix("<!--").and_then(|comment| comment.find("-->")) {
+        rest = rest["<!--".len() + end + "-->".len()..].trim_start();
+    }
+    let at = text.len() - rest.len();
+    match rest.find("?>").filter(|_| at > 0 && rest.starts_with("<?xml")) {
+        Some(end) => {
+            let blank = |c: char| if c == '\n' { '\n' } else { ' ' };
+            let end = at + end + "?>".len();
+            let blanks: String = text[at..end].chars().map(blank).collect();
+            Cow::Owned([&text[..at], &blanks, &text[end..]].concat())
+        }
+        None => text,
+    }
 }
 
 /// Refuses files on which the XML reader would spend time or memory out of proportion: thousands of attributes in one
@@ -61,4 +82,19 @@ fn refuse_floods(file: &str, text: &str) -> Result<(), Error> {
         rest = &tag[close..];
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_other_readers_pass_over_is_no_error() {
+        let of = |bytes: &[u8]| text("f", bytes).unwrap().into_owned();
+        assert_eq!(of(b"<robot/>\n\0\0"), "<robot/>\n");
+        assert_eq!(of(b"\n<?xml version='1.0'?>\n<robot/>"), "\n                     \n<robot/>");
+        assert_eq!(of(b"<!-- a -->\n<?xml?><robot/>"), "<!-- a -->\n       <robot/>");
+        assert_eq!(of(b"<?xml version='1.0'?><robot/>"), "<?xml version='1.0'?><robot/>");
+        assert!(text("f", b"<rob\0ot/>").is_err());
+    }
 }

@@ -124,7 +124,7 @@ pub use watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
 #[cfg(feature = "pictures")]
 pub use mp_render::{Mode, View};
 
-pub use mp_io::{FreeTurns, PoseEntry};
+pub use mp_io::{FoundRobot, FreeTurns, PoseEntry, ProblemChanges, RobotPath};
 pub use mp_robot::{SampledPair, SampledPairs, TouchReason};
 
 pub use mp_cspace::{

@@ -135,7 +135,7 @@ impl Scene {
     /// The scene as an editor keeps it. `None` unless the robot is a rigid body among meshes.
     #[must_use]
     pub fn document(&self) -> Option<EditedScene> {
-        let problem = self.robot.rigid_problem()?;
+        let problem = self.rigid_problem()?;
         let mut edited = match &self.document {
             Some(edited) => EditedScene::clone(edited),
             None => {
@@ -148,6 +148,11 @@ impl Scene {
         (document.start, document.goal) =
             (short_six_from_pose(&problem.start), short_six_from_pose(&problem.goal));
         Some(edited)
+    }
+
+    /// The problem of a rigid body among meshes, if it is one.
+    pub(crate) fn rigid_problem(&self) -> Option<&mp_io::RigidProblem> {
+        self.robot.rigid_problem()
     }
 
     /// The robot, if it is of this kind.

@@ -100,7 +100,7 @@ impl ListedProblems {
                 file: file.display().to_string(),
                 fingerprint,
             });
-            scenes.push(Arc::new(SceneFiles { file, shipped, inputs, folders }));
+            scenes.push(Arc::new(SceneFiles { file, shipped, inputs, folders, ..SceneFiles::default() }));
         }
         Ok(Self::new(list, scenes, fingerprints, Source::Sent(Arc::new(sent)), known))
     }

@@ -377,6 +377,7 @@ fn read_once(
         shipped: place.shipped,
         inputs: inputs.into_iter().map(|(path, _)| path).collect(),
         folders: folders.into_inner().unwrap_or_else(PoisonError::into_inner),
+        ..SceneFiles::default()
     };
     (scene, hexadecimal(fingerprint))
 }

@@ -1,6 +1,6 @@
 //! Arms, and robots in the plane, on the command line: plan, check, render, info, and bad input.
 
-use crate::common::{Dir, mp};
+use crate::common::{Dir, finish, mp, start_with};
 
 const URDF: &str = r#"<robot name="two">
 <link name="base"/>
@@ -489,4 +489,67 @@ fn configurations_that_place_a_link_are_listed() {
     }
     let run = mp(&dir, &["ik", "window.env", "--link", "a", "--position", "0 0 0"]);
     assert!(run.code == 2 && run.stderr.contains("no arm whose base stands still"), "{run:?}");
+}
+
+/// Start, goals and obstacles by options mean what the same text means in a problem.
+#[test]
+fn ends_and_obstacles_by_options_are_text_of_the_problem() {
+    let dir = dir();
+    dir.write(
+        "two.srdf",
+        "<robot name=\"two\"><group_state name=\"left\" group=\"g\"><joint name=\"shoulder\" value=\"-0.7\"/></group_state></robot>",
+    );
+    let post = "box = [0.2, 0.2, 1], at = [1.5, 0, 0], name = \"post\"";
+    let all = ["--from", "-0.7,0", "--to", "0.7 0", "--obstacle", post];
+    let args = |scene: &'static str| [&["plan", scene, "--json", "--out", "p.txt"][..], &all].concat();
+    let alone = mp(&dir, &args("two.urdf"));
+    assert_eq!(alone.code, 0, "{alone:?}");
+    let problem = mp(&dir, &["plan", "two.toml", "--json"]);
+    assert_eq!(alone.json()["path"], problem.json()["path"]);
+    // A problem has an obstacle more, in the same place.
+    let changed = mp(&dir, &args("two.toml"));
+    assert_eq!(changed.json()["path"][0], problem.json()["path"][0], "{changed:?}");
+    let named =
+        mp(&dir, &["plan", "two.urdf", "--json", "--from", "left", "--to", "0.7,0", "--obstacle", post]);
+    assert_eq!(named.json()["path"], problem.json()["path"], "{named:?}");
+    assert_eq!(mp(&dir, &[&["check", "two.urdf", "p.txt"][..], &all].concat()).code, 0);
+    assert_eq!(mp(&dir, &["check", "two.urdf", "p.txt"]).code, 1, "the ends are others");
+    let info = mp(&dir, &["info", "two.urdf", "--obstacle", post, "--to", "elbow = [1, 2]"]);
+    assert!(info.stdout.contains("post at 1.5") && info.stdout.contains("elbow 1 to 2"), "{info:?}");
+    // A rigid body of a format without tables.
+    let moved = mp(&dir, &["info", "window.env", "--obstacle", post, "--from", "-2.5,0,0,0,0,0"]);
+    assert!(moved.stdout.contains("post at 1.5") && moved.stdout.contains("start     -2.5"), "{moved:?}");
+    for (wrong, said) in [
+        (["--from", "1,2,3"], "--from: the start has 3 numbers"),
+        (["--from", "right"], "the states of the SRDF are left"),
+        (["--to", "link = 'lower', pose = [1, 2]"], "--to: the pose of the goal has 2 numbers"),
+        (["--obstacle", "box = 1"], "--obstacle: a box has 3 lengths"),
+        (["--obstacle", "ball = 1"], "--obstacle: unknown field `ball`"),
+    ] {
+        let run = mp(&dir, &["plan", "two.urdf", wrong[0], wrong[1]]);
+        assert!(run.code == 2 && run.stderr.contains(said), "{wrong:?}: {run:?}");
+    }
+}
+
+/// A robot is named, and found in the folders of the environment.
+#[test]
+fn robots_are_named() {
+    let dir = dir();
+    for folder in ["kit", "kit/a", "kit/b"] {
+        std::fs::create_dir(dir.path(folder)).unwrap();
+    }
+    for file in ["kit/a/crane.urdf", "kit/a/lift.urdf", "kit/b/lift.urdf"] {
+        dir.write(file, URDF);
+    }
+    let kit = dir.path("kit").display().to_string();
+    let run = |args: &[&str]| finish(start_with(&dir, args, &[("MP_ROBOTS", &kit)]));
+    let plan = run(&["plan", "crane", "--json"]);
+    assert_eq!((plan.code, &plan.json()["scene"]), (0, &"crane".into()), "{plan:?}");
+    let listed = run(&["robots", "--json"]).json();
+    let names: Vec<_> = listed.as_array().unwrap().iter().take(3).map(|r| r["name"].clone()).collect();
+    assert_eq!(names, ["crane", "lift", "lift"]);
+    assert_eq!((&listed[0]["joints"], run(&["robots", "cran"]).stdout.lines().count()), (&2.into(), 1));
+    let several = run(&["plan", "lift"]);
+    assert!(several.code == 2 && several.stderr.contains("2 robots are called lift"), "{several:?}");
+    assert_eq!(run(&["info", "b/lift"]).code, 0);
 }

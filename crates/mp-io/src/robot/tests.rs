@@ -106,7 +106,7 @@ fn faults_have_their_place() {
         ("urdf = ", "udrf = ", 2, "udrf"),
         ("[0, 0.5]", "[0, nan]", 7, "the start has NaN"),
         ("[0, 0.5]", "[0, 1e99]", 7, "the start"),
-        ("[0, 0.5]", "\"zero\"", 7, "zero"),
+        ("[0, 0.5]", "0", 7, "a start is"),
         ("[0, 0.5]", "[0, 0.5", 8, "comma"),
         ("goals = [[1, 0], [0.0, -1]]", "", 7, "no goal"),
         ("[[1, 0], [0.0, -1]]", "[]", 8, "no goals"),

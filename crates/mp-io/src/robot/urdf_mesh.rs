@@ -4,6 +4,7 @@ use super::DescribedRobot;
 use crate::files::{Disk, Files};
 use crate::mesh::{Axes, read_mesh_with, solid_mesh};
 use crate::problem::{MAX_COORDINATE, vertex_beyond};
+use crate::robots::package_folders;
 use mp_geom::TriMesh;
 use std::path::{Path, PathBuf};
 
@@ -11,7 +12,7 @@ impl DescribedRobot {
     /// Reads a mesh that the URDF names: a file relative to the URDF, `file://` and an absolute name, or
     /// `package://PACKAGE/NAME`. A package is searched in the folder of packages that the problem gives, or else in the
     /// folders above the URDF, as `PACKAGE/NAME` and `share/PACKAGE/NAME`, and as `NAME` where the folder is called
-    /// PACKAGE. `package:///NAME` names no package: `NAME` is searched in the same folders.
+    /// PACKAGE, and then in the folders of `ROS_PACKAGE_PATH` and `AMENT_PREFIX_PATH`. `package:///NAME` names no package: `NAME` is searched in the same folders.
     ///
     /// It is a solid if the problem says so.
     ///
@@ -69,6 +70,11 @@ impl DescribedRobot {
             if let Some(found) = in_folder(files, folder, package, rest) {
                 return Ok(found);
             }
+        }
+        if self.packages.is_none()
+            && let Some(found) = package_folders().find_map(|folder| in_folder(files, &folder, package, rest))
+        {
+            return Ok(found);
         }
         let (file, holds) = match package {
             "" => (rest.to_owned(), rest.split('/').next().unwrap_or(rest)),

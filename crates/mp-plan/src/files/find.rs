@@ -2,7 +2,7 @@
 
 use crate::{Error, Scene};
 use mp_cspace::Interrupt;
-use mp_io::{Content, Disk, FORMATS, Files, Until};
+use mp_io::{Content, Disk, FORMATS, Files, ProblemChanges, RobotPath, Until};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,7 +13,8 @@ fn endings() -> impl Iterator<Item = &'static str> {
 }
 
 impl Scene {
-    /// The scene that `given` names: a file, a file without its ending, or a shipped scene. A file comes first. Without its ending
+    /// The scene that `given` names: a file, a file without its ending, a shipped scene, or a robot of [`RobotPath::of_environment`].
+    /// A file comes first, then a scene. Without its ending
     /// the file of a path (`.txt`) is not meant: it often has the name of the scene.
     ///
     /// # Errors
@@ -27,12 +28,24 @@ impl Scene {
     /// # Errors
     /// As [`find`](Self::find), and when it was interrupted.
     pub fn find_until(given: impl AsRef<Path>, interrupt: &Interrupt) -> Result<Self, Error> {
+        Self::find_changed(given, &ProblemChanges::default(), interrupt)
+    }
+
+    /// As [`find_until`](Self::find_until), with another start, other goals or more obstacles: see [`load_changed`](Self::load_changed).
+    ///
+    /// # Errors
+    /// As [`find_until`](Self::find_until), and when the changes make no sense.
+    pub fn find_changed(
+        given: impl AsRef<Path>,
+        changes: &ProblemChanges,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Error> {
         let until = |files| Until { files, interrupt: interrupt.clone() };
         let SceneFiles { file, shipped, .. } = SceneFiles::find(Path::new(""), given.as_ref())?;
         if !shipped {
-            return Self::load_from(&until(&Disk), &file);
+            return Self::load_changed(&until(&Disk), &file, changes);
         }
-        let mut scene = Self::load_from(&until(&shipped_files()), &file)?;
+        let mut scene = Self::load_changed(&until(&shipped_files()), &file, changes)?;
         Arc::make_mut(&mut scene.files).shipped = true;
         Ok(scene)
     }
@@ -64,6 +77,10 @@ pub fn find_problem(given: impl AsRef<Path>) -> Result<mp_io::RigidProblem, Erro
 pub struct SceneFiles {
     /// The file of the scene itself.
     pub file: PathBuf,
+    /// The text of that file, where another is meant than the one that is there.
+    pub text: Option<String>,
+    /// Whether the scene was changed after it was read, so that reading it again gives another one.
+    pub changed: bool,
     /// Whether all of them are among the [shipped files](shipped_files).
     pub shipped: bool,
     /// All that could be read, in the order in which they were.
@@ -95,7 +112,23 @@ impl SceneFiles {
         if let Some(scene) = given.to_str().and_then(mp_scenes::scene) {
             return Ok(Self { file: scene.path.into(), shipped: true, ..Self::default() });
         }
-        Err(unknown(folder, given))
+        if given.is_absolute() || folder.join(given).is_dir() {
+            return Err(unknown(folder, given));
+        }
+        match RobotPath::of_environment().find(&given.to_string_lossy().replace('\\', "/")).as_slice() {
+            [] => Err(unknown(folder, given)),
+            [robot] => Ok(Self { file: robot.file.clone(), ..Self::default() }),
+            several => {
+                const SHOWN: usize = 8;
+                let names = several.iter().map(|robot| robot.file.display().to_string());
+                let more = several.len().saturating_sub(SHOWN);
+                let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+                let message = format!("{} robots are called {}", several.len(), given.display());
+                let help = "name one by its file, or with the folder before it";
+                Err(Error::new(message)
+                    .help(format!("{help}: {}{more}", names.take(SHOWN).collect::<Vec<_>>().join(", "))))
+            }
+        }
     }
 }
 
@@ -116,7 +149,10 @@ fn unknown(folder: &Path, given: &Path) -> Error {
             format!("{} is a path: name the scene that it leads through", text.display())
         }
         Some(name) => format!("did you mean `{name}`?"),
-        None => format!("name a scene file, or one of the shipped scenes: {}", shipped.join(", ")),
+        None => format!(
+            "name a file, a robot that `mp robots` lists, or one of the shipped scenes: {}",
+            shipped.join(", ")
+        ),
     };
     Error::new(format!("there is no scene {}", given.display())).help(help)
 }

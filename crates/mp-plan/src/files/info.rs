@@ -9,7 +9,7 @@ pub use path::PathInfo;
 pub use scene::{BodyInfo, ColumnInfo, SceneInfo};
 
 use crate::{Error, PathFormat, PathRows, Scene};
-use mp_io::Content;
+use mp_io::{Content, ProblemChanges};
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -32,12 +32,26 @@ impl Info {
     /// # Errors
     /// When the file cannot be read, is of an unknown kind, or is not valid.
     pub fn read(file: &Path) -> Result<Self, Error> {
+        Self::read_changed(file, &ProblemChanges::default())
+    }
+
+    /// As [`read`](Self::read), of a scene with changes: see [`Scene::load_changed`].
+    ///
+    /// # Errors
+    /// As [`read`](Self::read), and when the changes make no sense, or there is no scene to change.
+    pub fn read_changed(file: &Path, changes: &ProblemChanges) -> Result<Self, Error> {
+        let scene = || Scene::find_changed(file, changes, &crate::Interrupt::never());
         if !file.exists() {
-            return Ok(Self::Scene(SceneInfo::of(&Scene::find(file)?)));
+            return Ok(Self::Scene(SceneInfo::of(&scene()?)));
         }
-        Ok(match content(file)? {
+        let content = content(file)?;
+        if !changes.is_empty() && content != FileContent::Scene {
+            return Err(Error::new(format!("{} is no scene: nothing in it can be changed", file.display()))
+                .help("leave out --from, --to and --obstacle"));
+        }
+        Ok(match content {
             FileContent::Mesh => Self::Mesh(MeshInfo::read(file)?),
-            FileContent::Scene => Self::Scene(SceneInfo::of(&Scene::load(file)?)),
+            FileContent::Scene => Self::Scene(SceneInfo::of(&scene()?)),
             FileContent::Path(format) => Self::Path(PathInfo::of(file, &PathRows::read(file, format, &[])?)),
         })
     }

@@ -104,10 +104,18 @@ impl Scene {
         if inputs.is_empty() {
             return Err(crate::Error::new(format!("{} was not read from a file", self.name())));
         }
+        if self.files.changed {
+            let message = format!("{} was changed by options, which no file says", self.name());
+            return Err(crate::Error::new(message)
+                .help("write the start, the goal and the obstacles into a problem: docs/formats"));
+        }
         let folder = common_folder(inputs.iter().map(PathBuf::as_path));
         let file = |path: &PathBuf| {
             let inside = path.strip_prefix(&folder).unwrap_or(path);
             let content = match self.files.shipped {
+                _ if *path == self.files.file && self.files.text.is_some() => {
+                    self.files.text.clone().unwrap_or_default().into_bytes()
+                }
                 true => shipped_files().read(path, mp_io::MAX_MESH_BYTES)?,
                 false => Disk.read(path, mp_io::MAX_MESH_BYTES)?,
             };

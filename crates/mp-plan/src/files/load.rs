@@ -3,7 +3,10 @@
 use super::without_problem;
 use crate::files::inputs::Recording;
 use crate::{Error, Scene, SceneFiles};
-use mp_io::{Content, Disk, Files, ProblemFile, RigidProblem, RobotProblem, SceneDocument};
+use mp_io::{
+    Content, Disk, Files, GoalEntry, ProblemChanges, ProblemFile, RigidProblem, RobotProblem, SceneDocument,
+    StartEntry,
+};
 use std::path::Path;
 use std::sync::{Arc, PoisonError};
 
@@ -33,8 +36,65 @@ impl Scene {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn load_again(files: &dyn Files, of: Arc<SceneFiles>, before: Option<&Self>) -> Result<Self, Error> {
-        let mut scene = Self::load_after(files, &of.file, before)?;
+        let mut scene = match &of.text {
+            Some(text) => Self::load_after(&OneText { file: &of.file, text, files }, &of.file, before)?,
+            None => Self::load_after(files, &of.file, before)?,
+        };
         scene.files = of;
+        Ok(scene)
+    }
+
+    /// As [`load_from`](Self::load_from), with changes of the problem. Those of a problem in TOML, and of a robot alone, are text of the
+    /// problem. Rigid bodies of other formats take numbers and obstacles; all others take numbers.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load), and when the changes make no sense.
+    pub fn load_changed(files: &dyn Files, file: &Path, changes: &ProblemChanges) -> Result<Self, Error> {
+        if changes.is_empty() {
+            return Self::load_from(files, file);
+        }
+        let named = Content::of(file).next();
+        let (place, text) = match named {
+            Some(Content::Toml) => {
+                let text = String::from_utf8(files.read(file, mp_io::MAX_TEXT_BYTES)?);
+                let wrong = |_| Error::new(format!("{} is not UTF-8 text", file.display()));
+                (file.to_owned(), text.map_err(wrong)?)
+            }
+            Some(Content::Robot) => without_problem::problem_around(files, file)?,
+            _ => return Self::load_with_rows(files, file, changes),
+        };
+        let text = changes.applied(&place.display().to_string(), &text)?;
+        let mut scene =
+            Self::load_from(&OneText { file: &place, text: &text, files }, &place)?.with_file(file);
+        Arc::make_mut(&mut scene.files).text = Some(text);
+        Ok(scene)
+    }
+
+    /// As [`load_changed`](Self::load_changed), of a problem that is not in TOML.
+    fn load_with_rows(files: &dyn Files, file: &Path, changes: &ProblemChanges) -> Result<Self, Error> {
+        let (from, to) = changes.rows()?;
+        let recording = Recording::new(files);
+        let mut scene = Self::load_from(&recording, file)?;
+        let bodies = changes.bodies(&recording, file)?;
+        if !bodies.is_empty() {
+            let problem = scene.rigid_problem().cloned();
+            let mut problem = problem.ok_or_else(|| {
+                Error::new(format!("--obstacle: {} takes no obstacles", file.display()))
+                    .help("write a problem in TOML that names it: docs/formats")
+            })?;
+            problem.obstacles.extend(bodies);
+            let of = Self::from_problem_until(problem, &files.interrupt())?;
+            let (read, remarks) = (scene.files, scene.remarks);
+            scene = of.with_file(file);
+            (scene.files, scene.remarks) = (read, remarks);
+        }
+        let start = from.unwrap_or_else(|| scene.start());
+        let goals = if to.is_empty() { scene.goals() } else { to };
+        let scene = scene.with_ends(&start, &goals);
+        let mut scene = scene.map_err(|e| e.context("the ends of --from and --to"))?;
+        let files = Arc::make_mut(&mut scene.files);
+        files.inputs = recording.read.into_inner().unwrap_or_else(PoisonError::into_inner);
+        files.changed = true;
         Ok(scene)
     }
 
@@ -74,6 +134,8 @@ impl Scene {
         scene.files = Arc::new(SceneFiles {
             file: file.to_owned(),
             shipped: false,
+            text: None,
+            changed: false,
             inputs: read.into_inner().unwrap_or_else(PoisonError::into_inner),
             folders: folders.into_inner().unwrap_or_else(PoisonError::into_inner),
         });
@@ -86,17 +148,18 @@ impl Scene {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn parse(name: &str, text: &str, folder: &Path) -> Result<Self, Error> {
-        Self::parse_until(name, text, folder, &mp_cspace::Interrupt::never())
+        Self::parse_changed(name, text, folder, &ProblemChanges::default(), &mp_cspace::Interrupt::never())
     }
 
-    /// As [`parse`](Self::parse), unless `interrupt` says to end.
+    /// As [`parse`](Self::parse), with changes as in [`load_changed`](Self::load_changed), and unless `interrupt` says to end.
     ///
     /// # Errors
-    /// As [`parse`](Self::parse), and when it was interrupted.
-    pub fn parse_until(
+    /// As [`parse`](Self::parse), when the changes make no sense, and when it was interrupted.
+    pub fn parse_changed(
         name: &str,
         text: &str,
         folder: &Path,
+        changes: &ProblemChanges,
         interrupt: &mp_cspace::Interrupt,
     ) -> Result<Self, Error> {
         let begins = |what: &str| text.lines().any(|line| line.trim_start().starts_with(what));
@@ -112,7 +175,7 @@ impl Scene {
         };
         let file = folder.join(format!("{name}.{}", content.ending()));
         let files = mp_io::Until { files: &Disk, interrupt: interrupt.clone() };
-        Self::load_from(&OneText { file: &file, text, files: &files }, &file)
+        Self::load_changed(&OneText { file: &file, text, files: &files }, &file, changes)
     }
 }
 
@@ -123,6 +186,13 @@ fn arm(files: &dyn Files, problem: RobotProblem, before: Option<&Scene>) -> Resu
         let scene = crate::FloatingScene::from_problem_after(files, problem, before)?;
         let notes = scene.said();
         return Ok(Scene::new(scene).of_kind("floating").with_notes(notes));
+    }
+    let chosen = |goal: &GoalEntry| matches!(goal, GoalEntry::All(values) if values.is_empty());
+    let open = matches!(&problem.file.start, StartEntry::All(values) if values.is_empty());
+    if problem.file.robots.iter().all(|robot| robot.driven.is_none())
+        && (open || problem.file.goals.iter().any(chosen))
+    {
+        return without_problem::with_chosen_ends(files, problem);
     }
     let scene = crate::ArmScene::from_problem_after(files, problem, before.and_then(Scene::robot))?;
     let notes = scene.said();

@@ -2,7 +2,7 @@
 
 use super::without_problem::robot_alone;
 use crate::robot::model_of;
-use crate::{Error, Interrupt};
+use crate::{Error, Interrupt, SceneFiles};
 use mp_io::{Content, Disk, Files, RobotProblem, Until, robot_name};
 use mp_robot::SampledPairs;
 use std::path::Path;
@@ -23,6 +23,7 @@ impl RobotPairs {
     /// # Errors
     /// When the file cannot be read or describes no robot with joints, and when it was interrupted.
     pub fn sampled(file: &Path, interrupt: &Interrupt) -> Result<Self, Error> {
+        let file = &SceneFiles::find(Path::new(""), file)?.file;
         let files = Until { files: &Disk, interrupt: interrupt.clone() };
         let problem = match Content::of(file).any(|content| content == Content::Toml) {
             true => RobotProblem::load_from(&files, file)?,

@@ -60,7 +60,12 @@ fn around(file: &Path) -> PathBuf {
 }
 
 fn robot(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
-    let (scene, notes) = crate::ArmScene::from_robot_alone(files, robot_alone(files, file)?)?;
+    with_chosen_ends(files, robot_alone(files, file)?)
+}
+
+/// The scene of a problem of an arm that leaves its start, its goals or both open.
+pub(crate) fn with_chosen_ends(files: &dyn Files, problem: mp_io::RobotProblem) -> Result<Scene, Error> {
+    let (scene, notes) = crate::ArmScene::with_chosen_ends(files, problem)?;
     Ok(Scene::new(scene).of_kind("arms").with_notes(notes))
 }
 
@@ -69,11 +74,16 @@ fn robot(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
 /// # Errors
 /// When the file cannot be read.
 pub(crate) fn robot_alone(files: &dyn Files, file: &Path) -> Result<mp_io::RobotProblem, Error> {
-    let place = around(file);
-    let text = format!("[robot]\nurdf = {}\n[motion]\nstart = []\ngoal = []\n", quoted(file)?);
+    let (place, text) = problem_around(files, file)?;
+    Ok(mp_io::RobotProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?)
+}
+
+/// The text of the problem of a URDF alone, and the name that it has.
+pub(crate) fn problem_around(files: &dyn Files, file: &Path) -> Result<(PathBuf, String), Error> {
     // Read first, so that an error about it names the file itself.
     mp_io::read_robot_text(files, file)?;
-    Ok(mp_io::RobotProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?)
+    let text = format!("[robot]\nurdf = {}\n[motion]\nstart = []\ngoal = []\n", quoted(file)?);
+    Ok((around(file), text))
 }
 
 /// The radius (m) of the disc that moves on a map alone: that of common mobile robots.

@@ -12,6 +12,9 @@ use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::collections::HashMap;
 use urdf_rs::{Geometry, JointType};
 
+/// How far (m) a planar joint goes from its origin along x and along y.
+const PLANAR_ROOM: f64 = 10.0;
+
 /// Sides of the sheet in place of a cylinder without height, which contains it.
 const SEGMENTS: u32 = 32;
 
@@ -25,6 +28,7 @@ impl ArmModel {
     ///
     /// - which joints do not move because their limits are equal. They are not coordinates until
     ///   [`with_limits`](Self::with_limits) gives them other limits;
+    /// - which joints are planar: each becomes three joints, two that slide and one that turns;
     /// - which joints that mimic others had their limits ignored, because neither joint could move within both limits.
     ///
     /// A shape without volume is a sheet or a line, which can be hit; one of no extent at all is left out, and a note says so. Round
@@ -105,6 +109,10 @@ impl ArmModel {
         }
         for (joint, &line) in read_joints.iter().zip(&joints) {
             let limits = (joint.limit.lower, joint.limit.upper);
+            if joint.joint_type == JointType::Planar {
+                model.add_planar(joint);
+                continue;
+            }
             let refused = |kind| Err(UrdfError::Kind { line, joint: joint.name.clone(), kind });
             let kind = match joint.joint_type {
                 JointType::Fixed => JointKind::Fixed,
@@ -112,8 +120,7 @@ impl ArmModel {
                 JointType::Revolute => JointKind::Revolute { low: limits.0, high: limits.1 },
                 JointType::Prismatic => JointKind::Prismatic { low: limits.0, high: limits.1 },
                 JointType::Floating => return refused("floating"),
-                JointType::Planar => return refused("planar"),
-                JointType::Spherical => return refused("spherical"),
+                JointType::Planar | JointType::Spherical => return refused("spherical"),
             };
             let mut made = Joint::new(&joint.name, &joint.parent.link, &joint.child.link, kind)
                 .at(pose(&joint.origin))
@@ -132,6 +139,25 @@ impl ArmModel {
             model.notes.push(note);
         }
         Ok(model)
+    }
+
+    /// Adds three joints in place of one that is planar, called as MoveIt calls them: `NAME/x` and `NAME/y`, which slide in the plane of
+    /// its frame, and `NAME/theta`, which turns about z. A URDF has no limits for them: see [`PLANAR_ROOM`].
+    fn add_planar(&mut self, joint: &urdf_rs::Joint) {
+        let part = |axis: &str| format!("{}/{axis}", joint.name);
+        let (x, y, turn) = (part("x"), part("y"), part("theta"));
+        let slide = JointKind::Prismatic { low: -PLANAR_ROOM, high: PLANAR_ROOM };
+        self.links.extend([Link::new(&x), Link::new(&y)]);
+        self.joints.extend([
+            Joint::new(&x, &joint.parent.link, &x, slide).at(pose(&joint.origin)).axis(Vector3::x()),
+            Joint::new(&y, &x, &y, slide).axis(Vector3::y()),
+            Joint::new(&turn, &y, &joint.child.link, JointKind::Continuous).axis(Vector3::z()),
+        ]);
+        self.notes.push(format!(
+            "\"{}\" is planar: \"{x}\" and \"{y}\" slide from -{PLANAR_ROOM} to {PLANAR_ROOM} m, unless `limits` of a robot problem \
+             say how far, and \"{turn}\" turns",
+            joint.name
+        ));
     }
 
     /// Drops the limits of joints that mimic others where they leave no range to move in. The joint that is followed keeps

@@ -224,8 +224,40 @@ fn long_descriptions_hear_the_token_and_take_time_in_proportion() {
         assert_eq!(READ.load(SeqCst), n + 1, "the clock is read after the end");
     }
     // Lines of errors are those of the text, whatever part they are in.
-    let wrong = text.replace("name=\"j399\" type=\"revolute\"", "name=\"j399\" type=\"planar\"");
+    let wrong = text.replace("name=\"j399\" type=\"revolute\"", "name=\"j399\" type=\"spherical\"");
     assert_eq!(read(&wrong).unwrap_err().line(), Some(800));
+}
+
+/// A planar joint is three joints, called as MoveIt calls them, in the place of the one: along x and y of its frame, and about z.
+#[test]
+fn planar_joints_slide_and_turn() {
+    let base = "<robot name='r'><link name='world'/><link name='base'/><joint name='drive' type='planar'><origin xyz='0 0 0.5' rpy='0 0 \
+                1.5707963267948966'/><parent link='world'/><child link='base'/></joint></robot>";
+    let arm = Arm::new(&read(base).unwrap().with_limits("drive/x", -1.0, 2.0).unwrap(), []).unwrap();
+    let coordinates: Vec<_> = arm.coordinates().iter().map(|c| (c.name.as_str(), c.range)).collect();
+    let interval = |low, high| JointRange::Interval { low, high };
+    assert_eq!(
+        coordinates,
+        [
+            ("drive/x", interval(-1.0, 2.0)),
+            ("drive/y", interval(-10.0, 10.0)),
+            ("drive/theta", JointRange::Circle)
+        ]
+    );
+    assert!(arm.model().notes[0].contains("\"drive\" is planar"), "{:?}", arm.model().notes);
+    let poses = arm.kinematics().link_poses(&[1.0, 2.0, std::f64::consts::FRAC_PI_2]).unwrap();
+    let at = arm.kinematics().links().position(|name| name == "base").unwrap();
+    let [x, y] = [Vector3::new(-2.0, 1.0, 0.5), Vector3::new(-1.0, 0.0, 0.0)];
+    assert!((poses[at].translation.vector - x).norm() < 1e-12, "{}", poses[at]);
+    assert!((poses[at].rotation * Vector3::x() - y).norm() < 1e-12, "{}", poses[at]);
+}
+
+/// Commas between numbers are blanks.
+#[test]
+fn commas_part_numbers() {
+    let commas =
+        GRIPPER.replace("xyz=\"0.3 0 0\"", "xyz=\"0.3, 0,0\"").replace("0.2 0.2 0.1", "0.2,0.2, 0.1");
+    assert_eq!(read(&commas).unwrap(), read(GRIPPER).unwrap());
 }
 
 #[test]
@@ -244,7 +276,7 @@ fn faults_are_named() {
     says("</robot>", "", &["not a URDF"]);
     says("<robot name", "<model name", &["not a URDF"]);
     says("type=\"continuous\"", "type=\"floating\"", &["turn", "floating", "base = \"floating\""]);
-    says("type=\"continuous\"", "type=\"planar\"", &["turn", "planar"]);
+    says("type=\"continuous\"", "type=\"spherical\"", &["turn", "spherical"]);
     says("type=\"continuous\"", "type=\"screw\"", &["not a URDF", "line 29", "turn", "screw", "prismatic"]);
     says("finger.stl", "thumb.stl", &["line 18", "left", "shape 1", "thumb.stl"]);
     says("1 -1 2", "1 0 2", &["left", "scale"]);

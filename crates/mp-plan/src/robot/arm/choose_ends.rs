@@ -1,7 +1,7 @@
 //! Arms alone: the ends of a problem that has none are chosen here.
 
 use super::read::{srdf_help, what};
-use super::{ArmScene, Configuration, slides};
+use super::{ArmScene, Configuration, slides, within};
 use crate::robot::Counted;
 use crate::{Error, brief};
 use mp_cspace::{Certified, Clearance, Halton, JointRange, Joints, MotionValidity, Rng, Sampler, Space};
@@ -11,75 +11,88 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 impl ArmScene {
-    /// The scene of a problem without start and goal, and what was chosen, in sentences.
+    /// The scene of a problem that leaves its start, its goals or both open, and what was chosen, in sentences.
     ///
     /// The start is the free configuration nearest to zero within the limits; the goal has each joint half way from there to
     /// its farther limit, or is a configuration near that to which the straight motion from the start is free.
     ///
     /// # Errors
     /// As [`from_problem`](Self::from_problem), and when no free configuration is found.
-    pub(crate) fn from_robot_alone(
+    pub(crate) fn with_chosen_ends(
         files: &dyn Files,
         mut problem: RobotProblem,
     ) -> Result<(Self, Vec<String>), Error> {
         let (arm, said) = Self::arm_of(files, &mut problem)?;
         let space = arm.space()?;
         let wanted = Configuration::from(arm.kinematics().neutral());
-        let none = || {
+        let none = |problem: &RobotProblem| {
             let message = format!(
                 "no configuration was found in which the links do not touch: {}",
                 at_zero(&arm, &wanted)
             );
-            Error::new(message).help(srdf_help(&problem, &[])).context(what(&problem))
+            Error::new(message).help(srdf_help(problem, &[])).context(what(problem))
         };
         let interrupt = files.interrupt();
         let search = arm.clone().with_interrupt(interrupt.clone());
-        let start = free_near(&search, &space, &wanted).ok_or_else(none)?;
-        // No farther than half a turn, or the length of the robot: joints may slide or turn without end.
-        let most = |joint: &Coordinate| if slides(&arm, &joint.name) { arm.length() } else { PI };
-        let most: Vec<f64> = arm.coordinates().iter().map(most).collect();
-        let half_way = |((joint, at), &most): ((&Coordinate, &f64), &f64)| match joint.range {
-            JointRange::Interval { low, high } if high - at >= at - low => at + most.min(0.5 * (high - at)),
-            JointRange::Interval { low, .. } => at - most.min(0.5 * (at - low)),
-            JointRange::Circle => at + FRAC_PI_2,
+        let mut chosen = Vec::new();
+        let given = problem.file.start.row().len() == arm.dof();
+        let start = match given {
+            true => space.wrapped(&within(space.ranges(), problem.file.start.row()).into()),
+            false if problem.file.start.row().is_empty() => {
+                free_near(&search, &space, &wanted).ok_or_else(|| none(&problem))?
+            }
+            // It is refused below.
+            false => wanted.clone(),
         };
-        let far: Vec<f64> = arm.coordinates().iter().zip(start.iter()).zip(&most).map(half_way).collect();
-        let far = space.wrapped(&Configuration::from(far));
-        let goal = seen_near(&search, &space, [&start, &far], &most).ok_or_else(none)?;
-        if interrupt.raised().is_some() {
-            return Err(Error::new("the search for free configurations was ended").context(what(&problem)));
-        }
-        let nearest = match start == wanted {
-            true => "",
-            false => ", or rather the nearest configuration found at which no links touch",
-        };
-        let file = problem
-            .robots
-            .first()
-            .and_then(|robot| robot.urdf_file.file_name())
-            .map(|name| name.to_string_lossy().into_owned());
-        let chosen = [
-            format!(
-                "{} is a robot alone. Every joint starts at zero, or at the limit nearest to zero{}",
+        if problem.file.start.row().is_empty() {
+            let nearest = match start == wanted {
+                true => "",
+                false => ", or rather the nearest configuration found at which no links touch",
+            };
+            let file = problem
+                .robots
+                .first()
+                .and_then(|robot| robot.urdf_file.file_name())
+                .map(|name| name.to_string_lossy().into_owned());
+            chosen.push(format!(
+                "{} is a robot alone. Every joint starts at zero, or at the limit nearest to zero{nearest}",
                 file.unwrap_or_default(),
-                nearest
-            ),
-            format!(
+            ));
+            problem.file.start = StartEntry::All(start.as_slice().to_vec());
+        }
+        let open = |goal: &GoalEntry| matches!(goal, GoalEntry::All(values) if values.is_empty());
+        if problem.file.goals.iter().any(open) {
+            // No farther than half a turn, or the length of the robot: joints may slide or turn without end.
+            let most = |joint: &Coordinate| if slides(&arm, &joint.name) { arm.length() } else { PI };
+            let most: Vec<f64> = arm.coordinates().iter().map(most).collect();
+            let half_way = |((joint, at), &most): ((&Coordinate, &f64), &f64)| match joint.range {
+                JointRange::Interval { low, high } if high - at >= at - low => {
+                    at + most.min(0.5 * (high - at))
+                }
+                JointRange::Interval { low, .. } => at - most.min(0.5 * (at - low)),
+                JointRange::Circle => at + FRAC_PI_2,
+            };
+            let far: Vec<f64> = arm.coordinates().iter().zip(start.iter()).zip(&most).map(half_way).collect();
+            let far = space.wrapped(&Configuration::from(far));
+            let goal = seen_near(&search, &space, [&start, &far], &most);
+            // A start that is given may be what is in the way.
+            let goal = goal.or_else(|| given.then(|| far.clone())).ok_or_else(|| none(&problem))?;
+            chosen.push(format!(
                 "the goal is half way from there to the farther limit of each joint{}. A robot problem sets these, and \
                  obstacles: docs/formats/robot-problem.md",
                 match goal == far {
                     true => "",
                     false => ", or rather a configuration near that to which the straight motion is free",
                 }
-            ),
-        ];
-        let notes = said.iter().cloned().chain(chosen).collect();
-        problem.file.start = StartEntry::All(start.as_slice().to_vec());
-        let goals = [goal.as_slice().to_vec()];
-        problem.file.goals = vec![GoalEntry::All(goals[0].clone())];
-        let (name, obstacles) = (problem.name.clone(), problem.obstacles.clone());
-        let scene = Self::assembled(name, arm, obstacles, start.as_slice(), &goals)?;
-        Ok((Self { source: Some(Box::new(problem)), said, ..scene }, notes))
+            ));
+            problem.file.goals = vec![GoalEntry::All(goal.as_slice().to_vec())];
+        }
+        if interrupt.raised().is_some() {
+            return Err(Error::new("the search for free configurations was ended").context(what(&problem)));
+        }
+        let scene = Self::with_ends_of(problem, arm, said, &interrupt)?;
+        let notes = scene.said().into_iter().chain(chosen).collect();
+        Ok((scene, notes))
     }
 }
 

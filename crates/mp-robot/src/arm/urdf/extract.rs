@@ -28,6 +28,14 @@ const SHAPES: [(&str, &[(&str, usize)]); 5] = [
     ("capsule", &[("radius", 1), ("length", 1)]),
     ("mesh", &[("filename", 0)]),
 ];
+/// Attributes of several numbers. Some programs put commas between them.
+const NUMBERS: [&str; 4] = ["xyz", "rpy", "size", "scale"];
+
+/// Whether it is between two numbers.
+fn is_between(c: char) -> bool {
+    c.is_whitespace() || c == ','
+}
+
 const JOINTS: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
 
 /// About how long (bytes) a part of a document becomes.
@@ -251,7 +259,8 @@ impl Writer<'_, '_> {
         let Some(value) = attribute(node, key) else {
             return if needed { self.words(node, &[key]) } else { Ok(()) };
         };
-        let words = value.split_whitespace();
+        let words = value.split(is_between);
+        let words = words.filter(|word| !word.is_empty());
         if words.clone().count() == count && words.clone().all(|word| word.parse::<f64>().is_ok()) {
             return Ok(());
         }
@@ -281,6 +290,7 @@ impl Writer<'_, '_> {
         for key in keys {
             if let Some(value) = attribute(node, key) {
                 let value = value.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+                let value = if NUMBERS.contains(key) { value.replace(',', " ") } else { value };
                 let _ = write!(self.out, " {key}=\"{value}\""); // never fails for strings
             }
         }
