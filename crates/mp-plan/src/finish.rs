@@ -71,7 +71,8 @@ pub(crate) fn finish_given(
     let relaxed = relax_if_requested(kind, request, given, control, rest)?;
     let rest = left(control);
     let planned = control.clock.now().saturating_sub(began);
-    let proposed = Proposed { path: &relaxed, proved: true, time: planned };
+    let began = control.clock.now();
+    let proposed = Proposed { path: &relaxed, nearer: None, proved: true, time: planned, began };
     finish(kind, &proposed, request, control, rest, &mut Vec::new())?.map_err(ended)
 }
 
@@ -190,10 +191,14 @@ fn shorten_by<C: Factored>(
 /// A path that a search has found.
 pub(crate) struct Proposed<'p> {
     pub(crate) path: &'p Path<Configuration>,
-    /// Whether each of its edges was verified.
+    /// A path to a nearer goal, which may be shorter once both are shortened.
+    pub(crate) nearer: Option<&'p Path<Configuration>>,
+    /// Whether each edge of the path was verified.
     pub(crate) proved: bool,
     /// How long the search took.
     pub(crate) time: Duration,
+    /// When work on the path began.
+    pub(crate) began: Duration,
 }
 
 /// How many times longer than its search the proof of a path takes at most, as a rule: where the search has proved nothing, and where it has
@@ -220,7 +225,7 @@ pub(crate) fn finish(
             false => finished,
         };
     control.stage(Stage::Finishing);
-    let mut timed = Timed { control, stages, began: control.clock.now(), left };
+    let mut timed = Timed { control, stages, began: proposed.began, left };
     let mut proved = None;
     if request.finish == Finish::Shorten {
         // What is read back is another path than the planner has found, as a rule: its proof comes first where half of the time left may be too
@@ -236,7 +241,13 @@ pub(crate) fn finish(
         let for_short = if known || proved.is_some() { 1.0 } else { SHORT_PART };
         let rest = timed.left.map_or(Duration::ZERO, |left| left.mul_f64(1.0 - for_short));
         let interrupt = timed.interrupt(SHORTENING_PART);
-        let short = shorten(kind, found, request.seed, &interrupt)?;
+        let mut short = shorten(kind, found, request.seed, &interrupt)?;
+        if let Some(nearer) = proposed.nearer {
+            let (space, other) = (kind.any_space(), shorten(kind, nearer, request.seed, &interrupt)?);
+            if other.length(&space) < short.length(&space) {
+                short = other;
+            }
+        }
         timed.ends(RunStage::Shortening, &interrupt);
         if short.states != found.states {
             let interrupt = timed.interrupt_before(rest);

@@ -1,6 +1,7 @@
 //! A run in pieces: for programs with an event loop, which plan a little between two events.
 
 pub(crate) mod auto;
+mod nearer_goal;
 pub(crate) mod plan;
 pub(crate) mod planners;
 pub(crate) mod prepared;

@@ -54,19 +54,25 @@ macro_rules! by_hand {
 }
 
 /// The files that are written by hand; those called `rsrt-…` by `mp_experiments::clutter`, whose tests compare them.
-const BY_HAND: [(&str, &str); 16] = by_hand! {
+const BY_HAND: [(&str, &str); 22] = by_hand! {
+    "robots/humanoid.srdf"
+    "robots/humanoid.urdf"
     "robots/rsrt-arm.urdf"
     "robots/six.urdf"
     "robots/wrench.urdf"
     "scenes/accelerations.toml"
     "scenes/arm.toml"
     "scenes/blade.toml"
+    "scenes/carry.toml"
     "scenes/crossing.toml"
     "scenes/docks.toml"
     "scenes/flyer.toml"
+    "scenes/humanoid.toml"
     "scenes/parking.toml"
     "scenes/rsrt-arm-64.toml"
     "scenes/rsrt-flyer-64.toml"
+    "scenes/tool-pose.toml"
+    "scenes/two-arms.toml"
     "scenes/unicycle.toml"
     "scenes/velocities.toml"
     "scenes/warehouse.toml"

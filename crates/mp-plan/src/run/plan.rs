@@ -6,6 +6,7 @@ use crate::finish::{Proposed, finish};
 use crate::report::{RunStage, StageTime};
 use crate::run::FoundRun;
 use crate::run::PLANNING_PART;
+use crate::run::nearer_goal::nearer_goal;
 use crate::run::planners::PlannerKind;
 use crate::run::search::{Search, search_within};
 use crate::{Column, Control, Error, REPORT_VERSION, Report, Request, Robot, StoppedBy};
@@ -186,7 +187,10 @@ pub(crate) fn reported(
     };
     report.path_length_found = Some(path.length(&kind.any_space()));
     let began = control.clock.now();
-    let found = Proposed { path: &path, proved: found.proved, time: found.time };
+    let nearer = nearer_goal(kind, request, &path, control, left)?;
+    let left = left.map(|left| left.saturating_sub(control.clock.now().saturating_sub(began)));
+    let found =
+        Proposed { path: &path, nearer: nearer.as_ref(), proved: found.proved, time: found.time, began };
     let finished = finish(kind, &found, request, control, left, &mut report.stages)?;
     report.finish_s = control.clock.now().saturating_sub(began).as_secs_f64();
     let finished = match finished {

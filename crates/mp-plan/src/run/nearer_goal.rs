@@ -1,0 +1,51 @@
+//! Of several goals, one that is nearer than the one that a search has found.
+
+use crate::run::search::search_within;
+use crate::{Budget, Control, Error, Finish, Request, Robot};
+use mp_cspace::{Configuration, Outcome, Path, Space};
+use std::time::Duration;
+
+/// Goals are looked for that are nearer to the start than this part of the path is long.
+const NEARER: f64 = 0.5;
+/// What the search for one of them may cost: some ten milliseconds for an arm.
+const QUERIES: u64 = 20_000;
+/// And the part of the time left.
+const PART: f64 = 0.1;
+
+/// A way to a goal that is far nearer than the path is long, if the path is to be shortened and RRT-Connect soon finds one: the first goal that
+/// a search comes to need not be a good one, where there are many, such as the configurations that reach a place. Goals that are regions are
+/// left as they are.
+///
+/// # Errors
+/// As [`search`](crate::search).
+pub(crate) fn nearer_goal(
+    kind: &dyn Robot,
+    request: &Request,
+    path: &Path<Configuration>,
+    control: &Control<'_>,
+    left: Option<Duration>,
+) -> Result<Option<Path<Configuration>>, Error> {
+    if request.finish != Finish::Shorten || kind.goal_parts().is_some() || kind.goals().len() < 2 {
+        return Ok(None);
+    }
+    let (space, start) = (kind.any_space(), kind.start());
+    let near = NEARER * path.length(&space);
+    let mut goals = kind.goals().to_vec();
+    goals.retain(|goal| space.distance(start, goal) < near);
+    if goals.is_empty() {
+        return Ok(None);
+    }
+    let Ok(among) = kind.any_with_ends(start.clone(), goals, &kind.given_start()) else { return Ok(None) };
+    let time_s = left.map(|left| PART * left.as_secs_f64());
+    let budget = Budget { queries: Some(QUERIES), time_s, ..Budget::default() };
+    let (planner, seed, metric, motion) = ("rrt-connect", request.seed, request.metric, request.motion);
+    let request =
+        Request { budget, seed, metric, motion, clearance: request.clearance, ..Request::new(planner) };
+    let mut control =
+        Control { cancel: control.cancel.clone(), clock: control.clock.clone(), ..Control::default() };
+    let found = search_within(&*among, &request, &mut control, 1.0, true)?;
+    Ok(match found.outcome {
+        Outcome::Solved(path) => Some(path),
+        Outcome::Stopped(_) => None,
+    })
+}
