@@ -54,16 +54,22 @@ macro_rules! by_hand {
 }
 
 /// The files that are written by hand; those called `rsrt-…` by `mp_experiments::clutter`, whose tests compare them.
-const BY_HAND: [(&str, &str); 16] = by_hand! {
+const BY_HAND: [(&str, &str); 22] = by_hand! {
+    "robots/arm-6.urdf"
+    "robots/arm-7.urdf"
+    "robots/mobile-arm.urdf"
     "robots/rsrt-arm.urdf"
     "robots/six.urdf"
     "robots/wrench.urdf"
     "scenes/accelerations.toml"
+    "scenes/arm-6.toml"
+    "scenes/arm-7.toml"
     "scenes/arm.toml"
     "scenes/blade.toml"
     "scenes/crossing.toml"
     "scenes/docks.toml"
     "scenes/flyer.toml"
+    "scenes/mobile-arm.toml"
     "scenes/parking.toml"
     "scenes/rsrt-arm-64.toml"
     "scenes/rsrt-flyer-64.toml"
