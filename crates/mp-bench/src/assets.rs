@@ -17,7 +17,7 @@ pub(crate) struct Options {
     check: bool,
     /// The folder of the crate to write or check: scenes are in `assets`, their list is `src/files.rs` [default: the
     /// crate mp-scenes of the workspace].
-    #[arg(long, value_name = "DIR")]
+    #[arg(long = "crate-dir", value_name = "DIR")]
     dir: Option<PathBuf>,
 }
 

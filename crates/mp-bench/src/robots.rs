@@ -104,7 +104,16 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let cap = if common.quick { common.time.min(5.0) } else { common.time };
     let mut log = lab.log(&name, cap)?;
     let cases: Vec<Case> = files.keys().cloned().collect();
-    if !lab.measure(&mut log, "robots", &cases, |case| measured(&files[case], cap))? {
+    // Reasons say where files are on this machine.
+    let without_place = |why: &String| {
+        let places = folders.folders().iter().map(|folder| format!("{}/", folder.display()));
+        places.fold(why.clone(), |why, place| why.replace(&place, ""))
+    };
+    let of = |case: &Case| {
+        let run = measured(&files[case], cap)?;
+        Ok(run.map(|run| Run { why: run.why.as_ref().map(without_place), ..run }))
+    };
+    if !lab.measure(&mut log, "robots", &cases, of)? {
         return Ok(false);
     }
     let runs: Vec<(&Case, &Run)> = log.each(&cases).collect();
@@ -145,6 +154,8 @@ fn outcomes(runs: &[(&Case, &Run)], still: usize) -> Table {
     let arms = count(&|run| run.outcome != Outcome::NoJointMoves);
     let planned = count(&|run| run.outcome.is_planned());
     row("**planned, of those with joints that move**", format!("**{planned} of {arms}**"));
+    let valid = arms - count(&|run| run.outcome == Outcome::Invalid);
+    row("planned, of those whose description is valid", format!("{planned} of {valid}"));
     let pairs = count(&|run| run.outcome == Outcome::PlannedWithPairs);
     let collide = pairs + count(&|run| run.outcome == Outcome::SelfCollision);
     row(

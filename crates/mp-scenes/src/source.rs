@@ -54,13 +54,18 @@ macro_rules! by_hand {
 }
 
 /// The files that are written by hand; those called `rsrt-…` by `mp_experiments::clutter`, whose tests compare them.
-const BY_HAND: [(&str, &str); 22] = by_hand! {
+const BY_HAND: [(&str, &str); 28] = by_hand! {
+    "robots/arm-6.urdf"
+    "robots/arm-7.urdf"
+    "robots/mobile-arm.urdf"
     "robots/humanoid.srdf"
     "robots/humanoid.urdf"
     "robots/rsrt-arm.urdf"
     "robots/six.urdf"
     "robots/wrench.urdf"
     "scenes/accelerations.toml"
+    "scenes/arm-6.toml"
+    "scenes/arm-7.toml"
     "scenes/arm.toml"
     "scenes/blade.toml"
     "scenes/carry.toml"
@@ -68,6 +73,7 @@ const BY_HAND: [(&str, &str); 22] = by_hand! {
     "scenes/docks.toml"
     "scenes/flyer.toml"
     "scenes/humanoid.toml"
+    "scenes/mobile-arm.toml"
     "scenes/parking.toml"
     "scenes/rsrt-arm-64.toml"
     "scenes/rsrt-flyer-64.toml"

@@ -211,6 +211,8 @@ fn packages_are_found_where_they_are_installed() {
         "package://parts/meshes/hand.off",
         // No package: relative to a folder above.
         "package:///meshes/arm.off",
+        // A package that has another name here.
+        "package://robot_support/meshes/arm.off",
         "package:///robot/meshes/arm.off",
         "package:///share/parts/meshes/hand.off",
     ];

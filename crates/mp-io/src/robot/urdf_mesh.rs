@@ -8,11 +8,15 @@ use crate::robots::package_folders;
 use mp_geom::TriMesh;
 use std::path::{Path, PathBuf};
 
+/// In how many folders, from that of the URDF upward, the files of a package of another name are looked for.
+const RENAMED: usize = 4;
+
 impl DescribedRobot {
     /// Reads a mesh that the URDF names: a file relative to the URDF, `file://` and an absolute name, or
     /// `package://PACKAGE/NAME`. A package is searched in the folder of packages that the problem gives, or else in the
     /// folders above the URDF, as `PACKAGE/NAME` and `share/PACKAGE/NAME`, and as `NAME` where the folder is called
-    /// PACKAGE, and then in the folders of `ROS_PACKAGE_PATH` and `AMENT_PREFIX_PATH`. `package:///NAME` names no package: `NAME` is searched in the same folders.
+    /// PACKAGE, and then in the folders of `ROS_PACKAGE_PATH` and `AMENT_PREFIX_PATH`; last as NAME in the folder of the URDF and the three above it, with a remark, for packages that have
+    /// another name there. `package:///NAME` names no package: `NAME` is searched in the same folders.
     ///
     /// It is a solid if the problem says so.
     ///
@@ -74,6 +78,14 @@ impl DescribedRobot {
         if self.packages.is_none()
             && let Some(found) = package_folders().find_map(|folder| in_folder(files, &folder, package, rest))
         {
+            return Ok(found);
+        }
+        // Packages are copied under other names.
+        let renamed = || absolute.ancestors().take(RENAMED).map(|folder| folder.join(rest));
+        if self.packages.is_none()
+            && let Some(found) = renamed().find(|place| files.holds(place))
+        {
+            files.note(&found, &format!("the package {package} is not there; taken instead"));
             return Ok(found);
         }
         let (file, holds) = match package {

@@ -1,8 +1,8 @@
 //! Robots from files: limits, angles without limits in written paths, and robots alone.
 
 use mp_cspace::Interrupt;
-use mp_io::InMemory;
-use mp_plan::{PathFileKind, PathRows, Report, Request, Scene};
+use mp_io::{Disk, InMemory};
+use mp_plan::{PathFileKind, PathRows, ProblemChanges, Report, Request, Scene};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -289,4 +289,75 @@ fn links_that_touch_everywhere_are_named() {
     let noted = scene(&[("p.toml", &named), ("r.urdf", &alone), ("s.srdf", other)]);
     assert_eq!(noted.notes(), ["s.srdf: the SRDF names links that this robot does not have: \"foot\""]);
     noted.check_ends().unwrap();
+}
+
+/// A scene with changes is read again with them, elsewhere too.
+#[test]
+fn changes_are_among_the_files_of_a_scene() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("r.urdf");
+    std::fs::write(&file, two_bars([-1.0, 1.0])).unwrap();
+    let changes = ProblemChanges {
+        from: Some("0.1, 0.2".to_owned()),
+        to: vec!["b = 0.5".to_owned()],
+        obstacles: vec!["sphere = 0.1, at = [0, 0, 5]".to_owned()],
+    };
+    let scene = Scene::load_changed(&Disk, &file, &changes).unwrap();
+    assert_eq!((scene.name(), scene.start(), scene.goals()[0][1]), ("r", vec![0.1, 0.2], 0.5));
+    assert_eq!(scene.file(), Some(file.as_path()));
+    let again = Scene::load_again(&Disk, scene.files().clone(), None).unwrap();
+    let all = |scene: &Scene| (scene.start(), scene.goals(), format!("{:?}", scene.bodies()));
+    assert_eq!(all(&again), all(&scene));
+    let files = scene.input_files().unwrap();
+    let files: Vec<(String, String)> =
+        files.into_iter().map(|(name, bytes)| (name, String::from_utf8(bytes).unwrap())).collect();
+    let there: Vec<(&str, &str)> = files.iter().map(|(n, t)| (n.as_str(), t.as_str())).collect();
+    assert_eq!(all(&load(&there).unwrap()), all(&scene));
+    // Of a body in a format without tables no file says them.
+    let body = Scene::find_changed(
+        "easy",
+        &ProblemChanges { to: Vec::new(), from: None, ..changes },
+        &Interrupt::never(),
+    );
+    let body = body.unwrap();
+    assert_eq!(body.bodies().len(), Scene::find("easy").unwrap().bodies().len() + 1);
+    assert!(body.input_files().unwrap_err().to_string().contains("changed by options"));
+}
+
+/// A state of the SRDF stands for the values of its joints. Those that it does not name are zero at the start, and as at the start in a goal.
+#[test]
+fn states_of_the_srdf_are_ends() {
+    let srdf = "<robot name='r'><group_state name='up' group='g'><joint name='b' value='0.5'/></group_state>\
+                <group_state name='side' group='g'><joint name='a' value='1'/></group_state></robot>";
+    let files = |start, goal| {
+        let text = problem("srdf = \"r.srdf\"", start, goal);
+        load(&[("p.toml", &text), ("r.urdf", &two_bars([-1.0, 1.0])), ("r.srdf", srdf)])
+    };
+    let scene = files("\"up\"", "\"side\"").unwrap();
+    assert_eq!((scene.start(), scene.goals()), (vec![0.0, 0.5], vec![vec![1.0, 0.5]]));
+    let chosen = files("\"up\"", "[]").unwrap();
+    assert_eq!(chosen.start(), [0.0, 0.5]);
+    assert!(
+        chosen.notes().iter().any(|note| note.starts_with("the goal is half way")),
+        "{:?}",
+        chosen.notes()
+    );
+    let chosen = files("[]", "\"side\"").unwrap();
+    assert_eq!((chosen.start(), chosen.goals()), (vec![0.0, 0.0], vec![vec![1.0, 0.0]]));
+    let error = files("\"up\"", "\"down\"").unwrap_err();
+    assert_eq!(error.file().and_then(mp_io::Error::line), Some(6), "{error}");
+    assert!(error.remedy().is_some_and(|help| help.contains("up, side")), "{error:?}");
+}
+
+/// The arms of our own making go from one compartment, bin or room to the next.
+#[test]
+fn arms_of_our_own_are_planned() {
+    for (name, joints) in [("arm-6", 6), ("arm-7", 7), ("mobile-arm", 9)] {
+        let scene = Scene::find(name).unwrap();
+        let (report, path) = planned(&scene);
+        assert!(report.verified && scene.columns().len() == joints, "{name}: {report:?}");
+        let straight =
+            PathRows { rows: vec![path.rows[0].clone(), path.rows[path.rows.len() - 1].clone()], ..path };
+        assert!(!scene.check(&straight).unwrap().free, "{name}: the straight motion is free");
+    }
 }

@@ -100,7 +100,7 @@ fn a_group_or_a_list_moves_and_the_others_are_held() {
 fn states_of_several_groups_are_one() {
     let scene = load("", "start = \"home\"\ngoals = [\"up\", [0.1, 1, 1, 0]]").unwrap();
     assert_eq!(scene.start(), [0.1, 0.8, 0.2, 0.05]);
-    assert_eq!(scene.goals()[0], [0.3, -0.5, 0.0, 0.0]);
+    assert_eq!(scene.goals()[0], [0.3, -0.5, 0.2, 0.05]);
     assert!(
         scene
             .notes()

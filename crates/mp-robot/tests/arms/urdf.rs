@@ -252,12 +252,15 @@ fn planar_joints_slide_and_turn() {
     assert!((poses[at].rotation * Vector3::x() - y).norm() < 1e-12, "{}", poses[at]);
 }
 
-/// Commas between numbers are blanks.
+/// Commas between numbers are blanks. Of too many numbers the first three count, and a note says so.
 #[test]
-fn commas_part_numbers() {
+fn commas_part_numbers_and_the_first_ones_count() {
     let commas =
         GRIPPER.replace("xyz=\"0.3 0 0\"", "xyz=\"0.3, 0,0\"").replace("0.2 0.2 0.1", "0.2,0.2, 0.1");
     assert_eq!(read(&commas).unwrap(), read(GRIPPER).unwrap());
+    let many = read(&GRIPPER.replace("xyz=\"0.3 0 0\"", "xyz=\"0.3 0 0 7\"")).unwrap();
+    assert_eq!(many.joints, read(GRIPPER).unwrap().joints);
+    assert!(many.notes.iter().any(|note| note.starts_with("4 numbers where 3 count")), "{:?}", many.notes);
 }
 
 #[test]

@@ -97,15 +97,19 @@ pub(super) fn resolve(
         .chain(kinematics.coordinates().iter().map(|c| c.name.as_str()))
         .collect();
     let zeros = [vec![0.0; base.len()], kinematics.neutral()].concat();
-    let row = |values: &Values| -> Vec<f64> {
-        names.iter().zip(&zeros).map(|(name, zero)| *values.get(*name).unwrap_or(zero)).collect()
+    let row = |values: &Values, others: &[f64]| -> Vec<f64> {
+        let value = |(name, other): (&&str, &f64)| *values.get(*name).unwrap_or(other);
+        names.iter().zip(others).map(value).collect()
     };
     let mut said = Vec::new();
-    let mut tell = |state: &str, values: &Values| {
+    let mut tell = |state: &str, values: &Values, are: &str| {
         let missing: Vec<_> = names.iter().filter(|name| !values.contains_key(**name)).copied().collect();
         if !missing.is_empty() {
             let numbers = count(missing.len(), "number");
-            said.push(format!("the state \"{state}\" leaves out {numbers}, which are at zero or the limit nearest to it: {}", missing.join(", ")));
+            said.push(format!(
+                "the state \"{state}\" leaves out {numbers}, which are {are}: {}",
+                missing.join(", ")
+            ));
         }
     };
     match problem.file.start.clone() {
@@ -120,18 +124,20 @@ pub(super) fn resolve(
                 let help = format!("in order: {}", names.join(", "));
                 return Err(problem.file.fault(RobotFilePart::Start, &message, &help).into());
             }
-            problem.file.start = StartEntry::All(row(&values));
+            problem.file.start = StartEntry::All(row(&values, &zeros));
         }
         StartEntry::State(state) => {
-            tell(&state, &named.start);
-            problem.file.start = StartEntry::All(row(&named.start));
+            tell(&state, &named.start, "at zero or the limit nearest to it");
+            problem.file.start = StartEntry::All(row(&named.start, &zeros));
         }
     }
+    let start = problem.file.start.row();
+    let others = if start.len() < names.len() { zeros } else { start.to_vec() };
     for i in 0..problem.file.goals.len() {
         let GoalEntry::State(state) = &problem.file.goals[i] else { continue };
         let values = named.state(problem, RobotFilePart::Goal(i), state)?;
-        tell(state, &values);
-        problem.file.goals[i] = GoalEntry::All(row(&values));
+        tell(state, &values, "as at the start");
+        problem.file.goals[i] = GoalEntry::All(row(&values, &others));
     }
     Ok(said)
 }

@@ -5,6 +5,7 @@ use super::super::UrdfError;
 use super::super::xml::{Text, some};
 use mp_cspace::Interrupt;
 use roxmltree::{Attribute, Node};
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
@@ -31,6 +32,12 @@ const SHAPES: [(&str, &[(&str, usize)]); 5] = [
 /// Attributes of several numbers. Some programs put commas between them.
 const NUMBERS: [&str; 4] = ["xyz", "rpy", "size", "scale"];
 
+/// The first three numbers of a text.
+fn first_three(value: &str) -> String {
+    let words = value.split(is_between).filter(|word| !word.is_empty());
+    words.take(3).collect::<Vec<_>>().join(" ")
+}
+
 /// Whether it is between two numbers.
 fn is_between(c: char) -> bool {
     c.is_whitespace() || c == ','
@@ -54,6 +61,7 @@ pub(super) fn extract(text: &str, interrupt: &mut Interrupt) -> Result<Extract, 
         parts: Vec::new(),
         links: Vec::new(),
         joints: Vec::new(),
+        surplus: RefCell::default(),
     };
     let mut left_out = LeftOut::default();
     let robot = document.root_element();
@@ -86,8 +94,9 @@ pub(super) fn extract(text: &str, interrupt: &mut Interrupt) -> Result<Extract, 
         }
     }
     writer.end_part();
-    let Writer { parts, links, joints, .. } = writer;
-    Ok(Extract { parts, links, joints, notes: left_out.notes() })
+    let Writer { parts, links, joints, surplus, .. } = writer;
+    let notes = left_out.notes().into_iter().chain(surplus.into_inner()).collect();
+    Ok(Extract { parts, links, joints, notes })
 }
 
 /// Whether the element is in the name space of the document, as elements of URDF are.
@@ -120,6 +129,8 @@ struct Writer<'t, 'a> {
     parts: Vec<String>,
     links: Vec<Vec<u32>>,
     joints: Vec<u32>,
+    /// Notes about attributes with too many numbers.
+    surplus: RefCell<BTreeSet<String>>,
 }
 
 impl Writer<'_, '_> {
@@ -261,7 +272,14 @@ impl Writer<'_, '_> {
         };
         let words = value.split(is_between);
         let words = words.filter(|word| !word.is_empty());
-        if words.clone().count() == count && words.clone().all(|word| word.parse::<f64>().is_ok()) {
+        let found = words.clone().count();
+        if found > count && count > 1 {
+            let message = format!("{found} numbers where {count} count: the first ones are taken");
+            self.surplus.borrow_mut().insert(message);
+        }
+        if (found == count || (found > count && count > 1))
+            && words.clone().all(|word| word.parse::<f64>().is_ok())
+        {
             return Ok(());
         }
         let shown: String = value.chars().take(40).collect();
@@ -290,7 +308,7 @@ impl Writer<'_, '_> {
         for key in keys {
             if let Some(value) = attribute(node, key) {
                 let value = value.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
-                let value = if NUMBERS.contains(key) { value.replace(',', " ") } else { value };
+                let value = if NUMBERS.contains(key) { first_three(&value) } else { value };
                 let _ = write!(self.out, " {key}=\"{value}\""); // never fails for strings
             }
         }
