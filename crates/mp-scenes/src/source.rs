@@ -57,9 +57,9 @@ macro_rules! by_hand {
 const BY_HAND: [(&str, &str); 28] = by_hand! {
     "robots/arm-6.urdf"
     "robots/arm-7.urdf"
-    "robots/mobile-arm.urdf"
     "robots/humanoid.srdf"
     "robots/humanoid.urdf"
+    "robots/mobile-arm.urdf"
     "robots/rsrt-arm.urdf"
     "robots/six.urdf"
     "robots/wrench.urdf"

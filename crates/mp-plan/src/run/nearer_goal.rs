@@ -29,6 +29,12 @@ pub(crate) fn nearer_goal(
         return Ok(None);
     }
     let (space, start) = (kind.any_space(), kind.start());
+    // The path may be the answer to a query between other ends.
+    let is_own = path.states.first() == Some(start)
+        && path.states.last().is_some_and(|end| kind.goals().contains(end));
+    if !is_own {
+        return Ok(None);
+    }
     let near = NEARER * path.length(&space);
     let mut goals = kind.goals().to_vec();
     goals.retain(|goal| space.distance(start, goal) < near);

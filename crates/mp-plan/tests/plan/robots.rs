@@ -346,7 +346,7 @@ fn states_of_the_srdf_are_ends() {
     assert_eq!((chosen.start(), chosen.goals()), (vec![0.0, 0.0], vec![vec![1.0, 0.0]]));
     let error = files("\"up\"", "\"down\"").unwrap_err();
     assert_eq!(error.file().and_then(mp_io::Error::line), Some(6), "{error}");
-    assert!(error.remedy().is_some_and(|help| help.contains("up, side")), "{error:?}");
+    assert!(error.remedy().is_some_and(|help| help.contains("side, up")), "{error:?}");
 }
 
 /// The arms of our own making go from one compartment, bin or room to the next.
