@@ -1,7 +1,7 @@
 //! Of several goals, one that is nearer than the one that a search has found.
 
 use crate::run::search::search_within;
-use crate::{Budget, Control, Error, Finish, Request, Robot};
+use crate::{Budget, Control, Finish, Request, Robot};
 use mp_cspace::{Configuration, Outcome, Path, Space};
 use std::time::Duration;
 
@@ -15,33 +15,30 @@ const PART: f64 = 0.1;
 /// A way to a goal that is far nearer than the path is long, if the path is to be shortened and RRT-Connect soon finds one: the first goal that
 /// a search comes to need not be a good one, where there are many, such as the configurations that reach a place. Goals that are regions are
 /// left as they are.
-///
-/// # Errors
-/// As [`search`](crate::search).
 pub(crate) fn nearer_goal(
     kind: &dyn Robot,
     request: &Request,
     path: &Path<Configuration>,
     control: &Control<'_>,
     left: Option<Duration>,
-) -> Result<Option<Path<Configuration>>, Error> {
+) -> Option<Path<Configuration>> {
     if request.finish != Finish::Shorten || kind.goal_parts().is_some() || kind.goals().len() < 2 {
-        return Ok(None);
+        return None;
     }
     let (space, start) = (kind.any_space(), kind.start());
     // The path may be the answer to a query between other ends.
     let is_own = path.states.first() == Some(start)
         && path.states.last().is_some_and(|end| kind.goals().contains(end));
     if !is_own {
-        return Ok(None);
+        return None;
     }
     let near = NEARER * path.length(&space);
     let mut goals = kind.goals().to_vec();
     goals.retain(|goal| space.distance(start, goal) < near);
     if goals.is_empty() {
-        return Ok(None);
+        return None;
     }
-    let Ok(among) = kind.any_with_ends(start.clone(), goals, &kind.given_start()) else { return Ok(None) };
+    let Ok(among) = kind.any_with_ends(start.clone(), goals, &kind.given_start()) else { return None };
     let time_s = left.map(|left| PART * left.as_secs_f64());
     let budget = Budget { queries: Some(QUERIES), time_s, ..Budget::default() };
     let (planner, seed, metric, motion) = ("rrt-connect", request.seed, request.metric, request.motion);
@@ -49,9 +46,10 @@ pub(crate) fn nearer_goal(
         Request { budget, seed, metric, motion, clearance: request.clearance, ..Request::new(planner) };
     let mut control =
         Control { cancel: control.cancel.clone(), clock: control.clock.clone(), ..Control::default() };
-    let found = search_within(&*among, &request, &mut control, 1.0, true)?;
-    Ok(match found.outcome {
+    // Where the time is up the start seems not to be free.
+    let Ok(found) = search_within(&*among, &request, &mut control, 1.0, true) else { return None };
+    match found.outcome {
         Outcome::Solved(path) => Some(path),
         Outcome::Stopped(_) => None,
-    })
+    }
 }

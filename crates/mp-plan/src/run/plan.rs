@@ -187,7 +187,7 @@ pub(crate) fn reported(
     };
     report.path_length_found = Some(path.length(&kind.any_space()));
     let began = control.clock.now();
-    let nearer = nearer_goal(kind, request, &path, control, left)?;
+    let nearer = nearer_goal(kind, request, &path, control, left);
     let left = left.map(|left| left.saturating_sub(control.clock.now().saturating_sub(began)));
     let found =
         Proposed { path: &path, nearer: nearer.as_ref(), proved: found.proved, time: found.time, began };

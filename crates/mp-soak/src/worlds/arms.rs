@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 /// The half of each side of the room (m), before it is scaled.
-const HALF: f64 = 3.0;
+pub(super) const HALF: f64 = 3.0;
 
 /// How many configurations say whether two links touch in most of them.
-const SAMPLES: usize = 12;
+pub(super) const SAMPLES: usize = 12;
 
 /// The numbers of a pose as URDF writes them: the same six, with the angles from the last to the first.
 fn origin(six: &[f64; 6]) -> String {
@@ -78,17 +78,21 @@ fn collision(
 }
 
 /// A robot as text and as the oracle has it.
-struct Made {
-    urdf: String,
-    srdf: Option<String>,
-    tree: Tree,
-    bodies: Vec<Body>,
-    pairs: Vec<[usize; 2]>,
+pub(super) struct Made {
+    pub(super) urdf: String,
+    pub(super) srdf: Option<String>,
+    pub(super) tree: Tree,
+    pub(super) bodies: Vec<Body>,
+    /// The frame of the link of each body.
+    pub(super) of_link: Vec<usize>,
+    /// The frame of the first link.
+    pub(super) first: usize,
+    pub(super) pairs: Vec<[usize; 2]>,
     /// Limits and name of each number of the joints.
-    limits: Vec<Option<[f64; 2]>>,
-    names: Vec<String>,
-    files: BTreeMap<String, Vec<u8>>,
-    reach: f64,
+    pub(super) limits: Vec<Option<[f64; 2]>>,
+    pub(super) names: Vec<String>,
+    pub(super) files: BTreeMap<String, Vec<u8>>,
+    pub(super) reach: f64,
 }
 
 /// Writes links about as long as `lengths`. Returns the bodies of the robot and the link of each; link i is behind joint i - 1.
@@ -96,7 +100,7 @@ fn links(
     draw: &mut Draw,
     floats: bool,
     lengths: &[f64],
-    urdf: &mut String,
+    (name, urdf): (&str, &mut String),
     files: &mut BTreeMap<String, Vec<u8>>,
 ) -> (Vec<Body>, Vec<usize>) {
     let (mut bodies, mut of_link) = (Vec::new(), Vec::new());
@@ -110,7 +114,7 @@ fn links(
             _ => *draw.one(&[0, 1, 1, 1, 2]),
         };
         for shape in 0..shapes {
-            let (element, pieces) = collision(draw, *length, &format!("part-{link}-{shape}"), files);
+            let (element, pieces) = collision(draw, *length, &format!("part{name}-{link}-{shape}"), files);
             elements += &element;
             bodies.push(Body::new(format!("link{link}"), Shape::Pieces(pieces), link));
             of_link.push(link);
@@ -122,6 +126,13 @@ fn links(
 
 /// A random robot.
 fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
+    let mut made = without_pairs(draw, floats, scale, "");
+    made.pair_links(draw);
+    made
+}
+
+/// A random robot, of whose links it is not yet known which are compared. Names of its files have `name` in them.
+pub(super) fn without_pairs(draw: &mut Draw, floats: bool, scale: f64, name: &str) -> Made {
     let count = if floats { draw.count(1, 3) } else { draw.count(1, 7) };
     let mut files = BTreeMap::new();
     let mut urdf = String::from("<?xml version=\"1.0\"?>\n<robot name=\"arm\">\n");
@@ -130,7 +141,7 @@ fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
     let mut names = Vec::new();
     let mut reach = 0.0;
     let lengths: Vec<f64> = (0..=count).map(|_| scale * draw.within(0.25, 0.9)).collect();
-    let (bodies, of_link) = links(draw, floats, &lengths, &mut urdf, &mut files);
+    let (bodies, of_link) = links(draw, floats, &lengths, (name, &mut urdf), &mut files);
     for j in 0..count {
         // Mostly a chain; rarely a branch.
         let above = if draw.chance(0.85) { j } else { draw.below(j + 1) };
@@ -187,14 +198,12 @@ fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
     let circles = limits.iter().map(Option::is_none).collect();
     let base = Isometry3::identity();
     let tree = Tree { floats, base, joints, numbers: limits.len(), circles };
-    let mut made = Made { urdf, srdf: None, tree, bodies, pairs: Vec::new(), limits, names, files, reach };
-    made.pair_links(draw, &of_link);
-    made
+    Made { urdf, srdf: None, tree, bodies, of_link, first: 0, pairs: Vec::new(), limits, names, files, reach }
 }
 
 impl Made {
     /// The frame that moves with a link: a fixed joint has none of its own.
-    fn moving_frame(&self, mut link: usize) -> usize {
+    pub(super) fn moving_frame(&self, mut link: usize) -> usize {
         while link > 0 && self.tree.joints[link - 1].number.is_none() {
             link = self.tree.joints[link - 1].above;
         }
@@ -202,7 +211,8 @@ impl Made {
     }
 
     /// Finds out which links are compared, and writes down those that may touch.
-    fn pair_links(&mut self, draw: &mut Draw, of_link: &[usize]) {
+    pub(super) fn pair_links(&mut self, draw: &mut Draw) {
+        let of_link = &self.of_link;
         // A joint connects the links that move with its child to those that move with its parent; of the root that stands still, to
         // its parent alone.
         let joined = |a: usize, b: usize| {
@@ -255,14 +265,15 @@ impl Made {
         self.pairs = all;
         // Without this file, links that always touch are found by the program. That cannot be if none touch at the neutral one.
         if neutral_touches || !may_touch.is_empty() || draw.chance(0.5) {
-            let lines = may_touch.iter().map(|[a, b]| {
+            let lines = may_touch.iter().map(|pair| {
+                let [a, b] = pair.map(|link| link - self.first);
                 format!("<disable_collisions link1=\"link{a}\" link2=\"link{b}\" reason=\"Default\"/>\n")
             });
             self.srdf = Some(format!("<robot name=\"arm\">\n{}</robot>\n", lines.collect::<String>()));
         }
     }
 
-    fn joint_values(&self, draw: &mut Draw) -> Vec<f64> {
+    pub(super) fn joint_values(&self, draw: &mut Draw) -> Vec<f64> {
         let value = |limits: &Option<[f64; 2]>| match limits {
             Some([low, high]) => draw.within(*low, *high),
             None => draw.within(-PI, PI),
@@ -285,7 +296,7 @@ impl Made {
         (names, widths)
     }
 
-    fn case(&self) -> Case {
+    pub(super) fn case(&self) -> Case {
         let root: &[Option<[f64; 2]>] = if self.tree.floats { &[None; 6] } else { &[] };
         let limits = [root, &self.limits].concat();
         let case = Case::new(Moves::Tree(self.tree.clone()), self.bodies.clone(), limits, 2.0 * self.reach);
@@ -304,13 +315,13 @@ pub(super) fn floating(draw: &mut Draw) -> World {
 }
 
 /// A random pose at most `half` from the middle in each direction.
-fn placed(draw: &mut Draw, half: f64) -> [f64; 6] {
+pub(super) fn placed(draw: &mut Draw, half: f64) -> [f64; 6] {
     let [x, y, z] = [0; 3].map(|_| draw.within(-half, half));
     [x, y, z, draw.within(-PI, PI), draw.within(-1.5, 1.5), draw.within(-PI, PI)]
 }
 
 /// Adds figures to a world. Returns their tables, and the radius of the largest round one.
-fn obstacles(
+pub(super) fn obstacles(
     draw: &mut Draw,
     scale: f64,
     case: &mut Case,

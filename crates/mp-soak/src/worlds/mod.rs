@@ -2,6 +2,7 @@
 
 mod arms;
 mod bodies;
+mod jobs;
 mod plane;
 mod rigid;
 mod shipped;
@@ -82,7 +83,7 @@ impl Kind {
 }
 
 /// All kinds of worlds.
-pub const KINDS: [Kind; 13] = [
+pub const KINDS: [Kind; 14] = [
     Kind::new("space", "rigid body in space among figures", 4, rigid::space),
     Kind::new("soup", "rigid body among loose triangles", 4, rigid::soup),
     Kind::new("flat-mesh", "mesh that stays in the plane", 2, rigid::flat),
@@ -95,6 +96,12 @@ pub const KINDS: [Kind; 13] = [
     Kind::new("driven-moving", "car, unicycle, …, obstacles move", 2, plane::driven_moving),
     Kind::new("arm", "arm, also by inputs", 4, arms::arm),
     Kind::new("floating", "body with joints that flies", 2, arms::floating),
+    Kind::new(
+        "jobs",
+        "arms on bases that move or stand, held joints, things carried, two robots",
+        4,
+        jobs::jobs,
+    ),
     Kind::new("shipped", "shipped scenes, other starts and goals", 1, shipped::shipped),
 ];
 

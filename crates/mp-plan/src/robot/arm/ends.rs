@@ -72,6 +72,10 @@ impl<C: LinkedSpace> LinkedScene<C> {
             }
         }
         ends.goals.iter_mut().for_each(|goal| goal.truncate(names.len()));
+        if !file.parts.is_empty() {
+            let all = file.part + file.parts.len();
+            ends.said.push(format!("this is part {} of a motion of {all} parts", file.part));
+        }
         Ok(ends)
     }
 }
