@@ -31,8 +31,8 @@
 //!
 //! **When to use it.** For narrow passages between obstacles of moderate size. It needs [`ObstacleGeometry`], which rigid
 //! bodies among meshes have. Of the four ways to make nodes `free` is the best: with 50,000 collision queries and certified
-//! motions it solved 98 of 140 runs in seven scenes, `shells` 87, `prototype` 72, `contact` 71, uniform samples 72. With
-//! discrete motion checks, nearly all paths by way of nodes in contact fail the verification (docs/results/roadmaps.md).
+//! motions it solved 98 of 140 runs in seven scenes, `shells` 88, `prototype` 74, `contact` 73, uniform samples 80. With
+//! discrete motion checks, nearly all first paths by way of nodes in contact fail the verification (docs/results/roadmaps.md).
 //!
 //! | parameter | range | default |
 //! |---|---|---|
