@@ -65,6 +65,13 @@ fn held_joints_have_no_numbers() {
     };
     assert!(goal("0.3").unwrap().check_ends().is_ok());
     assert!(goal("0.1").unwrap().check_ends().is_err());
+    // A link behind held joints stands still, like the base: what it stands in is no matter.
+    let inside = bar.replace("pose = [0.5, 0.5, 0.2,", "pose = [0.5, 0, 0.4,");
+    let held = load(
+        "hold = { raise = 0.3, shoulder = 0 }",
+        &format!("start = [0.5, 0]\ngoal = [-0.5, 0.1]{inside}"),
+    );
+    assert_eq!(path(&held.unwrap()).last().unwrap(), &[-0.5, 0.1]);
     // A hair beyond the limit is at the limit.
     assert!(load("hold = { raise = 0.4000004 }", "start = [0, 0, 0]\ngoal = [1, 1, 0]").is_ok());
 }

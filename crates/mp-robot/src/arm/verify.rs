@@ -206,9 +206,10 @@ impl ReferenceArm {
         std::iter::successors(Some(link), |&i| self.links[i].parent).collect()
     }
 
-    /// Whether any joint above the link moves it.
+    /// Whether any joint above the link moves it: one that is held does not.
     fn is_moved(&self, link: usize) -> bool {
-        self.above(link).into_iter().any(|i| self.links[i].motion != JointMotion::Fixed)
+        let moves = |link: &ReferenceLink| link.motion != JointMotion::Fixed && link.value.1 != 0.0;
+        self.above(link).into_iter().any(|i| moves(&self.links[i]))
     }
 }
 
