@@ -23,6 +23,8 @@ pub struct ProblemChanges {
     pub to: Vec<String>,
     /// Obstacles beside the others: each is what stands in the table of an obstacle.
     pub obstacles: Vec<String>,
+    /// Arguments of a robot with macros, `NAME:=VALUE`.
+    pub arguments: Vec<String>,
 }
 
 /// The page that describes obstacles.
@@ -228,7 +230,12 @@ mod tests {
 
     fn changed(from: Option<&str>, to: &[&str], obstacles: &[&str]) -> ProblemChanges {
         let owned = |all: &[&str]| all.iter().map(|text| (*text).to_owned()).collect();
-        ProblemChanges { from: from.map(str::to_owned), to: owned(to), obstacles: owned(obstacles) }
+        ProblemChanges {
+            from: from.map(str::to_owned),
+            to: owned(to),
+            obstacles: owned(obstacles),
+            arguments: Vec::new(),
+        }
     }
 
     #[test]

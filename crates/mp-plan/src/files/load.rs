@@ -59,9 +59,14 @@ impl Scene {
                 let wrong = |_| Error::new(format!("{} is not UTF-8 text", file.display()));
                 (file.to_owned(), text.map_err(wrong)?)
             }
+            Some(Content::RobotMacros) => return without_problem::with_macros(files, file, changes),
             Some(Content::Robot) => without_problem::problem_around(files, file)?,
             _ => return Self::load_with_rows(files, file, changes),
         };
+        if !changes.arguments.is_empty() {
+            return Err(Error::new(format!("--arg: {} has no macros", file.display()))
+                .help("arguments are for robots in .xacro"));
+        }
         let text = changes.applied(&place.display().to_string(), &text)?;
         let mut scene =
             Self::load_from(&OneText { file: &place, text: &text, files }, &place)?.with_file(file);
@@ -134,7 +139,7 @@ impl Scene {
             file: file.to_owned(),
             shipped: false,
             text: None,
-            changed: false,
+            changed: named == Some(Content::RobotMacros),
             inputs: read.into_inner().unwrap_or_else(PoisonError::into_inner),
             folders: folders.into_inner().unwrap_or_else(PoisonError::into_inner),
         });
