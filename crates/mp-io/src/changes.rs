@@ -118,22 +118,31 @@ impl ProblemChanges {
         obstacle.iter().enumerate().map(body).collect()
     }
 
-    /// The numbers of the start, and those of the goals, for problems in other formats.
+    /// The numbers of the start, for problems in other formats.
+    ///
+    /// # Errors
+    /// [`Error`] when it is anything but numbers.
+    pub fn start_row(&self) -> Result<Option<Vec<f64>>, Error> {
+        self.from.as_ref().map(|from| row(FROM, from)).transpose()
+    }
+
+    /// The numbers of the goals, for problems in other formats.
     ///
     /// # Errors
     /// [`Error`] when they are anything but numbers.
-    pub fn rows(&self) -> Result<(Option<Vec<f64>>, Vec<Vec<f64>>), Error> {
-        let row = |option: &'static str, text: &String| {
-            let read = members(option, "number list", &value(option, text)?)?;
-            read.try_into::<Vec<f64>>().map_err(|_| {
-                Error::new(ErrorKind::Content, option, format!("`{text}` is no list of numbers")).help(
-                    "write the numbers of a configuration; only problems in TOML have goals of other kinds",
-                )
-            })
-        };
-        let from = self.from.as_ref().map(|from| row(FROM, from)).transpose()?;
-        Ok((from, self.to.iter().map(|to| row(TO, to)).collect::<Result<_, _>>()?))
+    pub fn goal_rows(&self) -> Result<Vec<Vec<f64>>, Error> {
+        self.to.iter().map(|to| row(TO, to)).collect()
     }
+}
+
+/// The numbers that an option gives.
+fn row(option: &'static str, text: &str) -> Result<Vec<f64>, Error> {
+    let read = members(option, "list of numbers", &value(option, text)?)?;
+    read.try_into::<Vec<f64>>().map_err(|_| {
+        let message = format!("`{}` is no list of numbers", crate::text::clipped(text));
+        Error::new(ErrorKind::Content, option, message)
+            .help("write the numbers of a configuration; only problems in TOML have goals of other kinds")
+    })
 }
 
 /// What to write for an option.

@@ -76,7 +76,7 @@ impl Scene {
 
     /// As [`load_changed`](Self::load_changed), of a problem that is not in TOML.
     fn load_with_rows(files: &dyn Files, file: &Path, changes: &ProblemChanges) -> Result<Self, Error> {
-        let (from, to) = changes.rows()?;
+        let (from, to) = (changes.start_row()?, changes.goal_rows()?);
         let recording = Recording::new(files);
         let mut scene = Self::load_from(&recording, file)?;
         let bodies = changes.bodies(&recording, file)?;
