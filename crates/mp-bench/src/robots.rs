@@ -241,7 +241,7 @@ fn free_at_random(scene: &Scene) -> Option<Vec<f64>> {
         limits.iter().map(value).collect()
     };
     (0..TRIES).map(|_| row()).find(|row| {
-        let ends = scene.with_ends(row, &[row.clone()]);
+        let ends = scene.with_ends(row, std::slice::from_ref(row));
         ends.is_ok_and(|ends| ends.check_ends().is_ok())
     })
 }
