@@ -52,7 +52,7 @@ impl Outcome {
         (Self::PlannedWithPairs, "planned and proved with the SRDF of `mp srdf`"),
         (Self::NotInTime, "not planned in time"),
         (Self::SelfCollision, "collides with itself, also with the SRDF of `mp srdf`"),
-        (Self::MissingMesh, "a mesh is missing"),
+        (Self::MissingMesh, "a mesh is missing, or of a format that is not read"),
         (Self::NoJointMoves, "no joint moves: all limits are equal"),
         (Self::Invalid, "the description is not valid"),
     ];
@@ -241,7 +241,7 @@ fn free_at_random(scene: &Scene) -> Option<Vec<f64>> {
         limits.iter().map(value).collect()
     };
     (0..TRIES).map(|_| row()).find(|row| {
-        let ends = scene.with_ends(row, &[row.clone()]);
+        let ends = scene.with_ends(row, std::slice::from_ref(row));
         ends.is_ok_and(|ends| ends.check_ends().is_ok())
     })
 }
@@ -262,7 +262,7 @@ fn outcome_of(error: &Error) -> Outcome {
         Outcome::NotInTime
     } else if message.contains("no joint of this arm moves") {
         Outcome::NoJointMoves
-    } else if message.contains("no such file") || message.contains("is not there") {
+    } else if ["no such file", "is not there", "not a mesh format"].iter().any(|why| message.contains(why)) {
         Outcome::MissingMesh
     } else {
         Outcome::Invalid

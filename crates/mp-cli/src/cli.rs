@@ -204,13 +204,16 @@ pub(crate) struct Changes {
     /// One more obstacle: what stands in an obstacle of a problem, such as "box = [0.4, 0.4, 0.02], at = [0.5, 0, 0.3]".
     #[arg(long, value_name = "OBSTACLE")]
     pub(crate) obstacle: Vec<String>,
+    /// An argument of a robot with macros (`.xacro`), which a program with the feature `xacro` expands.
+    #[arg(long, value_name = "NAME:=VALUE")]
+    pub(crate) arg: Vec<String>,
 }
 
 impl Changes {
     /// As libraries take them.
     pub(crate) fn of_problem(&self) -> ProblemChanges {
-        let Self { from, to, obstacle } = self.clone();
-        ProblemChanges { from, to, obstacles: obstacle }
+        let Self { from, to, obstacle, arg } = self.clone();
+        ProblemChanges { from, to, obstacles: obstacle, arguments: arg }
     }
 }
 

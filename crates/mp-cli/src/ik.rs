@@ -25,8 +25,11 @@ pub(crate) fn run(args: &cli::Ik) -> Result<bool, Error> {
         within: [args.within.unwrap_or(0.0); 3],
         free,
     };
-    let changes =
-        ProblemChanges { from: args.from.clone(), to: Vec::new(), obstacles: args.obstacle.clone() };
+    let changes = ProblemChanges {
+        from: args.from.clone(),
+        obstacles: args.obstacle.clone(),
+        ..ProblemChanges::default()
+    };
     let scene = scene(&args.scene, &changes)?;
     let mut found = scene.reaching(&entry, args.most.into(), &Interrupt::new(interrupt::flag()))?;
     let in_all = found.len();

@@ -23,6 +23,8 @@ pub struct ProblemChanges {
     pub to: Vec<String>,
     /// Obstacles beside the others: each is what stands in the table of an obstacle.
     pub obstacles: Vec<String>,
+    /// Arguments of a robot with macros, `NAME:=VALUE`.
+    pub arguments: Vec<String>,
 }
 
 /// The page that describes obstacles.
@@ -116,22 +118,31 @@ impl ProblemChanges {
         obstacle.iter().enumerate().map(body).collect()
     }
 
-    /// The numbers of the start, and those of the goals, for problems in other formats.
+    /// The numbers of the start, for problems in other formats.
+    ///
+    /// # Errors
+    /// [`Error`] when it is anything but numbers.
+    pub fn start_row(&self) -> Result<Option<Vec<f64>>, Error> {
+        self.from.as_ref().map(|from| row(FROM, from)).transpose()
+    }
+
+    /// The numbers of the goals, for problems in other formats.
     ///
     /// # Errors
     /// [`Error`] when they are anything but numbers.
-    pub fn rows(&self) -> Result<(Option<Vec<f64>>, Vec<Vec<f64>>), Error> {
-        let row = |option: &'static str, text: &String| {
-            let read = members(option, "number list", &value(option, text)?)?;
-            read.try_into::<Vec<f64>>().map_err(|_| {
-                Error::new(ErrorKind::Content, option, format!("`{text}` is no list of numbers")).help(
-                    "write the numbers of a configuration; only problems in TOML have goals of other kinds",
-                )
-            })
-        };
-        let from = self.from.as_ref().map(|from| row(FROM, from)).transpose()?;
-        Ok((from, self.to.iter().map(|to| row(TO, to)).collect::<Result<_, _>>()?))
+    pub fn goal_rows(&self) -> Result<Vec<Vec<f64>>, Error> {
+        self.to.iter().map(|to| row(TO, to)).collect()
     }
+}
+
+/// The numbers that an option gives.
+fn row(option: &'static str, text: &str) -> Result<Vec<f64>, Error> {
+    let read = members(option, "list of numbers", &value(option, text)?)?;
+    read.try_into::<Vec<f64>>().map_err(|_| {
+        let message = format!("`{}` is no list of numbers", crate::text::clipped(text));
+        Error::new(ErrorKind::Content, option, message)
+            .help("write the numbers of a configuration; only problems in TOML have goals of other kinds")
+    })
 }
 
 /// What to write for an option.
@@ -228,7 +239,12 @@ mod tests {
 
     fn changed(from: Option<&str>, to: &[&str], obstacles: &[&str]) -> ProblemChanges {
         let owned = |all: &[&str]| all.iter().map(|text| (*text).to_owned()).collect();
-        ProblemChanges { from: from.map(str::to_owned), to: owned(to), obstacles: owned(obstacles) }
+        ProblemChanges {
+            from: from.map(str::to_owned),
+            to: owned(to),
+            obstacles: owned(obstacles),
+            arguments: Vec::new(),
+        }
     }
 
     #[test]

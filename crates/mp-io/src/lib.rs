@@ -42,6 +42,7 @@ mod shape;
 mod text;
 mod toml_problem;
 mod trace;
+mod xacro;
 mod xml;
 
 pub use changes::ProblemChanges;
@@ -73,3 +74,4 @@ pub use robot::{
 pub use robots::{FoundRobot, RobotPath};
 pub use shape::ShapeEntry;
 pub use toml_problem::{GoalEntry, GoalPart, StartEntry, Timing};
+pub use xacro::expand_xacro;

@@ -11,8 +11,11 @@ type Q = SVector<f64, 6>;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1).unwrap_or_else(|| "crates/mp-scenes/assets/scenes/arm.toml".into());
     let task = RobotProblem::load(&file)?;
-    let mut model = ArmModel::from_urdf(&task.urdf, |name| task.mesh(name))?;
-    model.base = task.base();
+    let ([robot], [entry]) = (task.robots.as_slice(), task.file.robots.as_slice()) else {
+        return Err("this example is for one robot".into());
+    };
+    let mut model = ArmModel::from_urdf(&robot.urdf, |name| robot.mesh(name))?;
+    model.base = entry.pose();
     let obstacles = task.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
     let arm = Arm::new(&model, obstacles)?;
     // Six coordinates, known when compiling; `Configuration` takes any number.
@@ -21,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let fits = values.len() == 6;
         fits.then(|| Q::from_column_slice(values)).ok_or("this example is for six joints")
     };
-    let start = state(&task.file.start)?;
+    let start = state(task.file.start.row())?;
     let goals = task.file.goals.iter().map(|goal| match goal.values() {
         Some(values) => state(values),
         None => Err("this example is for goals that give all joints"),

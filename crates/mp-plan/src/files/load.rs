@@ -60,9 +60,14 @@ impl Scene {
                 let wrong = |_| Error::new(format!("{} is not UTF-8 text", file.display()));
                 (file.to_owned(), text.map_err(wrong)?)
             }
+            Some(Content::RobotMacros) => return without_problem::with_macros(files, file, changes),
             Some(Content::Robot) => without_problem::problem_around(files, file)?,
             _ => return Self::load_with_rows(files, file, changes),
         };
+        if !changes.arguments.is_empty() {
+            return Err(Error::new(format!("--arg: {} has no macros", file.display()))
+                .help("arguments are for robots in .xacro"));
+        }
         let text = changes.applied(&place.display().to_string(), &text)?;
         let mut scene =
             Self::load_from(&OneText { file: &place, text: &text, files }, &place)?.with_file(file);
@@ -72,7 +77,7 @@ impl Scene {
 
     /// As [`load_changed`](Self::load_changed), of a problem that is not in TOML.
     fn load_with_rows(files: &dyn Files, file: &Path, changes: &ProblemChanges) -> Result<Self, Error> {
-        let (from, to) = changes.rows()?;
+        let (from, to) = (changes.start_row()?, changes.goal_rows()?);
         let recording = Recording::new(files);
         let mut scene = Self::load_from(&recording, file)?;
         let bodies = changes.bodies(&recording, file)?;
@@ -135,7 +140,7 @@ impl Scene {
             file: file.to_owned(),
             shipped: false,
             text: None,
-            changed: false,
+            changed: named == Some(Content::RobotMacros),
             inputs: read.into_inner().unwrap_or_else(PoisonError::into_inner),
             folders: folders.into_inner().unwrap_or_else(PoisonError::into_inner),
         });

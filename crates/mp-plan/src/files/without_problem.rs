@@ -5,8 +5,9 @@
 
 use crate::files::load::OneText;
 use crate::{Error, Scene};
-use mp_io::{Content, Files};
+use mp_io::{Content, Files, ProblemChanges};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The scene of a file that is no scene but can be made one; `None` for all other files. `named` is what its name says that it holds.
 ///
@@ -17,10 +18,7 @@ pub(crate) fn scene(files: &dyn Files, file: &Path, named: Option<Content>) -> R
         Some(Content::Robot) => robot(files, file).map(Some),
         Some(Content::Map) => map(files, file).map(Some),
         Some(Content::MapImage) => map(files, &beside(files, file)?).map(Some),
-        Some(Content::RobotMacros) => {
-            Err(Error::new(format!("{} is a robot description with macros", file.display()))
-                .help("expand it first: `xacro FILE > robot.urdf`"))
-        }
+        Some(Content::RobotMacros) => with_macros(files, file, &ProblemChanges::default()).map(Some),
         Some(Content::RobotSemantics) => {
             Err(Error::new(format!("{} is an SRDF, not a scene", file.display()))
                 .help("name it in a robot problem: docs/formats/robot-problem.md"))
@@ -61,6 +59,20 @@ fn around(file: &Path) -> PathBuf {
 
 fn robot(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     with_chosen_ends(files, robot_alone(files, file)?)
+}
+
+/// The scene of a robot with macros. It cannot be read again elsewhere: what the macros include is not known.
+pub(crate) fn with_macros(files: &dyn Files, file: &Path, changes: &ProblemChanges) -> Result<Scene, Error> {
+    let text = mp_io::expand_xacro(file, &changes.arguments)?;
+    // `robot.urdf.xacro`, or `robot.xacro`.
+    let place = file.with_extension("").with_extension(Content::Robot.ending());
+    let files = OneText { file: &place, text: &text, files };
+    let changes = ProblemChanges { arguments: Vec::new(), ..changes.clone() };
+    let mut scene = Scene::load_changed(&files, &place, &changes)?.with_file(file);
+    let of = Arc::make_mut(&mut scene.files);
+    of.changed = true;
+    of.inputs.push(file.to_owned());
+    Ok(scene)
 }
 
 /// The scene of a problem of an arm that leaves its start, its goals or both open.

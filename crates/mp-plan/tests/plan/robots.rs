@@ -301,6 +301,7 @@ fn changes_are_among_the_files_of_a_scene() {
         from: Some("0.1, 0.2".to_owned()),
         to: vec!["b = 0.5".to_owned()],
         obstacles: vec!["sphere = 0.1, at = [0, 0, 5]".to_owned()],
+        arguments: Vec::new(),
     };
     let scene = Scene::load_changed(&Disk, &file, &changes).unwrap();
     assert_eq!((scene.name(), scene.start(), scene.goals()[0][1]), ("r", vec![0.1, 0.2], 0.5));
