@@ -110,7 +110,7 @@ fn what_cannot_be_is_an_error() {
     let mut named = flying();
     named.joints[2].name = "alpha".to_owned();
     let error = arm(&named).unwrap_err();
-    assert!(matches!(&error, ArmError::BaseName { joint } if joint == "alpha"));
+    assert!(matches!(&error, ArmError::BaseName { joint, .. } if joint == "alpha"));
     assert!(error.to_string().contains("give the joint another name"), "{error}");
     // On a base that stands still the name is free.
     assert!(arm(&ArmModel { floating: None, ..named }).is_ok());
