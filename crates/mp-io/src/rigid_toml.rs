@@ -110,7 +110,8 @@ impl RigidTask {
         };
         let driven = driven(&source, &robot_span, table, planar)?;
         let (from, mesh) = meshes.of(&source, "robot", &body?)?;
-        let robot_body = Body { name: "robot".to_owned(), file: from, mesh };
+        // What moves has facets.
+        let robot_body = Body { name: "robot".to_owned(), file: from, mesh: mesh.faceted() };
 
         let mut obstacles = Vec::new();
         for (i, table) in obstacle.iter().enumerate() {

@@ -144,8 +144,19 @@ pub enum ModelPart {
 }
 
 impl ModelBody {
-    /// A mesh, with its solids.
+    /// A mesh, with its solids; of balls, their centres and radius.
     pub(crate) fn mesh(name: &str, frame: usize, mesh: &TriMesh) -> Self {
+        if let [(range, radius)] = mesh.balls()
+            && range.len() == mesh.triangles().len()
+        {
+            let pieces = mesh.triangles().iter().map(|t| vec![t[0]]).collect();
+            return Self {
+                radius: *radius,
+                pieces,
+                ..Self::mesh(name, frame, &mesh.clone().without_balls())
+            };
+        }
+        let mesh = &mesh.faceted();
         Self {
             name: name.to_owned(),
             frame,
