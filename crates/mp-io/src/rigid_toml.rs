@@ -116,6 +116,12 @@ impl RigidTask {
         let mut obstacles = Vec::new();
         for (i, table) in obstacle.iter().enumerate() {
             let entry = entry(&source, i, table)?;
+            if let Some(near) = &entry.self_filter {
+                let message = "only points on robots of links are left out";
+                return Err(source
+                    .error(&near.span(), message)
+                    .expected("no `self_filter` with a rigid body"));
+            }
             let (file, mesh) = meshes.of(&source, &entry.name, &entry.shape)?;
             obstacles.push(PlacedBody { name: entry.name, file, mesh, pose: pose_from_six(entry.pose) });
         }

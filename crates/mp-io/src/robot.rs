@@ -31,6 +31,8 @@ pub struct ObstacleEntry {
     pub(crate) shape: (ShapeEntry, Range<usize>),
     /// x, y, z, α, β, γ.
     pub pose: [f64; 6],
+    /// Points this near (m) to the robot at the start are left out, and where it says so.
+    pub self_filter: Option<Spanned<f64>>,
 }
 
 /// The content of a robot problem file; the files that it names are not yet read.
@@ -97,6 +99,8 @@ pub enum RobotPart {
     Goal(usize),
     /// The limits of this index.
     Limits(usize),
+    /// What is left out of the obstacle of this index.
+    SelfFilter(usize),
 }
 
 #[derive(Deserialize)]
@@ -151,6 +155,7 @@ enum BaseEntry {
 pub(crate) struct ObstacleTable {
     name: Option<String>,
     pose: Option<Spanned<[f64; 6]>>,
+    self_filter: Option<Spanned<f64>>,
 }
 
 impl RobotFile {
@@ -258,6 +263,10 @@ impl RobotFile {
             RobotPart::Base => &self.places.base,
             RobotPart::Start => &self.places.motion.start,
             RobotPart::Goal(i) => self.places.motion.goal(i),
+            RobotPart::SelfFilter(i) => {
+                let near = self.obstacles.get(i).and_then(|obstacle| obstacle.self_filter.as_ref());
+                return self.fault_at(&near.map_or(0..0, Spanned::span), message, help);
+            }
             RobotPart::Limits(i) => self.places.limits.get(i).unwrap_or(&self.places.urdf),
         };
         self.fault_at(span, message, help)
@@ -336,5 +345,21 @@ pub(crate) fn entry(
     let name = own.name.clone().unwrap_or_else(|| format!("obstacle {}", index + 1));
     let shape = table.get_ref().shape(source, &name, &table.span())?;
     let pose = source.six("the pose", own.pose.clone())?;
-    Ok(ObstacleEntry { name, shape, pose })
+    let self_filter = own.self_filter.clone();
+    if let Some(near) = &self_filter {
+        source.check("the distance", &[*near.get_ref()], &near.span())?;
+        let points =
+            matches!(shape.0, ShapeEntry::PointFile(..) | ShapeEntry::Whole(mp_geom::Shape::Points(_)));
+        if !points || *near.get_ref() < 0.0 {
+            let message = format!(
+                "{} cannot leave out what is {} m from the robot",
+                crate::text::clipped(&name),
+                near.get_ref()
+            );
+            return Err(source
+                .error(&near.span(), message)
+                .expected("`self_filter = DISTANCE` beside `points`: 0 or more, in metres"));
+        }
+    }
+    Ok(ObstacleEntry { name, shape, pose, self_filter })
 }

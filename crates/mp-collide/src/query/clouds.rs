@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 
 use crate::bvh::frames::Frames;
 use crate::cloud::{Found, Reach};
-use crate::mesh::PosedMesh;
+use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::{LIMIT, Relative, to_world};
 use crate::query::Query;
 use crate::query::interval::{IntervalCheck, RigidMotion};
@@ -51,6 +51,52 @@ impl Reach for During {
     fn take(&mut self, found: Found) -> bool {
         self.found = Some(found);
         true
+    }
+}
+
+/// All points of a cloud nearer than `below`.
+struct All {
+    below: f64,
+    ids: Vec<usize>,
+}
+
+impl Reach for All {
+    fn of(&self, _: &Point3<f64>, _: f64) -> f64 {
+        self.below
+    }
+
+    fn take(&mut self, found: Found) -> bool {
+        self.ids.push(found.id);
+        false
+    }
+}
+
+impl Query {
+    /// The balls of `cloud` that are at most `reach` (metres) from a mesh of triangles, or inside of it if it is closed: their numbers, ascending. All
+    /// of them for bad input.
+    pub fn balls_near(
+        &mut self,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+        cloud: &CollisionMesh,
+        pose_wc: &Isometry3<f64>,
+        reach: f64,
+    ) -> Vec<usize> {
+        let (Some(pair), Some(balls)) = (Pair::new((mesh, pose_wm), (cloud, pose_wc)), &cloud.cloud) else {
+            return (0..cloud.triangle_count()).collect();
+        };
+        let mut all = All { below: (reach.max(0.0) + pair.radius).next_up(), ids: Vec::new() };
+        pair.search(self, &mut all);
+        for (id, p) in balls.centers().iter().enumerate() {
+            let p = pair.relative.point(p);
+            let bounds = &mesh.tree().bounding;
+            let inside = !bounds.is_beyond(&(p - bounds.center), pair.relative.slack)
+                && self.winding(mesh, &p).is_none_or(|turns| turns > 0);
+            all.ids.extend(inside.then_some(id));
+        }
+        all.ids.sort_unstable();
+        all.ids.dedup();
+        all.ids
     }
 }
 
@@ -185,7 +231,7 @@ pub(super) fn check_interval(
 /// The first of some poses at which two bodies intersect.
 pub(super) fn first_collision(
     query: &mut Query,
-    a: &crate::CollisionMesh,
+    a: &CollisionMesh,
     poses_wa: &[Isometry3<f64>],
     b: PosedMesh<'_>,
 ) -> Option<usize> {

@@ -78,6 +78,18 @@ fn all_queries_agree_with_all_pairs() {
                     assert!(right, "{found} {expected} {enough}");
                 }
             }
+            let near: Vec<usize> = (0..cloud.vertices().len())
+                .filter(|i| {
+                    let one = TriMesh::of_balls(vec![cloud.vertices()[*i]], RADIUS).unwrap();
+                    plain(&mesh, &(there.inverse() * at), &one) <= 0.05
+                })
+                .collect();
+            let found = query.balls_near(&body, &at, &tree, &there, 0.05);
+            // What is deep inside is among them too.
+            assert!(
+                near.iter().all(|id| found.contains(id)) && found.len() < near.len() + 20,
+                "{near:?} {found:?}"
+            );
             let found = query.distance(&body, &at, &tree, &there);
             assert!((found.distance - expected).abs() < BAND);
             assert!(((found.point_a - found.point_b).norm() - expected).abs() < BAND);
@@ -218,6 +230,7 @@ fn what_is_inside_collides() {
     for (radius, solid, expected) in [(0.1, true, true), (0.1, false, false), (5.0, false, true)] {
         let cube = if solid { cube.clone() } else { cube.clone().into_surface() };
         let (scan, body) = (CollisionMesh::new(&ball(radius)), CollisionMesh::new(&cube));
+        assert_eq!(query.balls_near(&body, &here, &scan, &here, 0.01), [0]);
         let mut scene = Scene::new();
         scene.insert("scan", scan.clone(), here).unwrap();
         assert_eq!(scene.collides(&mut query, &body, &here), expected, "{radius} {solid}");

@@ -127,6 +127,13 @@ fn faults_have_their_place() {
         ("sphere = 0.25", "points = { radius = 0.1, file = \"lost.xyz\" }", 15, "lost.xyz"),
         ("sphere = 0.25", "points = { radius = 0.1, cell = 0, at = [[0, 0, 0]] }", 15, "side of a cell"),
         ("sphere = 0.25", "points = { radius = 0.1, cell = 1e-300, at = [[1, 0, 0]] }", 15, "too small"),
+        ("sphere = 0.25", "sphere = 0.25\nself_filter = 0.1", 16, "cannot leave out"),
+        (
+            "sphere = 0.25",
+            "points = { radius = 0.1, at = [[0, 0, 0]] }\nself_filter = -1",
+            16,
+            "cannot leave out",
+        ),
         ("sphere = 0.25", "points = { radius = -0.1, at = [[0, 0, 0]] }", 15, "radius"),
         ("sphere = 0.25", "height_field = { cell = [1, 1], heights = [[0, 1], [0]] }", 15, "equally long"),
         ("sphere = 0.25", "height_field = { cell = [1, 1], heights = [[0, nan]] }", 15, "NaN"),

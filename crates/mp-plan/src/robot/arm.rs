@@ -3,6 +3,7 @@
 mod choose_ends;
 mod pose_goals;
 mod read;
+mod self_filter;
 
 use super::model::{ModelBody, ModelFrame, ModelPair, MotionModel, Step, seven};
 use super::{
@@ -233,10 +234,9 @@ impl<C: LinkedSpace> LinkedScene<C> {
     /// As [`from_problem_in`](Self::from_problem_in). The arm is that of the scene `before`, if that has the same among other obstacles.
     pub(crate) fn from_problem_after(
         files: &dyn Files,
-        problem: RobotProblem,
+        mut problem: RobotProblem,
         before: Option<&Self>,
     ) -> Result<Self, Error> {
-        let of = &|e: Error| e.context(what(&problem));
         let known =
             before.filter(|before| before.source.as_ref().is_some_and(|known| known.same_robot(&problem)));
         let (arm, said) = match known {
@@ -247,6 +247,16 @@ impl<C: LinkedSpace> LinkedScene<C> {
             None => Self::arm_of(files, &problem)?,
         };
         let names = Self::names(&arm);
+        let (mut arm, mut said) = (arm, said);
+        let start = problem.file.start.get(..names.len()).unwrap_or_default().to_vec();
+        let filtered = self_filter::filter(&arm, &mut problem, &start)?;
+        if !filtered.is_empty() {
+            let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
+            arm = arm.among_until(bodies, &files.interrupt())?;
+            said.retain(|line| !line.ends_with(self_filter::LEFT_OUT));
+            said.extend(filtered);
+        }
+        let of = &|e: Error| e.context(what(&problem));
         let file = &problem.file;
         let driven = file.driven.as_ref();
         let state_names = driven.map_or_else(|| names.clone(), |driven| driven.state_names(&names));

@@ -22,8 +22,7 @@ fn window(folder: &Path) {
 fn a_body_passes_a_window_in_a_cloud() {
     let folder = tempfile::tempdir().unwrap();
     window(folder.path());
-    let scene = "[robot]\nbox = [0.4, 0.3, 0.1]\n[motion]\nstart = [-0.7, 0, 0, 0, 0, 0]\ngoal = [0.7, 0.1, 0.2, 0, 0, 0]\n\
-        bounds = [[-0.8, 0.8], [-0.7, 0.7], [-0.7, 0.7]]\n\
+    let scene = "[robot]\nbox = [0.4, 0.3, 0.1]\nbounds = [[-0.8, -0.7, -0.7], [0.8, 0.7, 0.7]]\n[motion]\nstart = [-0.7, 0, 0, 0, 0, 0]\ngoal = [0.7, 0.1, 0.2, 0, 0, 0]\n\
         [[obstacle]]\nname = \"wall\"\npoints = { radius = 0.02, file = \"wall.xyz\" }\n\
         [[obstacle]]\nname = \"table\"\nbox = [0.2, 0.2, 0.2]\npose = [-0.3, 0.5, 0, 0, 0, 0]\n";
     std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
@@ -47,7 +46,36 @@ fn a_body_passes_a_window_in_a_cloud() {
     // In the wall, the cloud is named.
     let explained = scene.explain(&[0.0, 0.6, 0.0, 0.0, 0.0, 0.0]).unwrap();
     assert!(
-        explained.contacts.iter().any(|contact| contact.with == "wall" && contact.depth > 0.0),
+        explained.touching.iter().any(|contact| contact.other == "wall" && contact.depth > Some(0.0)),
         "{explained:?}"
     );
+}
+
+/// A camera sees the arm too.
+#[test]
+fn points_on_the_robot_are_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let urdf = "<robot name='r'><link name='base'/><link name='arm'><collision><origin xyz='0.5 0 0'/><geometry><box size='1 0.1 0.1'/>\
+        </geometry></collision></link><joint name='j' type='revolute'><parent link='base'/><child link='arm'/><axis xyz='0 0 1'/>\
+        <limit lower='-3' upper='3' effort='1' velocity='1'/></joint></robot>";
+    std::fs::write(folder.path().join("r.urdf"), urdf).unwrap();
+    // Along the surface of the arm, inside of it, and beside it, where it moves.
+    let points = "0.5 0.055 0\n0.2 0 0.06\n0.7 0 0\n0.3 -0.9 0\n0.31 -0.9 0.2\n";
+    std::fs::write(folder.path().join("scan.xyz"), points).unwrap();
+    let scene = |members: &str| {
+        let text = format!(
+            "[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = [0]\ngoal = [1.5]\n[[obstacle]]\nname = \"scan\"\n\
+             points = {{ radius = 0.01, file = \"scan.xyz\" }}\n{members}"
+        );
+        std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+        Scene::find(folder.path().join("scene.toml").to_str().unwrap())
+    };
+    assert!(!scene("").unwrap().explain(&[0.0]).unwrap().free);
+    let filtered = scene("self_filter = 0.02").unwrap();
+    assert!(filtered.explain(&[0.0]).unwrap().free);
+    // The others are there, in the check, the verifier and the certificate.
+    assert!(!filtered.explain(&[-1.249]).unwrap().free);
+    assert!(verify(&certified_in(&filtered).1).is_ok());
+    let error = scene("self_filter = 2").unwrap_err().to_string();
+    assert!(error.contains("all 5 points of scan") && error.contains("scene.toml"), "{error}");
 }

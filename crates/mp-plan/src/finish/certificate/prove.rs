@@ -118,8 +118,8 @@ fn still(model: &MotionModel, frame: usize) -> Option<Isometry3<f64>> {
 
 /// Whether a body is balls around points, each of which is a piece.
 fn is_cloud(body: &ModelBody) -> bool {
-    let points = body.pieces.len() == body.vertices.len() && body.pieces.iter().all(|piece| piece.len() == 1);
-    body.radius > 0.0 && body.pieces.len() > 1 && points
+    let is_point = |piece: &Vec<u32>| piece.iter().all(|corner| *corner == piece[0]);
+    body.radius > 0.0 && body.pieces.len() > 1 && body.pieces.iter().all(is_point)
 }
 
 /// The pieces of bodies as triangles, of which some have no area; in the world, or in the frame of the only one.
@@ -132,7 +132,8 @@ fn merged<'b>(
     for body in bodies {
         let pose = still(model, body.frame).filter(|_| in_world).unwrap_or_else(Isometry3::identity);
         if is_cloud(body) {
-            let points = body.vertices.iter().map(|v| pose * Point3::from(*v)).collect();
+            let center = |piece: &Vec<u32>| pose * Point3::from(body.vertices[piece[0] as usize]);
+            let points = body.pieces.iter().map(center).collect();
             clouds.push(TriMesh::of_balls(points, body.radius).map_err(|e| e.to_string())?);
             continue;
         }
