@@ -5,6 +5,8 @@
 //! cargo run --release -p mp-collide --example clouds -- 1000000   # so many poses compared
 //! ```
 
+#![allow(clippy::print_stdout)]
+
 use mp_collide::reference::RefMesh;
 use mp_collide::{CollisionMesh, Query};
 use mp_geom::{Points, Shape, TriMesh, primitives};

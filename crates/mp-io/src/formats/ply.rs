@@ -27,13 +27,16 @@ pub(crate) fn read_points(file: &str, bytes: &[u8], interrupt: Interrupt) -> Res
     elements(file, bytes, false, reading).map(|(vertices, ..)| vertices)
 }
 
-/// The vertices of a file, the corners of all its faces, and where those of each end; only vertices unless `with_faces`.
+/// The vertices of a file, the corners of all its faces, and where those of each end.
+type Elements = (Vec<Point3<f64>>, Vec<u32>, Vec<usize>);
+
+/// Reads all elements; only vertices unless `with_faces`.
 fn elements(
     file: &str,
     bytes: &[u8],
     with_faces: bool,
     reading: &mut Reading<'_>,
-) -> Result<(Vec<Point3<f64>>, Vec<u32>, Vec<usize>), Error> {
+) -> Result<Elements, Error> {
     let start = body_of(bytes).unwrap_or(bytes.len());
     let head = decode_mesh(file, &bytes[..start])?;
     let header = Header::parse(&Text { file, text: &head, guide: "meshes.md" }, with_faces)?;
@@ -218,7 +221,8 @@ impl<'a> Header<'a> {
             if !with_faces {
                 let message = "the header announces no vertices";
                 return Err(Error::new(ErrorKind::Unsupported, text.file, message)
-                    .expected("the element `vertex` with x, y and z"));
+                    .expected("the element `vertex` with x, y and z")
+                    .help("export the points again"));
             }
             return Err(Error::new(
                 ErrorKind::Unsupported,

@@ -153,9 +153,10 @@ impl Header {
             }
         }
         let incomplete = |what: &str| {
-            Error::new(ErrorKind::Format, text.file, what).expected(
-                "FIELDS with x, y and z, SIZE and TYPE of each (floats of 4 or 8 bytes), POINTS, DATA",
-            )
+            let expected =
+                "FIELDS with x, y and z, SIZE and TYPE of each (floats of 4 or 8 bytes), POINTS, DATA";
+            let help = "correct the program that wrote the points, or export them again";
+            Error::new(ErrorKind::Format, text.file, what).expected(expected).help(help)
         };
         counts.resize(fields.len().max(counts.len()), 1);
         if sizes.len() != fields.len() || types.len() != fields.len() || counts.len() != fields.len() {
@@ -221,7 +222,6 @@ fn unpacked(packed: &[u8], size: usize) -> Option<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::super::tests::read;
-    use super::*;
 
     fn head(data: &str) -> String {
         format!(
