@@ -5,7 +5,7 @@
 //! cargo run --release -p mp-collide --example clouds -- 1000000   # so many poses compared
 //! ```
 
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout)] // examples talk
 
 use mp_collide::reference::RefMesh;
 use mp_collide::{CollisionMesh, Query};
