@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import os
 from collections.abc import Mapping, Sequence
@@ -303,7 +304,7 @@ class Hull:
 class Points:
     """Points, such as those of a depth camera, each with a ball around it.
 
-    Planning takes meshes of 20 triangles that contain the balls.
+    Of the points in a cell of a grid one is kept, with a ball that contains those of the others. Points that are not finite are left out.
 
     Parameters
     ----------
@@ -311,10 +312,13 @@ class Points:
         Metres.
     radius : float
         Of the balls, metres.
+    cell : float, optional
+        The side of a cell, metres. By default half of the radius.
     """
 
     points: ArrayLike
     radius: float
+    cell: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -445,7 +449,7 @@ class Polygon:
 
 
 def shape_members(shape: Shape, files: dict[str, bytes]) -> dict[str, Any]:
-    """Members of a shape in a scene file. Meshes go into `files`."""
+    """Members of a shape in a scene file. Meshes and points go into `files`."""
     match shape:
         case Box(x, y, z):
             return {"box": [float(x), float(y), float(z)]}
@@ -460,7 +464,11 @@ def shape_members(shape: Shape, files: dict[str, bytes]) -> dict[str, Any]:
         case Hull():
             return {"hull": _rows(shape.points, "points")}
         case Points():
-            return {"points": {"radius": float(shape.radius), "at": _rows(shape.points, "points")}}
+            name, content = f"points-{len(files) + 1}.npy", io.BytesIO()
+            np.save(content, _array(shape.points, "points"), allow_pickle=False)
+            files[name] = content.getvalue()
+            cell = {} if shape.cell is None else {"cell": float(shape.cell)}
+            return {"points": {"radius": float(shape.radius), "file": name} | cell}
         case HeightField():
             heights = np.asarray(shape.heights, dtype=np.float64)
             if heights.ndim != 2:
@@ -478,10 +486,14 @@ def shape_members(shape: Shape, files: dict[str, bytes]) -> dict[str, Any]:
 
 
 def _rows(points: ArrayLike, what: str) -> list[list[float]]:
-    rows = np.asarray(points, dtype=np.float64)
+    return [[float(v) for v in row] for row in _array(points, what)]
+
+
+def _array(points: ArrayLike, what: str) -> Array:
+    rows = np.ascontiguousarray(points, dtype=np.float64)
     if rows.ndim != 2 or rows.shape[1] != 3:
         raise Error(f"{what} have the shape {rows.shape}", remedy="give an array of shape (n, 3)")
-    return [[float(v) for v in row] for row in rows]
+    return rows
 
 
 def body_members(body: Body | Shape, files: dict[str, bytes]) -> dict[str, Any]:

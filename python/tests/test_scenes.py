@@ -127,6 +127,20 @@ def test_what_is_inside_of_a_shape_collides(shape: mp.Shape, inside: list[float]
     assert not mp.Scene.rigid(shape, start, goal, obstacles=[ball], bounds=bounds).is_free([*there, 0, 0, 0])
 
 
+def test_clouds_are_thinned_and_lost_points_left_out() -> None:
+    rng = np.random.default_rng(1)
+    points = rng.uniform([-0.01, -1, -1], [0.01, 1, 1], (100_000, 3)).astype(np.float32)
+    points[::1000] = np.nan
+    bounds = [[-2, -2, -2], [2, 2, 2]]
+    cloud = mp.Body(mp.Points(points, 0.02, cell=0.02), [0.5, 0, 0, 0, 0, 0], name="scan")
+    scene = mp.Scene.rigid(mp.Sphere(0.1), [0, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0], obstacles=[cloud], bounds=bounds)
+    assert scene.is_free([0.3, 0, 0, 0, 0, 0]) and not scene.is_free([0.45, 0.5, 0.5, 0, 0, 0])
+    report = scene.plan(seed=1)
+    assert report.path is not None and scene.check(report)
+    with pytest.raises(mp.Error, match="none of 2 points has finite coordinates"):
+        mp.Scene.rigid(mp.Points([[np.nan] * 3] * 2, 0.1), [0] * 6, [1, 0, 0, 0, 0, 0])
+
+
 @pytest.mark.parametrize("shape", [mp.Hull([0, 0, 0]), mp.Points([[0, 0], [1, 0]], 0.1), mp.HeightField([1, 2], (1, 1))])
 def test_shapes_of_other_arrays_are_refused(shape: mp.Shape) -> None:
     with pytest.raises(mp.Error, match="have the shape"):

@@ -56,6 +56,7 @@ impl Query {
         for direction in directions(a.tree(), pose_wa, b.tree(), pose_wb) {
             // After this step along the direction the boxes at the roots are apart.
             let overlap = reach(b.tree(), pose_wb, direction) + reach(a.tree(), pose_wa, -direction);
+            let overlap = overlap + a.rounding() + b.rounding();
             let sure = 1.001 * overlap.max(0.0) + 10.0 * relative.slack + f64::EPSILON;
             let limit = shortest.map_or(sure, |(length, _)| length.min(sure));
             let (mut blocked, mut step) = (0.0, sure * FIRST_STEP);

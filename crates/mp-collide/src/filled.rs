@@ -98,6 +98,9 @@ impl CollisionMesh {
     /// The connected components; computed on first use.
     fn parts(&self) -> &Parts {
         self.parts.get_or_init(|| {
+            if let Some(cloud) = &self.cloud {
+                return Parts::new(cloud.centers());
+            }
             let corners = self.triangles().concat();
             let triangles = (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
             let mesh = TriMesh::new(corners, triangles);

@@ -45,6 +45,10 @@
 //! origin of `a`, hence to better than 1e-12 relative for distances above 1% of that size. A
 //! distance is zero exactly when [`Query::intersects`] says so.
 //!
+//! # Point clouds
+//! A mesh that is [balls](mp_geom::TriMesh::balls) has a tree of its own, of the centres. All queries know it. Their answers are those of the plain
+//! distance from a centre to a triangle, in `f64`, less the radius: about 1e-15 of the coordinates.
+//!
 //! # Bad input
 //! Queries are total: they neither fail nor panic. A pose with a component that is not finite, beyond 1e75,
 //! or whose quaternion is not of unit length (within 1e-6; smaller deviations are normalised away), and a
@@ -75,6 +79,7 @@ macro_rules! three {
 
 mod broad;
 mod bvh;
+mod cloud;
 mod counters;
 mod depth;
 mod filled;

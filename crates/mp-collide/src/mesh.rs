@@ -9,6 +9,7 @@ use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 
 use crate::bvh::{Tree, build::SMALL};
+use crate::cloud::Cloud;
 use crate::filled::Parts;
 use crate::triangle::Triangle;
 
@@ -18,7 +19,10 @@ pub(crate) type PosedMesh<'m> = (&'m CollisionMesh, &'m Isometry3<f64>);
 /// A mesh with its tree of oriented boxes: built once, immutable, cheap to clone, shared between threads.
 #[derive(Clone, Debug)]
 pub struct CollisionMesh {
+    /// Of a cloud: that of the box around the centres.
     pub(crate) tree: Arc<Tree>,
+    /// If the mesh is balls.
+    pub(crate) cloud: Option<Arc<Cloud>>,
     /// The triangles that bound solids: see [`TriMesh::solids`].
     pub(crate) solids: Arc<[Range<u32>]>,
     /// The connected components, made at the first use.
@@ -27,6 +31,8 @@ pub struct CollisionMesh {
 
 impl CollisionMesh {
     /// Builds the tree of `mesh`: O(n log² n) for n triangles. Its [solids](TriMesh::solids) are [filled](Self::is_filled).
+    /// [Balls](TriMesh::balls) get a tree of their centres; they have one radius, that of the largest. Where there are triangles too, they are
+    /// [faceted](TriMesh::faceted).
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
         let Ok(made) = Self::of(mesh, || Ok::<(), Infallible>(()));
@@ -40,8 +46,14 @@ impl CollisionMesh {
         Self::of(mesh, || interrupt.go_on()).ok()
     }
 
-    fn of<E>(mesh: &TriMesh, go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
+    fn of<E>(mesh: &TriMesh, mut go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
         let count = mesh.triangles().len();
+        if let Some(radius) = mesh.rounding() {
+            return match mesh.balls().iter().map(|(range, _)| range.len()).sum::<usize>() == count {
+                true => Self::of_cloud(mesh, radius, &mut go_on),
+                false => Self::of(&mesh.faceted(), go_on),
+            };
+        }
         let made = if count > SMALL {
             Self::built(count, |i| mesh.triangle(i), go_on)?
         } else {
@@ -50,6 +62,19 @@ impl CollisionMesh {
             Self::built(count, |i| copied[i], go_on)?
         };
         Ok(Self { solids: mesh.solids().into(), ..made })
+    }
+
+    fn of_cloud<E>(
+        mesh: &TriMesh,
+        radius: f64,
+        go_on: &mut impl FnMut() -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let _span = tracing::debug_span!("build", points = mesh.triangles().len()).entered();
+        let centers = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)[0]);
+        let cloud = Cloud::build(centers, radius, go_on)?;
+        let corners = cloud.corners();
+        let around = Self::built(8, |i| [corners[i]; 3], go_on)?;
+        Ok(Self { cloud: Some(Arc::new(cloud)), ..around })
     }
 
     /// Of `count` triangles, at least one and at most `u32::MAX`.
@@ -63,7 +88,7 @@ impl CollisionMesh {
     ) -> Result<Self, E> {
         let _span = tracing::debug_span!("build", triangles = count).entered();
         let tree = Arc::new(Tree::build(count, triangle, go_on)?);
-        Ok(Self { tree, solids: Arc::default(), parts: Arc::default() })
+        Ok(Self { tree, cloud: None, solids: Arc::default(), parts: Arc::default() })
     }
 
     /// Whether both share one tree, and either both are solids or none: not whether they are equal.
@@ -72,15 +97,24 @@ impl CollisionMesh {
         Arc::ptr_eq(&self.tree, &other.tree) && self.solids == other.solids
     }
 
-    /// How many triangles there are.
+    /// How many triangles there are, or balls.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
-        self.tree.triangles.len()
+        self.cloud.as_ref().map_or(self.tree.triangles.len(), |cloud| cloud.len())
     }
 
-    /// The triangles in the order of the mesh this was built from.
+    /// The radius of its balls (m); 0 for triangles.
+    #[must_use]
+    pub fn rounding(&self) -> f64 {
+        self.cloud.as_ref().map_or(0.0, |cloud| cloud.radius)
+    }
+
+    /// The triangles in the order of the mesh this was built from; balls by their centres.
     #[must_use]
     pub fn triangles(&self) -> Vec<Triangle> {
+        if let Some(cloud) = &self.cloud {
+            return cloud.centers().into_iter().map(|p| [p; 3]).collect();
+        }
         let mut triangles = vec![[Point3::origin(); 3]; self.triangle_count()];
         for (triangle, &id) in self.tree.triangles.iter().zip(&self.tree.ids) {
             triangles[id as usize] = *triangle;
@@ -91,13 +125,13 @@ impl CollisionMesh {
     /// The largest distance of a point of the mesh from the origin of its frame (metres), rounded up.
     #[must_use]
     pub fn radius(&self) -> f64 {
-        self.tree.radius
+        self.tree.radius + self.rounding()
     }
 
     /// Memory of tree and triangles (bytes).
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.tree.memory()
+        self.tree.memory() + self.cloud.as_ref().map_or(0, |cloud| cloud.memory())
     }
 
     pub(crate) fn tree(&self) -> &Tree {

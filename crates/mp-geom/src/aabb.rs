@@ -112,10 +112,11 @@ impl Aabb {
 }
 
 impl TriMesh {
-    /// The axis-aligned box of the vertices.
+    /// The axis-aligned box of the vertices, and of the [balls](TriMesh::balls) around them.
     #[must_use]
     pub fn aabb(&self) -> Aabb {
-        Aabb::of_points(self.vertices())
+        let vertices = Aabb::of_points(self.vertices());
+        self.rounding().map_or(vertices, |radius| vertices.enlarged(radius))
     }
 }
 

@@ -6,6 +6,7 @@
 //! - [`MassProperties`]: volume, centroid, inertia, principal axes.
 //! - [`Features`]: size, place and direction of a body for obstacle-geometry planners; [`TriMesh::parts`]: its components.
 //! - [`Shape`]: what robots and obstacles are made of: meshes, boxes, spheres, capsules, hulls, ground, points.
+//! - [`thin`]: point clouds with one point for each cell of a grid; [`TriMesh::of_balls`]: a ball around each.
 //! - [`primitives`]: closed solids; [`TriMesh::into_solid`]: a closed mesh as one.
 //! - [`planar`]: polygons in the plane.
 //! - [`pose_from_six`] and others: poses to and from numbers; [`six_tuples`] of a motion.
@@ -13,6 +14,7 @@
 //! Lengths are metres, angles radians.
 
 mod aabb;
+mod balls;
 mod build;
 mod features;
 mod mass;
@@ -26,6 +28,7 @@ mod six_tuples;
 mod solid;
 mod sphere;
 mod spread;
+mod thin;
 mod topology;
 mod triangulate;
 
@@ -44,4 +47,5 @@ pub use six_tuples::{continued_six, displacement_bound, six_tuples};
 pub use solid::SolidError;
 pub use sphere::{Sphere, minimal_sphere};
 pub use spread::evenly;
+pub use thin::{ThinError, Thinned, thin};
 pub use topology::{NO_COMPONENT, Topology};

@@ -76,18 +76,23 @@ pub(crate) fn check_finite(vertices: &[Point3<f64>]) -> Result<(), MeshError> {
 /// A mesh is a surface. Some of its triangles, or all, may bound [solids](TriMesh::solids): then what is inside of these belongs to
 /// the mesh too. [Primitives](crate::primitives) are solids; what is read from a file is a surface until
 /// [`into_solid`](TriMesh::into_solid).
+///
+/// A mesh may also be [balls](TriMesh::balls), as of a point cloud: then each triangle is a single point.
 #[derive(Clone, Debug)]
 pub struct TriMesh {
     pub(crate) vertices: Arc<Vec<Point3<f64>>>,
     pub(crate) triangles: Arc<Vec<[u32; 3]>>,
     /// See [`solids`](Self::solids).
     pub(crate) solids: Arc<Vec<Range<u32>>>,
+    /// See [`balls`](Self::balls).
+    pub(crate) balls: Arc<Vec<(Range<u32>, f64)>>,
 }
 
-/// The same vertices and triangles in the same order, and the same solids. Clones are not compared number by number.
+/// The same vertices and triangles in the same order, and the same solids and balls. Clones are not compared number by number.
 impl PartialEq for TriMesh {
     fn eq(&self, other: &Self) -> bool {
         self.solids == other.solids
+            && self.balls == other.balls
             && (Arc::ptr_eq(&self.vertices, &other.vertices) || self.vertices == other.vertices)
             && (Arc::ptr_eq(&self.triangles, &other.triangles) || self.triangles == other.triangles)
     }
@@ -111,7 +116,7 @@ impl TriMesh {
                 return Err(MeshError::IndexOutOfRange { triangle, index, vertices: vertices.len() });
             }
         }
-        Ok(Self { vertices: vertices.into(), triangles: triangles.into(), solids: Arc::default() })
+        Ok(Self::surface(vertices.into(), triangles))
     }
 
     /// The vertices.
@@ -138,7 +143,11 @@ impl TriMesh {
 
     /// The same vertices with other triangles, whose indices the caller knows to be in range: a surface.
     pub(crate) fn with_triangles(&self, triangles: Vec<[u32; 3]>) -> Self {
-        Self { vertices: Arc::clone(&self.vertices), triangles: triangles.into(), solids: Arc::default() }
+        Self::surface(Arc::clone(&self.vertices), triangles)
+    }
+
+    fn surface(vertices: Arc<Vec<Point3<f64>>>, triangles: Vec<[u32; 3]>) -> Self {
+        Self { vertices, triangles: triangles.into(), solids: Arc::default(), balls: Arc::default() }
     }
 
     /// The mesh moved by `pose`, with the same solids. It shares the triangles with this one, and the vertices, too, if the pose is
@@ -152,22 +161,25 @@ impl TriMesh {
         Self { vertices: vertices.into(), ..self.clone() }
     }
 
-    /// All of `meshes` in one, with their solids. `None` when there are none. A single one is cloned.
+    /// All of `meshes` in one, with their solids and balls. `None` when there are none. A single one is cloned.
     #[must_use]
     pub fn merged<'a>(meshes: impl IntoIterator<Item = &'a TriMesh>) -> Option<Self> {
         let mut meshes = meshes.into_iter();
         let first = meshes.next()?;
         let Some(second) = meshes.next() else { return Some(first.clone()) };
-        let (mut vertices, mut triangles, mut solids) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        let (mut solids, mut balls) = (Vec::new(), Vec::new());
         for m in [first, second].into_iter().chain(meshes) {
             let base = u32::try_from(vertices.len()).ok()?;
             let before = u32::try_from(triangles.len()).ok()?;
             vertices.extend_from_slice(&m.vertices);
             triangles.extend(m.triangles.iter().map(|t| t.map(|i| i.wrapping_add(base))));
             u32::try_from(triangles.len()).ok()?;
-            solids.extend(m.solids.iter().map(|solid| before + solid.start..before + solid.end));
+            let moved = |range: &Range<u32>| before + range.start..before + range.end;
+            solids.extend(m.solids.iter().map(moved));
+            balls.extend(m.balls.iter().map(|(range, radius)| (moved(range), *radius)));
         }
-        Some(Self { solids: solids.into(), ..Self::new(vertices, triangles).ok()? })
+        Some(Self { solids: solids.into(), balls: balls.into(), ..Self::new(vertices, triangles).ok()? })
     }
 }
 

@@ -17,6 +17,7 @@ mod torus;
 pub use height_field::HeightField;
 pub use hull::convex_hull;
 pub use points::Points;
+pub(crate) use points::icosahedron;
 
 use crate::{MeshError, PrimitiveError, TriMesh};
 use nalgebra::Point3;
@@ -70,7 +71,7 @@ impl Shape {
     }
 
     /// The mesh that is checked in its place. It contains the shape: faces are flat, so that round shapes grow, by less than 0.5% of
-    /// the radius (cylinders, cones), 1% (capsules), 2% (spheres, tori) and 26% (points).
+    /// the radius (cylinders, cones), 1% (capsules) and 2% (spheres, tori). Points become [balls](TriMesh::balls).
     ///
     /// ```
     /// use mp_geom::Shape;

@@ -117,13 +117,15 @@ impl TriMesh {
     /// The smallest sphere enclosing the mesh.
     #[must_use]
     pub fn bounding_sphere(&self) -> Sphere {
-        minimal_sphere(self.vertices()).unwrap_or(Sphere { center: Point3::origin(), radius: 0.0 })
+        let Sphere { center, radius } =
+            minimal_sphere(self.vertices()).unwrap_or(Sphere { center: Point3::origin(), radius: 0.0 });
+        Sphere { center, radius: radius + self.rounding().unwrap_or(0.0) }
     }
 
     /// The largest distance from `point` to the mesh, metres.
     #[must_use]
     pub fn radius_about(&self, point: &Point3<f64>) -> f64 {
-        farthest(self.vertices(), point).1
+        farthest(self.vertices(), point).1 + self.rounding().unwrap_or(0.0)
     }
 }
 

@@ -6,7 +6,7 @@
 pub(crate) mod collada;
 pub(crate) mod obj;
 pub(crate) mod off;
-mod ply;
+pub(crate) mod ply;
 pub(crate) mod stl;
 
 use crate::error::{Error, ErrorKind};
@@ -64,6 +64,9 @@ formats! {
     Collada, "mesh in COLLADA", ["dae"], true, false, Some((collada::begins, collada::read));
     Ply, "mesh in PLY", ["ply"], true, false, Some((ply::begins, ply::read));
     PointSet, "points, one on each line", ["xyz"], true, false, None;
+    Pcd, "points in PCD", ["pcd"], true, false, None;
+    NumpyArray, "points in an array of numpy", ["npy"], true, false, None;
+    Las, "points in LAS", ["las"], true, false, None;
     TextPath, "path as text of the robot", ["txt", "path"], true, true, None;
     JsonPath, "path as JSON", ["json"], true, true, None;
     CsvPath, "path as comma-separated values", ["csv"], true, true, None;

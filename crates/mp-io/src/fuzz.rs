@@ -13,13 +13,15 @@ use crate::{
     RobotFile, RosMap, SceneDocument,
 };
 use mp_geom::TriMesh;
+use mp_stop::Interrupt;
 use std::fmt::Debug;
+use std::path::Path;
 
 /// Reads any bytes. The error is the one that refuses them.
 pub type Target = fn(&[u8]) -> Result<(), Error>;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 19] = [
+pub const TARGETS: [(&str, Target); 23] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -29,6 +31,10 @@ pub const TARGETS: [(&str, Target); 19] = [
     ("obj", obj),
     ("collada", collada),
     ("ply", ply),
+    ("points-text", points_text),
+    ("points-pcd", points_pcd),
+    ("points-npy", points_npy),
+    ("points-las", points_las),
     ("ompl-app", ompl_app),
     ("robot-problem", robot_problem),
     ("joint-path", joint_path),
@@ -49,6 +55,49 @@ pub fn off(bytes: &[u8]) -> Result<(), Error> {
     let document = OffDocument::parse("f.off", bytes)?;
     assert_eq!(OffDocument::parse("f.off", document.to_text().as_bytes()).as_ref().ok(), Some(&document));
     document.to_mesh("f.off").map(drop)
+}
+
+/// Points as text.
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn points_text(bytes: &[u8]) -> Result<(), Error> {
+    points("f.xyz", bytes)
+}
+
+/// Points in PCD.
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn points_pcd(bytes: &[u8]) -> Result<(), Error> {
+    points("f.pcd", bytes)
+}
+
+/// Points in arrays of numpy.
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn points_npy(bytes: &[u8]) -> Result<(), Error> {
+    points("f.npy", bytes)
+}
+
+/// Points in LAS.
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn points_las(bytes: &[u8]) -> Result<(), Error> {
+    points("f.las", bytes)
+}
+
+/// Points of a file, and balls around them.
+fn points(file: &str, bytes: &[u8]) -> Result<(), Error> {
+    let at = crate::points::parse_points(Path::new(file), bytes, Interrupt::never())?;
+    let (count, mut kept) = (at.len(), 0);
+    if let Ok(mesh) = crate::points::balls(&mp_geom::Points::new(at, 0.1), |_| ()) {
+        kept = mesh.vertices().len();
+    }
+    assert!(kept <= count && count <= bytes.len().max(1) * 100);
+    Ok(())
 }
 
 /// GEMPA `.txt` meshes.

@@ -32,6 +32,7 @@ mod number;
 mod ompl;
 mod path;
 mod planar;
+mod points;
 mod pose_goal;
 mod problem;
 mod problem_file;

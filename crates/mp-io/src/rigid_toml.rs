@@ -110,11 +110,18 @@ impl RigidTask {
         };
         let driven = driven(&source, &robot_span, table, planar)?;
         let (from, mesh) = meshes.of(&source, "robot", &body?)?;
-        let robot_body = Body { name: "robot".to_owned(), file: from, mesh };
+        // What moves has facets.
+        let robot_body = Body { name: "robot".to_owned(), file: from, mesh: mesh.faceted() };
 
         let mut obstacles = Vec::new();
         for (i, table) in obstacle.iter().enumerate() {
             let entry = entry(&source, i, table)?;
+            if let Some(near) = &entry.self_filter {
+                let message = "only points on robots of links are left out";
+                return Err(source
+                    .error(&near.span(), message)
+                    .expected("no `self_filter` with a rigid body"));
+            }
             let (file, mesh) = meshes.of(&source, &entry.name, &entry.shape)?;
             obstacles.push(PlacedBody { name: entry.name, file, mesh, pose: pose_from_six(entry.pose) });
         }

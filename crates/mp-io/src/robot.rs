@@ -35,6 +35,8 @@ pub struct ObstacleEntry {
     pub(crate) shape: (ShapeEntry, Range<usize>),
     /// x, y, z, α, β, γ.
     pub pose: [f64; 6],
+    /// Points this near (m) to the robot at the start are left out, and where it says so.
+    pub self_filter: Option<Spanned<f64>>,
 }
 
 /// Something that a link carries, of a [`RobotFile`].
@@ -90,6 +92,8 @@ pub enum RobotFilePart {
     Attached(usize),
     /// The next part of the motion.
     Next,
+    /// What is left out of the obstacle of this index.
+    SelfFilter(usize),
 }
 
 #[derive(Deserialize)]
@@ -111,6 +115,7 @@ pub(crate) struct ObstacleTable {
     name: Option<String>,
     pose: Option<Spanned<[f64; 6]>>,
     at: Option<Spanned<[f64; 3]>>,
+    self_filter: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -184,6 +189,11 @@ impl RobotFile {
             RobotFilePart::Attached(i) => {
                 self.attached.get(i).map_or(&self.places.start, |entry| &entry.place)
             }
+            RobotFilePart::SelfFilter(i) => {
+                let near = self.obstacles.get(i).and_then(|obstacle| obstacle.self_filter.as_ref());
+                let span = near.map_or(0..0, Spanned::span);
+                return self.source().error(&span, message).help(help);
+            }
         };
         self.source().error(span, message).help(help)
     }
@@ -229,5 +239,21 @@ pub(crate) fn entry(
         }
         (pose, None) => source.six("the pose", pose.clone())?,
     };
-    Ok(ObstacleEntry { name, shape, pose })
+    let self_filter = own.self_filter.clone();
+    if let Some(near) = &self_filter {
+        source.check("the distance", &[*near.get_ref()], &near.span())?;
+        let points =
+            matches!(shape.0, ShapeEntry::PointFile(..) | ShapeEntry::Whole(mp_geom::Shape::Points(_)));
+        if !points || *near.get_ref() < 0.0 {
+            let message = format!(
+                "{} cannot leave out what is {} m from the robot",
+                crate::text::clipped(&name),
+                near.get_ref()
+            );
+            return Err(source
+                .error(&near.span(), message)
+                .expected("`self_filter = DISTANCE` beside `points`: 0 or more, in metres"));
+        }
+    }
+    Ok(ObstacleEntry { name, shape, pose, self_filter })
 }

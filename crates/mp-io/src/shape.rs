@@ -1,10 +1,11 @@
 //! Shapes in problem files: the members of a table that say what a body is like, the same for all kinds of bodies.
 
 use crate::error::Error;
-use crate::files::{Files, MAX_MESH_BYTES};
+use crate::files::Files;
 use crate::mesh::{Axes, read_mesh_with, solid_mesh, stand_in};
+use crate::points::{balls, read_points};
 use crate::problem::{MAX_COORDINATE, vertex_beyond};
-use crate::text::{Text, clipped};
+use crate::text::clipped;
 use crate::toml_problem::TomlText;
 use mp_geom::{HeightField, PRIMITIVES, Points, PrimitiveError, Shape, TriMesh};
 use nalgebra::Point3;
@@ -115,8 +116,8 @@ impl<'de, A: MapAccess<'de>> MapAccess<'de> for Others<'_, A> {
 pub enum ShapeEntry {
     /// A mesh in a file of this name, and whether it is a solid.
     MeshFile(String, bool),
-    /// Points in a file of this name, and the radius (m) of the ball around each.
-    PointFile(String, f64),
+    /// Points in a file of this name, the radius (m) of the ball around each, and the side (m) of the cells on which they are thinned.
+    PointFile(String, [f64; 2]),
     /// All of it.
     Whole(Shape),
 }
@@ -126,6 +127,7 @@ pub enum ShapeEntry {
 #[serde(deny_unknown_fields)]
 struct PointTable {
     radius: f64,
+    cell: Option<f64>,
     file: Option<String>,
     at: Option<Vec<[f64; 3]>>,
 }
@@ -192,14 +194,16 @@ impl<T> Shaped<T> {
 
 /// A set of points.
 fn points(source: &TomlText<'_>, value: &Spanned<Value>) -> Result<ShapeEntry, Error> {
-    let PointTable { radius, file, at } = source.value(value)?;
+    let PointTable { radius, cell, file, at } = source.value(value)?;
     source.positive("the radius", &[radius], &value.span())?;
+    let cell = cell.unwrap_or(0.5 * radius);
+    source.positive("the side of a cell", &[cell], &value.span())?;
     match (file, at) {
-        (Some(file), None) => Ok(ShapeEntry::PointFile(file, radius)),
+        (Some(file), None) => Ok(ShapeEntry::PointFile(file, [radius, cell])),
         (None, Some(at)) => {
             source.check("the points", at.as_flattened(), &value.span())?;
             let at = at.into_iter().map(Point3::from).collect();
-            Ok(ShapeEntry::Whole(Shape::Points(Points { at, radius })))
+            Ok(ShapeEntry::Whole(Shape::Points(Points { at, radius, cell })))
         }
         _ => Err(source.error(&value.span(), "points are in two places, or in none").expected(
             "`{ radius = R, file = \"cloud.xyz\" }`, or `{ radius = R, at = [[x, y, z], …] }`, lengths in metres",
@@ -263,18 +267,25 @@ impl<'a> Meshes<'a> {
             fault(&message, e.remedy_of_named_file()).with_kind(e.kind())
         };
         let impossible = |e: PrimitiveError| fault(&e.to_string(), "give sizes in metres, not too small");
+        let useless = |e: String| {
+            let help = "write finite coordinates, and cells about as large as the radius";
+            fault(&format!("the points of {name} are not usable: {e}"), help)
+        };
         let (from, mesh) = match shape {
             ShapeEntry::MeshFile(file, solid) => {
                 let place = place(file);
                 let mesh = self.of_file(&place, *solid).map_err(|e| unusable("mesh", e))?;
                 (place, mesh)
             }
-            ShapeEntry::PointFile(file, radius) => {
+            ShapeEntry::PointFile(file, [radius, cell]) => {
                 let place = place(file);
                 let at = read_points(self.files, &place).map_err(|e| unusable("file of points", e))?;
-                let shape = Shape::Points(Points { at, radius: *radius });
-                let mesh = self.whole(&shape)?.map_err(impossible)?;
+                let mesh =
+                    self.balls(&place, &Points { at, radius: *radius, cell: *cell })?.map_err(useless)?;
                 (place, mesh)
+            }
+            ShapeEntry::Whole(Shape::Points(points)) => {
+                (self.path.to_owned(), self.balls(self.path, points)?.map_err(useless)?)
             }
             ShapeEntry::Whole(shape) => (self.path.to_owned(), self.whole(shape)?.map_err(impossible)?),
         };
@@ -283,6 +294,14 @@ impl<'a> Meshes<'a> {
             return Err(fault(&message, "coordinates are metres: scale the mesh"));
         }
         Ok((from, mesh))
+    }
+
+    /// Balls around the points of a file.
+    fn balls(&self, place: &Path, points: &Points) -> Result<Result<TriMesh, String>, Error> {
+        if self.files.only_reads() {
+            return stand_in(&place.display().to_string()).map(Ok);
+        }
+        Ok(balls(points, |note| self.files.note(place, note)))
     }
 
     /// The mesh of a file, read once.
@@ -326,29 +345,5 @@ impl<'a> Meshes<'a> {
             self.made.insert(key, mesh.clone());
         }
         Ok(made)
-    }
-}
-
-/// The points of a text file: a line for each, with x, y and z (m) first, between blanks or commas. Lines that begin with `#` are
-/// comments.
-fn read_points(files: &dyn Files, path: &Path) -> Result<Vec<Point3<f64>>, Error> {
-    let (file, bytes) = (path.display().to_string(), files.read(path, MAX_MESH_BYTES)?);
-    let text = Text::new(&file, &bytes, "shapes.md")?;
-    let expected = "x y z of a point, metres";
-    let mut points = Vec::new();
-    for line in text.lines().filter(|line| !line.text.starts_with('#')) {
-        let mut cells: Box<dyn Iterator<Item = _>> =
-            if line.text.contains(',') { Box::new(line.cells()) } else { Box::new(line.words()) };
-        let mut point = [0.0; 3];
-        for number in &mut point {
-            let cell =
-                cells.next().ok_or_else(|| text.error(line, "a number is missing").expected(expected))?;
-            *number = text.number(cell, expected)?;
-        }
-        points.push(Point3::from(point));
-    }
-    match points.is_empty() {
-        true => Err(text.error_at_end(expected)),
-        false => Ok(points),
     }
 }

@@ -67,7 +67,7 @@ pub struct Body {
 impl Body {
     /// An obstacle: a mesh that stands still.
     pub(crate) fn obstacle(body: &PlacedBody) -> Self {
-        Self { name: body.name.clone(), shape: BodyShape::Mesh(body.mesh.clone()), pose: Some(body.pose) }
+        Self { name: body.name.clone(), shape: BodyShape::Mesh(body.mesh.drawn()), pose: Some(body.pose) }
     }
 }
 

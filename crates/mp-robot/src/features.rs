@@ -55,6 +55,9 @@ impl SurfaceSampler {
                 self.mesh.vertices()[t[rng.random_range(0..3_usize)] as usize].coords
             }
             PointOf::Surface => {
+                if !self.mesh.balls().is_empty() {
+                    return self.mesh.triangle(rng.random_range(0..self.areas.len()))[0].coords;
+                }
                 let whole = self.areas.last().copied().unwrap_or(0.0);
                 let at = rng.random::<f64>() * whole;
                 let i = self.areas.partition_point(|&sum| sum <= at).min(self.areas.len() - 1);

@@ -190,6 +190,8 @@ impl<P: Placement> RigidBody<P> {
         interrupt: &Interrupt,
     ) -> Result<Self, RobotError> {
         let _span = tracing::debug_span!("build", triangles = robot.triangles().len()).entered();
+        // What moves has facets: bounds of its motion are of its vertices.
+        let robot = &robot.faceted();
         let before = before.map(|before| &*before.shared);
         let same = before.filter(|before| before.robot_mesh == *robot);
         let radii = same.map_or_else(|| BodyRadii::of(robot), |same| same.radii.clone());

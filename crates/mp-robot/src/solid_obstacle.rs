@@ -16,7 +16,7 @@ pub(crate) struct SolidObstacle {
 #[must_use]
 pub fn is_solid(mesh: &TriMesh) -> bool {
     // First what takes less time.
-    mesh.signed_volume() > 0.0 && mesh.is_closed_and_oriented()
+    mesh.balls().is_empty() && mesh.signed_volume() > 0.0 && mesh.is_closed_and_oriented()
 }
 
 impl SolidObstacle {

@@ -7,8 +7,8 @@ use crate::bvh::frames::Frames;
 use crate::kernels::swept_interval::{SweptInterval, Travel};
 use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::{Relative, is_rigid};
-use crate::query::Query;
 use crate::query::schedule::Schedule;
+use crate::query::{Query, clouds};
 
 /// How many poses are checked at a time.
 const CHUNK: usize = 64;
@@ -26,6 +26,9 @@ impl Query {
         b: &CollisionMesh,
         pose_wb: &Isometry3<f64>,
     ) -> Option<usize> {
+        if a.cloud.is_some() || b.cloud.is_some() {
+            return clouds::first_collision(self, a, poses_wa, (b, pose_wb));
+        }
         let mut done = 0;
         for poses in poses_wa.chunks(CHUNK) {
             if let Some(i) = self.first_in_chunk(a, poses, (b, pose_wb)) {

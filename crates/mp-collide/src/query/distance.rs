@@ -4,10 +4,11 @@ use nalgebra::{Isometry3, Point3};
 
 use crate::bvh::Tree;
 use crate::bvh::frames::Frames;
-use crate::mesh::CollisionMesh;
+use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::{Relative, to_world};
 use crate::query::Query;
 use crate::query::branch_and_bound::BranchAndBound;
+use crate::query::clouds;
 use crate::query::descend::Descend;
 use crate::query::within::Within;
 use crate::separation::Separation;
@@ -27,6 +28,9 @@ impl Query {
         pose_wb: &Isometry3<f64>,
     ) -> Separation {
         self.counters.queries += 1;
+        if a.cloud.is_some() || b.cloud.is_some() {
+            return clouds::distance(self, (a, pose_wa), (b, pose_wb));
+        }
         let Some(relative) = Relative::of((a, pose_wa), (b, pose_wb)) else {
             return Separation { distance: 0.0, point_a: Point3::origin(), point_b: Point3::origin() };
         };
@@ -57,9 +61,7 @@ impl Query {
         pose_wb: &Isometry3<f64>,
         enough: f64,
     ) -> f64 {
-        self.counters.queries += 1;
-        let Some(relative) = Relative::of((a, pose_wa), (b, pose_wb)) else { return 0.0 };
-        self.clearance_with(a.tree(), b.tree(), &relative, enough).0
+        self.clearance_of((a, pose_wa), (b, pose_wb), enough).0
     }
 
     /// Whether the distance of the meshes is at most `tolerance` (metres), to rounding.
@@ -75,6 +77,9 @@ impl Query {
         tolerance: f64,
     ) -> bool {
         self.counters.queries += 1;
+        if a.cloud.is_some() || b.cloud.is_some() {
+            return clouds::within(self, (a, pose_wa), (b, pose_wb), tolerance);
+        }
         let Some(relative) = Relative::of((a, pose_wa), (b, pose_wb)) else { return true };
         let tolerance = if tolerance.is_nan() { f64::INFINITY } else { tolerance.max(0.0) };
         if tolerance == f64::INFINITY {
@@ -95,6 +100,22 @@ impl Query {
         let leaves = Within::new(tolerance, &frames, &mut self.counters);
         let (margin, stack) = (leaves.margin, &mut self.stack);
         run(self.isa, Descend { a, b, frames: &frames, margin, stack, leaves }).is_some()
+    }
+
+    /// [`Query::clearance`], and the number of the nearest triangle or ball of `b`, if any were compared.
+    pub(crate) fn clearance_of(
+        &mut self,
+        a: PosedMesh<'_>,
+        b: PosedMesh<'_>,
+        enough: f64,
+    ) -> (f64, Option<usize>) {
+        self.counters.queries += 1;
+        if a.0.cloud.is_some() || b.0.cloud.is_some() {
+            return clouds::clearance(self, a, b, enough);
+        }
+        let Some(relative) = Relative::of(a, b) else { return (0.0, Some(0)) };
+        let (clearance, position) = self.clearance_with(a.0.tree(), b.0.tree(), &relative, enough);
+        (clearance, position.map(|position| b.0.tree().ids[position] as usize))
     }
 
     /// [`Query::clearance`], and the position in the tree of the nearest triangle of `b`, if triangles were

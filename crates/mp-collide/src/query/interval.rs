@@ -8,9 +8,9 @@ use crate::kernels::swept_interval::{SweptInterval, Travel};
 use crate::kernels::swept_triangles::LeafCheck;
 use crate::mesh::CollisionMesh;
 use crate::pose::{LIMIT, Relative};
-use crate::query::Query;
 use crate::query::schedule::Schedule;
 use crate::query::sweep::SweepEnd;
+use crate::query::{Query, clouds};
 
 /// The motion of a rigid body over an interval, relative to the pose in its middle: from there the body moves at constant
 /// velocity to one end of the interval, and in the same way back to the other end.
@@ -48,7 +48,7 @@ impl RigidMotion {
         Some(Self { shift, turn: by.imag() * (scale * share), most })
     }
 
-    fn is_usable(&self) -> bool {
+    pub(super) fn is_usable(&self) -> bool {
         let usable = |x: f64| x.abs() <= LIMIT;
         self.shift.iter().all(|x| usable(*x))
             && self.turn.norm() <= 4.0
@@ -105,6 +105,9 @@ impl Query {
         margin: f64,
     ) -> IntervalCheck {
         self.counters.queries += 1;
+        if a.cloud.is_some() || b.cloud.is_some() {
+            return clouds::check_interval(self, (a, middle_wa), motion, (b, pose_wb), margin);
+        }
         let relative = Relative::of((a, middle_wa), (b, pose_wb));
         let Some(relative) = relative.filter(|_| motion.is_usable() && margin.abs() <= LIMIT) else {
             return IntervalCheck::Unproven;

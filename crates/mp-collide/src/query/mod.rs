@@ -4,6 +4,7 @@
 
 mod batch;
 mod branch_and_bound;
+mod clouds;
 pub(crate) mod descend;
 mod distance;
 mod intersect;
@@ -77,6 +78,9 @@ impl Query {
         pose_wb: &Isometry3<f64>,
     ) -> bool {
         self.counters.queries += 1;
+        if a.cloud.is_some() || b.cloud.is_some() {
+            return clouds::within(self, (a, pose_wa), (b, pose_wb), 0.0);
+        }
         match Relative::of((a, pose_wa), (b, pose_wb)) {
             Some(relative) => self.collide(a.tree(), b.tree(), relative, true).is_some(),
             None => true,
@@ -93,6 +97,9 @@ impl Query {
         pose_wb: &Isometry3<f64>,
     ) -> Option<(usize, usize)> {
         self.counters.queries += 1;
+        if a.cloud.is_some() || b.cloud.is_some() {
+            return clouds::intersecting(self, (a, pose_wa), (b, pose_wb));
+        }
         match Relative::of((a, pose_wa), (b, pose_wb)) {
             Some(relative) => self
                 .colliding_pair(a.tree(), b.tree(), &relative)

@@ -113,8 +113,10 @@ impl RefMesh {
             order: (0..count as u32).collect(),
             balls: Vec::with_capacity(larger_balls(count, few as usize)),
             root: Node::Stored(0),
-            size: triangles().flatten().map(|p| p.coords.amax()).fold(0.0, f64::max),
-            corners: distinct(triangles().flatten()),
+            size: triangles().flatten().map(|p| p.coords.amax()).fold(0.0, f64::max)
+                + mesh.rounding().unwrap_or(0.0),
+            // Axes separate corners, not balls.
+            corners: if mesh.balls().is_empty() { distinct(triangles().flatten()) } else { Vec::new() },
             solids: nested::solids(mesh),
             components: OnceLock::new(),
         };
@@ -204,15 +206,30 @@ impl RefMesh {
     /// A ball around `count` triangles from the place `first` of the order on, about the middle of their box.
     fn enclosing_ball(&self, first: u32, count: u32, content: Content) -> Ball {
         let triangles = &self.order[first as usize..][..count as usize];
-        let points = triangles.iter().flat_map(|&i| *self.triangle(i, &mut None));
-        let sides = points.clone().map(|p| (p, p)).reduce(|(l, h), (p, q)| (l.inf(&p), h.sup(&q)));
+        let points = triangles.iter().flat_map(|&i| {
+            let round = self.rounding(i);
+            self.triangle(i, &mut None).map(|p| (p, round))
+        });
+        let box_of = |(p, round): (Point3<f64>, f64)| {
+            let round = Vector3::repeat(round);
+            (p - round, p + round)
+        };
+        let sides = points.clone().map(box_of).reduce(|(l, h), (p, q)| (l.inf(&p), h.sup(&q)));
         let (low, high) = sides.unwrap_or_default();
         let center = nalgebra::center(&low, &high);
-        let farther = |(radius, reach): (f64, f64), p: Point3<f64>| {
-            (radius.max((p - center).norm()), reach.max(p.coords.norm()))
+        let farther = |(radius, reach): (f64, f64), (p, round): (Point3<f64>, f64)| {
+            (radius.max((p - center).norm() + round), reach.max(p.coords.norm() + round))
         };
         let (radius, reach) = points.fold((0.0, 0.0), farther);
         Ball { center, radius, half: (high - center).sup(&(center - low)), reach, content }
+    }
+
+    /// The radius of the ball around a triangle that is a single point; 0 for others.
+    #[inline]
+    fn rounding(&self, i: u32) -> f64 {
+        let balls = self.mesh.balls();
+        let around = |(range, _): &&(Range<u32>, f64)| range.contains(&i);
+        balls.iter().find(around).map_or(0.0, |(_, radius)| *radius)
     }
 
     /// A triangle, put into `made` unless it is stored.
@@ -329,11 +346,12 @@ impl Search<'_> {
         let distance = match (ball_a.content, ball_b.content) {
             (Content::Triangle(k), Content::Parts(_)) => {
                 let triangle = self.a.triangle(k, &mut made);
-                point_triangle(&(self.pose_ab * ball_b.center), triangle) - ball_b.radius
+                let distance = point_triangle(&(self.pose_ab * ball_b.center), triangle);
+                distance - ball_b.radius - self.a.rounding(k)
             }
             (Content::Parts(_), Content::Triangle(l)) => {
                 let center = self.pose_ab.inverse_transform_point(&ball_a.center);
-                point_triangle(&center, self.b.triangle(l, &mut made)) - ball_a.radius
+                point_triangle(&center, self.b.triangle(l, &mut made)) - ball_a.radius - self.b.rounding(l)
             }
             _ => (self.pose_ab * ball_b.center - ball_a.center).norm() - ball_a.radius - ball_b.radius,
         };
@@ -365,7 +383,9 @@ impl Search<'_> {
             Ok(pairs) => pairs,
             Err([k, l]) => {
                 let triangle_b = self.b.triangle(l, &mut None).map(|p| self.pose_ab * p);
-                let distance = triangle_distance(self.a.triangle(k, &mut None), &triangle_b);
+                let distance = triangle_distance(self.a.triangle(k, &mut None), &triangle_b)
+                    - self.a.rounding(k)
+                    - self.b.rounding(l);
                 let nearer = distance < self.best;
                 self.best = self.best.min(distance);
                 return self.best <= self.touching || (nearer && self.any);

@@ -196,10 +196,10 @@ impl Sweep {
                 return SweepCheck::TooClose { at: self.middle(open.part) };
             }
             let triangle = match ball.content {
-                Content::Triangle(k) => Some(*moving.triangle(k, &mut None)),
+                Content::Triangle(k) => Some((*moving.triangle(k, &mut None), moving.rounding(k))),
                 Content::Parts(_) => None,
             };
-            if let Some(triangle) = &triangle {
+            if let Some(triangle) = triangle {
                 self.drop_apart(&task, triangle, &open, &swath, &mut least);
             }
             let near = [first, self.near.len()];
@@ -216,11 +216,11 @@ impl Sweep {
             let Some((middle, halves)) = self.cut(open.part, &pose_at, size) else {
                 return SweepCheck::Collision { at: self.middle(open.part) };
             };
-            if let Some(triangle) = &triangle {
+            if let Some((triangle, round)) = &triangle {
                 let middle = &self.moments[middle];
                 let moved = triangle.map(|p| middle.place(&p));
                 for near in &mut self.near[first..] {
-                    near.way = match task.way(&moved, near) {
+                    near.way = match task.way(&moved, *round, near) {
                         Ok(way) => way,
                         Err(distance) if distance <= task.touching => {
                             return SweepCheck::Collision { at: middle.at };
@@ -268,7 +268,7 @@ impl Sweep {
     fn drop_apart(
         &mut self,
         task: &Task<'_>,
-        triangle: &Triangle,
+        (triangle, round): (Triangle, f64),
         open: &Open,
         swath: &Swath,
         least: &mut f64,
@@ -283,16 +283,18 @@ impl Sweep {
         let mut front = Front::none();
         for i in first..self.near.len() {
             let (near, mut made) = (self.near[i], None);
-            let gap = task.stands(&near, &mut made).map_or(f64::NEG_INFINITY, |stands| {
+            let gap = task.stands(&near, &mut made).map_or(f64::NEG_INFINITY, |(stands, other)| {
+                let round = round + other;
+                let wanted = enough + swath.bend + round;
                 let gap = front.gap(stands);
-                if gap >= enough + swath.bend {
-                    return gap;
+                if gap >= wanted {
+                    return gap - round;
                 }
-                let (gap, way) = hull.gap_from(stands, near.way, enough + swath.bend);
-                if gap >= enough + swath.bend {
+                let (gap, way) = hull.gap_from(stands, near.way, wanted);
+                if gap >= wanted {
                     front = hull.along(way);
                 }
-                gap
+                gap - round
             });
             let gap = gap - swath.bend;
             if gap >= enough {
@@ -364,22 +366,24 @@ impl Sweep {
 }
 
 impl Task<'_> {
-    /// The static triangle, put into `made` unless it is stored; for a moving triangle only single triangles are listed.
-    fn stands<'a>(&'a self, near: &Near, made: &'a mut Option<Triangle>) -> Option<&'a Triangle> {
+    /// The static triangle, put into `made` unless it is stored, and the radius of the ball that it is; for a moving triangle only single
+    /// triangles are listed.
+    fn stands<'a>(&'a self, near: &Near, made: &'a mut Option<Triangle>) -> Option<(&'a Triangle, f64)> {
         match self.standing.ball(near.ball, &mut None).content {
-            Content::Triangle(l) => Some(self.standing.triangle(l, made)),
+            Content::Triangle(l) => Some((self.standing.triangle(l, made), self.standing.rounding(l))),
             Content::Parts(_) => None,
         }
     }
 
-    /// A direction along which a moved triangle is the margin and the slack apart from a static one.
+    /// A direction along which a moved triangle, with a ball of radius `round` if it is a point, is the margin and the slack apart from a static one.
     ///
     /// # Errors
     /// Their distance when it is less.
-    fn way(&self, moved: &Triangle, near: &Near) -> Result<Vector3<f64>, f64> {
+    fn way(&self, moved: &Triangle, round: f64, near: &Near) -> Result<Vector3<f64>, f64> {
         let mut made = None;
-        let Some(stands) = self.stands(near, &mut made) else { return Err(0.0) };
-        let wanted = self.margin + self.slack;
+        let Some((stands, other)) = self.stands(near, &mut made) else { return Err(0.0) };
+        let round = round + other;
+        let wanted = self.margin + self.slack + round;
         let enough = wanted + self.touching;
         let (gap, way) = SweptTriangle::new(*moved, *moved).gap_from(stands, near.way, enough);
         if gap >= enough {
@@ -388,7 +392,7 @@ impl Task<'_> {
         let gap = triangle_gap(moved, stands);
         let distance = gap.norm();
         let far = distance > self.touching && distance >= wanted;
-        if far { Ok(gap / distance) } else { Err(distance) }
+        if far { Ok(gap / distance) } else { Err(distance - round) }
     }
 }
 

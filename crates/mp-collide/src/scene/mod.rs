@@ -86,7 +86,7 @@ impl Body {
         &self.pose
     }
 
-    /// Whether it is left out of [`Scene::merge_static`].
+    /// Whether it is left out of [`Scene::merge_static`], as all clouds are.
     #[must_use]
     pub fn is_movable(&self) -> bool {
         self.movable
@@ -167,6 +167,8 @@ impl Scene {
         pose: Isometry3<f64>,
         movable: bool,
     ) -> Result<BodyId, SceneError> {
+        // A cloud has a tree of its own kind.
+        let movable = movable || mesh.cloud.is_some();
         let bounds = placed(&name, &mesh, &pose)?;
         let index = u32::try_from(self.bodies.len()).map_err(|_| SceneError::Full)?;
         let handle = self.broad_phase(movable).insert(index, bounds);
@@ -295,7 +297,7 @@ impl Scene {
 pub(crate) fn bounds(mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Option<Aabb> {
     let relative = Relative::between(&Isometry3::identity(), 0.0, pose, mesh.radius())?;
     let obb = relative.obb(&mesh.tree().bounding);
-    let half = obb.aligned_half().add_scalar(relative.slack);
+    let half = obb.aligned_half().add_scalar(relative.slack + mesh.rounding());
     Some(Aabb::new(obb.center - half, obb.center + half))
 }
 

@@ -5,7 +5,6 @@ use nalgebra::Isometry3;
 use super::{Body, BodyId, Contact, Scene, bounds};
 use crate::broad::BroadPhase;
 use crate::mesh::{CollisionMesh, PosedMesh};
-use crate::pose::Relative;
 use crate::query::Query;
 
 /// Up to this number of bodies are looked at one by one for what is inside of what.
@@ -225,15 +224,7 @@ impl NearestBody<'_> {
         if self.limit == 0.0 && self.body.is_some() {
             return;
         }
-        self.query.counters.queries += 1;
-        let (clearance, triangle) = match Relative::of(mesh, other) {
-            Some(relative) => {
-                let (clearance, position) =
-                    self.query.clearance_with(mesh.0.tree(), other.0.tree(), &relative, self.limit);
-                (clearance, position.map(|position| other.0.tree().ids[position] as usize))
-            }
-            None => (0.0, Some(0)),
-        };
+        let (clearance, triangle) = self.query.clearance_of(mesh, other, self.limit);
         match triangle {
             Some(triangle) if clearance < self.limit || clearance == 0.0 => {
                 self.limit = clearance;

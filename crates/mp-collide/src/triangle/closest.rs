@@ -162,6 +162,19 @@ fn foot_inside(p: &Point3<f64>, t: &Triangle) -> Option<Point3<f64>> {
     (x >= 0.0 && y >= 0.0 && x + y <= 1.0).then(|| t[0] + u * x + v * y)
 }
 
+/// The point of a triangle that is nearest to `p`.
+pub(crate) fn closest_to_point(t: &Triangle, p: &Point3<f64>) -> Point3<f64> {
+    foot_inside(p, t).unwrap_or_else(|| {
+        let on_edges = [0, 1, 2].map(|i| {
+            let (from, along) = (t[i], t[(i + 1) % 3] - t[i]);
+            at(&from, &t[(i + 1) % 3], ratio((p - from).dot(&along), along.norm_squared()))
+        });
+        let squared = on_edges.map(|q| (q - p).norm_squared());
+        let nearest = if squared[1] < squared[0] { 1 } else { 0 };
+        if squared[2] < squared[nearest] { on_edges[2] } else { on_edges[nearest] }
+    })
+}
+
 /// A point common to two triangles that intersect, up to rounding.
 pub(crate) fn crossing(a: &Triangle, b: &Triangle) -> Point3<f64> {
     let mut best = Closest::NONE;

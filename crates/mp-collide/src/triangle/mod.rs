@@ -4,7 +4,7 @@ mod closest;
 mod exact;
 
 pub use closest::closest;
-pub(crate) use closest::{Closest, closest_within, crossing, is_farther, is_nearest};
+pub(crate) use closest::{Closest, closest_to_point, closest_within, crossing, is_farther, is_nearest};
 pub use exact::intersect;
 pub(crate) use exact::passes;
 

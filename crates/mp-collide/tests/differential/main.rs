@@ -1,6 +1,7 @@
 //! The engine against brute force, exact arithmetic, the reference implementation and parry.
 
 mod bad_input;
+mod clouds;
 mod common;
 mod filled;
 mod lanes;

@@ -87,6 +87,7 @@ impl OffDocument {
     /// The document of a triangle mesh.
     #[must_use]
     pub fn from_mesh(mesh: &TriMesh) -> Self {
+        let mesh = &mesh.faceted();
         let faces = mesh.triangles().iter().map(|t| OffFace { corners: t.to_vec(), color: None }).collect();
         Self { vertices: mesh.vertices().to_vec(), faces, ..Self::default() }
     }

@@ -2,9 +2,10 @@
 
 use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
-use crate::mesh::{LEFT_OUT, Reading, build};
+use crate::mesh::{Axes, LEFT_OUT, Reading, build};
 use crate::text::{Lexer, Text, Token, clipped};
 use mp_geom::TriMesh;
+use mp_stop::Interrupt;
 use nalgebra::Point3;
 
 /// Whether the first line is that of PLY.
@@ -15,9 +16,30 @@ pub(crate) fn begins(bytes: &[u8]) -> bool {
 /// Reads `bytes`, the content of a PLY file that errors call `file`: its vertices and faces. Other elements and properties are
 /// skipped.
 pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {
+    let (vertices, corners, ends) = elements(file, bytes, true, reading)?;
+    let faces = ends.iter().enumerate().map(|(i, &end)| &corners[if i == 0 { 0 } else { ends[i - 1] }..end]);
+    build(file, vertices, faces)
+}
+
+/// Reads the vertices alone, as points. They need not be finite.
+pub(crate) fn read_points(file: &str, bytes: &[u8], interrupt: Interrupt) -> Result<Vec<Point3<f64>>, Error> {
+    let reading = &mut Reading { axes: Axes::OfFile, interrupt, remark: &mut |_| () };
+    elements(file, bytes, false, reading).map(|(vertices, ..)| vertices)
+}
+
+/// The vertices of a file, the corners of all its faces, and where those of each end.
+type Elements = (Vec<Point3<f64>>, Vec<u32>, Vec<usize>);
+
+/// Reads all elements; only vertices unless `with_faces`.
+fn elements(
+    file: &str,
+    bytes: &[u8],
+    with_faces: bool,
+    reading: &mut Reading<'_>,
+) -> Result<Elements, Error> {
     let start = body_of(bytes).unwrap_or(bytes.len());
     let head = decode_mesh(file, &bytes[..start])?;
-    let header = Header::parse(&Text { file, text: &head, guide: "meshes.md" })?;
+    let header = Header::parse(&Text { file, text: &head, guide: "meshes.md" }, with_faces)?;
     let decoded;
     let mut body = if let Some(big) = header.big_endian {
         Body::Binary { file, bytes: &bytes[start..], big }
@@ -42,7 +64,9 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
                 let many = property.count.map(|of| body.whole(of, &what)).transpose()?;
                 for _ in 0..many.map_or(1, |(many, _)| many) {
                     match property.role {
+                        Role::Corners if !with_faces => body.skip(property.of, &what)?,
                         Role::Unused => body.skip(property.of, &what)?,
+                        Role::Axis(k) if !with_faces => point[k] = body.any_number(property.of, &what)?.0,
                         Role::Axis(k) => point[k] = body.number(property.of, &what)?.0,
                         Role::Corners => {
                             let (corner, word) = body.whole(property.of, &what)?;
@@ -58,6 +82,7 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
             }
             match element.name {
                 VERTEX => vertices.push(point),
+                FACE if !with_faces => {}
                 FACE if corners.len() - first < 3 => corners.truncate(first),
                 FACE => ends.push(corners.len()),
                 _ => {}
@@ -65,11 +90,10 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
         }
     }
     body.end(reading.remark)?;
-    if ends.len() < header.faces {
+    if with_faces && ends.len() < header.faces {
         (reading.remark)(LEFT_OUT);
     }
-    let faces = ends.iter().enumerate().map(|(i, &end)| &corners[if i == 0 { 0 } else { ends[i - 1] }..end]);
-    build(file, vertices, faces)
+    Ok((vertices, corners, ends))
 }
 
 const VERTEX: &str = "vertex";
@@ -126,7 +150,7 @@ struct Header<'a> {
 }
 
 impl<'a> Header<'a> {
-    fn parse(text: &Text<'a>) -> Result<Self, Error> {
+    fn parse(text: &Text<'a>, with_faces: bool) -> Result<Self, Error> {
         let mut lines = text.lines();
         let what = "`ply`, then `format ascii 1.0`, `binary_little_endian 1.0` or `binary_big_endian 1.0`";
         let mut line =
@@ -192,7 +216,14 @@ impl<'a> Header<'a> {
             roles.iter().all(has).then_some(element.count)
         };
         let vertices = count(VERTEX, &[Role::Axis(0), Role::Axis(1), Role::Axis(2)]);
-        let (Some(vertices), Some(faces)) = (vertices, count(FACE, &[Role::Corners])) else {
+        let faces = count(FACE, &[Role::Corners]).or((!with_faces).then_some(0));
+        let (Some(vertices), Some(faces)) = (vertices, faces) else {
+            if !with_faces {
+                let message = "the header announces no vertices";
+                return Err(Error::new(ErrorKind::Unsupported, text.file, message)
+                    .expected("the element `vertex` with x, y and z")
+                    .help("export the points again"));
+            }
             return Err(Error::new(
                 ErrorKind::Unsupported,
                 text.file,
@@ -201,7 +232,7 @@ impl<'a> Header<'a> {
             .expected(
                 "the element `vertex` with x, y and z, and the element `face` with the list `vertex_indices`",
             )
-            .help("export the mesh as polygons; points alone and strips of triangles are not read"));
+            .help("export the mesh as polygons, not as strips of triangles; points alone are an obstacle of the shape `points`"));
         };
         Ok(Self { big_endian, elements, vertices, faces })
     }
@@ -282,11 +313,21 @@ type Read<'a, T> = Result<(T, Option<Token<'a>>), Error>;
 impl<'a> Body<'a> {
     /// The next number, which is finite.
     fn number(&mut self, of: Type, what: &dyn Fn() -> String) -> Read<'a, f64> {
-        let (number, word) = match self {
+        let (number, word) = self.any_number(of, what)?;
+        match (&*self, word) {
+            _ if number.is_finite() => Ok((number, word)),
+            (Self::Text(text, _), Some(word)) => Ok((text.number(word, &what())?, Some(word))),
+            _ => Err(self.error(word, format!("{number} is not finite")).expected(what())),
+        }
+    }
+
+    /// The next number.
+    fn any_number(&mut self, of: Type, what: &dyn Fn() -> String) -> Read<'a, f64> {
+        Ok(match self {
             Self::Text(text, lexer) => {
                 let word = lexer.next().ok_or_else(|| text.error_at_end(what()))?;
                 match word.text.parse::<f64>() {
-                    Ok(number) if number.is_finite() => (number, Some(word)),
+                    Ok(number) => (number, Some(word)),
                     _ => (text.number(word, &what())?, Some(word)),
                 }
             }
@@ -300,11 +341,7 @@ impl<'a> Body<'a> {
                 }
                 (of.value(bytes), None)
             }
-        };
-        match number.is_finite() {
-            true => Ok((number, word)),
-            false => Err(self.error(word, format!("{number} is not finite")).expected(what())),
-        }
+        })
     }
 
     /// The next number, which is a count or an index.

@@ -201,6 +201,7 @@ pub fn write_stl(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), Error> {
 /// The text of `mesh` as text STL. Coordinates have the fewest digits that read back to the same bits.
 #[must_use]
 pub fn stl_text(mesh: &TriMesh) -> String {
+    let mesh = &mesh.faceted();
     let mut out = String::from("solid mesh\n");
     for i in 0..mesh.triangles().len() {
         let [a, b, c] = mesh.triangle(i);

@@ -54,6 +54,7 @@ pub(crate) fn read(file: &str, bytes: &[u8], _: &mut Reading<'_>) -> Result<TriM
 /// bits.
 #[must_use]
 pub fn gempa_mesh_text(mesh: &TriMesh) -> String {
+    let mesh = &mesh.faceted();
     let mut out = format!("{}\n", mesh.triangles().len());
     for i in 0..mesh.triangles().len() {
         let [a, b, c] = mesh.triangle(i);

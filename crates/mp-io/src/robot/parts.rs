@@ -142,11 +142,13 @@ impl RobotProblem {
                 let (entry, body) = (next.file.attached.remove(i), next.attached.remove(i));
                 let pose = at(&entry.link)? * body.pose;
                 let six = six_from_pose(&pose);
-                next.file.obstacles.push(super::ObstacleEntry {
+                let obstacle = super::ObstacleEntry {
                     name: entry.name,
                     shape: entry.shape,
                     pose: six,
-                });
+                    self_filter: None,
+                };
+                next.file.obstacles.push(obstacle);
                 next.obstacles.push(PlacedBody { pose, ..body });
             }
         }

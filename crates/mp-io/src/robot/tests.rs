@@ -73,8 +73,8 @@ fn shapes_are_read() {
         ("torus = [1, 0.25]", [2.5, 2.5, 0.5], 1),
         ("tetrahedron = 1", [0.87, 1.0, 0.82], 1),
         ("hull = [[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3], [0.1, 0.1, 0.1]]", [1.0, 2.0, 3.0], 1),
-        ("points = { radius = 0.05, at = [[0, 0, 0], [1, 0, 0.25]] }", [1.1, 0.1, 0.35], 2),
-        ("points = { radius = 0.05, file = \"cloud.xyz\" }", [1.1, 0.1, 0.35], 3),
+        ("points = { radius = 0.05, at = [[0, 0, 0], [1, 0, 0.25]] }", [1.1, 0.1, 0.35], 0),
+        ("points = { radius = 0.05, file = \"cloud.xyz\" }", [1.1, 0.1, 0.35], 0),
         (
             "height_field = { cell = [0.5, 1], heights = [[0, 1, 0], [0, 1, 2]], bottom = -1 }",
             [1.0, 1.0, 3.0],
@@ -94,7 +94,7 @@ fn shapes_are_read() {
         );
         std::fs::write(&path, rigid).unwrap();
         let task = crate::RigidTask::load_from(&crate::Disk, &path).unwrap();
-        assert_eq!((&task.problem.robot.mesh, &task.moving[0].mesh), (mesh, mesh), "{shape}");
+        assert_eq!((&task.problem.robot.mesh, &task.moving[0].mesh), (&mesh.faceted(), mesh), "{shape}");
     }
 }
 
@@ -125,6 +125,15 @@ fn faults_have_their_place() {
         ("sphere = 0.25", "hull = [[0, 0], [1, 0]]", 15, ""),
         ("sphere = 0.25", "points = { radius = 0.1 }", 15, "two places, or in none"),
         ("sphere = 0.25", "points = { radius = 0.1, file = \"lost.xyz\" }", 15, "lost.xyz"),
+        ("sphere = 0.25", "points = { radius = 0.1, cell = 0, at = [[0, 0, 0]] }", 15, "side of a cell"),
+        ("sphere = 0.25", "points = { radius = 0.1, cell = 1e-300, at = [[1, 0, 0]] }", 15, "too small"),
+        ("sphere = 0.25", "sphere = 0.25\nself_filter = 0.1", 16, "cannot leave out"),
+        (
+            "sphere = 0.25",
+            "points = { radius = 0.1, at = [[0, 0, 0]] }\nself_filter = -1",
+            16,
+            "cannot leave out",
+        ),
         ("sphere = 0.25", "points = { radius = -0.1, at = [[0, 0, 0]] }", 15, "radius"),
         ("sphere = 0.25", "height_field = { cell = [1, 1], heights = [[0, 1], [0]] }", 15, "equally long"),
         ("sphere = 0.25", "height_field = { cell = [1, 1], heights = [[0, nan]] }", 15, "NaN"),

@@ -6,6 +6,7 @@ mod named;
 mod parts;
 mod pose_goals;
 mod read;
+mod self_filter;
 
 use super::model::{ModelBody, ModelFrame, ModelPair, MotionModel, Step, seven};
 use super::{
@@ -249,6 +250,16 @@ impl<C: LinkedSpace> LinkedScene<C> {
             }
             None => Self::arm_of(files, &mut problem)?,
         };
+        let (mut arm, mut said) = (arm, said);
+        let own = Self::names(&arm).len();
+        let start = problem.file.start.row().get(..own).unwrap_or_default().to_vec();
+        let filtered = self_filter::filter(&arm, &mut problem, &start)?;
+        if !filtered.is_empty() {
+            let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
+            arm = arm.among_until(bodies, &files.interrupt())?;
+            said.retain(|line| !line.ends_with(self_filter::LEFT_OUT));
+            said.extend(filtered);
+        }
         Self::with_ends_of(problem, arm, said, &files.interrupt())
     }
 

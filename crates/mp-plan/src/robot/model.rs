@@ -127,7 +127,7 @@ pub struct ModelBody {
     pub radius: f64,
     /// The vertices in its frame, metres.
     pub vertices: Vec<[f64; 3]>,
-    /// The vertices of each piece: triangles in space, edges in the plane.
+    /// The vertices of each piece: triangles in space, those of a point thrice; edges in the plane.
     pub pieces: Vec<Vec<u32>>,
     /// What its pieces are, one part after the other: together they have all pieces.
     pub parts: Vec<ModelPart>,
@@ -144,8 +144,14 @@ pub enum ModelPart {
 }
 
 impl ModelBody {
-    /// A mesh, with its solids.
+    /// A mesh, with its solids; of balls, their centres and radius.
     pub(crate) fn mesh(name: &str, frame: usize, mesh: &TriMesh) -> Self {
+        if let [(range, radius)] = mesh.balls()
+            && range.len() == mesh.triangles().len()
+        {
+            return Self { radius: *radius, ..Self::mesh(name, frame, &mesh.clone().without_balls()) };
+        }
+        let mesh = &mesh.faceted();
         Self {
             name: name.to_owned(),
             frame,

@@ -221,7 +221,7 @@ impl<M: RigidSpace> RigidScene<M> {
         let among = AmongMoving::new_until(self.robot().clone(), meshes, interrupt)?;
         let body = |m: &RigidMoving| Body {
             name: m.name.clone(),
-            shape: BodyShape::Mesh(m.mesh.clone()),
+            shape: BodyShape::Mesh(m.mesh.faceted()),
             pose: None,
         };
         MovingScene::new(self, among, moving.iter().map(body).collect(), timing, last)
@@ -425,6 +425,9 @@ impl<M: RigidSpace> Motion for RigidScene<M> {
             numbers.extend(mesh.vertices().iter().flat_map(|p| [p.x, p.y, p.z]));
             numbers.extend(mesh.triangles().iter().flatten().map(|&i| f64::from(i)));
             numbers.extend(mesh.solids().iter().flat_map(|solid| [solid.start, solid.end]).map(f64::from));
+            numbers.extend(
+                mesh.balls().iter().flat_map(|(range, r)| [range.start.into(), range.end.into(), *r]),
+            );
             numbers.extend(pose.to_homogeneous().iter());
         };
         mesh(&problem.robot.mesh, &Isometry3::identity());

@@ -1,6 +1,7 @@
 //! Certificates of paths are replayed by `mp_verify_certificate`, which shares no code with this crate; damaged ones are refused.
 
 mod changed;
+mod clouds;
 mod look;
 
 use mp_plan::{Interrupt, PathRows, Request, Scene};

@@ -72,7 +72,8 @@ impl<P: Placement> AmongMoving<P> {
         interrupt: &Interrupt,
     ) -> Result<Self, RobotError> {
         let make = |(name, mesh, trajectory): (String, TriMesh, Trajectory)| {
-            let mut scene = Scene::new();
+            // What moves has facets: bounds of its motion are of its vertices.
+            let (mut scene, mesh) = (Scene::new(), mesh.faceted());
             let tree = CollisionMesh::new_until(&mesh, interrupt).ok_or(Interrupted)?;
             scene.insert(name, tree, Isometry3::identity())?;
             let radius = mesh.radius_about(&Point3::origin());

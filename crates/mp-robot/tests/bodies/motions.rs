@@ -70,6 +70,34 @@ fn checks_agree_in_space() {
     agree(&se3(), &FreeFlyer::new(&robot(), clutter()).unwrap(), 900);
 }
 
+/// Clouds beside meshes, one of them turned.
+#[test]
+fn checks_agree_among_points() {
+    let mut obstacles: Vec<_> = clutter().into_iter().take(2).collect();
+    let mut rng = Rng::seed(5);
+    let shell = se3();
+    let points: Vec<_> =
+        (0..800).map(|_| shell.sample_uniform(&mut rng).translation.vector.normalize()).collect();
+    let cloud = mp_geom::TriMesh::of_balls(points.iter().map(|v| (v * 1.2).into()).collect(), 0.02).unwrap();
+    obstacles.push(obstacle("half a shell", cloud, [0.3, 0.1, -0.9, 0.3, 0.2, 0.1]));
+    let robot = FreeFlyer::new(&robot(), obstacles.clone()).unwrap();
+    agree(&shell, &robot, 400);
+
+    // The same answers as with the balls as meshes, but for their facets.
+    let faceted = obstacles.iter().map(|(name, mesh, pose)| (name.clone(), mesh.faceted(), *pose));
+    let mut inside = FreeFlyer::new(robot.mesh(), faceted).unwrap();
+    let (mut balls, mut near) = (robot, 0);
+    for _ in 0..300 {
+        let q = shell.sample_uniform(&mut rng);
+        let [a, b] = [&mut balls, &mut inside].map(|robot| mp_cspace::Clearance::clearance(robot, &q, 1e9));
+        assert!(b <= a + 1e-12 && a - b < 0.26 * 0.02 + 1e-9, "{a} {b}");
+        near += usize::from(a > 0.0 && b < a);
+        let contacts = balls.explain(&q);
+        assert_eq!(contacts.is_empty(), a > 0.0, "{contacts:?}");
+    }
+    assert!(near > 100, "{near}");
+}
+
 #[test]
 fn checks_agree_in_the_plane() {
     let space = Se2::new([-2.0; 2], [2.0; 2]).unwrap();

@@ -64,6 +64,7 @@ fn write_color(out: &mut String, color: OffColor) {
 /// The text of `mesh` as an OFF file of triangles; the number of edges is written as 0, as is the custom.
 #[must_use]
 pub fn off_text(mesh: &TriMesh) -> String {
+    let mesh = &mesh.faceted();
     let mut out = String::with_capacity(40 * (mesh.vertices().len() + mesh.triangles().len()));
     let _ = writeln!(out, "OFF\n{} {} 0", mesh.vertices().len(), mesh.triangles().len());
     for v in mesh.vertices() {

@@ -45,7 +45,7 @@ impl<'m> Prover<'m> {
             meshes.push((bodies.to_vec(), Rc::clone(&mesh)));
             Ok(mesh)
         };
-        let radius = |i: &usize| model.bodies[*i].radius;
+        let radius = |i: &usize| if is_cloud(&model.bodies[*i]) { 0.0 } else { model.bodies[*i].radius };
         let shapes = model.pairs.iter().map(|pair| {
             let frame = pair.others.first().map(|i| model.bodies[*i].frame);
             let frame = frame.filter(|frame| still(model, *frame).is_none());
@@ -116,15 +116,27 @@ fn still(model: &MotionModel, frame: usize) -> Option<Isometry3<f64>> {
     }
 }
 
+/// Whether a body is balls around points, each of which is a piece.
+fn is_cloud(body: &ModelBody) -> bool {
+    let is_point = |piece: &Vec<u32>| piece.iter().all(|corner| *corner == piece[0]);
+    body.radius > 0.0 && body.pieces.len() > 1 && body.pieces.iter().all(is_point)
+}
+
 /// The pieces of bodies as triangles, of which some have no area; in the world, or in the frame of the only one.
 fn merged<'b>(
     model: &MotionModel,
     bodies: impl Iterator<Item = &'b ModelBody>,
     in_world: bool,
 ) -> Result<RefMesh, String> {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    let (mut vertices, mut triangles, mut clouds) = (Vec::new(), Vec::new(), Vec::new());
     for body in bodies {
         let pose = still(model, body.frame).filter(|_| in_world).unwrap_or_else(Isometry3::identity);
+        if is_cloud(body) {
+            let center = |piece: &Vec<u32>| pose * Point3::from(body.vertices[piece[0] as usize]);
+            let points = body.pieces.iter().map(center).collect();
+            clouds.push(TriMesh::of_balls(points, body.radius).map_err(|e| e.to_string())?);
+            continue;
+        }
         let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
         vertices.extend(body.vertices.iter().map(|v| pose * Point3::from(*v)));
         triangles.extend(body.pieces.iter().filter_map(|piece| {
@@ -132,5 +144,9 @@ fn merged<'b>(
             Some(std::array::from_fn(|i| first.saturating_add(piece.get(i).copied().unwrap_or(last))))
         }));
     }
-    TriMesh::new(vertices, triangles).map(|mesh| RefMesh::new(&mesh)).map_err(|e| e.to_string())
+    if !triangles.is_empty() || clouds.is_empty() {
+        clouds.push(TriMesh::new(vertices, triangles).map_err(|e| e.to_string())?);
+    }
+    let mesh = TriMesh::merged(&clouds).ok_or("the bodies have too many triangles")?;
+    Ok(RefMesh::new(&mesh))
 }

@@ -1,0 +1,81 @@
+//! Robots among clouds of points: planned, explained, and with a certificate.
+
+use super::certified_in;
+use mp_plan::Scene;
+use mp_verify_certificate::verify;
+use std::fmt::Write;
+use std::path::Path;
+
+/// A wall across the plane x = 0 with a window, in points 2 cm apart, some of them in one place or lost.
+fn window(folder: &Path) {
+    let mut text = "# scan\nnan nan nan\n".to_owned();
+    for (i, j) in (-50..=50).flat_map(|i| (-50..=50).map(move |j| (i, j))) {
+        let (y, z) = (0.02 * f64::from(i), 0.02 * f64::from(j));
+        if y.abs() > 0.3 || z.abs() > 0.3 {
+            writeln!(text, "0 {y} {z}\n0.0001 {y} {z}").unwrap();
+        }
+    }
+    std::fs::write(folder.join("wall.xyz"), text).unwrap();
+}
+
+#[test]
+fn a_body_passes_a_window_in_a_cloud() {
+    let folder = tempfile::tempdir().unwrap();
+    window(folder.path());
+    let scene = "[robot]\nbox = [0.4, 0.3, 0.1]\nbounds = [[-0.8, -0.7, -0.7], [0.8, 0.7, 0.7]]\n[motion]\nstart = [-0.7, 0, 0, 0, 0, 0]\ngoal = [0.7, 0.1, 0.2, 0, 0, 0]\n\
+        [[obstacle]]\nname = \"wall\"\npoints = { radius = 0.02, file = \"wall.xyz\" }\n\
+        [[obstacle]]\nname = \"table\"\nbox = [0.2, 0.2, 0.2]\npose = [-0.3, 0.5, 0, 0, 0, 0]\n";
+    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    let scene = Scene::find(folder.path().join("scene.toml").to_str().unwrap()).unwrap();
+    let (path, certificate) = certified_in(&scene);
+    assert!(path.rows.len() > 2);
+    let proved = verify(&certificate).unwrap();
+    assert!(proved.clearance > Some(0.0));
+    // All points are in it: without one that is near, another certificate; a wall through the window refutes it.
+    let model: serde_json::Value = serde_json::from_str(&certificate).unwrap();
+    let wall =
+        model["model"]["bodies"].as_array().unwrap().iter().find(|body| body["name"] == "wall").unwrap();
+    let points = wall["vertices"].as_array().unwrap().len();
+    assert_eq!(points, 101 * 101 - 31 * 31);
+    assert!((wall["radius"].as_f64().unwrap() - 0.02005).abs() < 1e-6, "{}", wall["radius"]);
+    let mut other = model.clone();
+    let wall =
+        other["model"]["bodies"].as_array_mut().unwrap().iter_mut().find(|b| b["name"] == "wall").unwrap();
+    wall["radius"] = serde_json::json!(0.5);
+    assert!(verify(&super::sealed(other)).is_err());
+    // In the wall, the cloud is named.
+    let explained = scene.explain(&[0.0, 0.6, 0.0, 0.0, 0.0, 0.0]).unwrap();
+    assert!(
+        explained.touching.iter().any(|contact| contact.other == "wall" && contact.depth > Some(0.0)),
+        "{explained:?}"
+    );
+}
+
+/// A camera sees the arm too.
+#[test]
+fn points_on_the_robot_are_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let urdf = "<robot name='r'><link name='base'/><link name='arm'><collision><origin xyz='0.5 0 0'/><geometry><box size='1 0.1 0.1'/>\
+        </geometry></collision></link><joint name='j' type='revolute'><parent link='base'/><child link='arm'/><axis xyz='0 0 1'/>\
+        <limit lower='-3' upper='3' effort='1' velocity='1'/></joint></robot>";
+    std::fs::write(folder.path().join("r.urdf"), urdf).unwrap();
+    // Along the surface of the arm, inside of it, and beside it, where it moves.
+    let points = "0.5 0.055 0\n0.2 0 0.06\n0.7 0 0\n0.3 -0.9 0\n0.31 -0.9 0.2\n";
+    std::fs::write(folder.path().join("scan.xyz"), points).unwrap();
+    let scene = |members: &str| {
+        let text = format!(
+            "[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = [0]\ngoal = [1.5]\n[[obstacle]]\nname = \"scan\"\n\
+             points = {{ radius = 0.01, file = \"scan.xyz\" }}\n{members}"
+        );
+        std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+        Scene::find(folder.path().join("scene.toml").to_str().unwrap())
+    };
+    assert!(!scene("").unwrap().explain(&[0.0]).unwrap().free);
+    let filtered = scene("self_filter = 0.02").unwrap();
+    assert!(filtered.explain(&[0.0]).unwrap().free);
+    // The others are there, in the check, the verifier and the certificate.
+    assert!(!filtered.explain(&[-1.249]).unwrap().free);
+    assert!(verify(&certified_in(&filtered).1).is_ok());
+    let error = scene("self_filter = 2").unwrap_err().to_string();
+    assert!(error.contains("all 5 points of scan") && error.contains("scene.toml"), "{error}");
+}
