@@ -360,7 +360,7 @@ fn bad_floating_problems_are_told_what_to_do() {
         ("flyer.urdf", "named.urdf", &["named.urdf", "\"gamma\"", "another name"][..]),
         ("flyer.urdf", "still.urdf", &["still.urdf", "no joint"]),
         ("bounds = [[-2, -1, -1], [0.6, 1, 1]]\n", "", &["inspect.toml:3", "bounds = [[x, y, z]"]),
-        ("\"floating\"", "\"planar\"", &["inspect.toml:3", "`planar`", "floating"]),
+        ("\"floating\"", "\"round\"", &["inspect.toml:3", "`round`", "planar"]),
         (
             "-0.5, 2, 0]",
             "-0.5, 2]",
@@ -521,7 +521,7 @@ fn ends_and_obstacles_by_options_are_text_of_the_problem() {
     assert!(moved.stdout.contains("post at 1.5") && moved.stdout.contains("start     -2.5"), "{moved:?}");
     for (wrong, said) in [
         (["--from", "1,2,3"], "--from: the start has 3 numbers"),
-        (["--from", "right"], "the states of the SRDF are left"),
+        (["--from", "right"], "the SRDF has the states left"),
         (["--to", "link = 'lower', pose = [1, 2]"], "--to: the pose of the goal has 2 numbers"),
         (["--obstacle", "box = 1"], "--obstacle: a box has 3 lengths"),
         (["--obstacle", "ball = 1"], "--obstacle: unknown field `ball`"),
