@@ -3,6 +3,8 @@
 //! Each is opened alone, which chooses a free start and a free goal, and planned for; then to a goal at random. A robot that collides with
 //! itself in all configurations tried gets the SRDF that `mp srdf` makes, and is opened again.
 
+mod poses;
+
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table, sections};
 use crate::options::Common;
@@ -10,6 +12,7 @@ use clap::Args;
 use mp_cspace::{Interrupt, Rng};
 use mp_io::RobotPath;
 use mp_plan::{Clock, Error, ErrorKind, ProblemChanges, Request, RobotPairs, Scene};
+use poses::Poses;
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -24,6 +27,9 @@ pub(crate) struct Options {
     /// A folder with descriptions of robots, such as a package of Python [default: the robots that `mp robots` lists].
     #[arg(long = "dir", value_name = "DIR")]
     folders: Vec<PathBuf>,
+    /// Instead, inverse kinematics: so many poses of the last link of each robot, made from configurations at random.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    poses: Option<u32>,
 }
 
 /// A case: a description, by its place below the folder.
@@ -100,6 +106,9 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
         );
     }
     let lab = Lab::new(common)?;
+    if let Some(count) = options.poses {
+        return inverse_kinematics(&lab, &files, count);
+    }
     let name = lab.name("robots");
     let cap = if common.quick { common.time.min(5.0) } else { common.time };
     let mut log = lab.log(&name, cap)?;
@@ -131,6 +140,35 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     );
     let parts = [("Outcomes".to_owned(), outcomes(&runs, still)), ("Robots".to_owned(), table.clone())];
     lab.report(&name, &sections(2, &parts), &table)?;
+    Ok(true)
+}
+
+/// Measures inverse kinematics of each robot.
+fn inverse_kinematics(lab: &Lab, files: &BTreeMap<Case, PathBuf>, count: u32) -> Result<bool> {
+    let name = lab.name("robots-poses");
+    let mut log = lab.log(&name, f64::from(count))?;
+    let cases: Vec<Case> = files.keys().cloned().collect();
+    let of = |case: &Case| Ok(Some(poses::reached(&files[case], count)?));
+    if !lab.measure(&mut log, "robots", &cases, of)? {
+        return Ok(false);
+    }
+    let runs: Vec<(&Case, &Poses)> = log
+        .each(&cases)
+        .filter_map(|(case, poses): (_, &Option<Poses>)| Some((case, poses.as_ref()?)))
+        .collect();
+    let table = Table::of(
+        runs.iter().copied(),
+        &[
+            ("robot", &|(case, _)| case.robot.clone()),
+            ("link", &|(_, poses)| poses.link.clone()),
+            ("joints that move it", &|(_, poses)| poses.joints.to_string()),
+            ("poses", &|(_, poses)| poses.asked.to_string()),
+            ("reached", &|(_, poses)| poses.reached.to_string()),
+            ("median ms", &|(_, poses)| format!("{:.3}", poses.median)),
+            ("longest ms", &|(_, poses)| format!("{:.1}", poses.longest)),
+        ],
+    );
+    lab.report(&name, &sections(2, &[("Poses".to_owned(), table.clone())]), &table)?;
     Ok(true)
 }
 
@@ -338,6 +376,6 @@ mod tests {
     }
 
     fn run_in(common: &Common, folder: &Path) -> bool {
-        run(common, &Options { folders: vec![folder.to_owned()] }).unwrap()
+        run(common, &Options { folders: vec![folder.to_owned()], poses: None }).unwrap()
     }
 }
