@@ -30,7 +30,11 @@ pub const SAMPLE: &str = "cubicles";
 
 /// The names of the scenes, in alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    FILES.iter().filter_map(|file| file.path.strip_prefix("scenes/")?.rsplit_once('.').map(|(name, _)| name))
+    let name = |file: &File| file.path.strip_prefix("scenes/")?.rsplit_once('.').map(|(name, _)| name);
+    // Files are in the order of their paths: `arm-6.toml`, then `arm.toml`.
+    let mut names: Vec<&str> = FILES.iter().filter_map(name).collect();
+    names.sort_unstable();
+    names.into_iter()
 }
 
 /// The file of the scene called `name`.
