@@ -29,7 +29,7 @@ pub(crate) struct Options {
     folders: Vec<PathBuf>,
     /// Instead, inverse kinematics: so many poses of the last link of each robot, made from configurations at random.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    poses: Option<u32>,
+    link_poses: Option<u32>,
 }
 
 /// A case: a description, by its place below the folder.
@@ -106,7 +106,7 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
         );
     }
     let lab = Lab::new(common)?;
-    if let Some(count) = options.poses {
+    if let Some(count) = options.link_poses {
         return inverse_kinematics(&lab, &files, count);
     }
     let name = lab.name("robots");
@@ -376,6 +376,6 @@ mod tests {
     }
 
     fn run_in(common: &Common, folder: &Path) -> bool {
-        run(common, &Options { folders: vec![folder.to_owned()], poses: None }).unwrap()
+        run(common, &Options { folders: vec![folder.to_owned()], link_poses: None }).unwrap()
     }
 }

@@ -1,10 +1,10 @@
 //! What people ask of arms: held joints, bases that move in the plane, things that links carry, and two robots at once.
 
 use super::arms::{HALF, Made, SAMPLES, obstacles, placed, without_pairs};
-use super::bodies::{form, pose};
+use super::bodies::{Form, form, pose};
 use super::{World, end, goals, line, list, lists};
 use crate::draw::Draw;
-use crate::oracle::Joint;
+use crate::oracle::{Body, Case, Joint, Shape};
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -31,6 +31,7 @@ pub(super) fn jobs(draw: &mut Draw) -> World {
     case.extent = 2.0 * (scale * HALF).max(made.reach);
     case.far = case.extent + 2.0 * scale;
     let (obstacles, round) = obstacles(draw, scale, &mut case, &mut files);
+    let cloud = if draw.chance(0.4) { cloud(draw, scale, &mut case) } else { String::new() };
     let margin = 0.05 * round.max(0.3 * scale) + 1e-3 * made.reach;
     let configuration = |draw: &mut Draw| made.joint_values(draw);
     case.start = end(draw, &case, margin, configuration);
@@ -42,6 +43,7 @@ pub(super) fn jobs(draw: &mut Draw) -> World {
     line(&mut text, format!("\n[motion]\nstart = {}\n{goal}", list(&case.start)));
     text += &carried;
     text += &obstacles;
+    text += &cloud;
     World::of_toml(text, files, case, margin)
 }
 
@@ -190,6 +192,26 @@ fn together(mut a: Made, b: Made) -> Made {
     a.files.extend(b.files);
     a.reach += b.reach;
     a
+}
+
+/// Adds a cloud of points, each a ball. Returns its table. No two points share a cell, so that none is left out.
+fn cloud(draw: &mut Draw, scale: f64, case: &mut Case) -> String {
+    let (count, radius) = (draw.count(1, 60), scale * draw.within(0.005, 0.1));
+    let (middle, half) = ([0; 3].map(|_| draw.within(-HALF, HALF)), draw.within(0.1, 2.0));
+    let points: Vec<[f64; 3]> =
+        (0..count).map(|_| middle.map(|x| scale * (x + draw.within(-half, half)))).collect();
+    let six = placed(draw, 0.3 * scale);
+    let at = pose(six);
+    let balls = points
+        .iter()
+        .flat_map(|p| Form::Ball(radius).pieces(&(at * Isometry3::translation(p[0], p[1], p[2]))));
+    case.still.push(Body::new("cloud".to_owned(), Shape::Pieces(balls.collect()), 0));
+    format!(
+        "\n[[obstacle]]\nname = \"cloud\"\npoints = {{ radius = {radius:?}, cell = {:?}, at = {} }}\npose = {}\n",
+        1e-9 * scale,
+        lists(points.iter().map(|p| &p[..])),
+        list(&six)
+    )
 }
 
 /// Attaches a figure to a link that has a shape. Links that it touches in most configurations may touch it. Returns its table.

@@ -98,7 +98,7 @@ pub const KINDS: [Kind; 14] = [
     Kind::new("floating", "body with joints that flies", 2, arms::floating),
     Kind::new(
         "jobs",
-        "arms on bases that move or stand, held joints, things carried, two robots",
+        "arms on bases that move or stand, held joints, things carried, two robots, clouds of points",
         4,
         jobs::jobs,
     ),
