@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 from pathlib import Path
 
@@ -53,8 +54,11 @@ def test_paths_are_those_of_the_program(name: str, program: str, folder: Path) -
 
 
 def test_every_kind_of_scene_is_compared() -> None:
-    kinds = {mp.Scene(name).space for name in mp.scenes()}
-    assert kinds == {mp.Scene(name).space for name in KINDS}
+    def kind(name: str) -> str:
+        # Arms are of one kind, however many joints they have.
+        return re.sub(r"^\d+ joints", "joints", mp.Scene(name).space)
+
+    assert {kind(name) for name in mp.scenes()} == {kind(name) for name in KINDS}
 
 
 def test_certificates_pictures_and_pages_are_those_of_the_program(program: str, folder: Path) -> None:
