@@ -23,8 +23,8 @@ from ._progress import Progress, reporter
 from ._report import Column, Explanation, Finished, Report, Verdict, explanation, verdict
 from ._roadmap import Roadmap
 from ._shapes import (
-    Attached,
     Array,
+    Attached,
     Body,
     Circle,
     Disc,
@@ -168,7 +168,8 @@ class Scene:
         Parameters
         ----------
         document : mapping
-            The tables of the file: ``robot``, ``motion``, ``obstacle``, ``attached``, ``then``, ``moving``, ``world``. Values may be arrays.
+            The tables of the file: ``robot``, ``motion``, ``obstacle``, ``attached``, ``then``, ``moving``, ``world``. Values may
+            be arrays.
         files : mapping, optional
             Contents of files that the document names. Others are read from the disk.
         name : str
@@ -284,13 +285,13 @@ class Scene:
         urdf : path or str
             The robot: a file, or the text of a URDF.
         start : array_like, shape (joints,), or mapping or str
-            Radians, or metres for prismatic joints, in the order of the URDF; of a base that moves, its pose comes first. Or the
-            values of some joints, where the others are at zero or the limit nearest to it; or the name of a state of the SRDF.
+            Radians, or metres for prismatic joints, in the order of the URDF; of a base that moves, its pose comes first. Or
+            the values of some joints, where the others are at zero or the limit nearest to it; or the name of a state of the SRDF.
         goal : array_like or mapping or str
-            All joint values, or the name of a state of the SRDF; or a mapping of some to a number or an interval: the others are free. Or the place of a link in
-            the world: ``{"link": "tool", "pose": pose}`` with a pose of six numbers or (4, 4), also with ``"free"`` (``"x"``,
-            ``"y"``, ``"z"``, ``"all"``: what may turn) and ``"position_tolerance"`` in metres; or ``{"link": "tool",
-            "position": [x, y, z]}``. A path ends at any configuration that reaches it.
+            All joint values, or the name of a state of the SRDF; or a mapping of some to a number or an interval: the others
+            are free. Or the place of a link in the world: ``{"link": "tool", "pose": pose}`` with a pose of six numbers or
+            (4, 4), also with ``"free"`` (``"x"``, ``"y"``, ``"z"``, ``"all"``: what may turn) and ``"position_tolerance"`` in
+            metres; or ``{"link": "tool", "position": [x, y, z]}``. A path ends at any configuration that reaches it.
         obstacles : iterable of Body or shapes
             What stands still.
         goals : sequence, optional
@@ -305,8 +306,8 @@ class Scene:
         base : array_like, shape (6,) or (4, 4), optional
             The pose of the root link.
         planar_within : array_like, shape (2, 2), optional
-            The base moves in the plane z = 0: the lowest and the highest corner of where its origin may be, metres. Configurations
-            begin with x, y and the angle then.
+            The base moves in the plane z = 0: the lowest and the highest corner of where its origin may be, metres.
+            Configurations begin with x, y and the angle then.
         floating_within : array_like, shape (2, 3), optional
             The base floats: the lowest and the highest corner of where its origin may be, metres.
         limits : mapping, optional

@@ -304,7 +304,8 @@ class Hull:
 class Points:
     """Points, such as those of a depth camera, each with a ball around it.
 
-    Of the points in a cell of a grid one is kept, with a ball that contains those of the others. Points that are not finite are left out.
+    Of the points in a cell of a grid one is kept, with a ball that contains those of the others. Points that are not finite are
+    left out.
 
     Parameters
     ----------
