@@ -168,8 +168,8 @@ class Scene:
         Parameters
         ----------
         document : mapping
-            The tables of the file: ``robot``, ``motion``, ``obstacle``, ``attached``, ``then``, ``moving``, ``world``. Values may
-            be arrays.
+            The tables of the file: ``robot``, ``motion``, ``obstacle``, ``attached``, ``then``, ``moving``, ``world``. Values
+            may be arrays.
         files : mapping, optional
             Contents of files that the document names. Others are read from the disk.
         name : str
@@ -286,7 +286,8 @@ class Scene:
             The robot: a file, or the text of a URDF.
         start : array_like, shape (joints,), or mapping or str
             Radians, or metres for prismatic joints, in the order of the URDF; of a base that moves, its pose comes first. Or
-            the values of some joints, where the others are at zero or the limit nearest to it; or the name of a state of the SRDF.
+            the values of some joints, where the others are at zero or the limit nearest to it; or the name of a state of the
+            SRDF.
         goal : array_like or mapping or str
             All joint values, or the name of a state of the SRDF; or a mapping of some to a number or an interval: the others
             are free. Or the place of a link in the world: ``{"link": "tool", "pose": pose}`` with a pose of six numbers or
