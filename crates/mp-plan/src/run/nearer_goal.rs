@@ -44,8 +44,7 @@ pub(crate) fn nearer_goal(
     let (planner, seed, metric, motion) = ("rrt-connect", request.seed, request.metric, request.motion);
     let request =
         Request { budget, seed, metric, motion, clearance: request.clearance, ..Request::new(planner) };
-    let mut control =
-        Control { cancel: control.cancel.clone(), clock: control.clock.clone(), ..Control::default() };
+    let mut control = Control { cancel: control.cancel.clone(), clock: control.clock, ..Control::default() };
     // Where the time is up the start seems not to be free.
     let Ok(found) = search_within(&*among, &request, &mut control, 1.0, true) else { return None };
     match found.outcome {
