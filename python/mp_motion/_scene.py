@@ -340,9 +340,10 @@ class Scene:
             robot |= {"base": how, "bounds": np.asarray(within, dtype=np.float64)}
         if base is not None:
             robot["base"] = pose_numbers(base)
+        begins = plain(start) if isinstance(start, str | Mapping) else _ordered(start)
         document = {
             "robot": robot,
-            "motion": {"start": plain(start) if isinstance(start, str | Mapping) else _ordered(start)} | _ends(goal, goals, plain),
+            "motion": {"start": begins} | _ends(goal, goals, plain),
             "obstacle": [body_members(body, files) for body in obstacles],
             "attached": [attached_members(body, files) for body in attached],
         }

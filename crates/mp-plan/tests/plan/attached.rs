@@ -134,7 +134,7 @@ fn a_motion_of_several_parts_carries_something() {
     let cube = scene.bodies().into_iter().find(|body| body.name == "cube").unwrap().pose.unwrap();
     let at = cube.translation.vector;
     let far = (2.0009_f64 * 2.0009 + 1.0931 * 1.0931).sqrt() - 0.05 + ends[1][2];
-    assert!((at.xy().norm() - far).abs() < 1e-4 && (at.y.atan2(at.x) - 0.6).abs() < 1e-4, "{at}");
+    assert!((at.xy().norm() - far).abs() < 1e-4 && (mp_math::atan2(at.y, at.x) - 0.6).abs() < 1e-4, "{at}");
     // What is carried is in the way: straight from one side of the wall to the other it would hit it.
     let second = load(CARRY, true).unwrap().next_part(&ends[0], &never).unwrap().unwrap();
     let rows = vec![ends[0].clone(), vec![0.6, 0.0, ends[0][2]]];
