@@ -22,7 +22,7 @@ pub enum MovingJoints {
     Listed(Vec<String>),
 }
 
-/// A robot of a [`RobotFile`].
+/// A robot of a [`RobotFile`](super::RobotFile).
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotEntry {
     /// What its links and joints are called after, if there are several: `left/elbow`.
@@ -91,7 +91,7 @@ impl RobotPlaces {
     }
 }
 
-/// A part of a robot in a [`RobotFile`] that an error can point at.
+/// A part of a robot in a [`RobotFile`](super::RobotFile) that an error can point at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RobotPart {
     /// The name of the URDF.

@@ -71,7 +71,7 @@ impl RobotProblem {
     }
 
     /// As [`load`](Self::load), with the files read through `files`. The meshes of the robot itself are read later: by
-    /// [`mesh_from`](Self::mesh_from).
+    /// [`mesh_from`](DescribedRobot::mesh_from).
     ///
     /// # Errors
     /// As [`load`](Self::load).
