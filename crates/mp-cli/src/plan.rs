@@ -51,7 +51,8 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
         scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
     let jobs: Vec<(usize, u64)> =
         (0..scenes.len()).flat_map(|i| (request.seed..=last).map(move |seed| (i, seed))).collect();
-    if jobs.len() > 1 || args.portfolio.is_some() || args.routes.is_some() {
+    let to_standard = args.out.as_deref().is_some_and(is_standard);
+    if jobs.len() > 1 || args.portfolio.is_some() || args.routes.is_some() || to_standard {
         refuse_parts(&scenes)?;
     }
     check_files(args, &files, &scenes, &jobs)?;
@@ -130,7 +131,7 @@ fn refuse_parts(scenes: &[Scene]) -> Result<(), Error> {
     match scenes.iter().find(|scene| scene.parts_left() > 0) {
         None => Ok(()),
         Some(scene) => Err(Error::new(format!("the motion of {} has several parts", scene.name()))
-            .help("plan it alone, without --runs, --routes and --portfolio")),
+            .help("plan it alone, without --runs, --routes and --portfolio, into files: --out NAME.txt")),
     }
 }
 

@@ -1,20 +1,12 @@
 //! Things that a link carries.
 
-use crate::which_joints::{SRDF, URDF};
-use mp_io::InMemory;
+use crate::which_joints::scene_of;
 use mp_plan::{Interrupt, PathRows, Request, Scene};
-use std::path::Path;
 
 fn load(more: &str, srdf: bool) -> Result<Scene, mp_plan::Error> {
     let of_srdf = if srdf { "srdf = \"r.srdf\"\n" } else { "" };
     let problem = format!("[robot]\nurdf = \"r.urdf\"\n{of_srdf}hold = {{ raise = 0.2 }}\n{more}");
-    let at = move |name: &str| match name {
-        "p.toml" => Some(problem.clone()),
-        "r.urdf" => Some(URDF.to_owned()),
-        "r.srdf" => Some(SRDF.to_owned()),
-        _ => None,
-    };
-    Scene::load_from(&InMemory(at), Path::new("p.toml"))
+    scene_of(problem)
 }
 
 /// A pole that the finger carries crosswise.

@@ -1,21 +1,13 @@
 //! Several robots in one scene.
 
-use crate::which_joints::{SRDF, URDF};
-use mp_io::InMemory;
+use crate::which_joints::scene_of;
 use mp_plan::{Interrupt, PathRows, Request, Scene};
-use std::path::Path;
 
 fn load(robots: [&str; 2], motion: &str) -> Result<Scene, mp_plan::Error> {
     let robot =
         |more: &str| format!("[[robot]]\nurdf = \"r.urdf\"\nhold = {{ finger = 0, raise = 0.2 }}\n{more}\n");
     let problem = format!("{}{}[motion]\n{motion}\n", robot(robots[0]), robot(robots[1]));
-    let at = move |name: &str| match name {
-        "p.toml" => Some(problem.clone()),
-        "r.urdf" => Some(URDF.to_owned()),
-        "r.srdf" => Some(SRDF.to_owned()),
-        _ => None,
-    };
-    Scene::load_from(&InMemory(at), Path::new("p.toml"))
+    scene_of(problem)
 }
 
 const LEFT: &str = "name = \"left\"\nsrdf = \"r.srdf\"";

@@ -5,7 +5,7 @@ use mp_plan::{Request, Scene};
 use std::path::Path;
 
 /// A lift with two bars of a metre that turn about z one above the other, and a finger that slides.
-pub(crate) const URDF: &str = r#"<robot name="two">
+const URDF: &str = r#"<robot name="two">
 <link name="base"><collision><geometry><box size="0.3 0.3 0.02"/></geometry></collision></link>
 <link name="lift"/>
 <link name="upper"><collision><origin xyz="0.5 0 0.1"/><geometry><box size="0.9 0.1 0.1"/></geometry></collision></link>
@@ -18,7 +18,7 @@ pub(crate) const URDF: &str = r#"<robot name="two">
 <joint name="finger" type="prismatic"><parent link="lower"/><child link="tip"/><origin xyz="1 0 0.3"/><limit lower="0" upper="0.1" velocity="1"/></joint>
 </robot>"#;
 
-pub(crate) const SRDF: &str = r#"<robot name="two">
+const SRDF: &str = r#"<robot name="two">
 <group name="arm"><chain base_link="lift" tip_link="lower"/></group>
 <group name="hand"><link name="tip"/></group>
 <group name="both"><group name="arm"/><group name="hand"/></group>
@@ -30,8 +30,8 @@ pub(crate) const SRDF: &str = r#"<robot name="two">
 <group_state name="up" group="both"><joint name="raise" value="0.3"/><joint name="shoulder" value="-0.5"/></group_state>
 </robot>"#;
 
-fn load(robot: &str, motion: &str) -> Result<Scene, mp_plan::Error> {
-    let problem = format!("[robot]\nurdf = \"r.urdf\"\nsrdf = \"r.srdf\"\n{robot}\n[motion]\n{motion}\n");
+/// The scene of the text of a problem about `r.urdf` and `r.srdf`.
+pub(crate) fn scene_of(problem: String) -> Result<Scene, mp_plan::Error> {
     let at = move |name: &str| match name {
         "p.toml" => Some(problem.clone()),
         "r.urdf" => Some(URDF.to_owned()),
@@ -39,6 +39,11 @@ fn load(robot: &str, motion: &str) -> Result<Scene, mp_plan::Error> {
         _ => None,
     };
     Scene::load_from(&InMemory(at), Path::new("p.toml"))
+}
+
+fn load(robot: &str, motion: &str) -> Result<Scene, mp_plan::Error> {
+    let problem = format!("[robot]\nurdf = \"r.urdf\"\nsrdf = \"r.srdf\"\n{robot}\n[motion]\n{motion}\n");
+    scene_of(problem)
 }
 
 fn names(scene: &Scene) -> Vec<String> {
