@@ -229,7 +229,7 @@ fn parts(
 ) -> Result<bool, Error> {
     let (mut reports, mut scene, count) = (Vec::new(), scene.clone(), 1 + scene.parts_left());
     let name = scene.name().to_owned();
-    let interrupt = Interrupt::new(cancel.clone());
+    let (interrupt, mut cannot_begin) = (Interrupt::new(cancel.clone()), None);
     for number in 1..=count {
         let part = Some((number, name.clone()));
         let settings = RunSettings { args, files, watched: true, threads: args.threads, part };
@@ -238,9 +238,18 @@ fn parts(
         let end = report.path.as_ref().and_then(|path| path.last().cloned());
         reports.push(report);
         let Some(end) = end else { break };
-        let Some(next) = scene.next_part(&end, &interrupt)? else { break };
-        next.check_ends().map_err(|e| e.context(format!("part {} of {count}", number + 1)))?;
-        scene = next;
+        let begun = scene.next_part(&end, &interrupt).and_then(|next| {
+            next.iter().try_for_each(|next| next.check_ends().map(drop))?;
+            Ok(next)
+        });
+        match begun.map_err(|e| e.context(format!("part {} of {count}", number + 1))) {
+            Ok(Some(next)) => scene = next,
+            Ok(None) => break,
+            Err(e) => {
+                cannot_begin = Some(e);
+                break;
+            }
+        }
     }
     let solved = reports.len() == count && reports.iter().all(|report| report.solved);
     if args.json {
@@ -250,7 +259,7 @@ fn parts(
             print(&format!("part {} of {count}\n{}", i + 1, summary(report)))?;
         }
     }
-    Ok(solved)
+    cannot_begin.map_or(Ok(solved), Err)
 }
 
 /// Refuses outputs that cannot be written, that are inputs, and two outputs in the same file.

@@ -1,5 +1,7 @@
 //! A scene of any kind, and what can be done with it.
 
+mod arms;
+
 use crate::explain::{check_ends, explain, lint};
 use crate::finish::certificate::certificate;
 use crate::finish::check::check;
@@ -253,41 +255,6 @@ impl Scene {
     pub fn details(&self) -> Vec<(String, String)> {
         let notes = self.remarks.iter().chain(&*self.notes).map(|note| ("note".to_owned(), note.clone()));
         self.robot.details().into_iter().chain(notes).collect()
-    }
-
-    /// Configurations that place a link of an arm, the free ones first: see [`ArmScene::reaching`](crate::ArmScene::reaching).
-    ///
-    /// # Errors
-    /// As there, and when the robot is no arm whose base stands still.
-    pub fn reaching(
-        &self,
-        place: &mp_io::PoseEntry,
-        most: usize,
-        interrupt: &Interrupt,
-    ) -> Result<Vec<crate::Reached>, Error> {
-        let arm = self.robot::<crate::ArmScene>().ok_or_else(|| {
-            Error::new(format!("{} is no arm whose base stands still", self.name()))
-                .help("only such have links to be placed; one that moves by inputs, or among obstacles that move, is none here")
-        })?;
-        arm.reaching(place, most, interrupt)
-    }
-
-    /// How many parts of the motion come after this one: zero, but for arms whose problem says so.
-    #[must_use]
-    pub fn parts_left(&self) -> usize {
-        self.robot::<crate::ArmScene>().map_or(0, crate::ArmScene::parts_left)
-    }
-
-    /// The scene of the next part of the motion: see [`ArmScene::next_part`](crate::ArmScene::next_part).
-    ///
-    /// # Errors
-    /// As there.
-    pub fn next_part(&self, end: &[f64], interrupt: &Interrupt) -> Result<Option<Self>, Error> {
-        let Some(arm) = self.robot::<crate::ArmScene>() else { return Ok(None) };
-        let Some(next) = arm.next_part(end, interrupt)? else { return Ok(None) };
-        let (notes, kept) = (next.said(), self.clearance_kept());
-        let scene = Self { robot: Arc::new(next), notes: notes.into(), ..self.clone() };
-        if kept > 0.0 { scene.keeping(kept) } else { Ok(scene) }.map(Some)
     }
 
     /// The fraction of the space in which the robot is free, estimated from `samples` samples. The same scene gives the same

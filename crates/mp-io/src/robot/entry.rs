@@ -337,13 +337,7 @@ pub(super) fn robots_of(
 
 /// The robot of one table.
 fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) -> Result<RobotEntry, Error> {
-    let table = DriveTable {
-        kind: robot.kind,
-        duration: robot.duration,
-        speeds: robot.speeds,
-        accelerations: robot.accelerations,
-        ..DriveTable::default()
-    };
+    let table = DriveTable::by_numbers(robot.kind, robot.duration, robot.speeds, robot.accelerations);
     let driven = table.read(source, &robot_span, &["velocities", "accelerations"])?;
     let base_span = robot.base.as_ref().map_or(0..0, Spanned::span);
     let Base { pose: base, floating, planar } = base_of(source, robot.base, robot.bounds)?;

@@ -551,7 +551,7 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
         details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
         // Those that are said are among the notes of the scene.
-        let notes = self.arm.model().notes.iter().filter(|note| !self.said.contains(note));
+        let notes = self.arm.notes().filter(|note| !self.said.contains(note));
         details.extend(notes.map(|note| ("note".to_owned(), note.clone())));
         details
     }

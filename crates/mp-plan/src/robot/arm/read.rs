@@ -180,11 +180,10 @@ impl<C: LinkedSpace> LinkedScene<C> {
         let model = with_start(model, &kinematics, problem).map_err(|e| wrong_arm(problem, &e))?;
         let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
         let arm = Arm::new_until(&model, bodies, &files.interrupt()).map_err(|e| wrong_arm(problem, &e))?;
-        let notes = &arm.model().notes;
-        for note in notes {
+        for note in arm.notes() {
             tracing::info!("{}: {note}", problem.name);
         }
-        let said = notes[ignored..].to_vec();
+        let said = arm.notes().skip(ignored).cloned().collect();
         Ok((arm, said))
     }
 }
