@@ -217,11 +217,7 @@ browserTest("an arm is drawn by its gripper, and each part of its motion is plan
   await driver.until(async (old) => (await window.mpView.planner).ends.verdicts.has("start") && String((await window.mpView.planner).viewer.scene.start.row) !== old, String(row));
   const drawn = await state();
   const shift = drawn.place.map((x, k) => x - place[k]);
-  assert.ok(Math.hypot(...shift) > 1e-3, `${shift}`);
-  // Along the handle, and turned as before.
-  const along = (v) => [0, 1, 2].map((k) => { const [x, y, z, w] = turn; const axis = [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)]; return axis[k] * v; });
-  const length = shift.reduce((sum, s, k) => sum + s * along(1)[k], 0);
-  shift.forEach((s, k) => assert.ok(Math.abs(s - along(length)[k]) < 1e-6, `${shift} ${along(length)}`));
+  assert.ok(shift[0] > 1e-3 && Math.hypot(shift[1], shift[2]) < 1e-6, `${shift}`);
   assert.ok(drawn.turn.every((x, k) => Math.abs(x - turn[k]) < 1e-6), `${drawn.turn} ${turn}`);
 
   await driver.press("Plan");
