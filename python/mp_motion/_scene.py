@@ -7,7 +7,7 @@ import json
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias, cast
+from typing import Any, Literal, TypeAlias, cast, get_args
 
 import numpy as np
 import tomli_w
@@ -15,6 +15,7 @@ from numpy.lib import recfunctions
 from numpy.typing import ArrayLike, NDArray
 
 from . import _mp, _view
+from ._arguments import choice, flag, motion, number, text, whole
 from ._errors import Error, Interrupted
 from ._mp import Cancel
 from ._names import MetricName, PlannerName
@@ -73,6 +74,33 @@ class Options:
     clearance: float = 0.0
     sharp_clearance: bool = False
 
+    def __post_init__(self) -> None:
+        """Check each option, so that an error names it.
+
+        Raises
+        ------
+        TypeError
+            When an option has a wrong type.
+        Error
+            When its value is not possible; a ``ValueError`` too.
+        """
+        if self.planner is not None:
+            text("planner", self.planner)
+        whole("seed", self.seed)
+        whole("threads", self.threads, 1)
+        if self.time is not None:
+            number("time", self.time, above=0)
+        for name in ("iterations", "queries", "nodes"):
+            if getattr(self, name) is not None:
+                whole(name, getattr(self, name), 1)
+        choice("metric", self.metric, get_args(MetricName))
+        motion(self.motion)
+        choice("finish", self.finish, get_args(Finish))
+        text("field", self.field)
+        number("clearance", self.clearance, least=0)
+        flag("first_only", self.first_only)
+        flag("sharp_clearance", self.sharp_clearance)
+
     def to_json(self, scene: Scene) -> str:
         """Return the request as ``mp plan --request`` reads it, with the planner that suits the scene if none is named."""
         return json.dumps(
@@ -87,7 +115,7 @@ class Options:
                 "threads": int(self.threads),
                 "finish": self.finish,
                 "field": self.field,
-                "first_only": self.first_only,
+                "first_only": bool(self.first_only),
                 **({"sharp_clearance": True} if self.sharp_clearance else {}),
                 "roadmap": None if self.roadmap is None else os.fspath(self.roadmap),
             }
@@ -105,9 +133,9 @@ def budget(time: float | None, iterations: int | None, queries: int | None, node
     """Return the budget of a request."""
     return {
         "time_s": None if time is None else float(time),
-        "iterations": iterations,
-        "queries": queries,
-        "nodes": nodes,
+        "iterations": None if iterations is None else int(iterations),
+        "queries": None if queries is None else int(queries),
+        "nodes": None if nodes is None else int(nodes),
     }
 
 
@@ -795,6 +823,7 @@ class Scene:
             Without any route, one report that says why.
         """
         options = options or Options(planner="cyclic-rrt")
+        whole("count", count, 1)
         with reporter(progress) as tell:
             reports, raised = self._native.routes(options.to_json(self), count, str(apart), cancel, tell)
         if raised is not None:
@@ -803,7 +832,7 @@ class Scene:
 
     def roadmap(
         self,
-        options: Options | None = None,
+        options: Options | PlannerName | str | None = None,
         *,
         progress: bool | Callable[[Progress], object] = False,
         cancel: Cancel | None = None,
@@ -812,8 +841,9 @@ class Scene:
 
         Parameters
         ----------
-        options : Options, optional
-            How to build it: a planner that builds roadmaps (``prm``, unless another is named) and a budget, best of nodes.
+        options : Options or str, optional
+            How to build it: a planner that builds roadmaps (``prm``, unless another is named) and a budget, best of nodes; or
+            such a planner alone, for a roadmap of 2,000 nodes.
         progress, cancel
             As of :meth:`plan`.
 
@@ -824,7 +854,8 @@ class Scene:
         >>> roadmap.query(scene.goals[0], scene.start).solved
         True
         """
-        options = options or Options(planner="prm", nodes=2000)
+        if not isinstance(options, Options):
+            options = Options(planner=options or "prm", nodes=2000)
         with reporter(progress) as tell:
             native = self._native.roadmap(options.to_json(self), cancel, tell)
         return Roadmap._from(native, self)

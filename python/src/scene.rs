@@ -70,10 +70,17 @@ type FinishedParts<'py> = (Bound<'py, PyArray2<f64>>, f64, Option<f64>, bool);
 pub(crate) fn request(json: &str) -> PyResult<Request> {
     serde_json::from_str(json).map_err(|e| {
         to_python(
-            &mp_plan::Error::new(format!("the request is not valid: {e}"))
-                .help("see help(mp_motion.Scene.plan) for its options"),
+            &mp_plan::Error::new(format!("an option is not valid: {}", without_place(&e)))
+                .help("see help(mp_motion.Scene.plan) for its options")
+                .of_kind(mp_plan::ErrorKind::Request),
         )
     })
+}
+
+/// What is wrong with some JSON, without the place in it, as nobody has seen the text.
+pub(crate) fn without_place(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    text.split_once(" at line ").map_or(text.clone(), |(what, _)| what.to_owned())
 }
 
 /// Loads by `job`, which gets what to ask whether to end.
@@ -460,7 +467,7 @@ impl Scene {
             let what = format!("{} is a file of the scene", file.display());
             return Err(to_python(&mp_plan::Error::new(what).help("write to another file")));
         }
-        py.detach(|| mp_plan::write_file(&file, content)).to_python()
+        py.detach(|| mp_store::write(&file, content)).to_python()
     }
 
     /// Reads a path from a file.

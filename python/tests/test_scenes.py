@@ -9,6 +9,7 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote, urlparse
 
 import numpy as np
@@ -345,3 +346,62 @@ def test_the_page_is_there_when_the_program_has_ended(folder: Path) -> None:
     done = subprocess.run([sys.executable, "-c", script], env=environment, check=True, capture_output=True, text=True)
     page = Path(unquote(urlparse(done.stdout.strip()).path))
     assert page.parent == folder and page.suffix == ".html" and "<script" in page.read_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "kind"),
+    [
+        ("seed", 1.9, TypeError),
+        ("seed", "1", TypeError),
+        ("seed", True, TypeError),
+        ("seed", -1, ValueError),
+        ("seed", 2**70, ValueError),
+        ("threads", -1, ValueError),
+        ("threads", 1.5, TypeError),
+        ("time", math.nan, ValueError),
+        ("time", -1, ValueError),
+        ("time", "1", TypeError),
+        ("iterations", 1.5, TypeError),
+        ("iterations", -3, ValueError),
+        ("nodes", True, TypeError),
+        ("queries", 0, ValueError),
+        ("finish", "shortn", ValueError),
+        ("metric", "euclid", ValueError),
+        ("motion", "discreet", ValueError),
+        ("clearance", math.inf, ValueError),
+        ("clearance", -1, ValueError),
+        ("first_only", 1, TypeError),
+        ("planner", 7, TypeError),
+    ],
+)
+def test_wrong_arguments_are_named(name: str, value: object, kind: type[Exception]) -> None:
+    """An error names the argument, and is of the customary kind, before anything is planned."""
+    for make in (mp.Options, mp.Scene("easy").plan):
+        wrong: Any = {name: value}
+        with pytest.raises(kind, match=name) as raised:
+            make(**wrong)
+        assert "line 1" not in str(raised.value)
+        assert isinstance(raised.value, mp.Error) == (kind is ValueError)
+
+
+def test_errors_are_of_the_customary_kinds(tmp_path: Path) -> None:
+    """Errors are also what other libraries raise, and no folder is made."""
+    scene = mp.Scene("easy")
+    with pytest.raises(ValueError, match="rrtt"):
+        scene.plan("rrtt")
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        mp.Scene("nowhere")
+    broken = tmp_path / "broken.toml"
+    broken.write_text("[robot]\nurdf =")
+    with pytest.raises(OSError, match="broken") as raised:
+        mp.Scene(broken)
+    assert isinstance(raised.value, mp.Error)
+    assert isinstance(pickle.loads(pickle.dumps(raised.value)), OSError)
+    with pytest.raises(FileNotFoundError):
+        scene.save(tmp_path / "there" / "scene.html")
+    assert not (tmp_path / "there").exists()
+    with pytest.raises(TypeError, match="count"):
+        scene.routes(1.5)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(ValueError, match="bound"):
+        mp.Space([0], [math.nan])
+    assert scene.roadmap("prm").nodes == 2000

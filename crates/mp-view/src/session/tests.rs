@@ -162,7 +162,8 @@ fn arms_are_drawn_and_motions_have_parts() {
     let far = page.ask(json!({"do": "draw", "row": start.row, "body": body, "pose": pose})).head;
     assert!(far["row"].is_null(), "{far:?}");
     assert!(
-        page.refused(json!({"do": "draw", "row": start.row, "body": 0, "pose": [0; 7]})).contains("pose")
+        page.refused(json!({"do": "draw", "row": start.row, "body": 0, "pose": [0, 0, 0, 0, 0, 0, 0]}))
+            .contains("pose")
     );
 
     let next = page.ask(json!({"do": "next", "row": goal.row}));
