@@ -54,6 +54,41 @@ fn a_robot_of_ones_own_needs_the_vocabulary_and_the_trees_only() {
     );
 }
 
+/// The files of the documentation.
+fn pages(folder: &Path, out: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            pages(&path, out);
+        } else if path.extension().is_some_and(|e| e == "md") {
+            out.push(path);
+        }
+    }
+}
+
+#[test]
+fn rust_in_the_documentation_runs() {
+    let printed =
+        output(Command::new(env!("CARGO_BIN_EXE_documentation")).current_dir(env!("CARGO_TARGET_TMPDIR")));
+    assert_eq!(printed.matches("m long").count(), 2, "{printed}");
+    let code = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let program = code(&std::fs::read_to_string(folder("documentation").join("src/main.rs")).unwrap());
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut files = vec![root.join("README.md")];
+    pages(&root.join("docs"), &mut files);
+    let mut count = 0;
+    for file in files {
+        let text = std::fs::read_to_string(&file).unwrap();
+        for block in text.split("\n```rust\n").skip(1) {
+            let block = block.split("\n```").next().unwrap();
+            let shown = file.display();
+            assert!(program.contains(&code(block)), "{shown}: not in examples/documentation:\n{block}");
+            count += 1;
+        }
+    }
+    assert!(count >= 4, "{count} blocks");
+}
+
 #[test]
 fn they_build_outside_of_the_workspace() {
     for name in ["plan-a-scene", "own-robot"] {

@@ -1,6 +1,7 @@
 //! The checks of continuous integration.
 
 mod circles;
+mod links;
 mod tidy;
 
 use crate::{cargo, note, root};

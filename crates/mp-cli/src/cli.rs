@@ -1,5 +1,6 @@
 //! The command line.
 
+use crate::examples;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use mp_batch::Shard;
@@ -26,24 +27,33 @@ pub(crate) struct Cli {
 #[derive(Clone, Debug, Subcommand)]
 pub(crate) enum Command {
     /// Plan on a scene: solve, shorten, verify, and write the path and a picture.
+    #[command(after_long_help = examples::PLAN)]
     Plan(Box<Plan>),
     /// Plan all problems of a list, thousands of them, and go on where that ended before.
+    #[command(after_long_help = examples::MANY)]
     Many(Many),
     /// Merge the results of all shards of a list.
+    #[command(after_long_help = examples::MERGE)]
     Merge(Merge),
     /// Verify a path with the independent checker: exit 0 only if it is certified free. Or explain one configuration.
+    #[command(after_long_help = examples::CHECK)]
     Check(Check),
     /// Describe a mesh, scene or path file.
+    #[command(after_long_help = examples::INFO)]
     Info(Info),
     /// Find which links of a robot may touch, and write it as an SRDF, as the Setup Assistant of MoveIt does: those that a joint
     /// connects, that touch at the neutral configuration, always or never, in thousands of configurations.
+    #[command(after_long_help = examples::SRDF)]
     Srdf(Srdf),
     /// Find configurations of an arm that place a link: inverse kinematics. The free ones first, from the nearest to the start on; one on each
     /// line, as `check --at` takes them.
+    #[command(after_long_help = examples::IK)]
     Ik(Ik),
     /// Draw a scene, and a path through it, as a picture, film, page or meshes, with no display.
+    #[command(after_long_help = examples::RENDER)]
     Render(Render),
     /// Open the viewer in the browser: look at a scene and a path, edit the scene, and plan.
+    #[command(after_long_help = examples::VIEW)]
     View(View),
     /// List the shipped scenes.
     Scenes,
@@ -51,18 +61,20 @@ pub(crate) enum Command {
     /// `robot_descriptions` for Python (`ROBOT_DESCRIPTIONS_CACHE`), and the packages of Python.
     Robots(Robots),
     /// Run benchmarks, with the program `mp-bench`.
-    #[command(disable_help_flag = true)]
+    #[command(disable_help_flag = true, after_long_help = examples::BENCH)]
     Bench(Passed),
     /// Replay a certificate, with the program `mp-verify-certificate`: exit 0 only if it proves its path free. With `--scene SCENE` also compare
     /// it with a scene: its bodies, where they stand, what is kept apart, and the ends of its path.
-    #[command(disable_help_flag = true)]
+    #[command(disable_help_flag = true, after_long_help = examples::VERIFY)]
     VerifyCertificate(Passed),
     /// Print completions for a shell.
+    #[command(after_long_help = examples::COMPLETIONS)]
     Completions {
         /// Which shell.
         shell: clap_complete::Shell,
     },
     /// Print the manual, as a page for `man`.
+    #[command(after_long_help = examples::MAN)]
     Man,
 }
 
@@ -518,12 +530,4 @@ fn pixels(s: &str) -> Result<(usize, usize), String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    #[test]
-    fn the_definition_is_sound() {
-        Cli::command().debug_assert();
-    }
-}
+mod tests;

@@ -6,6 +6,7 @@
 mod browser;
 mod check;
 mod cli;
+mod examples;
 mod files;
 mod ik;
 mod info;

@@ -1,13 +1,13 @@
 //! Checks beyond those of the compiler: that the crates depend on each other as `ARCHITECTURE.md` says, that the
 //! paths it names exist, that no folders of a crate import each other in a circle, that every file is named after
-//! what it holds, and that every algorithm has an example and a test.
+//! what it holds, that every algorithm has an example and a test, and that no link of the documentation is dead.
 
-use super::circles;
+use super::{circles, links};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The error is a message that says why a check could not be made.
-type Result<T> = std::result::Result<T, String>;
+pub(super) type Result<T> = std::result::Result<T, String>;
 
 /// Names that say nothing about what a file or folder holds.
 const VAGUE_NAMES: [&str; 8] = ["common", "helper", "helpers", "misc", "shared", "stuff", "util", "utils"];
@@ -41,6 +41,7 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     let architecture = read(&root.join("ARCHITECTURE.md"))?;
     let mut findings = arrows(root, &architecture)?;
     findings.extend(missing_paths(root, &architecture));
+    findings.extend(links::dead(root)?);
     let mut paths = Vec::new();
     for folder in ["crates", "mpi", "python", "xtask"] {
         rust_files(&root.join(folder), &mut paths)?;
@@ -114,11 +115,11 @@ fn alone_lines<'s>(sources: impl Iterator<Item = (&'s Path, &'s str)>) -> Option
     (lines >= ALONE_LINES).then(long)
 }
 
-fn read(path: &Path) -> Result<String> {
+pub(super) fn read(path: &Path) -> Result<String> {
     std::fs::read_to_string(path).map_err(|e| format!("cannot read {}: {e}", path.display()))
 }
 
-fn list(folder: &Path) -> Result<impl Iterator<Item = Result<PathBuf>>> {
+pub(super) fn list(folder: &Path) -> Result<impl Iterator<Item = Result<PathBuf>>> {
     let failed = |e: std::io::Error| format!("cannot list {}: {e}", folder.display());
     let entries: Vec<_> =
         std::fs::read_dir(folder).map_err(failed)?.map(|e| e.map(|e| e.path()).map_err(failed)).collect();

@@ -5,6 +5,7 @@ mod bad_input;
 mod cli;
 mod common;
 mod films;
+mod guides;
 mod kinds;
 mod many;
 mod outputs;
