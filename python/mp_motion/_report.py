@@ -79,6 +79,17 @@ class InScene:
         """
         self._of_scene().show(self._itself())
 
+    def resample(self, count: int) -> Array:
+        """Return so many configurations at equal distances along the path: see :meth:`Scene.resample`.
+
+        Examples
+        --------
+        >>> report = mp.Scene("easy").plan()
+        >>> report.resample(50).shape
+        (50, 6)
+        """
+        return self._of_scene().resample(self._itself(), count)
+
     def save(self, file: File) -> None:
         """Write the path, a picture, a film or a page: see :meth:`Scene.save`.
 

@@ -953,6 +953,20 @@ class Scene:
         clearance = path.clearance or 0.0 if isinstance(path, Report | Finished) else 0.0
         return self._native.certificate(self._path(path), clearance)
 
+    def resample(self, path: PathRows, count: int) -> Array:
+        """Return so many configurations at equal distances along a path, shape (count, columns), from its first to its last.
+
+        All are on the path; its corners need not be among them. Angles without limits go on from row to row.
+
+        Parameters
+        ----------
+        path : array_like, shape (n, columns), or Report or Finished
+            Not of a robot that moves by inputs.
+        count : int
+            How many, two or more.
+        """
+        return self._native.resample(self._path(path), whole("count", count, 2))
+
     def read_path(self, file: File) -> Array:
         """Read a path from a text, CSV or JSON file, shape (n, columns)."""
         return self._native.read_path(os.fspath(file))

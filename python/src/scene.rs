@@ -470,6 +470,18 @@ impl Scene {
         py.detach(|| mp_store::write(&file, content)).to_python()
     }
 
+    /// Configurations at equal distances along a path.
+    fn resample<'py>(
+        &self,
+        py: Python<'py>,
+        path: PyReadonlyArray2<'py, f64>,
+        count: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let path = self.rows(rows(&path));
+        let along = py.detach(|| self.scene.resample(&path, count)).to_python()?;
+        array(py, &along, self.scene.columns().len())
+    }
+
     /// Reads a path from a file.
     fn read_path<'py>(&self, py: Python<'py>, file: PathBuf) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let path = py.detach(|| self.scene.read_path(&file)).to_python()?;

@@ -405,3 +405,22 @@ def test_errors_are_of_the_customary_kinds(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="bound"):
         mp.Space([0], [math.nan])
     assert scene.roadmap("prm").nodes == 2000
+
+
+def test_paths_are_resampled() -> None:
+    """Configurations at equal distances, on the path, and free."""
+    scene = mp.Scene("arm")
+    report = scene.plan(seed=1)
+    assert report.path is not None
+    rows = report.resample(200)
+    assert rows.shape == (200, 6)
+    assert np.array_equal(rows[0], report.path[0])
+    assert np.allclose(rows[-1], report.path[-1], atol=1e-12)
+    steps = np.linalg.norm(np.diff(rows, axis=0), axis=1)
+    assert steps.max() < 1.01 * np.median(steps)
+    assert all(scene.is_free(row) for row in rows)
+    with pytest.raises(ValueError, match="count"):
+        report.resample(1)
+    parking = mp.Scene("parking")
+    with pytest.raises(mp.Error, match="inputs"):
+        parking.resample(np.zeros((2, len(parking.columns))), 5)

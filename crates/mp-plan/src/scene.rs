@@ -12,7 +12,7 @@ use crate::run::plan::plan;
 use crate::run::prepare;
 #[cfg(feature = "roadmaps")]
 use crate::run::{regions::RegionalWork, scene_roadmap::SceneRoadmap};
-use crate::sweep::{sweep, track};
+use crate::sweep::{resample, sweep, track};
 use crate::{
     Body, Certificate, Column, Constraint, Control, Error, Explanation, Finished, FoundRun, Length,
     PathFileKind, PathFormat, PathRows, PreparedRun, RelaxField, Report, Request, Robot, SceneFiles, Sweep,
@@ -678,6 +678,32 @@ impl Scene {
     /// When the path is of another robot, or has no configurations.
     pub fn track(&self, path: &PathRows) -> Result<Track, Error> {
         track(&*self.robot, path)
+    }
+
+    /// So many configurations of a path as rows, at equal distances in the metric of the space, from its first to its last. All are on the
+    /// path; its corners need not be among them. Angles without limits go on from row to row.
+    ///
+    /// ```
+    /// use mp_plan::{PathRows, Scene};
+    /// let scene = Scene::find("easy")?;
+    /// let rows = vec![scene.start(), scene.goals().remove(0)];
+    /// let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+    /// let rows = scene.resample(&path, 5)?;
+    /// assert!(rows.len() == 5 && rows[0] == scene.start());
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the path is of another robot; when the robot moves by inputs, as what is between its rows is no straight motion; when `count` is
+    /// less than two, or such that there were more than 10⁷ numbers.
+    pub fn resample(&self, path: &PathRows, count: usize) -> Result<Vec<Vec<f64>>, Error> {
+        match self.kind {
+            Some("driven" | "driven-moving") => {
+                Err(Error::new(format!("the path of {} is not resampled: it moves by inputs", self.name()))
+                    .help("its rows have the inputs and how long each is held"))
+            }
+            _ => resample(&*self.robot, path, count),
+        }
     }
 
     /// A field that pushes snakes, for the places of the robot of a world of the plane; otherwise the robot is as in `row`.
