@@ -527,7 +527,7 @@ where
     /// Proves a curve in parts, the first ones first. What is found at a part ends the search behind it only: the fault is the first one.
     fn prove_curve(&mut self, curve: &dyn Curve) -> MotionCheck {
         let pieces = curve.pieces() as f64;
-        let (mut least, mut fault, mut poses) = (f64::INFINITY, None, Vec::new());
+        let (mut least, mut hit, mut near_contact, mut poses) = (f64::INFINITY, None, None, Vec::new());
         let mut open = vec![(0.0, pieces, (0..self.pairs.len()).collect::<Vec<_>>())];
         let limit = self.parts + MAX_PARTS;
         while let Some((a, b, pairs)) = open.pop() {
@@ -537,27 +537,49 @@ where
                 return MotionCheck::Unproven { at: at / pieces };
             }
             let (middle, travels) = self.around(curve, a, b);
-            let found = match self.part(&middle, &travels, &pairs, &mut poses, &mut least) {
+            match self.part(&middle, &travels, &pairs, &mut poses, &mut least) {
                 PartCheck::Apart => continue,
                 PartCheck::Near(near) => {
                     open.push((at, b, near.clone()));
                     open.push((a, at, near));
                     continue;
                 }
-                PartCheck::Collision => MotionCheck::Collision { at: at / pieces },
-                PartCheck::Unproven => MotionCheck::Unproven { at: at / pieces },
-            };
-            if self.interrupt.raised().is_some() {
-                return found;
+                PartCheck::Collision => (hit, near_contact) = (Some(at), None),
+                PartCheck::Unproven => near_contact = Some(at),
             }
-            fault = Some(found);
+            if self.interrupt.raised().is_some() {
+                return MotionCheck::Unproven { at: at / pieces };
+            }
             open.clear();
             if b - a > FIRST_FAULT {
-                // All pairs: one that was apart over a longer part is so here too, and another may come nearer before.
                 open.push((a, at, pairs));
             }
         }
-        fault.unwrap_or(MotionCheck::Free { clearance: least })
+        match (near_contact, hit) {
+            (None, None) => MotionCheck::Free { clearance: least },
+            (None, Some(hit)) => MotionCheck::Collision { at: hit / pieces },
+            (Some(near), hit) => match hit.and_then(|hit| self.first_contact(curve, near, hit)) {
+                Some(hit) => MotionCheck::Collision { at: hit / pieces },
+                None => MotionCheck::Unproven { at: near / pieces },
+            },
+        }
+    }
+
+    /// Where a curve first touches something between two parameters, at the first of which it is too near to contact to tell and at the second
+    /// in contact; `None` where it is clear of everything in between.
+    fn first_contact(&self, curve: &dyn Curve, mut near: f64, mut hit: f64) -> Option<f64> {
+        while hit - near > FIRST_FAULT {
+            let at = 0.5 * (near + hit);
+            let (q, _) = self.around(curve, at, at);
+            if self.touches(&q) {
+                hit = at;
+            } else if self.is_near(&q) {
+                near = at;
+            } else {
+                return None;
+            }
+        }
+        Some(hit)
     }
 
     /// The configuration of a curve in the middle between two parameters, in pieces, and how far the coordinates are from it at most between
@@ -566,7 +588,7 @@ where
         let (first, last) = (a.floor() as usize, (b.ceil() as usize).min(curve.pieces()));
         let at = 0.5 * (a + b);
         let value = |coordinate: usize| {
-            let piece = (at.floor() as usize).min(last - 1);
+            let piece = (at.floor() as usize).min(curve.pieces() - 1);
             let [c @ .., highest] = curve.polynomial(piece, coordinate);
             c.iter().rev().fold(highest, |sum, c| sum * (at - piece as f64) + c)
         };
@@ -583,6 +605,14 @@ where
         };
         let joints = middle.as_slice().iter().enumerate().map(far).collect();
         (middle, Travels { joints, base: None })
+    }
+
+    /// Whether any pair is too near to contact to tell at `q`.
+    fn is_near(&self, q: &C::State) -> bool {
+        let mut poses = Vec::new();
+        self.tree.poses_into(q.as_slice(), &mut poses);
+        let near = |pair| self.distance(pair, &poses, self.kept_from(pair) + 2.0 * self.tolerance).is_err();
+        self.pairs.iter().any(near)
     }
 
     /// Whether any pair touches at `q`.
@@ -650,7 +680,12 @@ where
         if self.is_nested(&start) {
             return Some(MotionCheck::Collision { at: 0.0 });
         }
-        Some(self.prove_curve(curve))
+        Some(match self.prove_curve(curve) {
+            MotionCheck::Free { clearance } => MotionCheck::Free { clearance },
+            other if self.interrupt.raised().is_some() => other,
+            _ if self.touches(&start) => MotionCheck::Collision { at: 0.0 },
+            other => other,
+        })
     }
     fn interrupt_by(&mut self, interrupt: &Interrupt) {
         self.interrupt = interrupt.clone();
