@@ -44,6 +44,7 @@
 //! | read the result | [`Report`], with a documented JSON form |
 //! | shorten a path from elsewhere | [`Scene::finish`] |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
+//! | give a path times, and prove the curve that a controller runs | [`Scene::time`], [`TimedPath`], [`Pace`] |
 //! | give others the means to prove it again | [`Scene::certificate`], [`Certificate`] |
 //! | find out why a configuration is not free | [`Scene::explain`] |
 //! | find out what is odd about a scene | [`Scene::lint`] |
@@ -88,6 +89,7 @@ pub use files::robot_pairs::RobotPairs;
 pub use finish::certificate::Certificate;
 pub use finish::check::Verdict;
 pub use finish::field::FieldImage;
+pub use finish::trajectory::{LeastAlong, LimitFault, Pace, TightCorner, TimedPath, TrajectoryVerdict};
 pub use finish::{Finished, shorten};
 pub use goals::GoalPart;
 pub use numbers::{brief, count, plain, positive_number};
@@ -126,6 +128,7 @@ pub use mp_render::{Mode, View};
 
 pub use mp_io::{FoundRobot, FreeTurns, PoseEntry, ProblemChanges, RobotPath};
 pub use mp_robot::{SampledPair, SampledPairs, TouchReason};
+pub use mp_time::{Interpolation, Knots, Trajectory};
 
 pub use mp_cspace::{
     Cancel, Clock, Interrupt, Length, Progress, StopReason,

@@ -51,10 +51,10 @@ pub struct Sample {
     pub acceleration: Vec<f64>,
 }
 
-/// The largest amount of a number along a trajectory, and when it is.
+/// The largest or the least amount of a number along a trajectory, and when it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extreme {
-    /// The amount, without its sign.
+    /// The amount; of velocities and accelerations without the sign.
     pub amount: f64,
     /// The time (s).
     pub time: f64,
@@ -234,6 +234,23 @@ impl Trajectory {
         };
         let all = (first..=last).map(piece);
         all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [l, h]| [low.min(l), high.max(h)])
+    }
+
+    /// The least and the largest value of a joint, signed, and when.
+    #[must_use]
+    pub fn extremes(&self, joint: usize) -> [Extreme; 2] {
+        let start = Extreme { amount: self.knots.positions[0][joint], time: self.knots.times[0] };
+        let mut found = [start; 2];
+        for (piece, times) in self.knots.times.windows(2).enumerate() {
+            let [low, high] = extremes(&self.seconds(piece, joint), 0.0, times[1] - times[0]);
+            if low.0 < found[0].amount {
+                found[0] = Extreme { amount: low.0, time: times[0] + low.1 };
+            }
+            if high.0 > found[1].amount {
+                found[1] = Extreme { amount: high.0, time: times[0] + high.1 };
+            }
+        }
+        found
     }
 
     /// The largest velocity of a joint, and when.

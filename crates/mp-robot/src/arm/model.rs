@@ -219,7 +219,8 @@ impl ArmModel {
             Some((j, mimic.multiplier.abs()))
         });
         own.chain(followers).fold([None; 2], |least, (joint, factor)| {
-            let all = [joint.max_velocity, joint.max_acceleration].map(|limit| limit.map(|limit| limit / factor));
+            let all =
+                [joint.max_velocity, joint.max_acceleration].map(|limit| limit.map(|limit| limit / factor));
             std::array::from_fn(|i| match (least[i], all[i]) {
                 (Some(a), Some(b)) => Some(f64::min(a, b)),
                 (a, b) => a.or(b),
@@ -232,7 +233,12 @@ impl ArmModel {
     ///
     /// # Errors
     /// [`ArmError::NoSuchCoordinate`] when there is no such joint, or it is fixed.
-    pub fn with_rate(mut self, joint: Option<&str>, rate: f64, accelerations: bool) -> Result<Self, ArmError> {
+    pub fn with_rate(
+        mut self,
+        joint: Option<&str>,
+        rate: f64,
+        accelerations: bool,
+    ) -> Result<Self, ArmError> {
         let is_it = |j: &Joint| j.kind != JointKind::Fixed && joint.is_none_or(|name| j.name == name);
         if let Some(name) = joint
             && !self.joints.iter().any(is_it)
