@@ -618,6 +618,10 @@ impl Scene {
         crate::finish::trajectory::time(&*self.robot, path, pace, interrupt)
     }
 
+    pub(crate) fn robot_rates(&self) -> Option<Vec<[Option<f64>; 2]>> {
+        self.robot.rates()
+    }
+
     /// Verifies the curve of a trajectory from the start to a goal: that it is free, and within the limits of position, velocity and acceleration
     /// that are known. Its joints must be those of [`columns`](Self::columns), in this order.
     ///

@@ -309,6 +309,15 @@ impl Trajectory {
         Self::new(self.joints(), knots, self.interpolation)
     }
 
+    /// The same with times in whole nanoseconds, as messages of ROS have them.
+    ///
+    /// # Errors
+    /// When points are nearer to each other than that.
+    pub fn in_nanoseconds(mut self) -> Result<Self, TimeError> {
+        self.knots.times.iter_mut().for_each(|t| *t = (*t * 1e9).round() / 1e9);
+        Self::new(self.joints(), self.knots.clone(), self.interpolation)
+    }
+
     /// The same curve in space, `factor` times as slow.
     #[must_use]
     pub fn slower(mut self, factor: f64) -> Self {

@@ -123,7 +123,8 @@ pub(crate) fn time(
     }
     loop {
         let timing = timed(&blended, &limits, joints())?;
-        let trajectory = timing.trajectory;
+        // What is written reads back the same.
+        let trajectory = timing.trajectory.in_nanoseconds()?;
         let at = match check_curve(kind, &mut verifier, &trajectory)? {
             MotionCheck::Free { clearance } => {
                 let tight = |corner: &usize| blended.deviation(*corner) < allowed[*corner] * (1.0 - 1e-9);
