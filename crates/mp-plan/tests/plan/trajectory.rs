@@ -1,7 +1,10 @@
 //! Paths with times: the curve is proved, looked at again by other means, and stretched back where it is not free.
 
-use mp_cspace::Length;
-use mp_plan::{Constraint, Interrupt, Knots, Pace, PathRows, Request, Scene, TimedPath, Trajectory};
+use mp_cspace::{Clearance, Configuration, Length, Rng, Validity};
+use mp_plan::{
+    ArmScene, Constraint, Interrupt, Knots, Pace, PathRows, Request, Scene, TimedPath, Trajectory,
+};
+use rand::RngExt;
 
 /// All shipped scenes of arms whose base stands still or drives.
 const ARMS: [&str; 9] =
@@ -265,4 +268,131 @@ fn robots_without_trajectories_say_so() {
     }
     let still = PathRows { rows: vec![vec![0.0, 0.0]; 3], ..corner(&scene) };
     assert_eq!(timed(&scene, &still, &Pace::default()).trajectory.duration(), 0.0);
+}
+
+/// Judges curves whose points were changed at random: the verdict, and what samples `step` seconds apart find by the checker of planners, which
+/// shares no code with it. Returns how many were free, and how many samples found to collide.
+fn judged(name: &str, count: usize, step: f64) -> [usize; 2] {
+    let file = format!("{}/../mp-scenes/assets/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let mut arm = ArmScene::from_problem(mp_io::RobotProblem::load(file).unwrap()).unwrap().arm().clone();
+    let scene = Scene::find(name).unwrap();
+    let made = timed(&scene, &planned(&scene, 1), &Pace::default()).trajectory;
+    let names: Vec<_> = scene.columns().into_iter().map(|c| (c.name, c.unit)).collect();
+    let (mut rng, mut counts) = (Rng::seed(44), [0; 2]);
+    for case in 0..count {
+        let mut knots = made.knots().clone();
+        let last = knots.times.len() - 1;
+        for _ in 0..rng.random_range(1..4) {
+            let (knot, joint) = (rng.random_range(0..=last), rng.random_range(0..names.len()));
+            let size = mp_math::powi(rng.random_range(0.0..1.0), 3);
+            match rng.random_range(0..3) {
+                0 if knot > 0 && knot < last => {
+                    knots.positions[knot][joint] += size * rng.random_range(-1.0..1.0)
+                }
+                1 => knots.velocities[knot][joint] += 10.0 * size * rng.random_range(-1.0..1.0),
+                // Fewer points: the curve between the others is another.
+                _ if knot > 0 && knot < last => {
+                    let many = rng.random_range(1..8).min(last - knot);
+                    knots.times.drain(knot..knot + many);
+                    knots.positions.drain(knot..knot + many);
+                    knots.velocities.drain(knot..knot + many);
+                    break;
+                }
+                _ => {}
+            }
+        }
+        let joints = names.iter().map(|(name, unit)| (name.as_str(), unit.as_str()));
+        let curve = Trajectory::of_controller(joints, knots).unwrap();
+        let verdict = scene.check_trajectory(&curve, &Interrupt::never()).unwrap();
+        let collides_at = verdict.trajectory.unwrap().collides_at;
+        let hit = sampled(&curve, step).into_iter().position(|row| !arm.is_valid(&Configuration::from(row)));
+        match (hit, collides_at) {
+            (None, None) => counts[0] += 1,
+            (Some(hit), Some(at)) => {
+                counts[1] += 1;
+                // The first contact is not behind the first sample that finds one, but for what the proof resolves.
+                assert!(
+                    at <= hit as f64 * step + 2e-3,
+                    "{name} {case}: {at} s, and {} s by samples",
+                    hit as f64 * step
+                );
+            }
+            (Some(hit), None) => {
+                panic!("{name} {case}: certified free, and in contact at {} s", hit as f64 * step)
+            }
+            // Between samples, or too near to contact to tell.
+            (None, Some(at)) => {
+                let there: Configuration = curve.at(at).position.into();
+                assert!(arm.clearance(&there, 1.0) < 2.0 * arm.tolerance(), "{name} {case}: {at} s");
+            }
+        }
+    }
+    counts
+}
+
+#[test]
+fn changed_curves_are_judged_as_samples_judge_them() {
+    for name in ["arm", "arm-7"] {
+        let [free, hit] = judged(name, 40, 2e-3);
+        assert!(free > 3 && hit > 3, "{name}: {free} free, {hit} in contact");
+    }
+}
+
+/// The same with many more: `cargo test --release -p mp-plan --test plan a_thousand -- --ignored --nocapture`.
+#[test]
+#[ignore = "minutes: a measurement"]
+#[allow(clippy::print_stdout, reason = "it is a measurement")]
+fn a_thousand_changed_curves_are_judged_as_dense_samples_judge_them() {
+    for name in ["arm", "arm-6", "arm-7", "humanoid"] {
+        let [free, hit] = judged(name, 250, 1e-4);
+        println!("{name}: of 250 changed curves {free} are free, and {hit} in contact by samples of 0.1 ms");
+    }
+}
+
+/// How long the proof of curves takes beside planning, and how often corners have to be rounded less, between random free ends:
+/// `cargo test --release -p mp-plan --test plan random_arm_problems -- --ignored --nocapture`.
+#[test]
+#[ignore = "minutes: a measurement"]
+#[allow(clippy::print_stdout, reason = "it is a measurement")]
+fn random_arm_problems_are_timed() {
+    let mut rng = Rng::seed(44);
+    for name in ["arm", "arm-6", "arm-7", "humanoid", "mobile-arm"] {
+        let scene = Scene::find(name).unwrap();
+        let limits = scene.limits();
+        let mut free = || loop {
+            let number = |limits: &Option<[f64; 2]>| {
+                let [low, high] = limits.unwrap_or([-3.0, 3.0]);
+                rng.random_range(low..high)
+            };
+            let row: Vec<f64> = limits.iter().map(number).collect();
+            if scene.explain(&row).unwrap().clearance > 0.005 {
+                return row;
+            }
+        };
+        let (mut solved, mut corners, mut tightened, mut stretched) = (0, 0, 0, 0);
+        let [mut planning, mut timing, mut seconds] = [0.0; 3];
+        for seed in 0..20 {
+            let problem = scene.with_ends(&free(), &[free()]).unwrap();
+            let began = std::time::Instant::now();
+            let report = problem.plan(&Request::default().seed(seed).iterations(20_000)).unwrap();
+            let Some(rows) = report.path else { continue };
+            planning += began.elapsed().as_secs_f64();
+            let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+            let began = std::time::Instant::now();
+            let made = timed(&problem, &path, &Pace::default());
+            timing += began.elapsed().as_secs_f64();
+            (solved, corners, tightened) =
+                (solved + 1, corners + made.corners, tightened + made.tightened.len());
+            stretched += usize::from(!made.tightened.is_empty());
+            seconds += made.trajectory.duration();
+        }
+        let each = 1e3 / f64::from(solved);
+        println!(
+            "{name}: {solved} solved, {corners} corners, {tightened} rounded less, in {stretched} trajectories; in the mean {:.0} ms \
+             planning, {:.0} ms timing with both proofs, {:.2} s long",
+            planning * each,
+            timing * each,
+            seconds * each / 1e3
+        );
+    }
 }
