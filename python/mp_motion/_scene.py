@@ -21,7 +21,7 @@ from ._mp import Cancel
 from ._names import MetricName, PlannerName
 from ._own import Robot, native
 from ._progress import Progress, reporter
-from ._report import Column, Explanation, Finished, Report, Verdict, explanation, verdict
+from ._report import Column, Explanation, Finished, Report, Trajectory, Verdict, explanation, trajectory, verdict
 from ._roadmap import Roadmap
 from ._shapes import (
     Array,
@@ -918,6 +918,51 @@ class Scene:
         (True, False)
         """
         return verdict(self._native.check(self._path(path)))
+
+    def check_trajectory(self, file: File, *, curve: str = "controller") -> Verdict:
+        """Verify the curve of a trajectory of an arm, whoever made it.
+
+        Parameters
+        ----------
+        file : str or path
+            ``.csv`` with times, or JointTrajectory of ROS as ``.json`` or ``.yaml``, also in messages of MoveIt.
+        curve : str
+            What a controller runs between points: ``controller``, as joint_trajectory_controller of ROS does, ``linear``, ``cubic`` or
+            ``quintic``.
+
+        Returns
+        -------
+        Verdict
+            True when the curve is free, within the limits of the joints that are known, and leads from the start to a goal.
+        """
+        return verdict(self._native.check_trajectory(os.fspath(file), curve))
+
+    def trajectory(
+        self, path: PathRows, *, velocity: float = 1.0, acceleration: float = 1.0, deviation: float = 0.1
+    ) -> Trajectory:
+        """Give a path of an arm times: as fast as the limits of its joints allow, with rounded corners; and prove the curve.
+
+        Parameters
+        ----------
+        path : array_like, shape (n, columns), or Report or Finished
+            A path that is free.
+        velocity, acceleration : float
+            The part of the limits that is used.
+        deviation : float
+            How far from corners it may pass, in radians and metres of all joints together, where that is free; 0: it stops at each.
+
+        Examples
+        --------
+        >>> made = mp.Scene("arm-6").plan().trajectory(velocity=0.5)
+        >>> bool(made.duration > 1), bool(abs(made.velocities).max() <= 0.5 * 3.1416)
+        (True, True)
+        """
+        return trajectory(self._native.time(self._path(path), velocity, acceleration, deviation), self)
+
+    def _save_trajectory(self, file: File, made: Trajectory) -> None:
+        name = os.fspath(file)
+        text = self._native.trajectory_text(name, made.times.tolist(), made.positions, made.velocities)
+        self._native.write(name, text.encode())
 
     def explain(self, configuration: ArrayLike) -> Explanation:
         """Explain a configuration: whether it is free, how near to contact, what touches, where it would be free.

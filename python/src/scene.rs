@@ -9,7 +9,10 @@ use crate::report::{ReportParts, array, parts, rows};
 use crate::roadmap::Roadmap;
 use mp_geom::TriMesh;
 use mp_io::{Content, Disk, Files, Until};
-use mp_plan::{Control, Interrupt, Length, PathFileKind, Request};
+use mp_plan::{
+    Control, Interpolation, Interrupt, Knots, Length, Pace, PathFileKind, Request, TimedPath, Trajectory,
+    TrajectoryKind,
+};
 use mp_store::FileId;
 use nalgebra::Point3;
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
@@ -386,6 +389,81 @@ impl Scene {
         let interrupt = Interrupt::new(cancel.clone());
         let (verdict, raised) =
             self.work(py, &cancel, None, |_| self.scene.check_until(&path, &interrupt))?;
+        raised.map_or(Ok(()), Err)?;
+        json(&verdict.to_python()?)
+    }
+
+    /// Times a path, and proves its curve: the trajectory as JSON.
+    fn time(
+        &self,
+        py: Python<'_>,
+        path: PyReadonlyArray2<'_, f64>,
+        velocity: f64,
+        acceleration: f64,
+        deviation: f64,
+    ) -> PyResult<String> {
+        let path = self.rows(rows(&path));
+        let cancel = mp_plan::Cancel::new();
+        let interrupt = Interrupt::new(cancel.clone());
+        let pace = Pace { velocity, acceleration, deviation };
+        let (timed, raised) =
+            self.work(py, &cancel, None, |_| self.scene.time(&path, &pace, &interrupt))?;
+        raised.map_or(Ok(()), Err)?;
+        let TimedPath { trajectory, tightened, clearance, notes, .. } = timed.to_python()?;
+        let Knots { times, positions, velocities, .. } = trajectory.knots();
+        // Infinity, where there is nothing to hit, is no number in JSON.
+        let clearance = clearance.is_finite().then_some(clearance);
+        json(&serde_json::json!({
+            "times": times,
+            "positions": positions,
+            "velocities": velocities,
+            "curve": trajectory.interpolation().to_string(),
+            "clearance": clearance,
+            "tightened": tightened,
+            "notes": notes,
+        }))
+    }
+
+    /// A trajectory as the content of a file of this name.
+    fn trajectory_text(
+        &self,
+        file: PathBuf,
+        times: Vec<f64>,
+        positions: PyReadonlyArray2<'_, f64>,
+        velocities: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<String> {
+        let Some(kind) = TrajectoryKind::of(&file) else {
+            let message = format!("{}: name a file that ends in .csv, .json or .yaml", file.display());
+            return Err(PyValueError::new_err(message));
+        };
+        let columns = self.scene.columns();
+        let joints = columns.iter().map(|column| (column.name.as_str(), column.unit.as_str()));
+        let (positions, velocities) = (rows(&positions), rows(&velocities));
+        let knots = Knots { times, positions, velocities, ..Knots::default() };
+        let made = Trajectory::of_controller(joints, knots);
+        let made = made.map_err(|e| PyValueError::new_err(e.to_string()))?;
+        Ok(mp_plan::trajectory_text(&made, kind))
+    }
+
+    /// Checks the trajectory in a file, as JSON. `curve` is that between its points, or `controller`.
+    fn check_trajectory(&self, py: Python<'_>, file: PathBuf, curve: &str) -> PyResult<String> {
+        let curve = match curve {
+            "controller" => None,
+            "linear" => Some(Interpolation::Linear),
+            "cubic" => Some(Interpolation::Cubic),
+            "quintic" => Some(Interpolation::Quintic),
+            other => {
+                let message = format!("the curve is `{other}`, not controller, linear, cubic or quintic");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        let Some(read) = self.scene.read_trajectory(&file, curve).to_python()? else {
+            return Err(PyValueError::new_err(format!("{} has no times", file.display())));
+        };
+        let cancel = mp_plan::Cancel::new();
+        let interrupt = Interrupt::new(cancel.clone());
+        let (verdict, raised) =
+            self.work(py, &cancel, None, |_| self.scene.check_trajectory(&read, &interrupt))?;
         raised.map_or(Ok(()), Err)?;
         json(&verdict.to_python()?)
     }

@@ -424,3 +424,35 @@ def test_paths_are_resampled() -> None:
     parking = mp.Scene("parking")
     with pytest.raises(mp.Error, match="inputs"):
         parking.resample(np.zeros((2, len(parking.columns))), 5)
+
+
+def test_paths_of_arms_get_times(tmp_path: Path) -> None:
+    scene = mp.Scene("arm-6")
+    made = scene.plan().trajectory(velocity=0.5, deviation=0.05)
+    assert made.curve == "cubic" and made.clearance > 0 and np.all(np.diff(made.times) > 0)
+    assert abs(made.velocities).max() <= 0.5 * 3.1416 and not made.velocities[[0, -1]].any()
+    assert any("acceleration" in note for note in made.notes)
+    for name in ("t.csv", "t.json", "t.yaml"):
+        made.save(tmp_path / name)
+        verdict = scene.check_trajectory(tmp_path / name)
+        assert verdict and verdict.trajectory is not None, verdict
+        assert abs(verdict.trajectory["duration"] - made.duration) < 1e-12
+        # Without velocities it is another curve.
+        assert scene.check_trajectory(tmp_path / name, curve="linear").trajectory["curve"] == "linear"  # type: ignore[index]
+    message = json.loads((tmp_path / "t.json").read_text())
+    assert message["joint_names"] == [c.name for c in made.columns]
+    # The joints in another order, as others write them.
+    order = list(reversed(range(len(made.columns))))
+    message["joint_names"] = [message["joint_names"][i] for i in order]
+    for point in message["points"]:
+        for key in ("positions", "velocities"):
+            point[key] = [point[key][i] for i in order]
+    (tmp_path / "other.json").write_text(json.dumps({"joint_trajectory": message}))
+    assert scene.check_trajectory(tmp_path / "other.json")
+    message["joint_names"][0] = "elbow_of_another"
+    (tmp_path / "other.json").write_text(json.dumps(message))
+    with pytest.raises(mp.Error, match="elbow_of_another"):
+        scene.check_trajectory(tmp_path / "other.json")
+    assert list(made.to_pandas().columns)[0] == "time (s)"
+    with pytest.raises(mp.Error, match="no trajectories"):
+        mp.Scene("easy").plan().trajectory()

@@ -8,12 +8,13 @@ use crate::picture::{Picture, Shown, Watched};
 use crate::progress::Line;
 use crate::request::{request, request_for};
 use crate::text::{caption, summary, table};
+use crate::time::{kind_of, say};
 use crate::{interrupt, memory};
 use mp_batch::{Portfolio, PortfolioOptions};
 use mp_io::ProblemChanges;
 use mp_plan::{
     Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Report, Request, Runs,
-    Scene, StopReason, StoppedBy, in_parallel, make_folder,
+    Scene, StopReason, StoppedBy, in_parallel, make_folder, trajectory_text,
 };
 use mp_view::GrownTrees;
 use std::path::{Path, PathBuf};
@@ -37,7 +38,7 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let files = Files::new(
         args.out.as_deref(),
         args.picture.as_deref(),
-        [request.roadmap.as_deref(), args.certificate.as_deref()],
+        [request.roadmap.as_deref(), args.certificate.as_deref(), args.trajectory.as_deref()],
         args.json,
         named.len(),
         args.runs,
@@ -350,6 +351,14 @@ fn one(
         let certificate = scene.certificate(&path, report.clearance.unwrap_or(0.0), &interrupt)?;
         write(&file, certificate.to_json().as_bytes())?;
         report.certificate_file = Some(file.display().to_string());
+    }
+    if let Some(file) = files.trajectory(name, seed).map(named) {
+        line.say("timing the path");
+        let interrupt = time_limit(&request, cancel, began.saturating_sub(spent));
+        let timed = scene.time(&path, &settings.args.pace.pace(), &interrupt)?;
+        let text = trajectory_text(&timed.trajectory, kind_of(&file)?);
+        write(&file, text.as_bytes())?;
+        say(&timed);
     }
     if let Some((picture, file)) = &picture {
         write_picture(&mut report, scene, &path, (picture, file), grown, (cancel, &line))?;

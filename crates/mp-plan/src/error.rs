@@ -153,6 +153,12 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+impl From<mp_time::TimeError> for Error {
+    fn from(e: mp_time::TimeError) -> Self {
+        Self::new(e.to_string())
+    }
+}
+
 impl From<mp_io::Error> for Error {
     fn from(file: mp_io::Error) -> Self {
         let message = file.message().to_owned();

@@ -534,6 +534,10 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         });
         base.chain(self.arm.coordinates().iter().map(|c| limits(c.range))).collect()
     }
+    fn rates(&self) -> Option<Vec<[Option<f64>; 2]>> {
+        let rates = || self.arm.coordinates().iter().map(|c| self.arm.model().rates(&c.name)).collect();
+        C::BASE.is_empty().then(rates)
+    }
     fn details(&self) -> Vec<(String, String)> {
         let links = crate::count(self.arm.model().links.len(), "link");
         let base = match self.arm.kinematics().floats() {

@@ -16,5 +16,6 @@ mod relax;
 mod robots;
 mod several_robots;
 mod snake_field;
+mod trajectory;
 mod which_joints;
 mod wrench;

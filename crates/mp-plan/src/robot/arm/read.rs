@@ -57,6 +57,12 @@ fn described(files: &dyn Files, robot: One<'_>) -> Result<ArmModel, Error> {
         let limited = model.with_limits(joint, *low, *high);
         model = limited.map_err(|e| robot.fault(RobotPart::Limits(i), e, NAMES))?;
     }
+    let velocities = entry.max_velocity.iter().map(|(joint, rate)| (joint, *rate, RobotPart::Velocity));
+    let all = entry.max_acceleration.iter().map(|(joint, rate)| (joint, *rate, RobotPart::Acceleration));
+    for (joint, rate, part) in velocities.chain(all) {
+        let limited = model.with_rate(joint.as_deref(), rate, part == RobotPart::Acceleration);
+        model = limited.map_err(|e| robot.fault(part, e, NAMES))?;
+    }
     Ok(model)
 }
 
