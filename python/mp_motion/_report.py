@@ -391,7 +391,8 @@ class Verdict:
     faults : tuple of str
         What is wrong. Empty when the path is free.
     trajectory : dict or None
-        Of a trajectory ``duration``, ``curve``, ``least_at``, ``collides_at`` and ``limits``, as docs/formats/report.md describes them.
+        Of a trajectory ``duration``, ``curve``, ``least_at``, ``collides_at`` and ``limits``, which
+        docs/formats/report.md describes.
     """
 
     scene: str

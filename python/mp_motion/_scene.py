@@ -927,8 +927,8 @@ class Scene:
         file : str or path
             ``.csv`` with times, or JointTrajectory of ROS as ``.json`` or ``.yaml``, also in messages of MoveIt.
         curve : str
-            What a controller runs between points: ``controller``, as joint_trajectory_controller of ROS does, ``linear``, ``cubic`` or
-            ``quintic``.
+            What a controller runs between points: ``controller``, as joint_trajectory_controller of ROS does, ``linear``,
+            ``cubic`` or ``quintic``.
 
         Returns
         -------
@@ -949,7 +949,8 @@ class Scene:
         velocity, acceleration : float
             The part of the limits that is used.
         deviation : float
-            How far from corners it may pass, in radians and metres of all joints together, where that is free; 0: it stops at each.
+            How far from corners it may pass, in radians and metres of all joints together, where that is free; 0: it stops
+            at each.
 
         Examples
         --------

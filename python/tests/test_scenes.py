@@ -453,6 +453,6 @@ def test_paths_of_arms_get_times(tmp_path: Path) -> None:
     (tmp_path / "other.json").write_text(json.dumps(message))
     with pytest.raises(mp.Error, match="elbow_of_another"):
         scene.check_trajectory(tmp_path / "other.json")
-    assert list(made.to_pandas().columns)[0] == "time (s)"
+    assert next(iter(made.to_pandas().columns)) == "time (s)"
     with pytest.raises(mp.Error, match="no trajectories"):
         mp.Scene("easy").plan().trajectory()
