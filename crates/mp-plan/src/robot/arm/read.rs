@@ -285,12 +285,7 @@ pub(super) fn srdf_help(problem: &RobotProblem, touching: &[[&str; 2]]) -> Strin
 
 /// An error in the URDF of a robot, in a line if that is known.
 fn in_urdf(robot: &DescribedRobot, line: Option<usize>, message: String, remedy: &str) -> Error {
-    let (kind, file) = (mp_io::ErrorKind::Content, robot.urdf_file.display());
-    let error = match line {
-        Some(line) => mp_io::Error::in_line(kind, file, &robot.urdf, line, message),
-        None => mp_io::Error::new(kind, file, message),
-    };
-    error.help(remedy).into()
+    robot.error(line, message).help(remedy).into()
 }
 
 /// The line, counted from 1, in which the URDF begins the last element of this kind and name: the later one of two that have
