@@ -113,7 +113,7 @@ impl<'m> Reader<'_, 'm> {
             }
             if let Some((geometry, pose)) = self.geometry(link, &said)? {
                 self.links[link].shapes.push(GeomShape { node: at.node, pose: at.pose * pose, geometry });
-                self.links[link].bits.insert(bits);
+                self.links[link].bits = self.links[link].bits.and(bits);
             }
         }
         Ok(())

@@ -2,11 +2,14 @@
 
 use super::document::{Classes, Element, Model, Said};
 use super::tree::{Numbers, Reader};
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-/// What a geom touches: two do if a bit of `kind` of one is in `with` of the other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// The most pairs of links that may touch.
+const MAX_PAIRS: usize = 200_000;
+
+/// What a geom, or a link, touches: two do if a bit of `kind` of one is in `with` of the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Bits {
     kind: u32,
     with: u32,
@@ -22,6 +25,11 @@ impl Bits {
             }
         };
         Ok(Self { kind: bits("contype")?, with: bits("conaffinity")? })
+    }
+
+    /// What touches all that any of both touches.
+    pub(super) fn and(self, other: Self) -> Self {
+        Self { kind: self.kind | other.kind, with: self.with | other.with }
     }
 
     /// Whether it touches nothing whatever.
@@ -113,7 +121,7 @@ impl<'m> Couplings<'m> {
 pub(super) type JointValue = (usize, f64);
 
 impl<'m> Reader<'_, 'm> {
-    /// Pairs of links that may touch, and pairs of which one stands still and a joint connects them, but that must not.
+    /// Pairs of links that may touch, and pairs that must not although a joint connects them: those of the world, and those that `pair` names.
     pub(super) fn link_pairs(&self) -> Result<[Vec<(usize, usize)>; 2], Error> {
         let names: HashMap<&str, usize> =
             self.links.iter().enumerate().map(|(i, link)| (link.name.as_str(), i)).collect();
@@ -137,18 +145,25 @@ impl<'m> Reader<'_, 'm> {
                 if a.weld == b.weld {
                     continue;
                 }
-                let touch =
-                    paired.contains(&(i, j)) || a.bits.iter().any(|x| b.bits.iter().any(|y| x.touch(*y)));
+                let touch = a.bits.touch(b.bits);
                 // MuJoCo compares what stands still with all that moves.
                 let joined = (a.weld != 0 && b.above == a.weld) || (b.weld != 0 && a.above == b.weld);
-                if paired.contains(&(i, j)) {
-                    continue;
-                } else if !touch || joined || excluded.contains(&(i, j)) {
+                let must_not = paired.contains(&(i, j));
+                if !must_not && (!touch || joined || excluded.contains(&(i, j))) {
                     may_touch.push((i, j));
-                } else if i == 0 {
+                } else if must_not || (i == 0 && b.above == 0) {
                     kept_apart.push((i, j));
                 }
             }
+        }
+        if may_touch.len() > MAX_PAIRS {
+            let root = self.model.documents[0].root_element();
+            let message = format!("more than {MAX_PAIRS} pairs of bodies touch by contype and conaffinity");
+            return Err(self
+                .model
+                .error(root, message)
+                .with_kind(ErrorKind::TooLarge)
+                .help("make the model smaller"));
         }
         Ok([may_touch, kept_apart])
     }

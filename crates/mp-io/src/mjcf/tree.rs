@@ -21,7 +21,7 @@ pub(super) struct MjLink<'m> {
     pub(super) node: Element<'m>,
     pub(super) shapes: Vec<GeomShape<'m>>,
     /// What its shapes may touch.
-    pub(super) bits: BTreeSet<Bits>,
+    pub(super) bits: Bits,
     /// The first link of the rigid body that it is of, and that of the rigid body that the joints of its body are on.
     pub(super) weld: usize,
     pub(super) above: usize,
@@ -222,7 +222,7 @@ impl<'a, 'm> Reader<'a, 'm> {
         let number = self.links.len();
         let (weld, above) =
             above.map_or((number, number), |above| (self.links[above].weld, self.links[above].above));
-        let (name, shapes, bits) = (name.to_owned(), Vec::new(), BTreeSet::new());
+        let (name, shapes, bits) = (name.to_owned(), Vec::new(), Bits::default());
         self.links.push(MjLink { name, node, shapes, bits, weld, above });
         Ok(number)
     }

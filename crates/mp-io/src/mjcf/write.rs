@@ -33,11 +33,12 @@ impl<'m> Lines<'_, 'm> {
 
 /// A text as the value of an attribute.
 fn quoted(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+    text.replace('\n', "&#10;").replace('\r', "&#13;").replace('\t', "&#9;")
 }
 
 fn origin(pose: &Isometry3<f64>) -> String {
-    let [x, y, z, yaw, pitch, roll] = six_from_pose(pose);
+    let [x, y, z, yaw, pitch, roll] = six_from_pose(pose).map(|x| x + 0.0); // no −0
     format!("<origin xyz=\"{}\" rpy=\"{}\"/>", Row(&[x, y, z]), Row(&[roll, pitch, yaw]))
 }
 
@@ -133,7 +134,7 @@ pub(super) fn srdf(reader: &mut Reader<'_, '_>) -> Result<String, Error> {
         let _ = writeln!(text, "<group_state name=\"{}\" group=\"{GROUP}\">", quoted(&name));
         for (joint, value) in values {
             let joint = quoted(&reader.joints[joint].name);
-            let _ = writeln!(text, "<joint name=\"{joint}\" value=\"{}\"/>", Row(&[value]));
+            let _ = writeln!(text, "<joint name=\"{joint}\" value=\"{}\"/>", Row(&[value + 0.0]));
         }
         text += "</group_state>\n";
     }

@@ -13,11 +13,11 @@ use std::path::{Path, PathBuf};
 /// A robot of a problem: its description, with the files that it names but for its meshes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DescribedRobot {
-    /// Where the URDF is.
+    /// Where the description is.
     pub urdf_file: PathBuf,
-    /// The content of the URDF.
+    /// The content of the URDF, or the URDF that was made of a model of MuJoCo.
     pub urdf: String,
-    /// The content of the SRDF: the one that the problem names, else the one that was found.
+    /// The content of the SRDF: the one that the problem names, else the one that was found, else what a model of MuJoCo says.
     pub srdf: Option<String>,
     /// Where the SRDF is, if the problem names none and one of this robot was found near the URDF.
     pub srdf_found: Option<PathBuf>,
@@ -139,6 +139,12 @@ fn described(files: &dyn Files, folder: &Path, file: &RobotFile, i: usize) -> Re
 }
 
 impl DescribedRobot {
+    /// Whether the description is a model of MuJoCo, of which [`urdf`](Self::urdf) was made.
+    #[must_use]
+    pub fn is_mjcf(&self) -> bool {
+        self.mjcf.is_some()
+    }
+
     /// An error in a line of the URDF, counted from 1, or in all of it. Of a URDF that was made of another format the error is where the line comes
     /// from.
     #[must_use]
