@@ -28,6 +28,7 @@ pub mod fuzz;
 mod gempa;
 mod json;
 mod mesh;
+mod mjcf;
 mod number;
 mod ompl;
 mod path;

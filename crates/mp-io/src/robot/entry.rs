@@ -126,6 +126,7 @@ pub enum RobotPart {
 #[serde(deny_unknown_fields)]
 pub(super) struct RobotTable {
     name: Option<String>,
+    #[serde(alias = "mjcf")]
     urdf: Spanned<String>,
     srdf: Option<Spanned<SrdfEntry>>,
     packages: Option<String>,

@@ -9,6 +9,7 @@ mod find;
 mod fuzz;
 mod kinds;
 mod many_queries;
+mod mjcf;
 mod own_robot;
 mod parts;
 mod pose_goals;

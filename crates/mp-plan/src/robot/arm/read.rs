@@ -272,14 +272,20 @@ pub(super) fn srdf_help(problem: &RobotProblem, touching: &[[&str; 2]]) -> Strin
     let own = if touching.is_empty() { Some(0) } else { touching.iter().find_map(of) };
     let Some(index) = own else { return "move one of the robots, or its base".to_owned() };
     let robot = &problem.robots[index];
-    if robot.srdf.is_some() {
-        return format!("{in_srdf} {}", srdf_name(problem, index));
-    }
     let urdf = robot.urdf_file.display();
     let made = format!(
         "`mp srdf {urdf} --out {}` makes one from samples",
         robot.urdf_file.with_extension("srdf").display()
     );
+    let named = srdf_name(problem, index);
+    if robot.srdf.is_some() {
+        return match named.is_empty() {
+            false => format!("{in_srdf} {named}"),
+            true => {
+                format!("if these links may touch, say so by <exclude> in the model, or by an SRDF: {made}")
+            }
+        };
+    }
     match &robot.srdf_beside {
         Some(beside) => format!(
             "{in_srdf} an SRDF: `srdf = \"{beside}\"` in a robot problem takes the one beside the URDF; {made}"
@@ -290,12 +296,7 @@ pub(super) fn srdf_help(problem: &RobotProblem, touching: &[[&str; 2]]) -> Strin
 
 /// An error in the URDF of a robot, in a line if that is known.
 fn in_urdf(robot: &DescribedRobot, line: Option<usize>, message: String, remedy: &str) -> Error {
-    let (kind, file) = (mp_io::ErrorKind::Content, robot.urdf_file.display());
-    let error = match line {
-        Some(line) => mp_io::Error::in_line(kind, file, &robot.urdf, line, message),
-        None => mp_io::Error::new(kind, file, message),
-    };
-    error.help(remedy).into()
+    robot.error(line, message).help(remedy).into()
 }
 
 /// The line, counted from 1, in which the URDF begins the last element of this kind and name: the later one of two that have
