@@ -58,7 +58,7 @@ pub(crate) enum Command {
     /// Open the viewer in the browser: look at a scene and a path, edit the scene, and plan.
     #[command(after_long_help = examples::VIEW)]
     View(View),
-    /// List the shipped scenes.
+    /// List the shipped scenes: for a person in groups, with a sentence about each, and their names alone for programs.
     Scenes,
     /// List the robots that can be named: URDFs in the folders of `MP_ROBOTS`, `ROS_PACKAGE_PATH` and `AMENT_PREFIX_PATH`, the cache of
     /// `robot_descriptions` for Python (`ROBOT_DESCRIPTIONS_CACHE`), and the packages of Python.

@@ -32,6 +32,7 @@ mod view;
 use clap::{CommandFactory, Parser};
 use cli::{Cli, Command};
 use mp_plan::Error;
+use std::io::IsTerminal as _;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -66,9 +67,17 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints the names of the shipped scenes.
+/// Prints the shipped scenes: for a person in groups, with a sentence about each; for programs their names.
 fn scenes() -> Result<bool, Error> {
-    output::print(&mp_plan::Scene::shipped().join("\n"))?;
+    if !std::io::stdout().is_terminal() {
+        output::print(&mp_plan::Scene::shipped().join("\n"))?;
+        return Ok(true);
+    }
+    let group = |(title, scenes): (&str, Vec<(&str, &str)>)| {
+        let scenes: String = scenes.iter().map(|(name, about)| format!("\n  {name:<16} {about}")).collect();
+        format!("{title}{scenes}")
+    };
+    output::print(&mp_plan::Scene::gallery().into_iter().map(group).collect::<Vec<_>>().join("\n\n"))?;
     Ok(true)
 }
 

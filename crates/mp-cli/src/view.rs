@@ -6,7 +6,7 @@ use crate::input::{is_standard, judged_path, refuse_two_standard_inputs, scene};
 use crate::interrupt;
 use crate::output::{note, print};
 use mp_io::{Content, Files as _};
-use mp_plan::Error;
+use mp_plan::{Error, Look, PictureKind, Scene};
 use mp_serve::{Limits, Server, Wake};
 use mp_store::folder_of;
 use mp_view::{Opening, Planner, SceneFile, Session};
@@ -29,7 +29,7 @@ impl mp_serve::Session for Served {
 
 /// Serves the page until Ctrl-C.
 pub(crate) fn run(args: &View) -> Result<bool, Error> {
-    let opening = opening(args)?;
+    let opening = Opening { thumbnail: Some(thumbnail), ..opening(args)? };
     let page = mp_view::page(None, Planner::Server);
     let limits = Limits { body_bytes: BODY_BYTES, ..Limits::default() };
     let open = move |wake: Wake| -> Box<dyn mp_serve::Session> {
@@ -46,6 +46,11 @@ pub(crate) fn run(args: &View) -> Result<bool, Error> {
     note("Ctrl-C ends it");
     server.run().map_err(|e| Error::new(e.to_string()))?;
     Ok(true)
+}
+
+/// A scene as the gallery shows it, at half of this size.
+fn thumbnail(scene: &Scene) -> Result<Vec<u8>, Error> {
+    scene.picture(None, "", PictureKind::Png, &Look { size: (440, 300), ..Look::default() })
 }
 
 /// Opens the browser, or says where the address can be opened.

@@ -9,11 +9,13 @@
 //! ```
 
 mod files;
+mod gallery;
 mod puzzles;
 #[cfg(feature = "source")]
 pub mod source;
 
 pub use files::FILES;
+pub use gallery::{Group, groups};
 pub use puzzles::{PUZZLES, Puzzle, puzzle, without_solution};
 
 /// A file in memory.

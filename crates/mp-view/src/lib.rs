@@ -38,4 +38,4 @@ pub use model::{
 pub use page::{Planner, page, page_with_files};
 #[cfg(not(target_family = "wasm"))]
 pub use session::Session;
-pub use session::{Opening, Worker, is_mesh, scene_of_mesh};
+pub use session::{Opening, Thumbnail, Worker, is_mesh, scene_of_mesh};

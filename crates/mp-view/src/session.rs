@@ -15,8 +15,8 @@ pub use mesh::{is_mesh, scene_of_mesh};
 #[cfg(not(target_family = "wasm"))]
 pub use threads::Session;
 pub use worker::Worker;
-pub use workspace::Opening;
 pub(crate) use workspace::Workspace;
+pub use workspace::{Opening, Thumbnail};
 
 pub(crate) use messages::{number_of, refusal, text_of};
 

@@ -50,6 +50,15 @@ impl Scene {
         Ok(scene)
     }
 
+    /// The shipped scenes in groups: the title of each, and the names of its scenes with a sentence about each.
+    #[must_use]
+    pub fn gallery() -> Vec<(&'static str, Vec<(&'static str, &'static str)>)> {
+        #[cfg(feature = "scenes")]
+        return mp_scenes::groups().into_iter().map(|group| (group.title, group.scenes)).collect();
+        #[cfg(not(feature = "scenes"))]
+        Vec::new()
+    }
+
     /// The names of the shipped scenes.
     #[must_use]
     pub fn shipped() -> Vec<&'static str> {

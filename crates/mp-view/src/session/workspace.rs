@@ -25,7 +25,12 @@ pub struct Opening {
     pub shown: Option<SceneFile>,
     /// The folder in which files are saved; without one, the page gets their content.
     pub folder: Option<PathBuf>,
+    /// What draws a scene as a small PNG, for the gallery; without it, the gallery has words only.
+    pub thumbnail: Option<Thumbnail>,
 }
+
+/// A scene as a small picture: the bytes of a PNG.
+pub type Thumbnail = fn(&Scene) -> Result<Vec<u8>, Error>;
 
 /// The scene that is open.
 #[derive(Clone, Debug)]
@@ -45,15 +50,17 @@ pub(crate) struct Workspace {
     folder: Option<PathBuf>,
     /// What is shown when nothing is open.
     shown: Option<SceneFile>,
+    thumbnail: Option<Thumbnail>,
 }
 
 type Answer = Result<Message, Error>;
 
 impl Workspace {
     pub(crate) fn new(opening: Opening) -> Self {
-        let mut workspace = Self { folder: opening.folder, shown: opening.shown, ..Self::default() };
-        if let Some(scene) = opening.scene {
-            workspace.adopt(scene, opening.path);
+        let Opening { scene, path, shown, folder, thumbnail } = opening;
+        let mut workspace = Self { folder, shown, thumbnail, ..Self::default() };
+        if let Some(scene) = scene {
+            workspace.adopt(scene, path);
         }
         workspace
     }
@@ -65,6 +72,7 @@ impl Workspace {
             "open" => self.open(request),
             "edit" => self.edit(request),
             "mesh" => self.mesh(request),
+            "thumbnail" => self.thumbnail(request),
             "path" => self.path(request),
             "check" => self.check(request),
             "draw" => self.draw(request),
@@ -101,6 +109,10 @@ impl Workspace {
                 "parameters": parameters(meta.parameters),
             })
         });
+        let gallery: Vec<Value> = Scene::gallery()
+            .into_iter()
+            .map(|(title, scenes)| json!({"title": title, "scenes": scenes}))
+            .collect();
         let metrics =
             MetricName::ALL.iter().map(|(_, name, formula)| json!({"name": name, "formula": formula}));
         let mut reply = Message::default()
@@ -109,6 +121,8 @@ impl Workspace {
             .with("metrics", metrics.collect::<Vec<_>>())
             .with("request", json(&Request::default()))
             .with("scenes", Scene::shipped())
+            .with("gallery", json(&gallery))
+            .with("thumbnails", self.thumbnail.is_some())
             .with("endings", json(&endings()))
             .with("folder", self.folder.as_ref().map(|folder| folder.display().to_string()));
         let opened = match (&self.open, &self.shown) {
@@ -126,10 +140,7 @@ impl Workspace {
     /// Opens the scene with a shipped name, or that of the files of the request.
     fn open(&mut self, request: &Message) -> Answer {
         let scene = match request.head.get("scene").and_then(Value::as_str) {
-            Some(name) => match Scene::shipped().contains(&name) {
-                true => Scene::find(name)?,
-                false => return Err(Error::new(format!("no shipped scene is called {name}"))),
-            },
+            Some(name) => shipped(name)?,
             None => {
                 let files = Named::of(request)?;
                 let main = match request.head.get("main").and_then(Value::as_str) {
@@ -145,6 +156,15 @@ impl Workspace {
         };
         self.adopt(scene, None);
         self.reply()
+    }
+
+    /// A small picture of a shipped scene.
+    fn thumbnail(&self, request: &Message) -> Answer {
+        let draw = self.thumbnail.ok_or_else(|| Error::new("nothing here draws pictures"))?;
+        let png = draw(&shipped(text_of(&request.head, "scene")?)?)?;
+        let mut reply = Message::default();
+        let png = reply.array(&png);
+        Ok(reply.with("png", png))
     }
 
     /// Takes a scene as the one that is open.
@@ -410,6 +430,14 @@ impl Workspace {
         let start = if given("start") { row_of(&request.head, "start")? } else { scene.start() };
         let goals = if given("goals") { rows_of(&request.head, "goals")? } else { scene.goals() };
         scene.with_ends(&start, &goals)
+    }
+}
+
+/// The shipped scene of this name.
+fn shipped(name: &str) -> Result<Scene, Error> {
+    match Scene::shipped().contains(&name) {
+        true => Scene::find(name),
+        false => Err(Error::new(format!("no shipped scene is called {name}"))),
     }
 }
 

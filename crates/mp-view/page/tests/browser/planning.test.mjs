@@ -158,6 +158,12 @@ browserTest("path, page and scene are saved beside the scene", () => withPage("e
 
 browserTest("a scene of the gallery is opened by one click", () => withPage("easy", async (driver) => {
   await driver.key("g");
+  // What is seen has a picture; a search finds words of the sentence too.
+  await driver.until(() => document.querySelector("dialog.gallery img[data-scene=cubicles]").naturalWidth === 440);
+  await driver.fill("searchbox", "Search the scenes", "UR5e");
+  const found = await driver.page.$$eval("dialog.gallery li", (items) => items.filter((item) => !item.hidden).map((item) => item.querySelector("button").value));
+  assert.deepEqual(found, ["arm-6"]);
+  await driver.fill("searchbox", "Search the scenes", "");
   await driver.press("arm");
   await driver.until(() => document.querySelector("h1").textContent === "arm");
   await driver.press("Plan");

@@ -6,8 +6,8 @@ import { browserTest, mp, withPage } from "./browser.mjs";
 browserTest("every shipped scene opens and is drawn", () => withPage([], async (driver) => {
   const names = mp("scenes").trim().split(/\s+/);
   assert.ok(names.length > 20, names.join());
-  const shown = await driver.page.$$eval("dialog.gallery li button", (buttons) => buttons.map((button) => button.textContent));
-  assert.deepEqual(shown, names, "without a scene the gallery is open");
+  const shown = await driver.page.$$eval("dialog.gallery li button", (buttons) => buttons.map((button) => button.value));
+  assert.deepEqual(shown.sort(), names.sort(), "without a scene the gallery is open");
   await driver.press("Close");
   for (const name of names) {
     await driver.key("g");
