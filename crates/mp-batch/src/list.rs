@@ -236,7 +236,7 @@ impl ProblemList {
         &self.file
     }
 
-    /// How many items it has.
+    /// The problems of all lines, each counted once for each of its seeds.
     #[must_use]
     pub fn items(&self) -> u64 {
         self.items

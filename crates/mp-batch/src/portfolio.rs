@@ -136,7 +136,6 @@ impl Portfolio {
         before + 1..=before.saturating_add(self.round).min(first.saturating_add(self.runs))
     }
 
-    /// The round of a run.
     fn round_of(&self, run: u64) -> u64 {
         let (turn, run) = ((run - 1) / self.runs, (run - 1) % self.runs);
         turn * self.rounds() + run / self.round

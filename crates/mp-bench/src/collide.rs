@@ -162,7 +162,6 @@ fn measure(
     Ok((measured, complete))
 }
 
-/// The progress line of a measured pair.
 fn progress_line(m: &PairResults) -> String {
     let own = m.records.iter().filter(|r| r.what.lib == OURS);
     let figures = own.map(|r| format!("{} {} {:.0} ns", r.what.query, r.what.set, r.least));

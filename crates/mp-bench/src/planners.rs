@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 /// Open and crowded rooms, traps and narrow passages, in the plane and in space.
 const SCENES: [&str; 6] = ["maze", "planar-bugtrap", "easy", "cubicles", "twisty", "bugtrap"];
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,

@@ -51,7 +51,6 @@ pub(crate) struct Options {
     grade: Option<u8>,
 }
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,

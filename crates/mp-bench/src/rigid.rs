@@ -33,7 +33,6 @@ pub(crate) struct Options {
     step: Length,
 }
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,

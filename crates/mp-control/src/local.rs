@@ -223,7 +223,7 @@ where
         self.counters
     }
 
-    /// The inputs.
+    /// The inputs among which the planner chooses.
     #[must_use]
     pub fn inputs(&self) -> &InputSet<U> {
         &self.inputs

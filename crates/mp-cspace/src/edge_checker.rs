@@ -52,7 +52,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
         Self { step, ..self }
     }
 
-    /// The space.
+    /// The space whose states the edges join.
     #[must_use]
     pub fn space(&self) -> &'c C {
         self.space

@@ -24,7 +24,7 @@ pub struct PlannerInfo {
     pub summary: &'static str,
     /// Its paper.
     pub citation: &'static str,
-    /// Its parameters.
+    /// What can be set, in the order in which help lists it.
     pub parameters: &'static [Parameter],
     /// Its other names.
     pub aliases: &'static [&'static str],

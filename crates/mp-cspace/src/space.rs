@@ -137,7 +137,7 @@ pub trait Space: Sync {
 /// [`Euclidean`](crate::Euclidean), [`ScaledEuclidean`](crate::ScaledEuclidean),
 /// [`Manhattan`](crate::Manhattan) and partial shortcuts work on factors.
 pub trait Factored: Space {
-    /// Number of factors.
+    /// The factors are numbered from 0 up to this.
     fn factors(&self) -> usize;
 
     /// Calls `f(i, d)` for each factor `i` in order, `d` ≥ 0 being the distance in that factor.

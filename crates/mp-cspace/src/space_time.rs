@@ -201,7 +201,7 @@ impl<S: Clone> Sampler<(S, f64)> for AtAnyTime<S> {
 /// others to the one inside.
 #[derive(Clone, Debug)]
 pub struct ForwardInTime<'c, C, M> {
-    /// The space.
+    /// The space with time, which knows the speed limit.
     pub space: &'c SpaceTime<C>,
     /// The check of possible motions.
     pub check: M,

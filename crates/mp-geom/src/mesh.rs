@@ -17,11 +17,11 @@ pub enum MeshError {
     NotFinite {
         /// Which vertex, counted from 0.
         vertex: usize,
-        /// Its x.
+        /// Its first coordinate, as it was given.
         x: f64,
-        /// Its y.
+        /// Its second coordinate.
         y: f64,
-        /// Its z.
+        /// Its third coordinate.
         z: f64,
     },
     /// A triangle refers to a vertex that does not exist.
@@ -41,7 +41,7 @@ pub enum MeshError {
         what: &'static str,
         /// Which one, counted from 0.
         index: usize,
-        /// How many corners it has.
+        /// The corners found, fewer than three.
         corners: usize,
     },
     /// More than `u32::MAX` vertices or triangles.
@@ -119,7 +119,7 @@ impl TriMesh {
         Ok(Self::surface(vertices.into(), triangles))
     }
 
-    /// The vertices.
+    /// The vertices, in the order in which they were given: triangles name them by index.
     #[must_use]
     pub fn vertices(&self) -> &[Point3<f64>] {
         &self.vertices

@@ -21,7 +21,7 @@ pub enum SolidError {
     /// Neighbouring triangles have opposite orientations.
     #[error("the surface is not oriented: the triangles at {edges} edges are turned against each other")]
     NotOriented {
-        /// At how many edges.
+        /// Edges whose two triangles run the same way along them.
         edges: usize,
     },
     /// It encloses no volume.

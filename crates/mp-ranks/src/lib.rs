@@ -58,7 +58,7 @@ pub enum Error {
     /// An item cannot be done, or its result cannot be taken.
     #[error("item {item}, done by rank {rank}: {message}")]
     Item {
-        /// The item.
+        /// The number of the item, from 0.
         item: u64,
         /// Who did it.
         rank: usize,
@@ -70,13 +70,13 @@ pub enum Error {
         "rank {rank} sent a message that nobody expects: do all ranks run the same program with the same files?"
     )]
     OutOfStep {
-        /// Which rank.
+        /// The rank whose message nobody expected.
         rank: usize,
     },
     /// A checkpoint cannot be used.
     #[error("{file}: {message}; {remedy}")]
     Checkpoint {
-        /// Its file.
+        /// The file, as it was named.
         file: String,
         /// What is wrong.
         message: String,

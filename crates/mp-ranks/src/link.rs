@@ -13,7 +13,7 @@ pub(crate) const MASTER: usize = 0;
 ///
 /// Only one thread of each rank uses its link.
 pub trait Link {
-    /// The number of this rank, from 0.
+    /// This rank: 0 is the master, which hands out work.
     fn rank(&self) -> usize;
     /// How many ranks there are.
     fn ranks(&self) -> usize;

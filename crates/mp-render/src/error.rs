@@ -51,7 +51,7 @@ pub enum RenderError {
     /// A text does not name what it should.
     #[error("`{text}`: expected {expected}")]
     Text {
-        /// The text.
+        /// The text that was given.
         text: String,
         /// What it should name.
         expected: &'static str,

@@ -74,7 +74,6 @@ impl Model {
         Self { points: vec![Point3::origin()], ..Self::default() }
     }
 
-    /// Its points.
     pub(crate) fn points(&self) -> &[Point3<f64>] {
         self.large.as_ref().map_or(&self.points, TriMesh::vertices)
     }

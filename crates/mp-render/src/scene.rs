@@ -19,7 +19,7 @@ pub struct Scene {
     pub subtitle: String,
     /// Whether the best view is from above, as a map; otherwise it is from where the path is seen best, through obstacles.
     pub planar: bool,
-    /// The obstacles.
+    /// Everything that stands still; the cutaway opens it in front of the path.
     pub obstacles: Vec<Body>,
     /// The robot at the start, if there is one.
     pub start: Option<Body>,

@@ -117,7 +117,6 @@ pub(crate) struct BuildArgs<'c, 's, T: Types<'c>> {
     index: T::Index,
     /// All parameters that are set; the planner has parameters of these names.
     pub(crate) settings: &'s Settings,
-    /// The space.
     pub(crate) space: &'c T::Space,
     geometry: Option<AnyGeometry<'c, T::State>>,
 }

@@ -73,17 +73,14 @@ fn answer(status: StatusCode, kind: &'static str, content: Content) -> Answer {
     answer
 }
 
-/// The page.
 pub(crate) fn page(page: Bytes) -> Answer {
     answer(StatusCode::OK, "text/html; charset=utf-8", Content::Whole(page))
 }
 
-/// A message.
 pub(crate) fn message(message: Vec<u8>) -> Answer {
     answer(StatusCode::OK, "application/octet-stream", Content::Whole(message.into()))
 }
 
-/// A stream of events.
 pub(crate) fn stream(events: Receiver<Bytes>) -> Answer {
     answer(StatusCode::OK, "application/octet-stream", Content::Stream(events))
 }

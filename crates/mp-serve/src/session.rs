@@ -44,7 +44,6 @@ pub(crate) struct Running {
     pub(crate) large: tokio::sync::Mutex<()>,
 }
 
-/// All sessions.
 pub(crate) struct Sessions {
     /// Opens another one.
     pub(crate) open: Box<dyn Fn(Wake) -> Box<dyn Session> + Send + Sync>,

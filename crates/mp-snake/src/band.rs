@@ -96,7 +96,6 @@ impl Band {
         }
     }
 
-    /// Solves for column `k` of `width`.
     fn solve_column(&self, columns: &mut [f64], width: usize, k: usize) {
         let ([mut last, mut before], mut below) = ([0.0; 2], [[0.0; 2]; 2]);
         for (row, &next) in columns.chunks_exact_mut(width).zip(&self.below) {

@@ -98,7 +98,7 @@ impl fmt::Display for Bending {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{name}` is no way to bend a motion: expected snake, bulge or hybrid")]
 pub struct UnknownBending {
-    /// The name.
+    /// The name that was asked for.
     pub name: String,
 }
 

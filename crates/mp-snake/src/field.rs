@@ -50,7 +50,6 @@ pub struct Repulsion<F> {
     /// The clearance and its gradient.
     pub clearance: F,
     range: f64,
-    /// 1 / range.
     per_range: f64,
     last: f64,
 }

@@ -33,7 +33,7 @@ impl SnakeCounters {
         self.bulged + self.relaxed + self.by_snake
     }
 
-    /// The number of all motions.
+    /// Motions asked for, however they were answered.
     #[must_use]
     pub fn motions(&self) -> u64 {
         self.straight + self.bent() + self.not_tried + self.not_bent

@@ -44,7 +44,7 @@ pub struct Moment<'a, S> {
     pub curve: &'a [S],
     /// The least clearance (m) at a node between the ends, by the field; infinite if the field has none.
     pub clearance: f64,
-    /// Its energy.
+    /// What the contour costs as it is now.
     pub energy: Energy,
     /// Steps done.
     pub iteration: u32,
@@ -215,7 +215,7 @@ impl<'c, C: Space> Snake<'c, C> {
         })
     }
 
-    /// Its parameters.
+    /// How stiff it is, how hard the field pushes, and when it ends.
     #[must_use]
     pub fn params(&self) -> &Params {
         &self.params
@@ -236,7 +236,7 @@ impl<'c, C: Space> Snake<'c, C> {
         }
     }
 
-    /// The space.
+    /// The space in which its nodes move.
     #[must_use]
     pub fn space(&self) -> &'c C {
         self.space
@@ -303,7 +303,7 @@ impl<'c, C: Space> Snake<'c, C> {
         curve.extend(corners.last().cloned());
     }
 
-    /// The energy of a curve.
+    /// What a curve costs: its tension and rigidity, its length, and the field along it.
     pub fn energy(&mut self, curve: &[C::State], field: &mut impl Field<C::State>) -> Energy {
         let mut measured = std::mem::take(&mut self.trial);
         self.measure(curve, field, &mut measured);

@@ -13,7 +13,7 @@ pub struct Proved {
     pub scene: String,
     /// How many configurations the path has.
     pub configurations: usize,
-    /// How many edges.
+    /// How many motions between two configurations were proved.
     pub edges: usize,
     /// Of how many parts the proof consists.
     pub parts: usize,

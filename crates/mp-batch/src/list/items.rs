@@ -48,7 +48,7 @@ impl ListResults {
         Self { partial: true, ..self }
     }
 
-    /// What the results are of.
+    /// The first line of the file: which list, which part of it, and of which scenes.
     #[must_use]
     pub fn header(&self) -> &ResultsHeader {
         &self.reader.header

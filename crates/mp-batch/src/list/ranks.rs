@@ -87,7 +87,6 @@ impl ListedProblems {
     }
 }
 
-/// Results that are open.
 struct OpenResults {
     log: Log,
     ahead: EarlyResults,

@@ -55,9 +55,9 @@ pub struct SceneFingerprint {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ItemResult {
-    /// The number of the item.
+    /// Its place in the list, from 0.
     pub item: u64,
-    /// Its report.
+    /// What came of it; `None` where there is an error in place of a report.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub report: Option<Report>,
     /// Why it could not be planned.

@@ -119,7 +119,7 @@ impl ListedProblems {
         Ok(outcome)
     }
 
-    /// The header of the results.
+    /// The first line of the file of results: it says which list, scenes and part these are of, so that another run can go on.
     #[must_use]
     pub fn header(&self, options: &ManyOptions) -> ResultsHeader {
         let name = self.list.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -231,7 +231,6 @@ impl Log {
     }
 }
 
-/// Opens a file of results.
 pub(super) fn open(file: &Path) -> Result<ResultsReader<BufReader<File>>, Error> {
     let source = mp_store::open(file, MAX_RESULTS_BYTES)?;
     ResultsReader::new(file.display().to_string(), BufReader::with_capacity(1 << 16, source))

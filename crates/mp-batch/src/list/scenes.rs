@@ -106,7 +106,7 @@ impl ListedProblems {
         ProblemList::load(file)?.with_scenes(&Interrupt::new(cancel.clone()))
     }
 
-    /// The list.
+    /// The list as it was read, without its scenes.
     #[must_use]
     pub fn list(&self) -> &ProblemList {
         &self.list

@@ -4,7 +4,6 @@ use super::ours::{OURS, TreeBuild};
 use super::pairs::Pair;
 use super::record::TimedAnswers;
 
-/// The results on one pair.
 #[derive(Clone, Debug)]
 pub(crate) struct PairResults {
     pub(crate) pair: String,

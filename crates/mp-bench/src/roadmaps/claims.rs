@@ -25,7 +25,6 @@ pub(super) enum Experiment {
     Ends,
 }
 
-/// All experiments.
 pub(super) const EXPERIMENTS: [Experiment; 4] =
     [Experiment::Factorial, Experiment::Geometry, Experiment::Contact, Experiment::Ends];
 
@@ -194,7 +193,6 @@ pub(super) fn connections() -> impl Iterator<Item = &'static str> {
     CONNECTIONS.iter().map(|c| c.0).filter(|name| *name != FAR)
 }
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
     pub(super) scene: String,
@@ -260,7 +258,6 @@ pub(super) fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>) -> Resul
     )
 }
 
-/// The request of a case.
 fn request(case: &Case) -> Result<Request> {
     let unknown = |name: &str| Error::new(format!("there is no way `{name}` here"));
     let generation = GENERATIONS.iter().find(|g| g.0 == case.generation);

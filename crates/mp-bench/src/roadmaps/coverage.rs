@@ -22,7 +22,6 @@ const SAMPLES: usize = 500;
 const MOST: usize = 20_000;
 const SEEDS: u64 = 10;
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,

@@ -17,7 +17,6 @@ const SEEDS: u32 = 10;
 const QUICK: u32 = 2;
 const ITERATIONS: u64 = 20_000;
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,

@@ -57,7 +57,6 @@ const fn shipped(name: &'static str) -> FactorialProblem {
     FactorialProblem { name, place: Place::Scene(name), empty: false }
 }
 
-/// All problems.
 pub(super) const PROBLEMS: [FactorialProblem; 11] = [
     boxes("free-flyer, positions, empty", "free-flyer", "positions", 0),
     boxes("free-flyer, positions, 256", "free-flyer", "positions", 256),
@@ -81,7 +80,6 @@ pub(super) struct Plan {
     pub(super) cap: f64,
 }
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
     pub(super) problem: String,

@@ -23,7 +23,6 @@ pub(super) struct HeavyProblem {
     pub(super) settings: &'static [(&'static str, &'static str)],
 }
 
-/// All problems.
 pub(super) const PROBLEMS: [HeavyProblem; 4] = [
     HeavyProblem {
         name: "gempa-3, RSRT, 12 inputs",
@@ -46,7 +45,6 @@ pub(super) const PROBLEMS: [HeavyProblem; 4] = [
     },
 ];
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
     pub(super) problem: String,

@@ -107,7 +107,7 @@ pub type BoxedVerify<'c, C, L> =
 /// What a [`Problem`] consists of, for planners: [`Problem::into_parts`].
 #[allow(missing_debug_implementations)] // verifiers need not implement `Debug`
 pub struct ProblemParts<'c, C: Space, L: LocalPlanner<C::State>> {
-    /// The space.
+    /// Where configurations live, and how far apart they are.
     pub space: &'c C,
     /// How to move in it.
     pub local: L,
@@ -187,7 +187,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
-    /// The space.
+    /// The space in which start, goals and paths are.
     #[must_use]
     pub fn space(&self) -> &'c C {
         self.space

@@ -7,7 +7,7 @@ use crate::{MotionCheck, MotionValidity, PolylineEdge};
 /// Every [`MotionValidity`] verifies edges that are the space's own interpolation (`E = ()`), also through vertices
 /// ([`PolylineEdge`]). Local planners with other edges need a verifier that replays them.
 pub trait Verify<S, E> {
-    /// Checks one state.
+    /// Checks the motion from `q` to itself: whether the state is free.
     fn verify_state(&mut self, q: &S) -> MotionCheck;
     /// Checks the motion along `edge` from `from` to `to`, in forward time, both ends included.
     fn verify_edge(&mut self, from: &S, edge: &E, to: &S) -> MotionCheck;

@@ -36,7 +36,7 @@ impl<const N: usize> Coordinates for SVector<f64, N> {
     }
 }
 
-/// The range of one joint.
+/// The values that a joint may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointRange {
     /// From `low` to `high`: radians or metres.
@@ -148,7 +148,7 @@ impl<Q: Coordinates> Joints<Q> {
         Self::new(vec![JointRange::Circle; count])
     }
 
-    /// The range of each joint.
+    /// The values that each joint may take, in the order of a state's numbers.
     #[must_use]
     pub fn ranges(&self) -> &[JointRange] {
         &self.ranges

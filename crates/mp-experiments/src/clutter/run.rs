@@ -39,7 +39,7 @@ pub struct Run {
     pub edges: usize,
 }
 
-/// The planners compared.
+/// A planner of the comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ComparedPlanner {
     /// A tree that moves by inputs: ALG. 4, RSRT, or what is between them.
@@ -55,10 +55,10 @@ impl ComparedPlanner {
     pub const RSRT: Self = Self::Inputs(Order::SortFirst, Accept::Any);
 }
 
-/// The settings of a run.
+/// What a run of the comparison depends on, beside the problem.
 #[derive(Clone, Debug)]
 pub struct RunSettings {
-    /// The planner.
+    /// Who plans.
     pub planner: ComparedPlanner,
     /// The number of inputs: [`InputSet::directions`].
     pub inputs: usize,

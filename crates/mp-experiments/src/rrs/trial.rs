@@ -141,7 +141,7 @@ type Snakes<'a, F> = SnakePlanner<'a, Rn<2>, DiscRobot, F>;
 /// A world prepared for all its cases: the scene, the robot and the maps that guide snakes.
 #[derive(Clone, Debug)]
 pub struct PreparedWorld {
-    /// The scene.
+    /// The world: obstacles, the radius of the disc, start and goal.
     pub scene: DiscScene,
     /// The robot among its obstacles.
     pub robot: DiscRobot,

@@ -22,7 +22,6 @@ impl Edge {
         Self { a, b, along, inverse: if inverse.is_finite() { inverse } else { 0.0 }, polygon }
     }
 
-    /// The point nearest to `p`.
     #[inline]
     pub(super) fn nearest(&self, p: &Point2<f64>) -> Point2<f64> {
         let t = ((p - self.a).dot(&self.along) * self.inverse).clamp(0.0, 1.0);

@@ -12,21 +12,21 @@ pub enum PolygonError {
     /// A ring of fewer than three points, or no ring at all.
     #[error("ring {ring} has {points} points: at least three are needed")]
     TooFewPoints {
-        /// Which ring.
+        /// The index of the ring, from 0; 0 too where there is no ring.
         ring: usize,
-        /// How many points it has.
+        /// The points found, fewer than three.
         points: usize,
     },
     /// A coordinate that is NaN, infinite or beyond 10⁶⁰.
     #[error("point {point} of ring {ring} is ({x}, {y}): coordinates must be finite, below 1e60")]
     NotFinite {
-        /// Which ring.
+        /// The index of the ring, from 0.
         ring: usize,
-        /// Which of its points.
+        /// The index of the point in the ring, from 0.
         point: usize,
-        /// Its x.
+        /// Its first coordinate, as it was given.
         x: f64,
-        /// Its y.
+        /// Its second coordinate.
         y: f64,
     },
     /// The work was interrupted.
@@ -37,7 +37,7 @@ pub enum PolygonError {
     Size {
         /// What size.
         what: &'static str,
-        /// Its value.
+        /// The size found, metres.
         value: f64,
     },
 }
@@ -115,7 +115,7 @@ impl Polygon {
         Self::outlined((0..corners).map(corner))
     }
 
-    /// The rings.
+    /// The rings, closed without a repeated point. A point that an odd number of them surrounds is inside.
     #[must_use]
     pub fn rings(&self) -> &[Vec<Point2<f64>>] {
         &self.rings

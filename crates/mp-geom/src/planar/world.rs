@@ -142,7 +142,7 @@ impl PlanarWorld {
         Ok(Self { polygons, walls, edges, tree, cells, corners, low, high })
     }
 
-    /// The polygons.
+    /// The obstacles, in the order of the indices that queries answer with.
     #[must_use]
     pub fn polygons(&self) -> &[Polygon] {
         &self.polygons

@@ -113,7 +113,7 @@ where
         self
     }
 
-    /// The roadmap.
+    /// The roadmap as it has grown so far.
     #[must_use]
     pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
         &self.map
@@ -124,7 +124,7 @@ where
         &mut self.map
     }
 
-    /// The connector.
+    /// The connector, which chooses the neighbours that a new node is connected to.
     #[must_use]
     pub fn connector(&self) -> &K {
         &self.connector

@@ -37,13 +37,13 @@ where
         Growing { map, index, checker, observer, answers: Vec::new(), meter: None, uncounted: true }
     }
 
-    /// The space.
+    /// The space in which nodes are.
     #[must_use]
     pub fn space(&self) -> &'c C {
         self.checker.space()
     }
 
-    /// The roadmap.
+    /// The roadmap that grows.
     pub fn map(&mut self) -> &mut Roadmap<C::State, L::Edge> {
         self.map
     }

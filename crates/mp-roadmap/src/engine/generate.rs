@@ -8,7 +8,7 @@ use mp_cspace::{LocalPlanner, Motion, NodeId, Reversible, Rng, Sampler, Space, U
 pub struct Candidate<S, E> {
     /// The configuration: free, by [`EdgeChecker::admits`].
     pub state: S,
-    /// Its kind.
+    /// What it will be in the roadmap.
     pub kind: MilestoneKind,
     /// The obstacle or region it belongs to, if any.
     pub obstacle: Option<u32>,

@@ -46,7 +46,7 @@ where
     Q: Query<C, L>,
     N: NearestNeighbors<C>,
 {
-    /// A planner for a problem, with an empty index.
+    /// A planner of these parts. The index must be empty: it gets every node of the roadmap.
     pub fn assemble(problem: Problem<'c, C, L>, index: N, parts: RoadmapPlannerParts<G, K, Q>) -> Self {
         let (checker, start, goals) = EdgeChecker::of(problem, PATIENCE);
         Self {

@@ -104,7 +104,7 @@ where
         self.indexed.verify(&mut self.checker)
     }
 
-    /// The roadmap.
+    /// The roadmap that answers; its edges are marked as they are verified.
     #[must_use]
     pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
         &self.indexed.map
@@ -151,7 +151,7 @@ impl<S, E, N> IndexedRoadmap<S, E, N> {
         Self { map, index, star, forest, neighbours, near: Default::default() }
     }
 
-    /// The roadmap.
+    /// The roadmap that answers.
     #[must_use]
     pub fn map(&self) -> &Roadmap<S, E> {
         &self.map

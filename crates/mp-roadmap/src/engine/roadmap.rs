@@ -44,7 +44,7 @@ impl MilestoneKind {
         Self::Salvaged,
     ];
 
-    /// Its name.
+    /// The word for it in files, events and pictures.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -64,7 +64,7 @@ impl MilestoneKind {
 /// What a node has beside its state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tag {
-    /// Its kind.
+    /// What it is in the roadmap: planners of guards tell them from connections.
     pub kind: MilestoneKind,
     /// The obstacle it belongs to, or of a [roadmap by regions](crate::algo::regional_prm) the region, if any.
     pub obstacle: Option<u32>,
@@ -141,7 +141,6 @@ struct Mark {
 /// A change of a node or an edge, with what it was before.
 #[derive(Clone, Copy, Debug)]
 enum Change {
-    /// The tag of a node.
     Tag(NodeId, Tag),
     /// An edge was blocked.
     Blocked(EdgeId, LinkState),
@@ -481,9 +480,9 @@ impl<S, E> Roadmap<S, E> {
 pub struct GraphPath {
     /// The nodes, one more than edges.
     pub nodes: Vec<NodeId>,
-    /// The edges.
+    /// The edges from the first node to the last.
     pub edges: Vec<EdgeId>,
-    /// Its length.
+    /// The sum of the lengths of its edges, in the metric of the space.
     pub length: f64,
 }
 

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// To which nodes a candidate is connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NeighborSet {
-    /// The nearest.
+    /// The nearest nodes, whatever obstacle they belong to.
     Nearest,
     /// The nearest of all that are among this many nearest nodes of each obstacle, or of no obstacle. Costs a distance to
     /// every node.

@@ -122,7 +122,6 @@ impl Case {
         }
     }
 
-    /// Whether a row is at a goal.
     fn check_goal(&self, goal: &[Ask], row: &Row<'_>) -> Result<(), String> {
         let turns = match &self.moves {
             Moves::Space => true,

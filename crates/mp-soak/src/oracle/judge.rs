@@ -20,7 +20,7 @@ const PLACES: usize = 16;
 pub enum Fault {
     /// Two bodies touch, or are nearer than what is to be kept.
     Contact {
-        /// The edge, from 0.
+        /// The index of the edge, from 0.
         edge: usize,
         /// Which part of the edge, 0 to 1.
         at: f64,

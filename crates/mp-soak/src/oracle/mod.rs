@@ -51,7 +51,7 @@ pub enum Shape {
 pub struct Body {
     /// Its name in messages.
     pub name: String,
-    /// Its shape.
+    /// Its geometry, in the frame it belongs to.
     pub shape: Shape,
     /// Which frame it belongs to. Of a robot: 0 is the root, `i + 1` the frame behind joint `i`. Obstacles that stand still are in
     /// the frame of the world.
@@ -61,7 +61,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// A body of this shape in the frame `frame`.
+    /// A body in a [frame](Self::frame), with its [reach](Self::reach).
     #[must_use]
     pub fn new(name: impl Into<String>, shape: Shape, frame: usize) -> Self {
         let reach = match &shape {
@@ -90,7 +90,7 @@ pub fn box_pieces(sides: [f64; 3], pose: &Isometry3<f64>) -> Vec<Piece> {
 /// An obstacle that moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mover {
-    /// Its body.
+    /// What moves, in the frame that its rows move.
     pub body: Body,
     /// Rows of time (s) and pose. Between two rows it goes straight and turns the shorter way, evenly.
     pub rows: Vec<(f64, Isometry3<f64>)>,

@@ -52,7 +52,7 @@ pub struct Joint {
     pub origin: Isometry3<f64>,
     /// The unit vector that it turns about or slides along, in its own frame.
     pub axis: Vector3<f64>,
-    /// Whether it slides.
+    /// Whether its value is a length along the axis (m), not an angle about it (rad).
     pub slides: bool,
     /// Which number gives its value, and the factor and offset of its value; `None` for a fixed joint.
     pub number: Option<(usize, f64, f64)>,

@@ -38,7 +38,7 @@ impl World {
 /// A kind of world.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
-    /// Its name.
+    /// The word for it on the command line and in tallies.
     pub name: &'static str,
     /// What it is.
     pub summary: &'static str,

@@ -187,7 +187,7 @@ impl<H> ObstacleGuided<H> {
         Ok(Self { hints, weights: weights.checked()? })
     }
 
-    /// The hints.
+    /// The hints that say which obstacle stops a motion, and how it lies.
     pub fn hints(&self) -> &H {
         &self.hints
     }

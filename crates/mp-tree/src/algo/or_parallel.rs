@@ -59,7 +59,7 @@ use rand::RngExt;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-/// How many runs.
+/// The setting `runs`: the result depends on it, not on the number of threads.
 pub const RUNS: Parameter = Parameter {
     name: "runs",
     range: "a whole number from 1 to 1024",
@@ -75,7 +75,7 @@ pub const SLICE: Parameter = Parameter {
     doc: "iterations of each run per round",
 };
 
-/// One of the runs.
+/// A planner with random numbers of its own.
 #[derive(Debug)]
 struct Run<P, F> {
     planner: P,
@@ -142,7 +142,7 @@ impl<S, P: Planner<S>> OrParallel<S, P> {
         self.panics
     }
 
-    /// The planners.
+    /// The planner of each run, in the order of the runs.
     pub fn planners(&self) -> impl Iterator<Item = &P> {
         self.runs.iter().map(|run| &run.planner)
     }

@@ -73,7 +73,7 @@ use mp_cspace::{Event, Observer, Path, Planner, Progress, Rng};
 use rand::RngExt;
 use std::fmt;
 
-/// Which schedule.
+/// The setting `schedule`: a [`Schedule`] by name.
 pub const SCHEDULE: Parameter = Parameter {
     name: "schedule",
     range: "luby, counter, zeta or wide",

@@ -210,7 +210,6 @@ impl<F> Transition<F> {
         self.temperature
     }
 
-    /// The cost of node `id`.
     fn cost_of<S>(&mut self, id: NodeId, q: &S) -> f64
     where
         F: FnMut(&S) -> f64,

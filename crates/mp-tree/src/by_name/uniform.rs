@@ -71,7 +71,6 @@ pub(crate) fn make_by_inputs<'c, T: Types<'c>>(
 
 /// How planners made by name move by inputs.
 pub(crate) enum NamedFlow<'c, C: Space> {
-    /// By velocities.
     Velocities(Kinematic<'c, C>),
     /// As the robot does.
     Own(AnyFlow<'c, C::State>),

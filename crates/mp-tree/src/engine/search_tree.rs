@@ -53,7 +53,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         (self.tree.states(), &mut self.selector)
     }
 
-    /// Adds a root.
+    /// Adds a node without a parent: a start, or of a tree that grows backward a goal.
     pub fn add_root(&mut self, space: &C, state: C::State, observer: &mut dyn Observer<C::State>) -> NodeId {
         let id = self.tree.add_root(state);
         self.selector.inserted(space, self.tree.states(), id, None);
@@ -90,7 +90,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         Grown::Trapped
     }
 
-    /// The selector.
+    /// The selector, which chooses from which nodes the tree grows.
     #[must_use]
     pub fn selector(&self) -> &Se {
         &self.selector
@@ -224,7 +224,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
         self.purpose
     }
 
-    /// The tree.
+    /// The nodes that the tree has so far.
     #[must_use]
     pub fn tree(&self) -> &Tree<C::State, L::Edge> {
         self.tree
@@ -235,7 +235,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
         self.checker
     }
 
-    /// The selector.
+    /// The selector, which chooses from which nodes the tree grows.
     pub fn selector(&self) -> &Se {
         self.selector
     }

@@ -60,7 +60,7 @@ where
         self.tree.nodes()
     }
 
-    /// The extender.
+    /// The extender, which makes the motions that join the tree.
     #[must_use]
     pub fn extender(&self) -> &G {
         &self.extender

@@ -5,7 +5,7 @@ use mp_cspace::{Hit, Interrupt, Rng, Sampler, Space};
 
 /// Slot: samples the next target of exploration, given the tree that is about to grow.
 pub trait TargetSampler<C: Space> {
-    /// The next target.
+    /// Draws the state toward which the tree grows next; `points` are the states of the tree.
     fn next_target<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,

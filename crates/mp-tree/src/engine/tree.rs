@@ -39,7 +39,7 @@ struct Node<E> {
     sibling: NodeId,
 }
 
-/// No node.
+/// In place of an index, where there is no such node.
 const NONE: NodeId = NodeId::MAX;
 
 /// The connection of a node to its parent.
@@ -128,7 +128,7 @@ impl<S, E> Tree<S, E> {
         }
     }
 
-    /// Adds a root.
+    /// Adds a node without a parent, at cost zero.
     pub fn add_root(&mut self, state: S) -> NodeId {
         self.insert(state, Node { cost: 0.0, link: None, child: NONE, sibling: NONE })
     }

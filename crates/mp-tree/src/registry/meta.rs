@@ -17,7 +17,7 @@ use std::sync::{Arc, OnceLock};
 /// A way to run another planner; its name is a prefix of the name of that planner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MetaPlanner {
-    /// The prefix.
+    /// What stands before the name of the planner, such as `or-`.
     pub prefix: &'static str,
     /// What it is and when to use it, in a line.
     pub summary: &'static str,

@@ -84,7 +84,7 @@ impl<S: Clone> Subdivision<S> {
         &self.pairs
     }
 
-    /// The region in which a state is.
+    /// The region that holds a state; a state on a border belongs to the upper one.
     pub fn region_of<C: Space<State = S>>(&self, space: &C, q: &S) -> u32 {
         let cell = |(axis, x): (&Axis, f64)| {
             let cell = (x * f64::from(axis.cells)).floor().clamp(0.0, f64::from(axis.cells - 1));
