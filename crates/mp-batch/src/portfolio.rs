@@ -46,9 +46,9 @@ const MAX_UNIT: u64 = 1_000_000_000_000;
 /// 3. a group that is an eighth ahead of the one that is furthest behind waits for it, which must come as far as the winner anyway;
 /// 4. when a group is done, the others hear of its best run.
 ///
-/// Where the request has no budget of iterations, queries or nodes, a portfolio of which no run has a path when all have reached their caps
-/// goes on with as many further runs, until its time is up: their caps are the next ones of the schedule; of the wide one, those of
-/// the runs before twice over.
+/// All runs may reach their caps without a path. If the request has no budget of iterations, queries or
+/// nodes, as many further runs follow, until the time is up. Their caps are the next ones of the schedule;
+/// under the wide schedule they are twice the caps of the runs before.
 ///
 /// So a round costs each run as many iterations as the winner needs, and at most a sixteenth or an eighth of that more, or what is made
 /// until news have spread. A round keeps the trees of all its runs.
@@ -193,9 +193,9 @@ impl PortfolioOutcome {
 }
 
 impl Portfolio {
-    /// Plans for a scene: makes many runs of one request, of which the one with the fewest iterations wins. Anytime planners end with their
-    /// first path; time is that of the whole portfolio, and other budgets are those of each run. Of `control`, the stop is
-    /// not asked, and the watch hears of no single events.
+    /// Plans for a scene: makes many runs of one request, of which the one with the fewest iterations wins.
+    /// Anytime planners end with their first path; time is that of the whole portfolio, and other budgets are
+    /// those of each run. The stop of `control` is not asked, and its watch gets no single events.
     ///
     /// # Errors
     /// As [`Scene::plan`], when a number is out of its range, the request names a file for a roadmap, or the checkpoint cannot be used.

@@ -115,7 +115,8 @@ impl Phases<'_> {
         Ok((!ran.cancelled).then_some(estimates))
     }
 
-    /// Does these items, but for those whose results are known, the dearest first. Whether all were done.
+    /// Does these items, the most expensive first, and skips those whose results are known. Whether all were
+    /// done.
     fn run(&mut self, items: Range<u64>, cost: &dyn Fn(u64) -> f64, work: &Work<'_>) -> Result<bool, Error> {
         if !self.link.is_master() {
             run(self.link, self.options, None, work)?;

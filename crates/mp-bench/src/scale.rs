@@ -13,8 +13,9 @@ use crate::options::Common;
 
 /// How many ranks are replayed.
 const RANKS: [usize; 9] = [1, 2, 4, 16, 64, 256, 1000, 4000, 10_000];
-/// From when a message is sent until the other rank acts on it, s: where little happens both look for messages of MPI every
-/// millisecond, and a small message takes 0.1 ms at most in the networks of clusters (MPI over Ethernet; a hundredth of that over InfiniBand).
+/// The time (s) from sending a message until the other rank acts on it. Idle ranks look for messages of MPI
+/// every millisecond, and a small message takes at most 0.1 ms in the network of a cluster (MPI over
+/// Ethernet; a hundredth of that over InfiniBand).
 const LATENCY_S: f64 = 2.1e-3;
 /// What the master needs for a result and the item that it sends in return, s. See [`sweeps::master_seconds`], to which ten microseconds of MPI
 /// are added.

@@ -197,8 +197,8 @@ impl<S: Clone> Sampler<(S, f64)> for AtAnyTime<S> {
     }
 }
 
-/// A motion check or verifier that refuses motions back in time or beyond the speed limit, and leaves all
-/// others to the one inside.
+/// A motion check or verifier that refuses motions back in time or beyond the speed limit, and asks another
+/// one about the rest.
 #[derive(Clone, Debug)]
 pub struct ForwardInTime<'c, C, M> {
     /// The space with time, which knows the speed limit.

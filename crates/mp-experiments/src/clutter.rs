@@ -1,6 +1,6 @@
-//! The problems of Jouandeau, Touati and Ali Cherif 2008, *Incremental motion planning with Las Vegas algorithms*, §4, and one
-//! run of a planner on one of them: a free-flyer and an arm of six joints among 2 to 512 boxes, with states that are positions
-//! or have velocities, under three metrics.
+//! The problems of Jouandeau, Touati and Ali Cherif 2008, *Incremental motion planning with Las Vegas
+//! algorithms*, §4, and single runs of a planner on them. A free-flyer or an arm of six joints moves among 2
+//! to 512 boxes. Its states are positions, or positions and velocities; there are three metrics.
 
 mod boxes;
 mod robots;

@@ -1,8 +1,9 @@
 //! Numbered work items over the ranks of a cluster.
 //!
-//! All ranks run the same program and come to the same calls of [`run`]. The first rank is the master: it hands out the items of a
-//! [`Job`], to itself as well, one after the other as others are done, and takes their results. A result depends on its item alone, so
-//! the whole is the same for any number of ranks, whoever did what, and when.
+//! All ranks run the same program and come to the same calls of [`run`]. The first rank is the master. It
+//! hands out the items of a [`Job`] one by one, to itself too, as earlier ones are finished, and takes their
+//! results. A result depends on its item alone, so the whole is the same for any number of ranks, whoever did
+//! what, and when.
 //!
 //! - A [`Link`] carries messages. [`threads`] makes links between threads; that of MPI is elsewhere.
 //! - A [`Checkpoint`] keeps results, so that a job that was killed goes on.

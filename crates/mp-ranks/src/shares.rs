@@ -5,7 +5,8 @@ use std::fmt;
 /// Most ranks whose numbers are listed one by one.
 const LISTED: usize = 16;
 
-/// How many items each rank has done, and how much work they were, counted or timed: by these it is seen how evenly a job was spread.
+/// How many items each rank has done, and the counted or timed work in them. They show how evenly a job was
+/// spread.
 ///
 /// ```
 /// let mut shares = mp_ranks::Shares::new(3);

@@ -203,7 +203,8 @@ mod tests {
         assert!(model.normals.iter().flatten().all(|n| (n.amax() - 1.0).abs() < 1e-12));
     }
 
-    /// A large mesh is drawn as others are, but for smooth normals and edges: where faces are flat, to the last pixel.
+    /// A large mesh is drawn without smooth normals and edges. Where faces are flat its pixels are those of
+    /// the other way.
     #[test]
     fn large_meshes_are_drawn_flat() {
         let mesh = mp_geom::primitives::cuboid(1.0, 2.0, 3.0).unwrap();

@@ -39,13 +39,14 @@ impl<C: Space> Snake<'_, C> {
     /// start for [`deform`](Self::deform): the field pushes a curve that enters an obstacle by one face and leaves it by
     /// another to different sides along its length, and a curve perpendicular to a face to no side at all.
     ///
-    /// The nodes from the first to the last blocked one (without a blocked one, the node of least clearance) move together
-    /// to the side to which the field pushes them, until all have the clearance `wanted` (m), in steps of the clearance
-    /// they lack, by at most half the length of the curve. The nodes just before and after them, moved as far, are the
-    /// corners of the bulge, so that its ramps do not graze. A ramp whose middle is blocked gets one more corner, pushed
-    /// away there, and so does the first piece that `blocks` reports, where it is blocked. When the bulge is not free, the
-    /// other side is tried; where the field pushes along the curve only, the two axes most perpendicular to the curve, in
-    /// both directions.
+    /// The nodes from the first to the last blocked one move together to the side to which the field pushes
+    /// them, until all have the clearance `wanted` (m). They move in steps of the clearance they lack, by at
+    /// most half the length of the curve. If no node is blocked, the one of least clearance moves. The nodes
+    /// just before and after them, moved as far, are the corners of the bulge, so that its ramps do not
+    /// graze. A ramp whose middle is blocked gets one more corner, pushed away there, and so does the first
+    /// piece that `blocks` reports, where it is blocked. When the bulge is not free, the other side is tried;
+    /// where the field pushes along the curve only, the two axes most perpendicular to the curve, in both
+    /// directions.
     ///
     /// `blocks` is called for each piece, with which of its ends are known to be free, and returns the fraction at which
     /// the piece is blocked: `None` where it is free.

@@ -18,9 +18,9 @@ pub const BLUR: f64 = 1.0 / 3.0;
 /// The length of a step of the robot in the landscape of risk, as a part of the range.
 pub const STRIDE: f64 = 5.0 / 3.0;
 
-/// The image of a world within `bounds` (of x, then of y; m): 1 in the middles of cells where the robot `touches`
-/// something, and 0 elsewhere. 7.5 cells are as long as the `range` of repulsion (m), or more where a side would have more
-/// than 2048.
+/// The image of a world within `bounds` (of x, then of y; m). A cell is 1 if the robot `touches` something in
+/// its middle, and 0 if not. 7.5 cells are as long as the `range` of repulsion (m), or more where a side
+/// would have more than 2048.
 ///
 /// # Errors
 /// When the range is not positive and finite, or the bounds are not finite.

@@ -153,9 +153,9 @@ pub fn landscape(passing: &Grid, occupied: &Grid) -> Result<Grid, ParameterError
     Ok(passing.with_values(product.collect()))
 }
 
-/// The landscape of risk of a robot that may pass everywhere: at each place the probability that a robot which was to end a
-/// straight step of length `way` (m) there, from any direction, touches an obstacle that its range sensor has `seen` from a
-/// metre away.
+/// The landscape of risk of a robot that may pass everywhere. At each place it is the probability of touching
+/// an obstacle when a straight step of length `way` (m) was to end there, from any direction. The range
+/// sensor has `seen` the obstacles from a metre away.
 ///
 /// The cloud in which such steps end, in the mean of all directions, is taken as a Gaussian of the same variance: half the
 /// sum of the variances along the step and across it.

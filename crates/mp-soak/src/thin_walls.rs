@@ -1,4 +1,4 @@
-//! The oracle sees what is wrong with a path, for every kind of robot: a wall thinner than a hair, a wrong end, a leap.
+//! Tests of the oracle. For every kind of robot it must find walls as thin as a hair, wrong ends and leaps.
 
 #![cfg(test)]
 

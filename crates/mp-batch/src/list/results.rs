@@ -124,7 +124,7 @@ impl ResultsHeader {
         }
     }
 
-    /// What is different in `other`, but for the shard: a sentence about this one.
+    /// The first difference to `other` apart from the shard, as a sentence about this header.
     pub(super) fn difference(&self, other: &Self) -> Option<String> {
         let short = |text: &str| one_line(text, 60);
         let seconds = |time: Option<f64>| time.map_or("no --time".to_owned(), |s| format!("--time {s}"));

@@ -43,7 +43,7 @@ pub struct ManyOutcome {
     pub items: u64,
     /// How many results were in the file before.
     pub before: u64,
-    /// Those that are in the file now; while it is written by several ranks, also those that are kept until their place in it comes.
+    /// Results in the file now. While several ranks write it, results that wait for their place count too.
     pub tally: Tally,
 }
 
@@ -56,9 +56,10 @@ impl ManyOutcome {
 }
 
 impl ListedProblems {
-    /// Plans the items of a shard, and appends a line for each to the file `out`, in order: its report, or the error for which there is
-    /// none. If the file exists, the results of a run that ended early, it goes on after the last whole line; the file in the
-    /// end has the same bytes as one of a run that did not end. `progress` is called first, and after each item, in the calling thread.
+    /// Plans the items of a shard, and appends a line for each to the file `out`, in order: its report, or
+    /// the error for which there is none. If the file holds the results of a run that ended early, planning
+    /// resumes after its last whole line, and the finished file has the same bytes as that of an
+    /// uninterrupted run. `progress` is called first, and after each item, in the calling thread.
     ///
     /// When `cancel` is raised, no further item begins, and items that are not finished then leave no line.
     ///

@@ -97,7 +97,7 @@ impl<'a, 'w> Rounds<'a, 'w> {
         Ok(rounds)
     }
 
-    /// The runs that are settled before anything is handed out, but for those of rounds that are over.
+    /// The runs of open rounds that are settled before anything is handed out.
     pub(super) fn known(&self) -> HashSet<u64> {
         self.outcomes.keys().copied().collect()
     }
@@ -117,7 +117,7 @@ impl<'a, 'w> Rounds<'a, 'w> {
         self.allocation.portfolio.round_runs(self.round).filter_map(|run| self.outcomes.get(&run))
     }
 
-    /// Queues the groups of this round. When nothing is open in it, goes on to the next, or ends.
+    /// Queues the groups of this round. Begins the next round, or ends, when no run of this one is open.
     fn begin_round(&mut self) {
         loop {
             self.best = self.of_round().filter_map(RunOutcome::rank).min();

@@ -11,7 +11,8 @@ use nalgebra::{Isometry3, SVector, UnitQuaternion, Vector3};
 /// A number for each degree of freedom, of which both robots have six.
 pub(super) type Six = SVector<f64, 6>;
 
-/// What is planned for with a robot: its problem without obstacles, where obstacles are, and its inputs.
+/// A robot with all that planning needs: its problem without obstacles, where obstacles are put, and its
+/// inputs.
 #[derive(Clone, Debug)]
 pub(super) struct Setup<Sp: Space> {
     pub(super) space: Sp,

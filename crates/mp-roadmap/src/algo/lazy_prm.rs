@@ -13,10 +13,10 @@
 //!    removed, where the space is difficult; go to 2.
 //!
 //! Three things differ from the paper:
-//! - The paper does not check nodes either before a path leads through them. Where a fifth of the space is free, as in the shipped
-//!   scene `apartment`, four fifths of the neighbours are then useless, and each costs a search: with that rule 0 of 3 runs were solved
-//!   in 3 s there, and 0 of 3 in `twisty` and `gempa-3`; now all are, with a tenth of PRM's motions. A node costs one query, a search
-//!   hundreds of steps.
+//! -  The paper does not check nodes either before a path leads through them. Where a fifth of the space is
+//!   free, as in the shipped scene `apartment`, four fifths of the neighbours are then useless, and each
+//!   costs a search. With that rule none of 3 runs was solved within 3 s, there or in `twisty` and `gempa-3`.
+//!   Now all are, with a tenth of PRM's motions. A node costs one query, a search hundreds of steps.
 //! - The paper removes the first edge of a path that is not free. Here all of a path are checked, with 15 to 45% more motions but half as
 //!   many searches, which take most of the time.
 //! - The paper checks edges at coarse resolution first, then at finer ones. The checks of this library test in an order that finds

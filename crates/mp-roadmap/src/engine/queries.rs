@@ -263,11 +263,12 @@ where
         RunningQuery { roadmap: self, checker, ends: [start, goal] }.alternatives(k)
     }
 
-    /// At most `k` verified paths from `start` to `goal` that are far apart, with their lengths. The first is the shortest.
-    /// Each other one is the shortest through a node that is farther than `apart`, in the metric of the space, from all
-    /// paths before, with shortest paths to and from that node, and without a detour there: within a length of `apart` before and
-    /// behind that node no path is shorter (Abraham, Delling, Goldberg and Werneck 2013). They begin and end with the same
-    /// motions. A roadmap without cycles has only one.
+    /// At most `k` verified paths from `start` to `goal` that are far apart, with their lengths. The first is
+    /// the shortest. Each further one is the shortest path through a node that is farther than `apart`, in
+    /// the metric of the space, from all paths before it. The parts to and from that node are shortest paths.
+    /// There is no detour at the node: within a length of `apart` before and behind it no path is shorter
+    /// (Abraham, Delling, Goldberg and Werneck 2013). They begin and end with the same motions. A roadmap
+    /// without cycles has only one.
     ///
     /// # Errors
     /// When the roadmap has no path, with the reason.

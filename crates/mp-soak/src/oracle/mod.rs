@@ -1,10 +1,10 @@
 //! An oracle for paths, which shares no code with the planners: its own description of the problem, kinematics, interpolation
 //! and distances. It uses the standard library, nalgebra, and parry3d for distances of cylinders.
 //!
-//! From the crates of the project it takes only the text of a path. Each edge is halved until the distance of each pair of bodies
-//! exceeds how far they can come nearer within the part; parts that move a body by less than a billionth of the size of the
-//! problem are decided by whether the bodies touch there. So a path passes only if it is free all along, but for contacts smaller
-//! than that.
+//! From the crates of the project it takes only the text of a path. Each edge is halved until the distance of
+//! each pair of bodies exceeds the length by which they can approach each other within the part. A part that
+//! moves no body by more than a billionth of the size of the problem is decided by whether the bodies touch
+//! there. So a path passes only if it is free all along, but for contacts smaller than that.
 
 #![expect(
     clippy::disallowed_methods,

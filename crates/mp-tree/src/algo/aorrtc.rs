@@ -89,7 +89,7 @@ const RESAMPLED: usize = 100;
 /// The least part of its cost by which a path must be better.
 const GAIN: f64 = 1e-9;
 
-/// Of the nodes through which `q` costs at most `bound`, the one nearest to it in states and costs.
+/// The node nearest to `q` in states and costs, of those through which `q` costs at most `bound`.
 fn nearest_within<C: Space, E, Se: Selector<C>>(
     space: &C,
     tree: &Tree<C::State, E>,

@@ -289,11 +289,11 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
         self.list(|_, tree, arcs, interrupt| shortest_paths(arcs, 0, tree.len() as u32, k, interrupt))
     }
 
-    /// At most `k` paths that are far apart. The first is the cheapest path. Each other one is the cheapest path via a
-    /// node that is farther than `apart`, in the metric of the space, from all paths before (from points on them half a
-    /// step apart), with shortest paths to and from that node, and without a detour there: within a cost of `apart` before
-    /// and behind that node no path is cheaper. Otherwise as [`alternatives`](Self::alternatives); costs a search of the
-    /// graph for each node tried.
+    /// At most `k` paths that are far apart. The first is the cheapest path. Each further one is the cheapest
+    /// path through a node that is far from all paths before it: farther than `apart`, in the metric of the
+    /// space, from points on them half a step apart. The parts to and from that node are shortest paths.
+    /// There is no detour at the node: within a cost of `apart` before and behind it no path is cheaper.
+    /// Otherwise as [`alternatives`](Self::alternatives); costs a search of the graph for each node tried.
     ///
     /// # Errors
     /// When `apart` is negative or not a number.

@@ -17,12 +17,12 @@
 //!
 //! The seed is the first number drawn from the generator of the first step. One step is one batch.
 //!
-//! **When to use it.** Where [RRT](super::rrt) is the right planner, its motions are slow to check (a millisecond
-//! and more) and there are several cores. The samples of a batch do not see each other's nodes, so more motions are
-//! needed, especially while the tree is small: on average over 200 seeds of the example
-//! `shared_tree`, whose tree has some 200 nodes, 14% more with batches of 4, 18% with 8, 60% with 16,
-//! and 3.3 times as many with 64. Use batches of at least the number of threads, and small ones for easy
-//! problems. Where the time of a run varies much, [independent runs](super::or_parallel) gain more.
+//! **When to use it.** Where [RRT](super::rrt) is the right planner, its motions are slow to check (a
+//! millisecond and more) and there are several cores. The samples of a batch do not see each other's nodes,
+//! so more motions are needed, especially while the tree is small. In the example `shared_tree`, whose tree
+//! has some 200 nodes, batches of 4 need 14% more motions, batches of 8 18%, of 16 60%, and batches of 64
+//! need 3.3 times as many (means of 200 seeds). Use batches of at least the number of threads, and small ones
+//! for easy problems. Where the time of a run varies much, [independent runs](super::or_parallel) gain more.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
