@@ -21,7 +21,7 @@ pub(crate) const MANY: &str = "Examples:
   mp many problems.jsonl --out results.jsonl
   mp many problems.jsonl --out part-2.jsonl --shard 2/3";
 
-pub(crate) const MERGE: &str = "Example:
+pub(crate) const MERGE: &str = "Examples:
   mp merge results.jsonl part-1.jsonl part-2.jsonl part-3.jsonl";
 
 pub(crate) const CHECK: &str = r#"Examples:
@@ -34,10 +34,10 @@ pub(crate) const INFO: &str = "Examples:
   mp info easy
   mp info robot.urdf --json";
 
-pub(crate) const SRDF: &str = "Example:
+pub(crate) const SRDF: &str = "Examples:
   mp srdf robot.urdf --out robot.srdf";
 
-pub(crate) const IK: &str = r#"Example:
+pub(crate) const IK: &str = r#"Examples:
   mp ik arm --link hand --position "0.8 0.1 0.55""#;
 
 pub(crate) const RENDER: &str = "Examples:
@@ -59,8 +59,8 @@ pub(crate) const VERIFY: &str = "Examples:
   mp verify-certificate easy.json --scene easy
   mp verify-certificate easy.json --mesh robot=robot.off";
 
-pub(crate) const COMPLETIONS: &str = "Example:
+pub(crate) const COMPLETIONS: &str = "Examples:
   mp completions bash > ~/.local/share/bash-completion/completions/mp";
 
-pub(crate) const MAN: &str = "Example:
+pub(crate) const MAN: &str = "Examples:
   mp man > ~/.local/share/man/man1/mp.1";
