@@ -13,7 +13,8 @@ const AHEAD: usize = 512;
 /// each thread are drawn before the result of the first of them is taken: however many items there are,
 /// memory stays the same. Returns how many results were taken.
 ///
-/// When `cancel` is raised, or `take` breaks, no further item is drawn; `take` still gets the results of those that were, unless it broke.
+/// When `cancel` is raised, or `take` breaks, no further item is drawn; `take` still gets the results of
+/// those that were, unless it broke.
 ///
 /// ```
 /// use std::ops::ControlFlow;

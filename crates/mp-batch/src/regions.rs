@@ -9,7 +9,8 @@ use mp_ranks::{Checkpoint, ItemContext, Items, Job, Link, Options, Work};
 use std::ops::Range;
 use std::path::Path;
 
-/// Opens a file, or begins it, that keeps results of [`Scene::regions`] with this request: [`build_regions`] goes on with those in it.
+/// Opens a file, or begins it, that keeps results of [`Scene::regions`] with this request: [`build_regions`]
+/// goes on with those in it.
 ///
 /// # Errors
 /// When the file is in use, damaged, of another scene or request, or cannot be read or written.
@@ -18,9 +19,10 @@ pub fn regions_checkpoint(scene: &Scene, request: &Request, file: &Path) -> Resu
     job::checkpoint(scene, "roadmap by regions", file, &identity)
 }
 
-/// Does all of the work on a roadmap by regions on the ranks of `link`, the dearest items first. All ranks call this, with the same scene and
-/// request; the results of items are kept in the `checkpoint` of the master, and those in it are not done again. The roadmap is the same for any
-/// number of ranks and threads. `None` on all ranks but the master, and when the job was cancelled.
+/// Does all of the work on a roadmap by regions on the ranks of `link`, the dearest items first. All ranks
+/// call this, with the same scene and request; the results of items are kept in the `checkpoint` of the
+/// master, and those in it are not done again. The roadmap is the same for any number of ranks and threads.
+/// `None` on all ranks but the master, and when the job was cancelled.
 ///
 /// # Errors
 /// On the master, when an item fails or a rank cannot be reached.

@@ -1,4 +1,5 @@
-//! Every planner on shipped scenes, to the first verified path: the source of the table in `docs/choosing-a-planner.md`.
+//! Every planner on shipped scenes, to the first verified path: the source of the table in
+//! `docs/choosing-a-planner.md`.
 
 use crate::error::Result;
 use crate::experiment::{Lab, Table};
@@ -17,7 +18,8 @@ struct Case {
     seed: u64,
 }
 
-/// Runs the suite. True when it was measured completely; a planner that does not solve a scene in time is a result.
+/// Runs the suite. True when it was measured completely; a planner that does not solve a scene in time is a
+/// result.
 pub(crate) fn run(common: &Common) -> Result<bool> {
     let lab = Lab::one_at_a_time(common)?;
     let scenes = common.scenes_or(&SCENES);

@@ -6,10 +6,10 @@
 //! meshes, our verifier's trees included. Our time includes the independent verification of candidate
 //! solutions; the other program does not verify.
 //!
-//! The other program is called as
-//! `PEER --problem FILE.json --planner rrtconnect --seeds 1 --seed0 N --time S --range D`, where D is the longest step. It
-//! reads the files that [`mp_io::export_ompl`] writes, and prints a line of JSON with `solved`, `time` (seconds), `checks` and
-//! `valid_at_20x_finer` (0 when its path collides at twenty times finer steps).
+//! The other program is called as `PEER --problem FILE.json --planner rrtconnect --seeds 1 --seed0 N --time S
+//! --range
+//! D`, where D is the longest step. It reads the files that [`mp_io::export_ompl`] writes, and prints a line of JSON with `solved`, `time` (seconds), `checks` and `valid_at_20x_finer`
+//! (0 when its path collides at twenty times finer steps).
 
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table, bit, mean};

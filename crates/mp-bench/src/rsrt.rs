@@ -4,8 +4,9 @@
 //! tails. The fourth compares RRT with RSRT in worlds of 2 to 512 obstacles (§4): a free-flyer and an arm of
 //! six joints, positions alone or with velocities, three metrics.
 //!
-//! The paper stops a series when solving takes more than 60 s on a computer of 2008; `--cap` says how
-//! many seconds of processor time correspond to that here. A series also ends at the level at which no instance is solved.
+//! The paper stops a series when solving takes more than 60 s on a computer of 2008; `--cap` says how many
+//! seconds of processor time correspond to that here. A series also ends at the level at which no instance is
+//! solved.
 
 mod expansion;
 mod factorial;
@@ -52,7 +53,8 @@ enum Part {
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `rsrt`")]
 pub(crate) struct Options {
-    /// Seconds of processor time per run, in place of the paper's 60 s of 2008 [default: 6; 0.25 with --quick].
+    /// Seconds of processor time per run, in place of the paper's 60 s of 2008 [default: 6; 0.25 with
+    /// --quick].
     #[arg(long, value_name = "S", value_parser = positive_number)]
     cap: Option<f64>,
     /// A part to run [default: all].

@@ -31,8 +31,8 @@ pub enum Event<'a, S> {
         parent: NodeId,
         /// Where it is.
         state: &'a S,
-        /// The states at which the edge between them bends, in forward time: from the parent on in tree 0, to the parent in
-        /// tree 1. Empty for a straight edge.
+        /// The states at which the edge between them bends, in forward time: from the parent on in tree 0, to
+        /// the parent in tree 1. Empty for a straight edge.
         through: &'a [S],
     },
     /// A node of tree `tree` got another parent, through which it costs less.

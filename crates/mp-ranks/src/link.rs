@@ -27,8 +27,9 @@ pub trait Link {
     /// # Errors
     /// When no rank can be reached any more.
     fn poll(&self) -> Result<Option<(usize, Vec<u8>)>, Error>;
-    /// Waits until a message has arrived, someone [unparks](Thread::unpark) this thread, or as long as seems good for a link that cannot tell
-    /// that messages arrive, but not longer than `most`. May return at any time.
+    /// Waits until a message has arrived, someone [unparks](Thread::unpark) this thread, or as long as seems
+    /// good for a link that cannot tell that messages arrive, but not longer than `most`. May return at any
+    /// time.
     fn wait(&self, most: Duration) {
         std::thread::park_timeout(most.min(Duration::from_millis(1)));
     }

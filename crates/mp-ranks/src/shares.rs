@@ -48,8 +48,8 @@ impl Shares {
         &self.work
     }
 
-    /// The mean work of a rank, divided by the most: 1 when all have done the same. While the busiest one works, the others do this
-    /// part of what they could.
+    /// The mean work of a rank, divided by the most: 1 when all have done the same. While the busiest one
+    /// works, the others do this part of what they could.
     #[must_use]
     pub fn efficiency(&self) -> f64 {
         let most = self.work.iter().copied().fold(0.0, f64::max);

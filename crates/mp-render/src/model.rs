@@ -10,8 +10,8 @@ use std::collections::HashMap;
 /// Faces that meet at less than this angle are shaded as one smooth surface (cosine of 35°).
 const SMOOTH: f64 = 0.82;
 
-/// Meshes of more triangles than a picture has pixels are drawn flat and without edges, as they are: smooth normals and edges take seven times
-/// the memory of the mesh.
+/// Meshes of more triangles than a picture has pixels are drawn flat and without edges, as they are: smooth
+/// normals and edges take seven times the memory of the mesh.
 const LARGE: usize = 1 << 21;
 
 /// A mesh with the data for drawing it many times.
@@ -135,7 +135,8 @@ fn radius(points: &[Point3<f64>]) -> f64 {
     points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max)
 }
 
-/// For each corner of each triangle, the mean normal of the faces around it that are at less than 35° to its own.
+/// For each corner of each triangle, the mean normal of the faces around it that are at less than 35° to its
+/// own.
 fn smooth_normals(points: usize, triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[Vector3<f64>; 3]> {
     let mut around: Vec<Vec<u32>> = vec![Vec::new(); points];
     for (f, t) in triangles.iter().enumerate() {

@@ -32,9 +32,10 @@ where
     C: Space + 'c,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    /// A problem with `checkers` edge checkers that work at the same time, best as many as `workers` has threads.
-    /// `problem` makes the same problem on every call. The roadmap is the same to the bit for any number of checkers. Only
-    /// generators with [independent](crate::NodeGenerator::independent) attempts use them.
+    /// A problem with `checkers` edge checkers that work at the same time, best as many as `workers` has
+    /// threads. `problem` makes the same problem on every call. The roadmap is the same to the bit for any
+    /// number of checkers. Only generators with [independent](crate::NodeGenerator::independent) attempts use
+    /// them.
     ///
     /// # Errors
     /// Those of `problem`.

@@ -47,8 +47,8 @@ impl Body for Content {
     }
 }
 
-/// What the page may do: run its own modules, which are inline and `data:` addresses, and talk to this server. It loads nothing
-/// from elsewhere, and no other page shows it in a frame.
+/// What the page may do: run its own modules, which are inline and `data:` addresses, and talk to this
+/// server. It loads nothing from elsewhere, and no other page shows it in a frame.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' data: blob:; style-src 'unsafe-inline'; \
                       connect-src 'self'; img-src data: blob:; worker-src blob:; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'";

@@ -1,6 +1,7 @@
 //! Random numbers of problems: a stream for each problem, the same on every machine.
 
-/// A stream of random numbers that comes from a seed and the number of a problem only (SplitMix64 of Steele, Lea and Flood, 2014).
+/// A stream of random numbers that comes from a seed and the number of a problem only (SplitMix64 of Steele,
+/// Lea and Flood, 2014).
 #[derive(Clone, Debug)]
 pub struct Draw(u64);
 

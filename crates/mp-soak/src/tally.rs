@@ -37,7 +37,8 @@ pub struct Counts {
     pub findings: u64,
     /// The least distance of two bodies that the oracle saw on a path, as a part of the size of the world.
     pub least: Option<f64>,
-    /// Seconds that all of it took, the oracle included. The only number here that another run would not repeat.
+    /// Seconds that all of it took, the oracle included. The only number here that another run would not
+    /// repeat.
     pub seconds: f64,
 }
 

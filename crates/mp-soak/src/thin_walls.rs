@@ -136,7 +136,8 @@ fn hand(frame: usize) -> Body {
 
 #[test]
 fn arms() {
-    // The second joint turns back what the first turns: the hand goes around on a circle of radius one about (cos, sin).
+    // The second joint turns back what the first turns: the hand goes around on a circle of radius one about
+    // (cos, sin).
     let arm = tree(false, vec![turning(0, 0.0, 0), turning(1, 1.0, 1)]);
     let (a, b) = (vec![-1.0, 0.3], vec![1.0, 0.3]);
     let wall = Body::new(

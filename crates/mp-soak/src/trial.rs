@@ -283,8 +283,8 @@ impl Problem {
         trial.path = Some(text);
     }
 
-    /// Moves a configuration of a good path. Where the oracle refuses that, the verifier must refuse it too; and the verifier must
-    /// accept the path as it was.
+    /// Moves a configuration of a good path. Where the oracle refuses that, the verifier must refuse it too;
+    /// and the verifier must accept the path as it was.
     fn judge_damaged(
         &self,
         scene: &Scene,

@@ -118,7 +118,8 @@ fn covers(model: &Model) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether nothing of a body is inside of another where the path begins. Nothing can get there later: it would have to cross a boundary.
+/// Whether nothing of a body is inside of another where the path begins. Nothing can get there later: it
+/// would have to cross a boundary.
 fn begins_outside(model: &Model, solids: &[Vec<Solid>], edge: &Edge<'_>) -> Result<(), String> {
     let frames = edge.frames(0.0);
     let corners: Vec<Vec<Vec3>> = model.bodies.iter().map(witnesses).collect();

@@ -6,7 +6,8 @@ use std::collections::{BinaryHeap, HashMap};
 
 /// The cost of an item of whose kind none was handed out.
 const UNTRIED: f64 = f64::INFINITY;
-/// The cost of an item of whose kind some are worked on and none is done. They take longer than those that are done.
+/// The cost of an item of whose kind some are worked on and none is done. They take longer than those that
+/// are done.
 const UNKNOWN: f64 = f64::MAX;
 
 /// Hands out the items of a shard, the dearest first.
@@ -117,8 +118,8 @@ impl<'l> Order<'l> {
         self.left
     }
 
-    /// The place of the next item; those that are `known` are left out. `written` results are written. `None` when there is no item, at
-    /// least until more are.
+    /// The place of the next item; those that are `known` are left out. `written` results are written. `None`
+    /// when there is no item, at least until more are.
     pub(super) fn next(&mut self, written: u64, known: impl Fn(u64) -> bool) -> Option<u64> {
         loop {
             match self.pop() {

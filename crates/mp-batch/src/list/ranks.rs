@@ -33,11 +33,12 @@ impl ListedProblems {
     /// `.ahead`, until their turn. So a job that is killed loses only the items at work. The same call
     /// resumes it, on any number of ranks; so does `run`.
     ///
-    /// When `cancel` is raised, on whichever rank, no further item begins, and those that are not finished leave no result.
+    /// When `cancel` is raised, on whichever rank, no further item begins, and those that are not finished
+    /// leave no result.
     ///
     /// # Errors
-    /// As [`run`](Self::run), those of `problems`, and when `out` is a file of the list; on the master. Where a rank cannot be reached, or
-    /// has another version of the program or other scenes than the master.
+    /// As [`run`](Self::run), those of `problems`, and when `out` is a file of the list; on the master. Where
+    /// a rank cannot be reached, or has another version of the program or other scenes than the master.
     pub fn run_on(
         link: &dyn Link,
         out: &Path,

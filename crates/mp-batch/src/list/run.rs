@@ -25,7 +25,8 @@ pub struct ManyOptions {
     pub threads: usize,
     /// Whether reports have times, which differ from run to run.
     pub times: bool,
-    /// The budget of problems whose requests name none, seconds. `None` is that of [`Budget::default`](mp_plan::Budget).
+    /// The budget of problems whose requests name none, seconds. `None` is that of
+    /// [`Budget::default`](mp_plan::Budget).
     pub time_s: Option<f64>,
 }
 
@@ -74,8 +75,9 @@ impl ListedProblems {
     /// ```
     ///
     /// # Errors
-    /// When the file cannot be written, is locked by another process, is damaged, or holds results of anything else: another list or
-    /// version, other scenes, options or shards. Items that cannot be planned are no errors here.
+    /// When the file cannot be written, is locked by another process, is damaged, or holds results of
+    /// anything else: another list or version, other scenes, options or shards. Items that cannot be planned
+    /// are no errors here.
     ///
     /// # Panics
     /// When planning or `progress` panics.
@@ -120,7 +122,8 @@ impl ListedProblems {
         Ok(outcome)
     }
 
-    /// The first line of the file of results: it says which list, scenes and part these are of, so that another run can go on.
+    /// The first line of the file of results: it says which list, scenes and part these are of, so that
+    /// another run can go on.
     #[must_use]
     pub fn header(&self, options: &ManyOptions) -> ResultsHeader {
         let name = self.list.file.file_name().unwrap_or_default().to_string_lossy().into_owned();

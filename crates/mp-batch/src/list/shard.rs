@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// The part `index` of `of` parts of a list, both from 1: every item whose number, modulo `of`, is `index` − 1. As text, `2/5`.
+/// The part `index` of `of` parts of a list, both from 1: every item whose number, modulo `of`, is `index`
+/// − 1. As text, `2/5`.
 ///
 /// ```
 /// let shard: mp_batch::Shard = "2/3".parse()?;

@@ -155,8 +155,8 @@ impl<'a, 'w> Rounds<'a, 'w> {
         self.round += 1;
     }
 
-    /// What was found, the counts, what each rank did, and whether the schedule is what ended it. `cancelled` is why it was cancelled, if it
-    /// was.
+    /// What was found, the counts, what each rank did, and whether the schedule is what ended it. `cancelled`
+    /// is why it was cancelled, if it was.
     pub(super) fn into_found(
         self,
         cancelled: Option<StopReason>,
@@ -193,7 +193,8 @@ impl<'a, 'w> Rounds<'a, 'w> {
             None => {
                 let mut progress = Progress::new(sums.iterations, sums.nodes, sums.motions);
                 progress.rejected = sums.rejected;
-                // Where all runs have tried all they can, that is why; otherwise what ended the first that has not.
+                // Where all runs have tried all they can, that is why; otherwise what ended the first that
+                // has not.
                 let last = ended.iter().copied().find(|reason| *reason != StopReason::Exhausted);
                 let reason = of_machine.or(last);
                 by_schedule = reason.is_none() && capped;

@@ -126,7 +126,8 @@ struct Measured {
     guards: f64,
     estimate: f64,
     seen: Seen,
-    /// The sizes to see as much, and to see as much from the largest component; `None` when no size was enough.
+    /// The sizes to see as much, and to see as much from the largest component; `None` when no size was
+    /// enough.
     many: [Option<Needed>; 2],
 }
 

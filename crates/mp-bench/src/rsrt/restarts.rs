@@ -1,5 +1,5 @@
-//! Restarts: Las Vegas algorithms with heavy tails, started again by schedules that do not know the distribution of their
-//! run lengths.
+//! Restarts: Las Vegas algorithms with heavy tails, started again by schedules that do not know the
+//! distribution of their run lengths.
 
 use super::in_scene::in_scene;
 use crate::error::Result;

@@ -4,8 +4,8 @@ use crate::{MotionCheck, MotionValidity, PolylineEdge};
 
 /// Verifies states and edges of a candidate path, sharing nothing with the local planner.
 ///
-/// Every [`MotionValidity`] verifies edges that are the space's own interpolation (`E = ()`), also through vertices
-/// ([`PolylineEdge`]). Local planners with other edges need a verifier that replays them.
+/// Every [`MotionValidity`] verifies edges that are the space's own interpolation (`E = ()`), also through
+/// vertices ([`PolylineEdge`]). Local planners with other edges need a verifier that replays them.
 pub trait Verify<S, E> {
     /// Checks the motion from `q` to itself: whether the state is free.
     fn verify_state(&mut self, q: &S) -> MotionCheck;

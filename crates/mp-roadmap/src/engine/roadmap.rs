@@ -66,7 +66,8 @@ impl MilestoneKind {
 pub struct Tag {
     /// What it is in the roadmap: planners of guards tell them from connections.
     pub kind: MilestoneKind,
-    /// The obstacle it belongs to, or of a [roadmap by regions](crate::algo::regional_prm) the region, if any.
+    /// The obstacle it belongs to, or of a [roadmap by regions](crate::algo::regional_prm) the region, if
+    /// any.
     pub obstacle: Option<u32>,
     /// How often a connection to another node was tried.
     pub tried: u32,
@@ -85,7 +86,8 @@ pub enum LinkState {
     Blocked,
 }
 
-/// The number of an edge: edges are numbered from 0 in the order in which they were added, and never renumbered.
+/// The number of an edge: edges are numbered from 0 in the order in which they were added, and never
+/// renumbered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct EdgeId(pub u32);
 
@@ -114,8 +116,9 @@ pub struct Link<E> {
 
 /// A roadmap: configurations as nodes and motions as edges, which can be run in both directions.
 ///
-/// Nodes are numbered in the order in which they were added, and never renumbered; edges are blocked rather than removed.
-/// Components are kept up to date; after an edge was blocked, the next query of components visits all edges.
+/// Nodes are numbered in the order in which they were added, and never renumbered; edges are blocked rather
+/// than removed. Components are kept up to date; after an edge was blocked, the next query of components
+/// visits all edges.
 #[derive(Clone, Debug)]
 pub struct Roadmap<S, E = ()> {
     states: Vec<S>,
@@ -129,7 +132,8 @@ pub struct Roadmap<S, E = ()> {
     mark: Option<Mark>,
 }
 
-/// A roadmap at some moment: how many nodes, edges and blocked edges it had, and what else changed since, in order.
+/// A roadmap at some moment: how many nodes, edges and blocked edges it had, and what else changed since, in
+/// order.
 #[derive(Clone, Debug)]
 struct Mark {
     nodes: usize,

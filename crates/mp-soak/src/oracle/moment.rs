@@ -295,7 +295,8 @@ const HALF_TURN: f64 = 1e-6;
 const STEP: f64 = 0.01;
 
 impl<'e> Edge<'e> {
-    /// The way from `from` to `to` that path files mean; `other_way` for the other one where there are two shortest ways.
+    /// The way from `from` to `to` that path files mean; `other_way` for the other one where there are two
+    /// shortest ways.
     pub(super) fn new(case: &'e Case, from: &'e Moment, to: &Row<'_>, other_way: bool) -> Self {
         match &case.drive {
             None => Self::even(case, from, &to.moment, other_way),

@@ -134,9 +134,9 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         self.growing(target, Purpose::Join, checker, rng, observer).insert(from, extension)
     }
 
-    /// Verifies the path between a root and `id`, edge by edge from the root; each edge is verified once. `false` when an
-    /// edge fails: the subtree below it is pruned (unless the checker was interrupted), and `pruned` is called with
-    /// the former ids of the remaining nodes, before observers are.
+    /// Verifies the path between a root and `id`, edge by edge from the root; each edge is verified once.
+    /// `false` when an edge fails: the subtree below it is pruned (unless the checker was interrupted), and
+    /// `pruned` is called with the former ids of the remaining nodes, before observers are.
     pub fn verify(
         &mut self,
         id: NodeId,
