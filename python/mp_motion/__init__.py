@@ -16,7 +16,17 @@ from ._mp import Cancel
 from ._own import Robot, Space
 from ._planners import Parameter, PlannerInfo, meta_planners, metrics, planners, scenes
 from ._progress import Progress
-from ._report import Column, Contact, Explanation, Finished, Report, StageTime, Verdict
+from ._report import (
+    Column,
+    Contact,
+    Explanation,
+    Finished,
+    Report,
+    StageTime,
+    TightCorner,
+    Trajectory,
+    Verdict,
+)
 from ._results import Results, read_results
 from ._roadmap import Roadmap
 from ._scene import Options, Scene
@@ -79,6 +89,8 @@ __all__ = [
     "Space",
     "Sphere",
     "StageTime",
+    "TightCorner",
+    "Trajectory",
     "Verdict",
     "matrix_from_pose",
     "meta_planners",

@@ -11,12 +11,16 @@ if TYPE_CHECKING:
 class Error(Exception):
     """Something given is not valid: a file, a scene, a request, a start in collision.
 
+    Where an argument is not valid it is a ``ValueError`` too; where a file is not, an ``OSError``, and a ``FileNotFoundError``
+    where it is missing. An argument of a wrong type is a ``TypeError``.
+
     Attributes
     ----------
     message : str
         What is wrong.
     kind : str
-        What it is about: ``"start-not-free"``, ``"goal-not-free"``, ``"planner"``, ``"request"``, ``"file"`` or ``"other"``.
+        What it is about: ``"start-not-free"``, ``"goal-not-free"``, ``"planner"``, ``"request"``, ``"missing"``, ``"file"`` or
+        ``"other"``.
     remedy : str or None
         What to do about it.
     file : str or None
@@ -51,6 +55,26 @@ class Error(Exception):
         return _error, (self.message, self.kind, self.remedy, self.file, self.line, self.column, self.report)
 
 
+class RequestError(Error, ValueError):
+    """An argument is not valid."""
+
+
+class FileError(Error, OSError):
+    """A file is not valid, or cannot be read or written."""
+
+
+class MissingError(Error, FileNotFoundError):
+    """There is no such file."""
+
+
+_CLASSES: dict[str, type[Error]] = {
+    "planner": RequestError,
+    "request": RequestError,
+    "file": FileError,
+    "missing": MissingError,
+}
+
+
 def _report(message: str, remedy: str | None) -> str:
     return f"error: {message}" if remedy is None else f"error: {message}\n  help: {remedy}"
 
@@ -58,7 +82,8 @@ def _report(message: str, remedy: str | None) -> str:
 def _error(
     message: str, kind: str, remedy: str | None, file: str | None, line: int | None, column: int | None, report: str
 ) -> Error:
-    return Error(message, kind=kind, remedy=remedy, file=file, line=line, column=column, report=report)
+    """Make an exception of the class for its kind."""
+    return _CLASSES.get(kind, Error)(message, kind=kind, remedy=remedy, file=file, line=line, column=column, report=report)
 
 
 class InternalError(RuntimeError):

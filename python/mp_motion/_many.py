@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TypeAlias
 
 from . import _mp
+from ._arguments import whole
 from ._errors import Error
 from ._mp import Cancel
 from ._report import Report
@@ -66,8 +67,7 @@ def plan_many(
     """
     if threads is None:
         threads = os.cpu_count() or 1
-    if threads < 1:
-        raise Error(f"{threads} threads cannot plan", remedy="give one or more")
+    whole("threads", threads, 1)
     given = [problems] if isinstance(problems, Scene) else problems
     return _results(given, options or Options(), None if seeds is None else list(seeds), threads, cancel)
 

@@ -9,7 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._errors import Error
+from ._arguments import number
+from ._errors import RequestError
 from ._shapes import Array
 
 #: Whether a configuration is free.
@@ -51,22 +52,27 @@ class Space:
     names: Sequence[str] | None = None
     units: str | Sequence[str] = ""
 
+    def __post_init__(self) -> None:
+        self._columns(len(self._bounds()[0]))
+
     def _bounds(self) -> tuple[Array, Array]:
         low, high = (np.atleast_1d(np.asarray(end, dtype=np.float64)) for end in (self.low, self.high))
         if low.ndim != 1 or low.shape != high.shape:
-            raise Error(
+            raise RequestError(
                 f"the bounds of a space have shapes {low.shape} and {high.shape}",
                 remedy="give as many highest as lowest values",
             )
         if not (np.all(np.isfinite(low)) and np.all(np.isfinite(high)) and np.all(low < high)):
-            raise Error("a bound of a space is not finite, or not below the other", remedy="give finite `low` < `high`")
+            raise RequestError("a bound of a space is not finite, or not below the other", remedy="give finite `low` < `high`")
         return low, high
 
     def _columns(self, count: int) -> list[tuple[str, str]]:
         names = [f"q{i + 1}" for i in range(count)] if self.names is None else list(self.names)
         units = [self.units] * count if isinstance(self.units, str) else list(self.units)
         if len(names) != count or len(units) != count:
-            raise Error(f"{len(names)} names and {len(units)} units for {count} numbers", remedy="give one for each number")
+            raise RequestError(
+                f"{len(names)} names and {len(units)} units for {count} numbers", remedy="give one for each number"
+            )
         return list(zip(names, units, strict=True))
 
 
@@ -127,14 +133,15 @@ class Robot:
     name: str = "robot"
 
     def __post_init__(self) -> None:
+        number("tolerance", self.tolerance, above=0)
         if (self.clearance is None) != (self.displacement is None):
-            raise Error(
+            raise RequestError(
                 "`clearance` and `displacement` belong together",
                 remedy="give both, and motions are proved free; or give `valid` alone",
             )
         given = [check for check in (self.valid, self.valid_many, self.clearance) if check is not None]
         if len(given) != 1:
-            raise Error(
+            raise RequestError(
                 f"a robot has one check, and {len(given)} are given",
                 remedy="give `valid`, or `valid_many`, or `clearance` with `displacement`",
             )
@@ -167,7 +174,7 @@ def native(robot: Robot) -> NativeRobot:
         periodic: list[bool] = np.broadcast_to(np.asarray(robot.space.periodic, dtype=np.bool_), low.shape).tolist()
         weights: list[float] = np.broadcast_to(np.asarray(robot.space.weights, dtype=np.float64), low.shape).tolist()
     except ValueError as e:
-        raise Error(
+        raise RequestError(
             f"`periodic` or `weights` do not fit {len(low)} numbers: {e}", remedy="give one for each, or one for all"
         ) from e
     return NativeRobot(

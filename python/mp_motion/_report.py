@@ -79,6 +79,17 @@ class InScene:
         """
         self._of_scene().show(self._itself())
 
+    def resample(self, count: int) -> Array:
+        """Return so many configurations at equal distances along the path: see :meth:`Scene.resample`.
+
+        Examples
+        --------
+        >>> report = mp.Scene("easy").plan()
+        >>> report.resample(50).shape
+        (50, 6)
+        """
+        return self._of_scene().resample(self._itself(), count)
+
     def save(self, file: File) -> None:
         """Write the path, a picture, a film or a page: see :meth:`Scene.save`.
 
@@ -88,6 +99,11 @@ class InScene:
             When it was read back without its scene: then use ``scene.save(file, path)``.
         """
         self._of_scene().save(file, self._itself())
+
+    def trajectory(self, *, velocity: float = 1.0, acceleration: float = 1.0, deviation: float = 0.1) -> Trajectory:
+        """Give the path of an arm times, and prove the curve that a controller runs: see :meth:`Scene.trajectory`."""
+        scene = self._of_scene()
+        return scene.trajectory(self._itself(), velocity=velocity, acceleration=acceleration, deviation=deviation)
 
     def _itself(self) -> Report | Finished:
         assert isinstance(self, Report | Finished)
@@ -271,6 +287,92 @@ class Finished(InScene):
 
 
 @dataclass(frozen=True)
+class TightCorner:
+    """A corner of a path that had to be rounded less than was allowed, for the curve to be free.
+
+    Attributes
+    ----------
+    configuration : int
+        The number of the configuration of the path, from 1.
+    time : float
+        When the trajectory is there, seconds.
+    deviation : float
+        How far from it the trajectory passes, in radians and metres of all joints together; 0 where it stops.
+    """
+
+    configuration: int
+    time: float
+    deviation: float
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """A path with times, whose curve is proved free.
+
+    Attributes
+    ----------
+    columns : tuple of Column
+        Name and unit of each joint.
+    times : ndarray, shape (n,)
+        Seconds.
+    positions, velocities : ndarray, shape (n, joints)
+        Radians or metres, and these per second.
+    curve : str
+        The curve between the points: ``cubic``, with the positions and velocities of both.
+    clearance : float
+        A lower bound along the curve from its proof, metres; ``inf`` where there is nothing to hit.
+    tightened : tuple of TightCorner
+        Corners that were rounded less than was allowed.
+    notes : tuple of str
+        Which limits were taken where none are known.
+    """
+
+    columns: tuple[Column, ...]
+    times: Array
+    positions: Array
+    velocities: Array
+    curve: str
+    clearance: float
+    tightened: tuple[TightCorner, ...]
+    notes: tuple[str, ...]
+    _scene: Scene = field(repr=False)
+
+    @property
+    def duration(self) -> float:
+        """How long it takes, seconds."""
+        return float(self.times[-1] - self.times[0])
+
+    def save(self, file: File) -> None:
+        """Write it as ``.csv``, or as JointTrajectory of ROS in ``.json`` or ``.yaml``."""
+        self._scene._save_trajectory(file, self)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return it as a table: the time, then the positions and the velocities of the joints, named with units."""
+        import pandas as pd
+
+        names = [f"{c.name} ({c.unit})" for c in self.columns]
+        names += [f"{c.name}_velocity ({c.unit}/s)" for c in self.columns]
+        table = pd.DataFrame(np.hstack([self.positions, self.velocities]), columns=names)
+        table.insert(0, "time (s)", self.times)
+        return table
+
+
+def trajectory(text: str, scene: Scene) -> Trajectory:
+    """Make a trajectory of its JSON form."""
+    m: dict[str, Any] = json.loads(text)
+    rows = {name: np.array(m[name], dtype=np.float64) for name in ("times", "positions", "velocities")}
+    return Trajectory(
+        columns=tuple(scene.columns),
+        **rows,
+        curve=m["curve"],
+        clearance=float("inf") if m["clearance"] is None else m["clearance"],
+        tightened=tuple(TightCorner(**corner) for corner in m["tightened"]),
+        notes=tuple(m["notes"]),
+        _scene=scene,
+    )
+
+
+@dataclass(frozen=True)
 class Verdict:
     """The result of checking a path.
 
@@ -288,6 +390,9 @@ class Verdict:
         A lower bound along the path, metres; 0 when it is not free, or none is known, ``inf`` where there is nothing to hit.
     faults : tuple of str
         What is wrong. Empty when the path is free.
+    trajectory : dict or None
+        Of a trajectory ``duration``, ``curve``, ``least_at``, ``collides_at`` and ``limits``, which
+        docs/formats/report.md describes.
     """
 
     scene: str
@@ -297,6 +402,7 @@ class Verdict:
     clearance: float
     faults: tuple[str, ...]
     clearance_kept: float = 0.0
+    trajectory: dict[str, Any] | None = None
 
     def __bool__(self) -> bool:
         return self.free
@@ -367,6 +473,7 @@ def verdict(text: str) -> Verdict:
         clearance=_number(m["clearance"]),
         faults=tuple(m["faults"]),
         clearance_kept=m.get("clearance_kept", 0.0),
+        trajectory=m.get("trajectory"),
     )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from numpy.typing import ArrayLike
 
 from . import _mp
+from ._arguments import number, whole
 from ._errors import Interrupted
 from ._mp import Cancel
 from ._progress import Progress, reporter
@@ -86,7 +87,9 @@ class Roadmap:
         progress, cancel
             As of :meth:`Scene.plan`.
         """
-        budget = {"time_s": time, "iterations": iterations, "queries": queries, "nodes": nodes}
+        wholes = {"iterations": iterations, "queries": queries, "nodes": nodes}
+        given = {name: None if value is None else whole(name, value, 1) for name, value in wholes.items()}
+        budget = {"time_s": None if time is None else number("time", time, above=0), **given}
         with reporter(progress) as tell:
             self._native.grow(json.dumps(budget), cancel, tell)
 

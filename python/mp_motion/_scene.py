@@ -7,7 +7,7 @@ import json
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias, cast
+from typing import Any, Literal, TypeAlias, cast, get_args
 
 import numpy as np
 import tomli_w
@@ -15,12 +15,13 @@ from numpy.lib import recfunctions
 from numpy.typing import ArrayLike, NDArray
 
 from . import _mp, _view
+from ._arguments import choice, flag, motion, number, text, whole
 from ._errors import Error, Interrupted
 from ._mp import Cancel
 from ._names import MetricName, PlannerName
 from ._own import Robot, native
 from ._progress import Progress, reporter
-from ._report import Column, Explanation, Finished, Report, Verdict, explanation, verdict
+from ._report import Column, Explanation, Finished, Report, Trajectory, Verdict, explanation, trajectory, verdict
 from ._roadmap import Roadmap
 from ._shapes import (
     Array,
@@ -73,6 +74,33 @@ class Options:
     clearance: float = 0.0
     sharp_clearance: bool = False
 
+    def __post_init__(self) -> None:
+        """Check each option, so that an error names it.
+
+        Raises
+        ------
+        TypeError
+            When an option has a wrong type.
+        Error
+            When its value is not possible; a ``ValueError`` too.
+        """
+        if self.planner is not None:
+            text("planner", self.planner)
+        whole("seed", self.seed)
+        whole("threads", self.threads, 1)
+        if self.time is not None:
+            number("time", self.time, above=0)
+        for name in ("iterations", "queries", "nodes"):
+            if getattr(self, name) is not None:
+                whole(name, getattr(self, name), 1)
+        choice("metric", self.metric, get_args(MetricName))
+        motion(self.motion)
+        choice("finish", self.finish, get_args(Finish))
+        text("field", self.field)
+        number("clearance", self.clearance, least=0)
+        flag("first_only", self.first_only)
+        flag("sharp_clearance", self.sharp_clearance)
+
     def to_json(self, scene: Scene) -> str:
         """Return the request as ``mp plan --request`` reads it, with the planner that suits the scene if none is named."""
         return json.dumps(
@@ -87,7 +115,7 @@ class Options:
                 "threads": int(self.threads),
                 "finish": self.finish,
                 "field": self.field,
-                "first_only": self.first_only,
+                "first_only": bool(self.first_only),
                 **({"sharp_clearance": True} if self.sharp_clearance else {}),
                 "roadmap": None if self.roadmap is None else os.fspath(self.roadmap),
             }
@@ -105,9 +133,9 @@ def budget(time: float | None, iterations: int | None, queries: int | None, node
     """Return the budget of a request."""
     return {
         "time_s": None if time is None else float(time),
-        "iterations": iterations,
-        "queries": queries,
-        "nodes": nodes,
+        "iterations": None if iterations is None else int(iterations),
+        "queries": None if queries is None else int(queries),
+        "nodes": None if nodes is None else int(nodes),
     }
 
 
@@ -795,6 +823,7 @@ class Scene:
             Without any route, one report that says why.
         """
         options = options or Options(planner="cyclic-rrt")
+        whole("count", count, 1)
         with reporter(progress) as tell:
             reports, raised = self._native.routes(options.to_json(self), count, str(apart), cancel, tell)
         if raised is not None:
@@ -803,7 +832,7 @@ class Scene:
 
     def roadmap(
         self,
-        options: Options | None = None,
+        options: Options | PlannerName | str | None = None,
         *,
         progress: bool | Callable[[Progress], object] = False,
         cancel: Cancel | None = None,
@@ -812,8 +841,9 @@ class Scene:
 
         Parameters
         ----------
-        options : Options, optional
-            How to build it: a planner that builds roadmaps (``prm``, unless another is named) and a budget, best of nodes.
+        options : Options or str, optional
+            How to build it: a planner that builds roadmaps (``prm``, unless another is named) and a budget, best of nodes; or
+            such a planner alone, for a roadmap of 2,000 nodes.
         progress, cancel
             As of :meth:`plan`.
 
@@ -824,7 +854,8 @@ class Scene:
         >>> roadmap.query(scene.goals[0], scene.start).solved
         True
         """
-        options = options or Options(planner="prm", nodes=2000)
+        if not isinstance(options, Options):
+            options = Options(planner=options or "prm", nodes=2000)
         with reporter(progress) as tell:
             native = self._native.roadmap(options.to_json(self), cancel, tell)
         return Roadmap._from(native, self)
@@ -888,6 +919,52 @@ class Scene:
         """
         return verdict(self._native.check(self._path(path)))
 
+    def check_trajectory(self, file: File, *, curve: str = "controller") -> Verdict:
+        """Verify the curve of a trajectory of an arm, whoever made it.
+
+        Parameters
+        ----------
+        file : str or path
+            ``.csv`` with times, or JointTrajectory of ROS as ``.json`` or ``.yaml``, also in messages of MoveIt.
+        curve : str
+            What a controller runs between points: ``controller``, as joint_trajectory_controller of ROS does, ``linear``,
+            ``cubic`` or ``quintic``.
+
+        Returns
+        -------
+        Verdict
+            True when the curve is free, within the limits of the joints that are known, and leads from the start to a goal.
+        """
+        return verdict(self._native.check_trajectory(os.fspath(file), curve))
+
+    def trajectory(
+        self, path: PathRows, *, velocity: float = 1.0, acceleration: float = 1.0, deviation: float = 0.1
+    ) -> Trajectory:
+        """Give a path of an arm times: as fast as the limits of its joints allow, with rounded corners; and prove the curve.
+
+        Parameters
+        ----------
+        path : array_like, shape (n, columns), or Report or Finished
+            A path that is free.
+        velocity, acceleration : float
+            The part of the limits that is used.
+        deviation : float
+            How far from corners it may pass, in radians and metres of all joints together, where that is free; 0: it stops
+            at each.
+
+        Examples
+        --------
+        >>> made = mp.Scene("arm-6").plan().trajectory(velocity=0.5)
+        >>> bool(made.duration > 1), bool(abs(made.velocities).max() <= 0.5 * 3.1416)
+        (True, True)
+        """
+        return trajectory(self._native.time(self._path(path), velocity, acceleration, deviation), self)
+
+    def _save_trajectory(self, file: File, made: Trajectory) -> None:
+        name = os.fspath(file)
+        text = self._native.trajectory_text(name, made.times.tolist(), made.positions, made.velocities)
+        self._native.write(name, text.encode())
+
     def explain(self, configuration: ArrayLike) -> Explanation:
         """Explain a configuration: whether it is free, how near to contact, what touches, where it would be free.
 
@@ -921,6 +998,20 @@ class Scene:
         """
         clearance = path.clearance or 0.0 if isinstance(path, Report | Finished) else 0.0
         return self._native.certificate(self._path(path), clearance)
+
+    def resample(self, path: PathRows, count: int) -> Array:
+        """Return so many configurations at equal distances along a path, shape (count, columns), from its first to its last.
+
+        All are on the path; its corners need not be among them. Angles without limits go on from row to row.
+
+        Parameters
+        ----------
+        path : array_like, shape (n, columns), or Report or Finished
+            Not of a robot that moves by inputs.
+        count : int
+            How many, two or more.
+        """
+        return self._native.resample(self._path(path), whole("count", count, 2))
 
     def read_path(self, file: File) -> Array:
         """Read a path from a text, CSV or JSON file, shape (n, columns)."""

@@ -3,7 +3,6 @@
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyDict;
 
 /// An exception of the Python half, by the name of its class.
 fn class<'py>(py: Python<'py>, known: &PyOnceLock<Py<PyAny>>, name: &str) -> PyResult<Bound<'py, PyAny>> {
@@ -18,16 +17,11 @@ pub(crate) fn to_python(error: &mp_plan::Error) -> PyErr {
     static CLASS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     Python::attach(|py| {
         let make = || {
-            let members = PyDict::new(py);
             let file = error.file();
-            members.set_item("message", error.message())?;
-            members.set_item("kind", error.kind().name())?;
-            members.set_item("remedy", error.remedy())?;
-            members.set_item("file", file.map(mp_io::Error::file))?;
-            members.set_item("line", file.and_then(mp_io::Error::line))?;
-            members.set_item("column", file.and_then(mp_io::Error::column))?;
-            members.set_item("report", error.report())?;
-            class(py, &CLASS, "Error")?.call((), Some(&members))
+            let place = [file.and_then(mp_io::Error::line), file.and_then(mp_io::Error::column)];
+            let (kind, name) = (error.kind().name(), file.map(mp_io::Error::file));
+            let members = (error.message(), kind, error.remedy(), name, place[0], place[1], error.report());
+            class(py, &CLASS, "_error")?.call1(members)
         };
         make().map_or_else(|e| e, PyErr::from_value)
     })

@@ -9,7 +9,10 @@ use crate::report::{ReportParts, array, parts, rows};
 use crate::roadmap::Roadmap;
 use mp_geom::TriMesh;
 use mp_io::{Content, Disk, Files, Until};
-use mp_plan::{Control, Interrupt, Length, PathFileKind, Request};
+use mp_plan::{
+    Control, Interpolation, Interrupt, Knots, Length, Pace, PathFileKind, Request, TimedPath, Trajectory,
+    TrajectoryKind,
+};
 use mp_store::FileId;
 use nalgebra::Point3;
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
@@ -70,10 +73,17 @@ type FinishedParts<'py> = (Bound<'py, PyArray2<f64>>, f64, Option<f64>, bool);
 pub(crate) fn request(json: &str) -> PyResult<Request> {
     serde_json::from_str(json).map_err(|e| {
         to_python(
-            &mp_plan::Error::new(format!("the request is not valid: {e}"))
-                .help("see help(mp_motion.Scene.plan) for its options"),
+            &mp_plan::Error::new(format!("an option is not valid: {}", without_place(&e)))
+                .help("see help(mp_motion.Scene.plan) for its options")
+                .of_kind(mp_plan::ErrorKind::Request),
         )
     })
+}
+
+/// What is wrong with some JSON, without the place in it, as nobody has seen the text.
+pub(crate) fn without_place(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    text.split_once(" at line ").map_or(text.clone(), |(what, _)| what.to_owned())
 }
 
 /// Loads by `job`, which gets what to ask whether to end.
@@ -383,6 +393,80 @@ impl Scene {
         json(&verdict.to_python()?)
     }
 
+    /// Times a path, and proves its curve: the trajectory as JSON.
+    fn time(
+        &self,
+        py: Python<'_>,
+        path: PyReadonlyArray2<'_, f64>,
+        velocity: f64,
+        acceleration: f64,
+        deviation: f64,
+    ) -> PyResult<String> {
+        let path = self.rows(rows(&path));
+        let cancel = mp_plan::Cancel::new();
+        let interrupt = Interrupt::new(cancel.clone());
+        let pace = Pace { velocity, acceleration, deviation };
+        let (timed, raised) = self.work(py, &cancel, None, |_| self.scene.time(&path, &pace, &interrupt))?;
+        raised.map_or(Ok(()), Err)?;
+        let TimedPath { trajectory, tightened, clearance, notes, .. } = timed.to_python()?;
+        let Knots { times, positions, velocities, .. } = trajectory.knots();
+        // Infinity, where there is nothing to hit, is no number in JSON.
+        let clearance = clearance.is_finite().then_some(clearance);
+        json(&serde_json::json!({
+            "times": times,
+            "positions": positions,
+            "velocities": velocities,
+            "curve": trajectory.interpolation().to_string(),
+            "clearance": clearance,
+            "tightened": tightened,
+            "notes": notes,
+        }))
+    }
+
+    /// A trajectory as the content of a file of this name.
+    fn trajectory_text(
+        &self,
+        file: PathBuf,
+        times: Vec<f64>,
+        positions: PyReadonlyArray2<'_, f64>,
+        velocities: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<String> {
+        let Some(kind) = TrajectoryKind::of(&file) else {
+            let message = format!("{}: name a file that ends in .csv, .json or .yaml", file.display());
+            return Err(PyValueError::new_err(message));
+        };
+        let columns = self.scene.columns();
+        let joints = columns.iter().map(|column| (column.name.as_str(), column.unit.as_str()));
+        let (positions, velocities) = (rows(&positions), rows(&velocities));
+        let knots = Knots { times, positions, velocities, ..Knots::default() };
+        let made = Trajectory::of_controller(joints, knots);
+        let made = made.map_err(|e| PyValueError::new_err(e.to_string()))?;
+        Ok(mp_plan::trajectory_text(&made, kind))
+    }
+
+    /// Checks the trajectory in a file, as JSON. `curve` is that between its points, or `controller`.
+    fn check_trajectory(&self, py: Python<'_>, file: PathBuf, curve: &str) -> PyResult<String> {
+        let curve = match curve {
+            "controller" => None,
+            "linear" => Some(Interpolation::Linear),
+            "cubic" => Some(Interpolation::Cubic),
+            "quintic" => Some(Interpolation::Quintic),
+            other => {
+                let message = format!("the curve is `{other}`, not controller, linear, cubic or quintic");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        let Some(read) = self.scene.read_trajectory(&file, curve).to_python()? else {
+            return Err(PyValueError::new_err(format!("{} has no times", file.display())));
+        };
+        let cancel = mp_plan::Cancel::new();
+        let interrupt = Interrupt::new(cancel.clone());
+        let (verdict, raised) =
+            self.work(py, &cancel, None, |_| self.scene.check_trajectory(&read, &interrupt))?;
+        raised.map_or(Ok(()), Err)?;
+        json(&verdict.to_python()?)
+    }
+
     /// The certificate of a path as JSON.
     fn certificate(
         &self,
@@ -460,7 +544,19 @@ impl Scene {
             let what = format!("{} is a file of the scene", file.display());
             return Err(to_python(&mp_plan::Error::new(what).help("write to another file")));
         }
-        py.detach(|| mp_plan::write_file(&file, content)).to_python()
+        py.detach(|| mp_store::write(&file, content)).to_python()
+    }
+
+    /// Configurations at equal distances along a path.
+    fn resample<'py>(
+        &self,
+        py: Python<'py>,
+        path: PyReadonlyArray2<'py, f64>,
+        count: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let path = self.rows(rows(&path));
+        let along = py.detach(|| self.scene.resample(&path, count)).to_python()?;
+        array(py, &along, self.scene.columns().len())
     }
 
     /// Reads a path from a file.

@@ -9,6 +9,7 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote, urlparse
 
 import numpy as np
@@ -345,3 +346,113 @@ def test_the_page_is_there_when_the_program_has_ended(folder: Path) -> None:
     done = subprocess.run([sys.executable, "-c", script], env=environment, check=True, capture_output=True, text=True)
     page = Path(unquote(urlparse(done.stdout.strip()).path))
     assert page.parent == folder and page.suffix == ".html" and "<script" in page.read_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "kind"),
+    [
+        ("seed", 1.9, TypeError),
+        ("seed", "1", TypeError),
+        ("seed", True, TypeError),
+        ("seed", -1, ValueError),
+        ("seed", 2**70, ValueError),
+        ("threads", -1, ValueError),
+        ("threads", 1.5, TypeError),
+        ("time", math.nan, ValueError),
+        ("time", -1, ValueError),
+        ("time", "1", TypeError),
+        ("iterations", 1.5, TypeError),
+        ("iterations", -3, ValueError),
+        ("nodes", True, TypeError),
+        ("queries", 0, ValueError),
+        ("finish", "shortn", ValueError),
+        ("metric", "euclid", ValueError),
+        ("motion", "discreet", ValueError),
+        ("clearance", math.inf, ValueError),
+        ("clearance", -1, ValueError),
+        ("first_only", 1, TypeError),
+        ("planner", 7, TypeError),
+    ],
+)
+def test_wrong_arguments_are_named(name: str, value: object, kind: type[Exception]) -> None:
+    """An error names the argument, and is of the customary kind, before anything is planned."""
+    for make in (mp.Options, mp.Scene("easy").plan):
+        wrong: Any = {name: value}
+        with pytest.raises(kind, match=name) as raised:
+            make(**wrong)
+        assert "line 1" not in str(raised.value)
+        assert isinstance(raised.value, mp.Error) == (kind is ValueError)
+
+
+def test_errors_are_of_the_customary_kinds(tmp_path: Path) -> None:
+    """Errors are also what other libraries raise, and no folder is made."""
+    scene = mp.Scene("easy")
+    with pytest.raises(ValueError, match="rrtt"):
+        scene.plan("rrtt")
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        mp.Scene("nowhere")
+    broken = tmp_path / "broken.toml"
+    broken.write_text("[robot]\nurdf =")
+    with pytest.raises(OSError, match="broken") as raised:
+        mp.Scene(broken)
+    assert isinstance(raised.value, mp.Error)
+    assert isinstance(pickle.loads(pickle.dumps(raised.value)), OSError)
+    with pytest.raises(FileNotFoundError):
+        scene.save(tmp_path / "there" / "scene.html")
+    assert not (tmp_path / "there").exists()
+    with pytest.raises(TypeError, match="count"):
+        scene.routes(1.5)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(ValueError, match="bound"):
+        mp.Space([0], [math.nan])
+    assert scene.roadmap("prm").nodes == 2000
+
+
+def test_paths_are_resampled() -> None:
+    """Configurations at equal distances, on the path, and free."""
+    scene = mp.Scene("arm")
+    report = scene.plan(seed=1)
+    assert report.path is not None
+    rows = report.resample(200)
+    assert rows.shape == (200, 6)
+    assert np.array_equal(rows[0], report.path[0])
+    assert np.allclose(rows[-1], report.path[-1], atol=1e-12)
+    steps = np.linalg.norm(np.diff(rows, axis=0), axis=1)
+    assert steps.max() < 1.01 * np.median(steps)
+    assert all(scene.is_free(row) for row in rows)
+    with pytest.raises(ValueError, match="count"):
+        report.resample(1)
+    parking = mp.Scene("parking")
+    with pytest.raises(mp.Error, match="inputs"):
+        parking.resample(np.zeros((2, len(parking.columns))), 5)
+
+
+def test_paths_of_arms_get_times(tmp_path: Path) -> None:
+    scene = mp.Scene("arm-6")
+    made = scene.plan().trajectory(velocity=0.5, deviation=0.05)
+    assert made.curve == "cubic" and made.clearance > 0 and np.all(np.diff(made.times) > 0)
+    assert abs(made.velocities).max() <= 0.5 * 3.1416 and not made.velocities[[0, -1]].any()
+    assert any("acceleration" in note for note in made.notes)
+    for name in ("t.csv", "t.json", "t.yaml"):
+        made.save(tmp_path / name)
+        verdict = scene.check_trajectory(tmp_path / name)
+        assert verdict and verdict.trajectory is not None, verdict
+        assert abs(verdict.trajectory["duration"] - made.duration) < 1e-12
+        # Without velocities it is another curve.
+        assert scene.check_trajectory(tmp_path / name, curve="linear").trajectory["curve"] == "linear"  # type: ignore[index]
+    message = json.loads((tmp_path / "t.json").read_text())
+    assert message["joint_names"] == [c.name for c in made.columns]
+    # The joints in another order, as others write them.
+    order = list(reversed(range(len(made.columns))))
+    message["joint_names"] = [message["joint_names"][i] for i in order]
+    for point in message["points"]:
+        for key in ("positions", "velocities"):
+            point[key] = [point[key][i] for i in order]
+    (tmp_path / "other.json").write_text(json.dumps({"joint_trajectory": message}))
+    assert scene.check_trajectory(tmp_path / "other.json")
+    message["joint_names"][0] = "elbow_of_another"
+    (tmp_path / "other.json").write_text(json.dumps(message))
+    with pytest.raises(mp.Error, match="elbow_of_another"):
+        scene.check_trajectory(tmp_path / "other.json")
+    assert next(iter(made.to_pandas().columns)) == "time (s)"
+    with pytest.raises(mp.Error, match="no trajectories"):
+        mp.Scene("easy").plan().trajectory()

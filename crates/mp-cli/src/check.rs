@@ -1,10 +1,10 @@
 //! `check`: verifies a path with the checker that shares no code with that of the planners.
 
 use crate::cli::Check;
-use crate::input::{path, refuse_two_standard_inputs, scene};
-use crate::interrupt;
+use crate::input::{Given, refuse_two_standard_inputs, scene};
 use crate::output::{Claims, note, print, print_json, write};
-use mp_plan::{Error, Interrupt, PathRows, Scene, brief, plain};
+use crate::{input, interrupt};
+use mp_plan::{Error, Interrupt, Scene, brief, plain};
 use std::path::Path;
 
 /// Verifies paths, or explains a configuration. True when the paths or the configuration are free.
@@ -33,10 +33,14 @@ pub(crate) fn run(args: &Check) -> Result<bool, Error> {
     }
     let (mut scene, mut free) = (scene, true);
     for (i, file) in args.paths.iter().enumerate() {
-        let rows = path(&scene, file)?;
-        free &= one(args, &scene, (file, &rows))?;
+        let read = input::given(&scene, file, args.curve)?;
+        free &= one(args, &scene, (file, &read))?;
+        let rows = match &read {
+            Given::Path(path) => &path.rows,
+            Given::Timed(trajectory) => &trajectory.knots().positions,
+        };
         if i + 1 < given
-            && let Some(end) = rows.rows.last()
+            && let Some(end) = rows.last()
             && let Some(next) = scene.next_part(end, &Interrupt::new(interrupt::flag()))?
         {
             scene = next;
@@ -48,10 +52,17 @@ pub(crate) fn run(args: &Check) -> Result<bool, Error> {
     Ok(free)
 }
 
-/// Verifies one path. True when it is free.
-fn one(args: &Check, scene: &Scene, (file, rows): (&Path, &PathRows)) -> Result<bool, Error> {
-    let mut verdict = scene.check(rows)?;
-    if let (Some(file), true) = (&args.certificate, verdict.free) {
+/// Verifies one path or trajectory. True when it is free.
+fn one(args: &Check, scene: &Scene, (file, read): (&Path, &Given)) -> Result<bool, Error> {
+    let mut verdict = match read {
+        Given::Path(rows) => scene.check(rows)?,
+        Given::Timed(trajectory) => scene.check_trajectory(trajectory, &Interrupt::new(interrupt::flag()))?,
+    };
+    if let (Some(_), Given::Timed(_)) = (&args.certificate, read) {
+        return Err(Error::new("--certificate: there are none of trajectories")
+            .help("certify the path, whose motions are straight"));
+    }
+    if let (Some(file), Given::Path(rows), true) = (&args.certificate, read, verdict.free) {
         let certificate = scene.certificate(rows, verdict.clearance, &Interrupt::new(interrupt::flag()))?;
         write(file, certificate.to_json().as_bytes())?;
     }

@@ -6,8 +6,8 @@ use clap::{Args, Parser, Subcommand};
 use mp_batch::Shard;
 use mp_io::ProblemChanges;
 use mp_plan::{
-    FreeTurns, Length, MetricName, Mode, MotionValidator, PlannerInfo, PortfolioSchedule, RelaxField,
-    Request, positive_number,
+    FreeTurns, Interpolation, Length, MetricName, Mode, MotionValidator, Pace, PlannerInfo,
+    PortfolioSchedule, RelaxField, Request, positive_number,
 };
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -38,6 +38,9 @@ pub(crate) enum Command {
     /// Verify a path with the independent checker: exit 0 only if it is certified free. Or explain one configuration.
     #[command(after_long_help = examples::CHECK)]
     Check(Check),
+    /// Give a path of an arm times: along it as fast as the limits of its joints allow, with rounded corners, and the curve that a controller
+    /// runs proved free.
+    Time(Time),
     /// Describe a mesh, scene or path file.
     #[command(after_long_help = examples::INFO)]
     Info(Info),
@@ -181,6 +184,12 @@ pub(crate) struct Plan {
     /// `{scene}` and `{seed}` are replaced by scene and seed.
     #[arg(long, value_name = "FILE", conflicts_with = "routes")]
     pub(crate) certificate: Option<PathBuf>,
+    /// The file for the trajectory of an arm: the path with times, as fast as the limits of its joints allow, whose curve is proved free. `.csv`, or
+    /// JointTrajectory of ROS as `.json` or `.yaml`. `{scene}` and `{seed}` are replaced by scene and seed.
+    #[arg(long, value_name = "FILE", conflicts_with = "routes")]
+    pub(crate) trajectory: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) pace: PaceOptions,
     /// Print one JSON object on standard output, and write only the files asked for.
     #[arg(long)]
     pub(crate) json: bool,
@@ -262,13 +271,72 @@ pub(crate) struct Merge {
     pub(crate) shards: Vec<PathBuf>,
 }
 
+/// How the curve between points of a trajectory is chosen: `None` is the controller's choice.
+pub(crate) type Curve = Option<Interpolation>;
+
+fn curve(name: &str) -> Curve {
+    match name {
+        "linear" => Some(Interpolation::Linear),
+        "cubic" => Some(Interpolation::Cubic),
+        "quintic" => Some(Interpolation::Quintic),
+        _ => None,
+    }
+}
+
+/// How a path is timed.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Trajectories")]
+pub(crate) struct PaceOptions {
+    /// The part of the limits of velocity that a trajectory uses.
+    #[arg(long, value_name = "PART", default_value = "1", value_parser = positive_number)]
+    pub(crate) velocity_scale: f64,
+    /// The part of the limits of acceleration that it uses.
+    #[arg(long, value_name = "PART", default_value = "1", value_parser = positive_number)]
+    pub(crate) acceleration_scale: f64,
+    /// How far from corners of the path it may pass, in radians and metres of all joints together, where that is free; 0: it stops at each.
+    #[arg(long, value_name = "DISTANCE", default_value = "0.1")]
+    pub(crate) deviation: f64,
+}
+
+impl PaceOptions {
+    /// As libraries take them.
+    pub(crate) fn pace(&self) -> Pace {
+        let Self { velocity_scale: velocity, acceleration_scale: acceleration, deviation } = *self;
+        Pace { velocity, acceleration, deviation }
+    }
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Time {
+    /// A scene with an arm: a file, or the name of a shipped scene.
+    pub(crate) scene: PathBuf,
+    /// A path that is free: text, `.json` or `.csv`; `-` for standard input.
+    pub(crate) path: PathBuf,
+    /// The file for the trajectory: `.csv`, or JointTrajectory of ROS as `.json` or `.yaml` [default: CSV on standard output].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Write points this many times a second, and prove the curve between those. Without it there are as few points as the curve needs.
+    #[arg(long, value_name = "HZ", value_parser = positive_number)]
+    pub(crate) rate: Option<f64>,
+    #[command(flatten)]
+    pub(crate) pace: PaceOptions,
+    #[command(flatten)]
+    pub(crate) changes: Changes,
+}
+
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Check {
     /// A scene file, or the name of a shipped scene; `-` for standard input.
     pub(crate) scene: PathBuf,
-    /// A path: text, `.json` or `.csv`; `-` for standard input. Of a motion of several parts, the paths of its parts in order.
+    /// A path: text, `.json` or `.csv`; or a trajectory of an arm: `.csv` with times, `.json` or `.yaml` as ROS and MoveIt write them; `-` for
+    /// standard input. Of a motion of several parts, the paths of its parts in order.
     #[arg(required_unless_present = "at")]
     pub(crate) paths: Vec<PathBuf>,
+    /// The curve between the points of a trajectory. `controller`: what joint_trajectory_controller of ROS runs, quintic where there are
+    /// accelerations, else cubic where there are velocities, else linear.
+    #[arg(long = "as", value_name = "CURVE", conflicts_with = "at",
+          value_parser = PossibleValuesParser::new(["controller", "linear", "cubic", "quintic"]).map(|name| curve(&name)))]
+    pub(crate) curve: Option<Curve>,
     /// Explain this configuration instead: numbers separated by blanks or commas.
     #[arg(long, value_name = "NUMBERS", conflicts_with = "paths", allow_hyphen_values = true)]
     pub(crate) at: Option<String>,

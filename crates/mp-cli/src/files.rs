@@ -14,6 +14,7 @@ pub(crate) struct Files {
     picture: Option<PathBuf>,
     roadmap: Option<PathBuf>,
     certificate: Option<PathBuf>,
+    trajectory: Option<PathBuf>,
 }
 
 /// The folder of files that the user did not name.
@@ -25,7 +26,7 @@ impl Files {
     pub(crate) fn new(
         out: Option<&Path>,
         picture: Option<&Path>,
-        [roadmap, certificate]: [Option<&Path>; 2],
+        [roadmap, certificate, trajectory]: [Option<&Path>; 3],
         json: bool,
         scenes: usize,
         runs: u32,
@@ -40,6 +41,7 @@ impl Files {
             picture: by_default(picture, "{scene}.png"),
             roadmap: roadmap.map(Path::to_owned),
             certificate: certificate.map(Path::to_owned),
+            trajectory: trajectory.map(Path::to_owned),
         };
         if let Some(out) = &files.out
             && is_standard(out)
@@ -47,8 +49,12 @@ impl Files {
         {
             return Err(Error::new("--out -: standard output has other content").help("name a file"));
         }
-        let named =
-            [("--out", &files.out), ("--picture", &files.picture), ("--certificate", &files.certificate)];
+        let named = [
+            ("--out", &files.out),
+            ("--picture", &files.picture),
+            ("--certificate", &files.certificate),
+            ("--trajectory", &files.trajectory),
+        ];
         for (option, path) in named {
             let Some(path) = path else { continue };
             let text = path.to_string_lossy();
@@ -74,6 +80,11 @@ impl Files {
         self.certificate.as_ref().map(|path| Self::filled(path, scene, seed))
     }
 
+    /// The file of the trajectory of one run.
+    pub(crate) fn trajectory(&self, scene: &str, seed: u64) -> Option<PathBuf> {
+        self.trajectory.as_ref().map(|path| Self::filled(path, scene, seed))
+    }
+
     /// The name of a file of one run.
     fn filled(path: &Path, scene: &str, seed: u64) -> PathBuf {
         match path.to_str() {
@@ -93,7 +104,21 @@ impl Files {
     ) -> Result<(), Error> {
         let (out, picture) = self.of(scene.name(), seed);
         let certificate = self.certificate(scene.name(), seed);
-        for (option, file) in [("--out", &out), ("--picture", &picture), ("--certificate", &certificate)] {
+        let trajectory = self.trajectory(scene.name(), seed);
+        if let Some(file) = &trajectory {
+            crate::time::kind_of(file)?;
+            if !scene.has_trajectories() {
+                let message = format!("--trajectory: the robot of {} has none", scene.name());
+                return Err(Error::new(message)
+                    .help("arms have them whose base stands still or moves in the plane, and that do not move by inputs"));
+            }
+        }
+        for (option, file) in [
+            ("--out", &out),
+            ("--picture", &picture),
+            ("--certificate", &certificate),
+            ("--trajectory", &trajectory),
+        ] {
             match (file, several) {
                 (None, _) => {}
                 (Some(file), None) => claims.output(option, file)?,
@@ -134,7 +159,7 @@ mod tests {
         scenes: usize,
         runs: u32,
     ) -> Result<Files, Error> {
-        Files::new(out.map(Path::new), picture.map(Path::new), [None; 2], json, scenes, runs)
+        Files::new(out.map(Path::new), picture.map(Path::new), [None; 3], json, scenes, runs)
     }
 
     #[test]

@@ -1,9 +1,12 @@
 //! Scenes and paths from files and from standard input.
 
+use crate::cli::Curve;
 use crate::output::note;
 use mp_io::ProblemChanges;
 pub(crate) use mp_plan::is_standard;
-use mp_plan::{Error, Interrupt, PathFileKind, PathRows, Scene, StopReason, Verdict};
+use mp_plan::{
+    Error, Interrupt, PathFileKind, PathRows, Scene, StopReason, Trajectory, TrajectoryKind, Verdict,
+};
 use std::path::Path;
 
 /// The whole standard input, which must be text of at most 64 MiB.
@@ -61,16 +64,63 @@ fn read(given: &Path, changes: &ProblemChanges, interrupt: &Interrupt) -> Result
 
 /// The path that an argument names; `-` is standard input, in any format.
 pub(crate) fn path(scene: &Scene, given: &Path) -> Result<PathRows, Error> {
-    if !is_standard(given) {
-        return scene.read_path(given);
+    match is_standard(given) {
+        true => path_of_text(scene, &standard_input()?),
+        false => scene.read_path(given),
     }
-    let text = standard_input()?;
-    let kind = match text.trim_start() {
+}
+
+/// What standard input is called in errors.
+const STANDARD: &str = "standard input";
+
+/// The kind of a path on standard input.
+fn kind_of_text(text: &str) -> PathFileKind {
+    match text.trim_start() {
         t if t.starts_with('{') => PathFileKind::Json,
         t if t.lines().any(|line| line.contains(',')) => PathFileKind::Csv,
         _ => PathFileKind::Text,
+    }
+}
+
+fn path_of_text(scene: &Scene, text: &str) -> Result<PathRows, Error> {
+    scene.parse_path(STANDARD, text.as_bytes(), kind_of_text(text))
+}
+
+/// A path, or a path with times.
+pub(crate) enum Given {
+    Path(PathRows),
+    Timed(Trajectory),
+}
+
+/// The path or trajectory that an argument names; `-` is standard input. With a `curve`, which is that between points, it must have times.
+pub(crate) fn given(scene: &Scene, file: &Path, curve: Option<Curve>) -> Result<Given, Error> {
+    let text = if is_standard(file) { Some(standard_input()?) } else { None };
+    let timed = match &text {
+        Some(text) => {
+            let kind = match kind_of_text(text) {
+                PathFileKind::Csv => TrajectoryKind::Csv,
+                PathFileKind::Json => TrajectoryKind::Json,
+                PathFileKind::Text => TrajectoryKind::Yaml,
+            };
+            let found = scene.parse_trajectory(STANDARD, text.as_bytes(), kind, curve.flatten());
+            // Text that is no YAML is a path.
+            if kind == TrajectoryKind::Yaml { found.unwrap_or(None) } else { found? }
+        }
+        None => scene.read_trajectory(file, curve.flatten())?,
     };
-    scene.parse_path("standard input", text.as_bytes(), kind)
+    match (timed, text) {
+        (Some(trajectory), _) => Ok(Given::Timed(trajectory)),
+        (None, _) if curve.is_some() => {
+            let message = format!("--as: {} has no times, or its robot no trajectories", file.display());
+            Err(Error::new(message).help("between the configurations of a path all joints move evenly"))
+        }
+        (None, Some(text)) => Ok(Given::Path(path_of_text(scene, &text)?)),
+        (None, None) if TrajectoryKind::of(file) == Some(TrajectoryKind::Yaml) => {
+            Err(Error::new(format!("there is no trajectory of the robot in {}", file.display()))
+                .help("JointTrajectory of ROS is read from YAML: see docs/formats/trajectory.md"))
+        }
+        (None, None) => Ok(Given::Path(scene.read_path(file)?)),
+    }
 }
 
 /// The path that an argument names, and the verdict about it. If anything is wrong, this is said to the person watching.

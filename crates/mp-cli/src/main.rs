@@ -1,4 +1,4 @@
-//! The program `mp`: plan, many, merge, check, info, render, view on the command line.
+//! The program `mp`: plan, many, merge, check, time, info, render, view on the command line.
 //!
 //! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input, 141 when the reader of standard output has
 //! gone.
@@ -26,6 +26,7 @@ mod request;
 mod robots;
 mod srdf;
 mod text;
+mod time;
 mod view;
 
 use clap::{CommandFactory, Parser};
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         Command::Many(args) => many::run(args),
         Command::Merge(args) => many::merge(args),
         Command::Check(args) => check::run(args),
+        Command::Time(args) => time::run(args),
         Command::Info(args) => info::run(args),
         Command::Srdf(args) => srdf::run(args),
         Command::Ik(args) => ik::run(args),

@@ -8,12 +8,13 @@ use crate::picture::{Picture, Shown, Watched};
 use crate::progress::Line;
 use crate::request::{request, request_for};
 use crate::text::{caption, summary, table};
+use crate::time::{kind_of, say};
 use crate::{interrupt, memory};
 use mp_batch::{Portfolio, PortfolioOptions};
 use mp_io::ProblemChanges;
 use mp_plan::{
     Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Report, Request, Runs,
-    Scene, StopReason, StoppedBy, in_parallel, make_folder,
+    Scene, StopReason, StoppedBy, in_parallel, make_folder, trajectory_text,
 };
 use mp_view::GrownTrees;
 use std::path::{Path, PathBuf};
@@ -37,7 +38,7 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let files = Files::new(
         args.out.as_deref(),
         args.picture.as_deref(),
-        [request.roadmap.as_deref(), args.certificate.as_deref()],
+        [request.roadmap.as_deref(), args.certificate.as_deref(), args.trajectory.as_deref()],
         args.json,
         named.len(),
         args.runs,
@@ -229,7 +230,7 @@ fn parts(
 ) -> Result<bool, Error> {
     let (mut reports, mut scene, count) = (Vec::new(), scene.clone(), 1 + scene.parts_left());
     let name = scene.name().to_owned();
-    let interrupt = Interrupt::new(cancel.clone());
+    let (interrupt, mut cannot_begin) = (Interrupt::new(cancel.clone()), None);
     for number in 1..=count {
         let part = Some((number, name.clone()));
         let settings = RunSettings { args, files, watched: true, threads: args.threads, part };
@@ -238,9 +239,18 @@ fn parts(
         let end = report.path.as_ref().and_then(|path| path.last().cloned());
         reports.push(report);
         let Some(end) = end else { break };
-        let Some(next) = scene.next_part(&end, &interrupt)? else { break };
-        next.check_ends().map_err(|e| e.context(format!("part {} of {count}", number + 1)))?;
-        scene = next;
+        let begun = scene.next_part(&end, &interrupt).and_then(|next| {
+            next.iter().try_for_each(|next| next.check_ends().map(drop))?;
+            Ok(next)
+        });
+        match begun.map_err(|e| e.context(format!("part {} of {count}", number + 1))) {
+            Ok(Some(next)) => scene = next,
+            Ok(None) => break,
+            Err(e) => {
+                cannot_begin = Some(e);
+                break;
+            }
+        }
     }
     let solved = reports.len() == count && reports.iter().all(|report| report.solved);
     if args.json {
@@ -250,7 +260,7 @@ fn parts(
             print(&format!("part {} of {count}\n{}", i + 1, summary(report)))?;
         }
     }
-    Ok(solved)
+    cannot_begin.map_or(Ok(solved), Err)
 }
 
 /// Refuses outputs that cannot be written, that are inputs, and two outputs in the same file.
@@ -341,6 +351,14 @@ fn one(
         let certificate = scene.certificate(&path, report.clearance.unwrap_or(0.0), &interrupt)?;
         write(&file, certificate.to_json().as_bytes())?;
         report.certificate_file = Some(file.display().to_string());
+    }
+    if let Some(file) = files.trajectory(name, seed).map(named) {
+        line.say("timing the path");
+        let interrupt = time_limit(&request, cancel, began.saturating_sub(spent));
+        let timed = scene.time(&path, &settings.args.pace.pace(), &interrupt)?;
+        let text = trajectory_text(&timed.trajectory, kind_of(&file)?);
+        write(&file, text.as_bytes())?;
+        say(&timed);
     }
     if let Some((picture, file)) = &picture {
         write_picture(&mut report, scene, &path, (picture, file), grown, (cancel, &line))?;

@@ -59,6 +59,7 @@
 
 pub mod angle;
 mod configuration;
+mod curve;
 mod edge_checker;
 pub mod erased;
 mod error;
@@ -89,6 +90,7 @@ mod trace;
 mod validity;
 
 pub use configuration::Configuration;
+pub use curve::Curve;
 pub use edge_checker::EdgeChecker;
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};

@@ -1,6 +1,6 @@
 //! Tests of states and of motions: whether they are free, and their clearance.
 
-use crate::Interrupt;
+use crate::{Curve, Interrupt};
 
 /// Whether a state is free.
 ///
@@ -268,6 +268,12 @@ pub trait MotionValidity<S> {
         self.check_motion(from, to)
     }
 
+    /// Checks a whole curve. A fault is the first one, up to what the check resolves: all before it is free. Fractions are of the number
+    /// of pieces. `None`, the default, where only straight motions are checked.
+    fn check_curve(&mut self, _curve: &dyn Curve) -> Option<MotionCheck> {
+        None
+    }
+
     /// From now on asks `interrupt` whether to end, also within a check. A check that was interrupted finds no motion free. Checks
     /// that take little time need not implement this.
     fn interrupt_by(&mut self, _interrupt: &Interrupt) {}
@@ -286,6 +292,9 @@ macro_rules! behind {
         }
         fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
             (**self).check_extension(from, to, known)
+        }
+        fn check_curve(&mut self, curve: &dyn Curve) -> Option<MotionCheck> {
+            (**self).check_curve(curve)
         }
         fn interrupt_by(&mut self, interrupt: &Interrupt) {
             (**self).interrupt_by(interrupt);

@@ -220,7 +220,7 @@ fn is_pose(wanted: &[Column]) -> bool {
 }
 
 /// Which number a column is, and its unit if the name ends with one.
-fn find<'n>(name: &'n str, wanted: &[Column]) -> Option<(usize, Option<&'n str>)> {
+pub(crate) fn find<'n>(name: &'n str, wanted: &[Column]) -> Option<(usize, Option<&'n str>)> {
     let suffixed = name.trim().rsplit_once(['_', ' ']);
     let suffixed = suffixed.filter(|(_, unit)| SUFFIXES.contains(unit));
     let readings =
@@ -242,7 +242,7 @@ fn find<'n>(name: &'n str, wanted: &[Column]) -> Option<(usize, Option<&'n str>)
 }
 
 /// Name and unit of `name [unit]` and `name (unit)`.
-fn bracketed(name: &str) -> Option<(&str, &str)> {
+pub(crate) fn bracketed(name: &str) -> Option<(&str, &str)> {
     let name = name.trim();
     let open = match name.chars().last()? {
         ']' => '[',
@@ -257,7 +257,7 @@ fn bracketed(name: &str) -> Option<(&str, &str)> {
 const SUFFIXES: [&str; 8] = ["rad", "radians", "deg", "degrees", "m", "mm", "cm", "s"];
 
 /// What a value in a unit is multiplied with and divided by to be in another one.
-fn factor(from: Option<&str>, to: &str) -> Option<(f64, f64)> {
+pub(crate) fn factor(from: Option<&str>, to: &str) -> Option<(f64, f64)> {
     let from = from.filter(|unit| !unit.is_empty() && *unit != to);
     let Some(from) = from else { return Some((1.0, 1.0)) };
     let (from, to) = (scale(from)?, scale(to)?);

@@ -75,6 +75,16 @@ const KEYS: [(&str, &[&str]); 4] = [
 ];
 
 impl DriveTable {
+    /// The keys of robots that move by velocities or accelerations.
+    pub(crate) fn by_numbers(
+        kind: Option<Spanned<String>>,
+        duration: Option<Spanned<f64>>,
+        speeds: Option<Spanned<Vec<f64>>>,
+        accelerations: Option<Spanned<Vec<f64>>>,
+    ) -> Self {
+        Self { kind, duration, speeds, accelerations, ..Self::default() }
+    }
+
     /// How the robot of the table at `table` moves by inputs; `None` when it has no kind. `kinds` are those that it may have.
     pub(crate) fn read(
         self,

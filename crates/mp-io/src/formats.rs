@@ -52,7 +52,7 @@ formats! {
     OmplApp, "problem of OMPL.app", ["cfg"], true, false, None;
     Toml, "robot, rigid body or world in the plane", ["toml"], true, false, None;
     Document, "scene of the editor", ["mp.json"], true, true, None;
-    Robot, "robot: URDF, or what its content says", ["urdf", "xml", "sdf", "world", "mjcf"], true, false, None;
+    Robot, "robot: URDF, or MJCF by its content", ["urdf", "xml", "sdf", "world", "mjcf"], true, false, None;
     RobotMacros, "robot with macros, expanded by the feature `xacro`", ["xacro"], false, false, None;
     RobotSemantics, "links that may touch: SRDF", ["srdf"], true, false, None;
     Map, "map of ROS", ["yaml", "yml"], true, false, None;

@@ -9,8 +9,8 @@ use crate::formats::collada::Scene;
 use crate::mesh::Axes;
 use crate::{Column, csv_text, gempa_mesh_text, parse_csv, parse_mesh, stl_text};
 use crate::{
-    Environment, Error, ErrorKind, GridMap, JointPath, OffDocument, OmplProblem, PathFile, PlanarFile,
-    RobotFile, RosMap, SceneDocument,
+    Environment, Error, ErrorKind, GridMap, InMemory, JointPath, OffDocument, OmplProblem, PathFile,
+    PlanarFile, RobotFile, RosMap, SceneDocument,
 };
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
@@ -21,7 +21,7 @@ use std::path::Path;
 pub type Target = fn(&[u8]) -> Result<(), Error>;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 23] = [
+pub const TARGETS: [(&str, Target); 24] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -37,6 +37,7 @@ pub const TARGETS: [(&str, Target); 23] = [
     ("points-las", points_las),
     ("ompl-app", ompl_app),
     ("robot-problem", robot_problem),
+    ("mjcf", mjcf),
     ("joint-path", joint_path),
     ("json-joint-path", json_joint_path),
     ("csv-path", csv_path),
@@ -184,6 +185,25 @@ pub fn ompl_app(bytes: &[u8]) -> Result<(), Error> {
 /// When the bytes are refused.
 pub fn robot_problem(bytes: &[u8]) -> Result<(), Error> {
     RobotFile::parse("f.toml", bytes).map(drop)
+}
+
+/// Models of MuJoCo, and the URDF and SRDF that are made of them.
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn mjcf(bytes: &[u8]) -> Result<(), Error> {
+    const INCLUDED: &str =
+        "<mujocoinclude><body name='included'><joint/><geom size='1'/></body></mujocoinclude>";
+    let text = crate::xml::text("f.xml", bytes)?.into_owned();
+    let files = InMemory(|name: &str| (name != "f.xml").then_some(INCLUDED));
+    let read = crate::mjcf::read(&files, Path::new("f.xml"), text)?;
+    for (text, element) in [(&read.urdf, "link"), (&read.srdf, "robot")] {
+        let document = roxmltree::Document::parse(text).expect("what is written is XML");
+        assert!(document.descendants().any(|node| node.has_tag_name(element)));
+    }
+    let lines = read.urdf.lines().count();
+    check_error(&read.origin.error(Some(lines), "the last line".to_owned()).help("none"));
+    Ok(())
 }
 
 /// Paths of joint values.

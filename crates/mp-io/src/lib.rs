@@ -28,6 +28,7 @@ pub mod fuzz;
 mod gempa;
 mod json;
 mod mesh;
+mod mjcf;
 mod number;
 mod ompl;
 mod path;
@@ -43,6 +44,7 @@ mod shape;
 mod text;
 mod toml_problem;
 mod trace;
+mod trajectory;
 mod xacro;
 mod xml;
 
@@ -75,4 +77,5 @@ pub use robot::{
 pub use robots::{FoundRobot, RobotPath};
 pub use shape::ShapeEntry;
 pub use toml_problem::{GoalEntry, GoalPart, StartEntry, Timing};
+pub use trajectory::{TrajectoryFile, TrajectoryKind};
 pub use xacro::expand_xacro;

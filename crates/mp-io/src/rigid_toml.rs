@@ -101,13 +101,7 @@ impl RigidTask {
         let body = robot.get_ref().shape(&source, "robot", &robot_span);
         let robot = robot.into_inner().own;
         let planar = robot.planar.unwrap_or(false);
-        let table = DriveTable {
-            kind: robot.kind,
-            duration: robot.duration,
-            speeds: robot.speeds,
-            accelerations: robot.accelerations,
-            ..DriveTable::default()
-        };
+        let table = DriveTable::by_numbers(robot.kind, robot.duration, robot.speeds, robot.accelerations);
         let driven = driven(&source, &robot_span, table, planar)?;
         let (from, mesh) = meshes.of(&source, "robot", &body?)?;
         // What moves has facets.

@@ -75,7 +75,7 @@ impl RobotPath {
         &self.folders
     }
 
-    /// All robots, in the order of the folders, then of their files. A file that several folders of the path hold is there once.
+    /// All robots in URDF and MJCF, in the order of the folders, then of their files. A file that several folders of the path hold is there once.
     #[must_use]
     pub fn all(&self) -> Vec<FoundRobot> {
         let mut robots = self.descriptions();
@@ -108,7 +108,12 @@ impl RobotPath {
         let arms = |folder: &PathBuf| -> Vec<FoundRobot> {
             descriptions_below(folder, &is_it).into_iter().filter(|robot| robot.joints > 0).collect()
         };
-        self.folders.iter().map(arms).find(|robots| !robots.is_empty()).unwrap_or_default()
+        let mut found = self.folders.iter().map(arms).find(|robots| !robots.is_empty()).unwrap_or_default();
+        // A name that a URDF has means that.
+        if found.iter().any(|robot| is_urdf(&robot.file)) {
+            found.retain(|robot| is_urdf(&robot.file));
+        }
+        found
     }
 }
 
@@ -172,28 +177,61 @@ fn descriptions_below(folder: &Path, wanted: &dyn Fn(&Path) -> bool) -> Vec<Foun
 
 /// Whether a file is called like a description that is read.
 fn is_description(file: &Path) -> bool {
+    is_urdf(file)
+        || file.extension().is_some_and(|ending| MJCF.iter().any(|mjcf| ending.eq_ignore_ascii_case(mjcf)))
+}
+
+/// The endings of models of MuJoCo, which other files have too.
+const MJCF: [&str; 2] = ["xml", "mjcf"];
+
+fn is_urdf(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(Content::Robot.ending()))
 }
 
-/// The robot of a file.
+/// The robot of a file, if that is one.
 fn described(file: PathBuf) -> Option<FoundRobot> {
     let bytes = mp_store::read(&file, MAX_BYTES).ok()?;
-    let joints = moving_joints(&String::from_utf8_lossy(&bytes));
+    let text = String::from_utf8_lossy(&bytes);
+    let joints = match (is_urdf(&file), crate::mjcf::is_mjcf(&text)) {
+        (true, false) => moving_joints(&text),
+        (_, true) => moving_joints_of_mjcf(&text),
+        (false, false) => return None,
+    };
     let name = file.file_stem()?.to_string_lossy().into_owned();
     Some(FoundRobot { name, file, joints })
 }
 
+/// The text of an XML file without comments.
+fn uncommented(text: &str) -> String {
+    let (first, rest) = text.split_once("<!--").unwrap_or((text, ""));
+    let after = rest.split("<!--").map(|part| part.split_once("-->").map_or("", |(_, rest)| rest));
+    std::iter::once(first).chain(after).collect()
+}
+
+/// How many joints of a model of MuJoCo move on their own, without those of files that it includes.
+fn moving_joints_of_mjcf(text: &str) -> usize {
+    let text = uncommented(text);
+    let bodies =
+        text.split("<worldbody").skip(1).map(|part| part.split("</worldbody").next().unwrap_or(part));
+    let joints = bodies.flat_map(|bodies| bodies.split("<joint").skip(1));
+    let moves = |joint: &str| {
+        let tag = joint.split('>').next().unwrap_or(joint);
+        let is =
+            |kind: &str| tag.contains(&format!("type=\"{kind}\"")) || tag.contains(&format!("type='{kind}'"));
+        if is("free") {
+            0
+        } else if is("ball") {
+            3
+        } else {
+            1
+        }
+    };
+    joints.map(moves).sum()
+}
+
 /// How many joints of a URDF move on their own.
 fn moving_joints(urdf: &str) -> usize {
-    let parts: Vec<&str> = urdf.split("<!--").collect();
-    let text: String = parts
-        .iter()
-        .enumerate()
-        .map(|(i, part)| match i {
-            0 => part,
-            _ => part.split_once("-->").map_or("", |(_, rest)| rest),
-        })
-        .collect();
+    let text = uncommented(urdf);
     let moves = |joint: &str| {
         let (tag, inside) = joint.split_once('>').unwrap_or((joint, ""));
         let inside = if tag.ends_with('/') { "" } else { inside.split("</joint").next().unwrap_or(inside) };
@@ -226,6 +264,11 @@ mod tests {
         write(first.path(), "a/other/Arm.urdf", arm);
         write(first.path(), "a/table.urdf", "<robot name='t'><link name='l'/></robot>");
         write(first.path(), ".hidden/arm.urdf", arm);
+        let model = "<?xml?><!-- a --><mujoco><default><joint/></default><worldbody><body><joint/><!-- <joint/> --><freejoint/>\
+                     <joint type='free'/><joint type=\"ball\"/></body></worldbody></mujoco>";
+        write(first.path(), "m/arm.xml", model);
+        write(first.path(), "m/hand.xml", model);
+        write(first.path(), "a/package.xml", "<package><joint/></package>");
         write(second.path(), "arm.urdf", arm);
         write(second.path(), "crane.urdf", arm);
         let path =
@@ -239,7 +282,10 @@ mod tests {
         assert!(
             path.find("table").is_empty() && path.find("/arm").is_empty() && path.find("a/arm").is_empty()
         );
-        let all = path.all();
+        let hand = path.find("hand");
+        assert!(hand.len() == 1 && hand[0].joints == 4, "{hand:?}");
+        let mut all = path.all();
+        all.retain(|robot| is_urdf(&robot.file));
         assert!(all.len() == 4 && all.iter().all(|robot| robot.joints == 1), "{all:?}");
         assert_eq!(files(all)[..2], [a, b]);
     }

@@ -126,10 +126,21 @@ impl<'a> Token<'a> {
 
     /// The parts between commas, without blanks and quotes around them. Commas between quotes are part of a cell.
     pub(crate) fn cells(self) -> impl Iterator<Item = Token<'a>> + Clone {
+        self.cells_between(',')
+    }
+
+    /// What cells of the line are between: commas, else semicolons, else tabs.
+    pub(crate) fn separator(self) -> char {
+        let is_between = |separator: &char| self.cells_between(*separator).nth(1).is_some();
+        [',', ';', '\t'].into_iter().find(is_between).unwrap_or(',')
+    }
+
+    /// As [`cells`](Self::cells), for another separator.
+    pub(crate) fn cells_between(self, separator: char) -> impl Iterator<Item = Token<'a>> + Clone {
         let mut quoted = false;
         let ends = move |c| {
             quoted ^= c == '"';
-            c == ',' && !quoted
+            c == separator && !quoted
         };
         self.text.split(ends).map(move |cell| {
             Token { text: cell, at: self.at + (cell.as_ptr() as usize - self.text.as_ptr() as usize) }

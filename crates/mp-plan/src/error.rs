@@ -39,12 +39,14 @@ pub enum ErrorKind {
     Request,
     /// A file cannot be read or written, or its content is not valid: [`Error::file`] says where.
     File,
+    /// There is no such file or scene.
+    Missing,
     /// Anything else.
     Other,
 }
 
 impl ErrorKind {
-    /// Its name: `start-not-free`, `goal-not-free`, `planner`, `request`, `file`, `other`.
+    /// Its name: `start-not-free`, `goal-not-free`, `planner`, `request`, `file`, `missing`, `other`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -53,6 +55,7 @@ impl ErrorKind {
             Self::Planner => "planner",
             Self::Request => "request",
             Self::File => "file",
+            Self::Missing => "missing",
             Self::Other => "other",
         }
     }
@@ -150,6 +153,12 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+impl From<mp_time::TimeError> for Error {
+    fn from(e: mp_time::TimeError) -> Self {
+        Self::new(e.to_string())
+    }
+}
+
 impl From<mp_io::Error> for Error {
     fn from(file: mp_io::Error) -> Self {
         let message = file.message().to_owned();
@@ -160,7 +169,9 @@ impl From<mp_io::Error> for Error {
 
 impl From<mp_store::Error> for Error {
     fn from(file: mp_store::Error) -> Self {
-        mp_io::Error::from(file).into()
+        let missing = file.kind() == mp_store::ErrorKind::Missing;
+        let error = Self::from(mp_io::Error::from(file));
+        if missing { error.of_kind(ErrorKind::Missing) } else { error }
     }
 }
 

@@ -4,6 +4,7 @@ pub(crate) mod certificate;
 pub(crate) mod check;
 pub(crate) mod field;
 pub(crate) mod relax;
+pub(crate) mod trajectory;
 
 use crate::finish::check::{clearance, fault_text, verified};
 use crate::finish::relax::relax_if_requested;

@@ -44,6 +44,8 @@
 //! | read the result | [`Report`], with a documented JSON form |
 //! | shorten a path from elsewhere | [`Scene::finish`] |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
+//! | give a path times, and prove the curve that a controller runs | [`Scene::time`], [`TimedPath`], [`Pace`] |
+//! | read, check and write trajectories | [`Scene::read_trajectory`], [`Scene::check_trajectory`], [`trajectory_text`] |
 //! | give others the means to prove it again | [`Scene::certificate`], [`Certificate`] |
 //! | find out why a configuration is not free | [`Scene::explain`] |
 //! | find out what is odd about a scene | [`Scene::lint`] |
@@ -78,6 +80,7 @@ mod robot;
 mod run;
 mod scene;
 mod sweep;
+mod trajectory;
 mod watch;
 
 pub use error::{Error, ErrorKind};
@@ -88,6 +91,7 @@ pub use files::robot_pairs::RobotPairs;
 pub use finish::certificate::Certificate;
 pub use finish::check::Verdict;
 pub use finish::field::FieldImage;
+pub use finish::trajectory::{LeastAlong, LimitFault, Pace, TightCorner, TimedPath, TrajectoryVerdict};
 pub use finish::{Finished, shorten};
 pub use goals::GoalPart;
 pub use numbers::{brief, count, plain, positive_number};
@@ -119,13 +123,15 @@ pub use run::search::{Search, search};
 pub use run::{FoundRun, PreparedRun, Run};
 pub use scene::{EditedScene, Scene};
 pub use sweep::{Sweep, Track};
+pub use trajectory::trajectory_text;
 pub use watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
 
 #[cfg(feature = "pictures")]
 pub use mp_render::{Mode, View};
 
-pub use mp_io::{FoundRobot, FreeTurns, PoseEntry, ProblemChanges, RobotPath};
+pub use mp_io::{FoundRobot, FreeTurns, PoseEntry, ProblemChanges, RobotPath, TrajectoryKind};
 pub use mp_robot::{SampledPair, SampledPairs, TouchReason};
+pub use mp_time::{Interpolation, Knots, Trajectory};
 
 pub use mp_cspace::{
     Cancel, Clock, Interrupt, Length, Progress, StopReason,

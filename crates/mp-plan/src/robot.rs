@@ -343,6 +343,12 @@ pub trait Description: Motion {
     /// The least and the largest value of each number, in the order of the columns; `None` for an angle without limits.
     fn limits(&self) -> Vec<Option<[f64; 2]>>;
 
+    /// How fast each number may change (rad/s or m/s), and how fast its velocity may (rad/s² or m/s²), where that is known. `None`, the default, if
+    /// there are no [trajectories](mp_time::Trajectory) of the robot: then its numbers are not joints that move by themselves.
+    fn rates(&self) -> Option<Vec<[Option<f64>; 2]>> {
+        None
+    }
+
     /// Further facts about the robot, for people: name and text.
     fn details(&self) -> Vec<(String, String)> {
         Vec::new()

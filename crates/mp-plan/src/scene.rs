@@ -1,5 +1,7 @@
 //! A scene of any kind, and what can be done with it.
 
+mod arms;
+
 use crate::explain::{check_ends, explain, lint};
 use crate::finish::certificate::certificate;
 use crate::finish::check::check;
@@ -10,11 +12,11 @@ use crate::run::plan::plan;
 use crate::run::prepare;
 #[cfg(feature = "roadmaps")]
 use crate::run::{regions::RegionalWork, scene_roadmap::SceneRoadmap};
-use crate::sweep::{sweep, track};
+use crate::sweep::{resample, sweep, track};
 use crate::{
-    Body, Certificate, Column, Constraint, Control, Error, Explanation, Finished, FoundRun, Length,
+    Body, Certificate, Column, Constraint, Control, Error, Explanation, Finished, FoundRun, Length, Pace,
     PathFileKind, PathFormat, PathRows, PreparedRun, RelaxField, Report, Request, Robot, SceneFiles, Sweep,
-    Track, Verdict,
+    TimedPath, Track, Trajectory, Verdict,
 };
 use mp_cspace::registry::PlannerInfo;
 use mp_cspace::{Configuration, Interrupt, Interrupted, Rng, Space, Validity};
@@ -253,41 +255,6 @@ impl Scene {
     pub fn details(&self) -> Vec<(String, String)> {
         let notes = self.remarks.iter().chain(&*self.notes).map(|note| ("note".to_owned(), note.clone()));
         self.robot.details().into_iter().chain(notes).collect()
-    }
-
-    /// Configurations that place a link of an arm, the free ones first: see [`ArmScene::reaching`](crate::ArmScene::reaching).
-    ///
-    /// # Errors
-    /// As there, and when the robot is no arm whose base stands still.
-    pub fn reaching(
-        &self,
-        place: &mp_io::PoseEntry,
-        most: usize,
-        interrupt: &Interrupt,
-    ) -> Result<Vec<crate::Reached>, Error> {
-        let arm = self.robot::<crate::ArmScene>().ok_or_else(|| {
-            Error::new(format!("{} is no arm whose base stands still", self.name()))
-                .help("only such have links to be placed; one that moves by inputs, or among obstacles that move, is none here")
-        })?;
-        arm.reaching(place, most, interrupt)
-    }
-
-    /// How many parts of the motion come after this one: zero, but for arms whose problem says so.
-    #[must_use]
-    pub fn parts_left(&self) -> usize {
-        self.robot::<crate::ArmScene>().map_or(0, crate::ArmScene::parts_left)
-    }
-
-    /// The scene of the next part of the motion: see [`ArmScene::next_part`](crate::ArmScene::next_part).
-    ///
-    /// # Errors
-    /// As there.
-    pub fn next_part(&self, end: &[f64], interrupt: &Interrupt) -> Result<Option<Self>, Error> {
-        let Some(arm) = self.robot::<crate::ArmScene>() else { return Ok(None) };
-        let Some(next) = arm.next_part(end, interrupt)? else { return Ok(None) };
-        let (notes, kept) = (next.said(), self.clearance_kept());
-        let scene = Self { robot: Arc::new(next), notes: notes.into(), ..self.clone() };
-        if kept > 0.0 { scene.keeping(kept) } else { Ok(scene) }.map(Some)
     }
 
     /// The fraction of the space in which the robot is free, estimated from `samples` samples. The same scene gives the same
@@ -598,6 +565,39 @@ impl Scene {
         check(&*self.robot, path, interrupt)
     }
 
+    /// Gives a path times: goes along it as fast as the limits of velocity and acceleration allow, with rounded corners (TOPP-RA), and proves the
+    /// curve that a controller runs between the points of the trajectory. The same path and pace give the same trajectory.
+    ///
+    /// ```
+    /// use mp_plan::{Interrupt, Pace, PathRows, Request, Scene};
+    /// let scene = Scene::find("arm-6")?;
+    /// let report = scene.plan(&Request::default())?;
+    /// let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows: report.path.unwrap_or_default() };
+    /// let timed = scene.time(&path, &Pace { velocity: 0.5, ..Pace::default() }, &Interrupt::never())?;
+    /// assert!(timed.trajectory.fastest(0).amount <= 0.5 * 3.1416);
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the robot is no arm whose base stands still or moves in the plane; when the path is not free, or its curve is not proved before
+    /// `interrupt` says to end; and when the pace is not valid.
+    pub fn time(&self, path: &PathRows, pace: &Pace, interrupt: &Interrupt) -> Result<TimedPath, Error> {
+        crate::finish::trajectory::time(&*self.robot, path, pace, interrupt)
+    }
+
+    pub(crate) fn robot_rates(&self) -> Option<Vec<[Option<f64>; 2]>> {
+        self.robot.rates()
+    }
+
+    /// Verifies the curve of a trajectory from the start to a goal: that it is free, and within the limits of position, velocity and acceleration
+    /// that are known. Its joints must be those of [`columns`](Self::columns), in this order.
+    ///
+    /// # Errors
+    /// When the trajectory is of another robot, or the robot has none. One that is not free is no error: see [`Verdict::free`].
+    pub fn check_trajectory(&self, trajectory: &Trajectory, interrupt: &Interrupt) -> Result<Verdict, Error> {
+        crate::finish::trajectory::check(&*self.robot, trajectory, interrupt)
+    }
+
     /// The certificate of a path: a file with which another program proves again that it is free. `clearance` (m) is that of the path, 0 if
     /// it is not known; the certificate proves half of it.
     ///
@@ -711,6 +711,32 @@ impl Scene {
     /// When the path is of another robot, or has no configurations.
     pub fn track(&self, path: &PathRows) -> Result<Track, Error> {
         track(&*self.robot, path)
+    }
+
+    /// So many configurations of a path as rows, at equal distances in the metric of the space, from its first to its last. All are on the
+    /// path; its corners need not be among them. Angles without limits go on from row to row.
+    ///
+    /// ```
+    /// use mp_plan::{PathRows, Scene};
+    /// let scene = Scene::find("easy")?;
+    /// let rows = vec![scene.start(), scene.goals().remove(0)];
+    /// let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+    /// let rows = scene.resample(&path, 5)?;
+    /// assert!(rows.len() == 5 && rows[0] == scene.start());
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the path is of another robot; when the robot moves by inputs, as what is between its rows is no straight motion; when `count` is
+    /// less than two, or such that there were more than 10⁷ numbers.
+    pub fn resample(&self, path: &PathRows, count: usize) -> Result<Vec<Vec<f64>>, Error> {
+        match self.kind {
+            Some("driven" | "driven-moving") => {
+                Err(Error::new(format!("the path of {} is not resampled: it moves by inputs", self.name()))
+                    .help("its rows have the inputs and how long each is held"))
+            }
+            _ => resample(&*self.robot, path, count),
+        }
     }
 
     /// A field that pushes snakes, for the places of the robot of a world of the plane; otherwise the robot is as in `row`.

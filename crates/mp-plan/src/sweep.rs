@@ -1,7 +1,8 @@
 //! Poses of a robot along a path, for pictures and animations.
 
-use crate::path::states;
-use crate::{Error, PathRows, Robot};
+use crate::goals::turning;
+use crate::path::{continued, states};
+use crate::{Error, ErrorKind, PathRows, Robot};
 use mp_cspace::{Clearance, Configuration, MotionClearance, Space};
 use mp_geom::evenly;
 use nalgebra::{Isometry3, Point3};
@@ -79,6 +80,37 @@ pub(crate) fn sweep(kind: &dyn Robot, path: Option<&PathRows>) -> Result<Sweep, 
         between: places.into_iter().map(|(edge, t)| kind.poses(&at(edge, t))).collect(),
         trace: trace.map(|(edge, t)| kind.traced(&at(edge, t))).collect(),
     })
+}
+
+/// Configurations at equal distances along a path, as rows.
+pub(crate) fn resample(kind: &dyn Robot, path: &PathRows, count: usize) -> Result<Vec<Vec<f64>>, Error> {
+    let most = 10_000_000 / kind.columns().len().max(1);
+    if !(2..=most).contains(&count) {
+        return Err(Error::new(format!("a path cannot be {} configurations", count))
+            .help(format!("give 2 to {most}"))
+            .of_kind(ErrorKind::Request));
+    }
+    let (space, states) = (kind.any_space(), states(kind, path)?);
+    let lengths: Vec<f64> = states.windows(2).map(|w| space.distance(&w[0], &w[1])).collect();
+    let spacing = lengths.iter().sum::<f64>() / (count - 1) as f64;
+    let (mut edge, mut passed, mut along) = (0, 0.0, vec![states[0].clone()]);
+    for i in 1..count - 1 {
+        let s = i as f64 * spacing;
+        while edge + 1 < lengths.len() && passed + lengths[edge] < s {
+            passed += lengths[edge];
+            edge += 1;
+        }
+        along.push(match lengths.get(edge) {
+            Some(length) if *length > 0.0 => {
+                let part = ((s - passed) / length).clamp(0.0, 1.0);
+                space.interpolate(&states[edge], &states[edge + 1], part)
+            }
+            _ => states[edge].clone(),
+        });
+    }
+    along.extend(states.last().cloned());
+    let rows = along.iter().map(|q| kind.row(q)).collect();
+    Ok(continued(&turning(kind), &path.rows[0], rows))
 }
 
 /// A path sampled for an animation: its own configurations, and as many between them as a smooth film needs.

@@ -17,6 +17,7 @@ mod piano;
 mod planar;
 mod scene;
 mod shape;
+mod shelf;
 #[cfg(test)]
 mod tests;
 mod twist;
@@ -54,7 +55,7 @@ macro_rules! by_hand {
 }
 
 /// The files that are written by hand; those called `rsrt-…` by `mp_experiments::clutter`, whose tests compare them.
-const BY_HAND: [(&str, &str); 28] = by_hand! {
+const BY_HAND: [(&str, &str); 29] = by_hand! {
     "robots/arm-6.urdf"
     "robots/arm-7.urdf"
     "robots/humanoid.srdf"
@@ -77,6 +78,7 @@ const BY_HAND: [(&str, &str); 28] = by_hand! {
     "scenes/parking.toml"
     "scenes/rsrt-arm-64.toml"
     "scenes/rsrt-flyer-64.toml"
+    "scenes/shelf.toml"
     "scenes/tool-pose.toml"
     "scenes/two-arms.toml"
     "scenes/unicycle.toml"
@@ -101,6 +103,7 @@ pub fn generate() -> Files {
     assembly::add(&mut files);
     key::add(&mut files);
     nut::add(&mut files);
+    shelf::add(&mut files);
     twist::add(&mut files);
     disc_scenes::add(&mut files);
     files.extend(BY_HAND.map(|(path, text)| (path.to_owned(), text.into())));

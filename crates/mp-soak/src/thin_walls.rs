@@ -134,6 +134,25 @@ fn hand(frame: usize) -> Body {
     Body::new("robot", Shape::Pieces(box_pieces([0.02; 3], &Isometry3::translation(1.0, 0.0, 0.0))), frame)
 }
 
+/// Of two loose triangles, the second is wholly inside of a solid box.
+#[test]
+fn a_part_inside_of_a_solid_touches_it() {
+    let triangle =
+        |x: f64| Piece::Triangle([[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]].map(|[y, z]| Point3::new(x, y, z)));
+    let there = vec![0.0; 6];
+    let robot = vec![Body::new("robot", Shape::Pieces(vec![triangle(-3.0), triangle(0.0)]), 0)];
+    let mut inside = case(Moves::Space, robot, &there, &there);
+    assert_eq!(inside.clearance_at(&there), Ok(f64::INFINITY));
+    inside.still = vec![Body::new("box", Shape::Pieces(box_pieces([2.0; 3], &Isometry3::identity())), 0)];
+    assert_eq!(inside.clearance_at(&there), Ok(0.0));
+    inside.still = vec![Body::new(
+        "box",
+        Shape::Pieces(box_pieces([2.0; 3], &Isometry3::translation(3.0, 0.0, 0.0))),
+        0,
+    )];
+    assert!(inside.clearance_at(&there).unwrap() > 1.0);
+}
+
 #[test]
 fn arms() {
     // The second joint turns back what the first turns: the hand goes around on a circle of radius one about

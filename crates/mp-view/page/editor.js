@@ -8,7 +8,7 @@ import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 
 /** @import { Document, DocumentShape, Part, Six, Three } from "mp/document.js" */
 /** @import { End, Verdict } from "mp/ends.js" */
-/** @import { Change, HandleMode } from "mp/gizmo.js" */
+/** @import { Change, HandleMode, Quaternion } from "mp/gizmo.js" */
 /** @import { Target } from "mp/handles.js" */
 /** @import { Role } from "mp/renderer.js" */
 /** @import { Scene } from "mp/scene.js" */
@@ -57,6 +57,7 @@ export class Editor {
     /** @type {doc.History | null} */ this.history = null;
     /** The document as the session has it. @type {Document | null} */ this.sent = null;
     /** @type {Selection | null} */ this.selection = null;
+    /** By which body an arm is drawn. */ this.held = 0;
     /** Called after anything changed here. @type {(() => void)[]} */ this.onchange = [];
     /** Commands wait for the ones before; how many there are. */ this.queue = Promise.resolve();
     this.waiting = 0;
@@ -81,6 +82,7 @@ export class Editor {
       this.sent = document;
       this.selection = null;
     }
+    this.held = this.workbench.links ? this.viewer.scene.robot - 1 : 0;
     this.refresh();
   }
   /** Shows what is selected again: in the handles and in the panel. */
@@ -88,7 +90,7 @@ export class Editor {
     if (!this.exists(this.selection)) this.selection = null;
     this.handles.setTarget(this.target());
     const s = this.selection;
-    this.viewer.panels?.markBody(!s ? -1 : "obstacle" in s ? this.viewer.scene.robot + s.obstacle : 0);
+    this.viewer.panels?.markBody(!s ? -1 : "obstacle" in s ? this.viewer.scene.robot + s.obstacle : this.held);
     if (this.history) setUnsaved(this.history.dirty);
     for (const listener of this.onchange) listener();
   }
@@ -100,7 +102,7 @@ export class Editor {
   /** Everything that can be selected, with its name. @returns {{name: string, selection: Selection}[]} */
   parts() {
     const { scene } = this.viewer;
-    if (!this.workbench.open || (!this.document && !endKind(scene))) return [];
+    if (!this.workbench.open || !(this.document || this.workbench.links || endKind(scene))) return [];
     const goals = scene.goals.map((_, i) => ({ name: scene.goals.length > 1 ? `robot at goal ${i + 1}` : "robot at the goal", selection: { end: i } }));
     const obstacles = (this.document?.obstacles ?? []).map((o, i) => ({ name: o.name, selection: { obstacle: i } }));
     return [{ name: "robot at the start", selection: { end: /** @type {End} */ ("start") } }, ...goals, ...obstacles];
@@ -120,6 +122,7 @@ export class Editor {
     if (body < 0) return this.select(null);
     const { robot } = this.viewer.scene;
     if (body >= robot) return this.select(this.document ? { obstacle: body - robot } : null);
+    if (this.workbench.links) this.held = body;
     this.select(role === "goal" ? { end: index } : role === "start" ? { end: "start" } : null);
   }
   /** Selects the next or the previous part. @param {number} step */
@@ -248,6 +251,7 @@ export class Editor {
     const { scene } = this.viewer;
     const kind = endKind(scene);
     const first = this.ends.at(end);
+    if (this.workbench.links) return this.linkTarget(end);
     if (!kind || !first) return null;
     const six = sixOfRow(kind, first.row);
     const { document } = this;
@@ -282,6 +286,26 @@ export class Editor {
           this.ends.set(end, first.row, { poses: first.poses });
           this.restore();
         }
+      },
+    };
+  }
+  /** An arm is drawn by one of its bodies. @param {End} end @returns {Target | null} */
+  linkTarget(end) {
+    const first = this.ends.at(end);
+    const pose = first?.poses.slice(7 * this.held, 7 * this.held + 7);
+    if (!first || pose?.length !== 7) return null;
+    const frame = { origin: /** @type {Three} */ (pose.slice(0, 3)), turn: /** @type {Quaternion} */ (pose.slice(3)) };
+    const draw = (/** @type {Change} */ change) => this.workbench.attempt(() => this.ends.draw(end, this.held, changedPose(pose, 0, frame.origin, change)));
+    let words = "";
+    return {
+      frame,
+      modes: ["move", "turn"],
+      planar: false,
+      words: () => (words = verdictWords(this.ends.verdicts.get(end)) || words),
+      preview: draw,
+      done: async (change) => {
+        if (change) await draw(change);
+        await this.ends.drawn(end, change ? null : first);
       },
     };
   }

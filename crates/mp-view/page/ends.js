@@ -18,6 +18,8 @@ export class Ends {
     /** Ends whose present poses were given with the row. @type {Set<End>} */ this.posed = new Set();
     /** Whether start or goals are not those of the scene. */ this.moved = { start: false, goals: false };
     this.asking = false;
+    /** Where a body is drawn to next. @type {{end: End, body: number, pose: number[]} | null} */ this.wish = null;
+    /** While bodies are drawn. @type {Promise<void> | null} */ this.drawing = null;
   }
   /** Takes the ends of a scene. @param {Scene} scene */
   show(scene) {
@@ -42,6 +44,32 @@ export class Ends {
     this.moved[end === "start" ? "start" : "goals"] = true;
     this.check(end);
     this.tell(end, settled);
+  }
+  /** Moves an end so that a body of the robot has this pose, as far as the robot reaches. Of several wishes the last counts.
+   * @param {End} end @param {number} body @param {number[]} pose */
+  draw(end, body, pose) {
+    this.wish = { end, body, pose };
+    this.drawing ??= this.grant().finally(() => (this.drawing = null));
+    return this.drawing;
+  }
+  async grant() {
+    const { scene } = this;
+    while (this.wish) {
+      const { end, body, pose } = this.wish;
+      this.wish = null;
+      const now = this.at(end)?.row;
+      if (!now) return;
+      const { row, poses } = await this.session.request({ do: "draw", row: now, body, pose });
+      if (scene !== this.scene) return;
+      if (row) this.set(end, row, { settled: false, poses });
+    }
+  }
+  /** Ends the drawing of a body: the end stays where it is, or goes back. @param {End} end @param {Configuration | null} back */
+  async drawn(end, back) {
+    if (back) this.wish = null;
+    await this.drawing;
+    const at = back ?? this.at(end);
+    if (at) this.set(end, at.row, { poses: at.poses });
   }
   /** Start and goals for the planner: null where they are the scene's own. */
   request() {

@@ -109,6 +109,7 @@ export class PlanningPanel {
     this.pauseButton = button("Pause", () => this.pause(), { title: "Pause or resume (T)" });
     this.stepButton = button("Step", () => this.step(), { title: "Some iterations, then pause (N)" });
     this.cancelButton = button("Cancel", () => this.cancel(), { title: "Cancel (K)" });
+    this.nextButton = button("Next part", () => this.nextPart(), { title: "The motion goes on where this path ends" });
     this.stepSize = el("input", { type: "number", min: 1, value: 100, "aria-label": "Iterations of a step" });
     this.counts = el("p", { class: "counts" });
     this.status = el("p", { role: "status" });
@@ -116,7 +117,7 @@ export class PlanningPanel {
     const growth = slider({ low: 0, high: 1, step: "any", value: 1 }, (g) => this.show(() => (this.viewer.settings.growth = g)));
     this.growth = growth;
     return [
-      el("div", { class: "buttons", role: "group", "aria-label": "Run" }, this.planButton, this.pauseButton, this.cancelButton, this.stepButton, this.stepSize),
+      el("div", { class: "buttons", role: "group", "aria-label": "Run" }, this.planButton, this.pauseButton, this.cancelButton, this.stepButton, this.stepSize, this.nextButton),
       this.status, this.counts,
       checkbox("Trees and roadmap of the run", true, (on) => this.show(() => (layer.search = on))), this.rejected,
       labelled("Growth", growth)];
@@ -216,6 +217,11 @@ export class PlanningPanel {
     if (!this.going) await this.plan(true);
     await this.tell("step", { iterations: Math.max(1, Math.round(this.stepSize?.valueAsNumber || 1)) });
   }
+  /** The configuration where the chosen path ends, if it has been written. */
+  get end() { return this.viewer.scene.paths[this.runs.chosen?.path ?? -1]?.written?.at(-1) ?? null; }
+
+  nextPart() { return this.end && this.workbench.nextPart(this.end); }
+
   event(/** @type {Message} */ event) {
     const run = this.runs.all.find((r) => r.id === event.run);
     if (!run || ended(run)) return;
@@ -310,6 +316,8 @@ export class PlanningPanel {
     this.planButton.disabled = going || !this.workbench.open;
     this.stepButton.disabled = !this.workbench.open;
     this.pauseButton.disabled = this.cancelButton.disabled = !going;
+    if (this.nextButton) this.nextButton.hidden = !this.workbench.partsLeft;
+    if (this.nextButton) this.nextButton.disabled = going || !this.end;
     const label = paused ? "Resume" : "Pause";
     if (this.pauseButton.textContent !== label) this.pauseButton.textContent = label;
     const status = this.stateWords();

@@ -215,11 +215,11 @@ export class Session {
     this.remember(request.do, bytes);
     return reply;
   }
-  /** Keeps the requests that make the present state: what was opened, the meshes added, the last edit. @param {string} what @param {Uint8Array} bytes */
+  /** Keeps the requests that make the present state: what was opened, the meshes added, the last edit, the parts of the motion that are done. @param {string} what @param {Uint8Array} bytes */
   remember(what, bytes) {
     if (what === "open" || what === "hello") this.history = [{ what, bytes }];
     if (what === "edit") this.history = this.history.filter((h) => h.what !== "edit");
-    if (what === "edit" || what === "mesh") this.history.push({ what, bytes });
+    if (what === "edit" || what === "mesh" || what === "next") this.history.push({ what, bytes });
   }
   /** Connects again after `onlost`, to the same state. */
   reconnect() { return this.link.reconnect(); }

@@ -18,6 +18,8 @@ export class Workbench {
     this.ends = new Ends(session);
     /** What can be edited, or null. @type {Message | null} */ this.document = null;
     /** Whether the session has a scene open. */ this.open = false;
+    /** Whether bodies of the robot can be drawn: docs/formats/session.md. */ this.links = false;
+    /** How many parts of the motion come after this one. */ this.partsLeft = 0;
     /** Called after a scene was opened (“open”), or came back changed from the planner (“edit”).
      * @type {((reply: Message, how: "open" | "edit") => void)[]} */ this.onopened = [];
     /** Called after the session's scene was left. @type {(() => void)[]} */ this.onleft = [];
@@ -50,11 +52,18 @@ export class Workbench {
     scene.paths.push(...known.paths);
     scene.report ??= known.report;
     this.open = true;
-    this.document = reply.document ?? null;
+    this.describe(reply);
     this.viewer.show(scene, { keepCamera: how === "edit" });
     this.ends.show(scene);
     showNote((reply.notes ?? []).join(". "));
     for (const listener of this.onopened) listener(reply, how);
+  }
+  /** What the session says of its scene. @param {Message} reply */
+  describe({ document = null, links = false, parts_left: partsLeft = 0 }) { Object.assign(this, { document, links, partsLeft }); }
+
+  /** Opens the next part of the motion. @param {number[]} row where this one ends @returns {Promise<boolean>} */
+  nextPart(row) {
+    return this.attempt(async () => this.take(await this.session.request({ do: "next", row }), "edit"));
   }
   /** The page shows something else than the scene of the session: there is nothing to edit or to plan. */
   leave() {
@@ -66,7 +75,7 @@ export class Workbench {
   /** Takes the session's scene without showing it again: the page shows it already. @param {Message} reply */
   adopt(reply) {
     this.open = true;
-    this.document = reply.document ?? null;
+    this.describe(reply);
     this.ends.show(this.viewer.scene);
     for (const listener of this.onopened) listener(reply, "open");
   }

@@ -9,6 +9,7 @@
 //! | [`control`] | systems that move by inputs: flows, input sets, the local planner that chooses among inputs |
 //! | [`robot`] | robots among obstacles: the poses of their bodies, and collision checks |
 //! | [`snake`] | active contours that bend motions around obstacles |
+//! | [`time`] | trajectories: paths timed within limits, and the curves that controllers run |
 //! | [`tree`] | the RRT family |
 //! | [`roadmap`] | the PRM family |
 //! | [`io`] | meshes, scenes, problems and paths in files |
@@ -73,6 +74,7 @@ pub use mp_render as render;
 pub use mp_roadmap as roadmap;
 pub use mp_robot as robot;
 pub use mp_snake as snake;
+pub use mp_time as time;
 pub use mp_tree as tree;
 
 /// The names that most programs need.

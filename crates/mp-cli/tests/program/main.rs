@@ -12,4 +12,5 @@ mod outputs;
 mod relax;
 mod routes;
 mod streams;
+mod trajectories;
 mod view;

@@ -51,6 +51,10 @@ pub struct RobotEntry {
     pub moving: Option<MovingJoints>,
     /// How far (rad or m) the start may be beyond a limit; 0 when it is not given.
     pub limit_tolerance: f64,
+    /// How fast joints may move (rad/s or m/s), in place of what the URDF says: of all joints where there is no name. Later ones count.
+    pub max_velocity: Vec<(Option<String>, f64)>,
+    /// How fast velocities of joints may change (rad/s² or m/s²).
+    pub max_acceleration: Vec<(Option<String>, f64)>,
     /// How the robot moves, if it moves by inputs.
     pub driven: Option<Driven>,
     pub(super) places: RobotPlaces,
@@ -74,6 +78,8 @@ pub(super) struct RobotPlaces {
     pub(super) limits: Vec<Range<usize>>,
     pub(super) hold: Vec<Range<usize>>,
     pub(super) moving: Range<usize>,
+    pub(super) velocity: Range<usize>,
+    pub(super) acceleration: Range<usize>,
 }
 
 impl RobotPlaces {
@@ -84,6 +90,8 @@ impl RobotPlaces {
             RobotPart::Robot => &self.robot,
             RobotPart::Base => &self.base,
             RobotPart::Moving => &self.moving,
+            RobotPart::Velocity => &self.velocity,
+            RobotPart::Acceleration => &self.acceleration,
             RobotPart::Limits(i) => self.limits.get(i).unwrap_or(&self.urdf),
             RobotPart::Hold(i) => self.hold.get(i).unwrap_or(&self.urdf),
             RobotPart::Urdf => &self.urdf,
@@ -108,12 +116,17 @@ pub enum RobotPart {
     Hold(usize),
     /// Which joints move.
     Moving,
+    /// The limits of velocity.
+    Velocity,
+    /// The limits of acceleration.
+    Acceleration,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RobotTable {
     name: Option<String>,
+    #[serde(alias = "mjcf")]
     urdf: Spanned<String>,
     srdf: Option<Spanned<SrdfEntry>>,
     packages: Option<String>,
@@ -128,6 +141,8 @@ pub(super) struct RobotTable {
     group: Option<Spanned<String>>,
     joints: Option<Spanned<Vec<String>>>,
     limit_tolerance: Option<Spanned<f64>>,
+    max_velocity: Option<Spanned<RateEntry>>,
+    max_acceleration: Option<Spanned<RateEntry>>,
     kind: Option<Spanned<String>>,
     duration: Option<Spanned<f64>>,
     speeds: Option<Spanned<Vec<f64>>>,
@@ -140,6 +155,38 @@ pub(super) struct RobotTable {
 enum SrdfEntry {
     Name(String),
     Is(bool),
+}
+
+/// A limit of velocity or acceleration: one for all joints, or for some of them.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a number, or one for each joint: `{ joint1 = 1.5 }`")]
+enum RateEntry {
+    All(f64),
+    Joints(BTreeMap<String, f64>),
+}
+
+/// The limits of an entry, and where it is.
+fn rates_of(
+    source: &TomlText<'_>,
+    what: &str,
+    entry: Option<Spanned<RateEntry>>,
+) -> Result<(Vec<(Option<String>, f64)>, Range<usize>), Error> {
+    let Some(entry) = entry else { return Ok((Vec::new(), 0..0)) };
+    let span = entry.span();
+    let rates: Vec<_> = match entry.into_inner() {
+        RateEntry::All(rate) => vec![(None, rate)],
+        RateEntry::Joints(rates) => rates.into_iter().map(|(joint, rate)| (Some(joint), rate)).collect(),
+    };
+    for (joint, rate) in &rates {
+        source.check(what, &[*rate], &span)?;
+        if *rate <= 0.0 {
+            let of = joint
+                .as_ref()
+                .map_or_else(String::new, |joint| format!(" of {}", crate::text::clipped(joint)));
+            return Err(source.error(&span, format!("{what}{of} is {rate}")).expected("a number above zero"));
+        }
+    }
+    Ok((rates, span))
 }
 
 /// The lower and the upper corner of a box, or of a rectangle.
@@ -337,13 +384,7 @@ pub(super) fn robots_of(
 
 /// The robot of one table.
 fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) -> Result<RobotEntry, Error> {
-    let table = DriveTable {
-        kind: robot.kind,
-        duration: robot.duration,
-        speeds: robot.speeds,
-        accelerations: robot.accelerations,
-        ..DriveTable::default()
-    };
+    let table = DriveTable::by_numbers(robot.kind, robot.duration, robot.speeds, robot.accelerations);
     let driven = table.read(source, &robot_span, &["velocities", "accelerations"])?;
     let base_span = robot.base.as_ref().map_or(0..0, Spanned::span);
     let Base { pose: base, floating, planar } = base_of(source, robot.base, robot.bounds)?;
@@ -392,6 +433,9 @@ fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) 
             return Err(source.error(&spanned.span(), message).expected(expected));
         }
     }
+    let (max_velocity, velocity) = rates_of(source, "the limit of velocity", robot.max_velocity)?;
+    let (max_acceleration, acceleration) =
+        rates_of(source, "the limit of acceleration", robot.max_acceleration)?;
     let places = RobotPlaces {
         urdf: robot.urdf.span(),
         srdf: srdf_span,
@@ -400,6 +444,8 @@ fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) 
         limits: places_of_limits,
         hold: places_of_hold,
         moving: moving_span,
+        velocity,
+        acceleration,
     };
     Ok(RobotEntry {
         name: robot.name,
@@ -415,6 +461,8 @@ fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) 
         hold,
         moving,
         limit_tolerance,
+        max_velocity,
+        max_acceleration,
         driven,
         places,
     })

@@ -2,8 +2,9 @@
 
 use super::srdf_near::srdf_near;
 use super::{RobotEntry, RobotFile, RobotFilePart, RobotPart};
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::files::{Disk, Files, MAX_TEXT_BYTES, stem};
+use crate::mjcf::{self, Mjcf};
 use crate::problem::PlacedBody;
 use crate::shape::Meshes;
 use mp_geom::pose_from_six;
@@ -12,11 +13,11 @@ use std::path::{Path, PathBuf};
 /// A robot of a problem: its description, with the files that it names but for its meshes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DescribedRobot {
-    /// Where the URDF is.
+    /// Where the description is.
     pub urdf_file: PathBuf,
-    /// The content of the URDF.
+    /// The content of the URDF, or the URDF that was made of a model of MuJoCo.
     pub urdf: String,
-    /// The content of the SRDF: the one that the problem names, else the one that was found.
+    /// The content of the SRDF: the one that the problem names, else the one that was found, else what a model of MuJoCo says.
     pub srdf: Option<String>,
     /// Where the SRDF is, if the problem names none and one of this robot was found near the URDF.
     pub srdf_found: Option<PathBuf>,
@@ -26,6 +27,8 @@ pub struct DescribedRobot {
     pub packages: Option<PathBuf>,
     /// Whether its meshes are solids.
     pub solid: bool,
+    /// If the description is of MuJoCo: what the URDF and its pairs were made of.
+    pub(super) mjcf: Option<Mjcf>,
 }
 
 /// Arms, obstacles, a start and goals; all files are read except the meshes of the robots.
@@ -51,6 +54,7 @@ impl RobotProblem {
         let same = |(a, b): (&RobotEntry, &RobotEntry)| {
             (&a.name, a.base, a.floating, a.planar) == (&b.name, b.base, b.floating, b.planar)
                 && (&a.limits, &a.hold, &a.driven) == (&b.limits, &b.hold, &b.driven)
+                && (&a.max_velocity, &a.max_acceleration) == (&b.max_velocity, &b.max_acceleration)
                 && (a.limit_tolerance, b.limit_tolerance) == (0.0, 0.0)
                 // Where not all joints move, the start may say where the others are held.
                 && (&a.moving, &b.moving) == (&None, &None)
@@ -110,7 +114,13 @@ fn described(files: &dyn Files, folder: &Path, file: &RobotFile, i: usize) -> Re
             Err(e) => Err(unusable(file, RobotFilePart::Robot(i, part), &e)),
         }
     };
-    let (urdf_file, urdf) = text(RobotPart::Urdf, &entry.urdf)?;
+    let (urdf_file, mut urdf) = text(RobotPart::Urdf, &entry.urdf)?;
+    let mut mjcf = None;
+    if mjcf::is_mjcf(&urdf) {
+        let read = mjcf::read(files, &urdf_file, urdf)?;
+        urdf = read.urdf.clone();
+        mjcf = Some(read);
+    }
     let srdf = match &entry.srdf {
         Some(name) => Some(text(RobotPart::Srdf, name)?.1),
         None => None,
@@ -123,8 +133,30 @@ fn described(files: &dyn Files, folder: &Path, file: &RobotFile, i: usize) -> Re
             None => srdf_beside = beside,
         }
     }
+    let own = mjcf.as_ref().filter(|_| srdf.is_none() && !entry.without_srdf);
+    srdf = srdf.or(own.map(|mjcf| mjcf.srdf.clone()));
     let packages = entry.packages.as_ref().map(|name| folder.join(name));
-    Ok(DescribedRobot { urdf_file, urdf, srdf, srdf_found, srdf_beside, packages, solid: entry.solid })
+    Ok(DescribedRobot { urdf_file, urdf, srdf, srdf_found, srdf_beside, packages, solid: entry.solid, mjcf })
+}
+
+impl DescribedRobot {
+    /// Whether the description is a model of MuJoCo, of which [`urdf`](Self::urdf) was made.
+    #[must_use]
+    pub fn is_mjcf(&self) -> bool {
+        self.mjcf.is_some()
+    }
+
+    /// An error in a line of the URDF, counted from 1, or in all of it. Of a URDF that was made of another format the error is where the line comes
+    /// from.
+    #[must_use]
+    pub fn error(&self, line: Option<usize>, message: String) -> Error {
+        let (kind, file) = (ErrorKind::Content, self.urdf_file.display());
+        match (&self.mjcf, line) {
+            (Some(mjcf), _) => mjcf.origin.error(line, message),
+            (None, Some(line)) => Error::in_line(kind, file, &self.urdf, line, message),
+            (None, None) => Error::new(kind, file, message),
+        }
+    }
 }
 
 /// The text of a URDF or SRDF, in the encoding that it declares.

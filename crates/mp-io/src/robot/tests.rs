@@ -112,6 +112,15 @@ fn faults_have_their_place() {
         ("[[1, 0], [0.0, -1]]", "[]", 8, "no goals"),
         ("goals = [[1, 0], [0.0, -1]]", "goal = [1, 0]\ngoals = [[1, 0]]", 9, "a goal and a list"),
         ("[-1, 1.5]", "[1.5, -1]", 4, "limits of elbow"),
+        ("limits = ", "max_velocity = 0\nlimits = ", 4, "limit of velocity is 0"),
+        ("limits = ", "max_velocity = inf\nlimits = ", 4, "limit of velocity"),
+        (
+            "limits = ",
+            "max_acceleration = { elbow = -1 }\nlimits = ",
+            4,
+            "limit of acceleration of elbow is -1",
+        ),
+        ("limits = ", "max_acceleration = [1]\nlimits = ", 4, "{ joint1 = 1.5 }"),
         ("[1, 2, 0.1]", "[1, 0, 0.1]", 12, "length in y of the box"),
         ("sphere = 0.25", "sphere = -0.25", 15, "radius"),
         ("sphere = 0.25", "sphere = 0.25\nbox = [1, 1, 1]", 16, "2 shapes"),
@@ -149,6 +158,15 @@ fn faults_have_their_place() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn velocities_and_accelerations_have_limits() {
+    let text = "max_velocity = 1.5\nmax_acceleration = { elbow = 4, wrist = 2 }\nlimits = ";
+    let (_dir, path) = folder(&GOOD.replace("limits = ", text));
+    let robot = RobotProblem::load(&path).unwrap().file.robots.remove(0);
+    assert_eq!(robot.max_velocity, [(None, 1.5)]);
+    assert_eq!(robot.max_acceleration, [(Some("elbow".to_owned()), 4.0), (Some("wrist".to_owned()), 2.0)]);
 }
 
 #[test]

@@ -31,6 +31,9 @@ impl DescribedRobot {
     /// # Errors
     /// As [`mesh`](Self::mesh).
     pub fn mesh_from(&self, files: &dyn Files, name: &str) -> Result<TriMesh, String> {
+        if let Some(made) = self.mjcf.as_ref().and_then(|mjcf| mjcf.made.get(name)) {
+            return Ok(made.clone());
+        }
         let place = self.place_of(files, name)?;
         let read = read_mesh_with(files, &place, Axes::OfFile);
         let read = read.and_then(|mesh| match self.solid && !files.only_reads() {

@@ -1,6 +1,6 @@
 //! Finding scenes: by file, or by the name of a shipped scene.
 
-use crate::{Error, Scene};
+use crate::{Error, ErrorKind, Scene};
 use mp_cspace::Interrupt;
 use mp_io::{Content, Disk, FORMATS, Files, ProblemChanges, RobotPath, Until};
 use std::io::{BufRead, BufReader, Read};
@@ -154,7 +154,7 @@ fn unknown(folder: &Path, given: &Path) -> Error {
             shipped.join(", ")
         ),
     };
-    Error::new(format!("there is no scene {}", given.display())).help(help)
+    Error::new(format!("there is no scene {}", given.display())).help(help).of_kind(ErrorKind::Missing)
 }
 
 /// The file in `folder` that `given` names, with or without its ending.

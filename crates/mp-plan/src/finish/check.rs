@@ -1,6 +1,7 @@
 //! Verifies a path, with code that shares nothing with the planner's checks.
 
 use crate::explain::{enclosures, list};
+use crate::finish::trajectory::TrajectoryVerdict;
 use crate::goals::next_to;
 use crate::numbers::{brief, plain};
 use crate::path::states;
@@ -35,6 +36,9 @@ pub struct Verdict {
     pub clearance_kept: f64,
     /// What is wrong. Empty when the path is free.
     pub faults: Vec<String>,
+    /// What is known of a trajectory besides; left out for paths without times.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trajectory: Option<TrajectoryVerdict>,
     /// What is inside of closed surfaces, which have no inside unless they are made solid.
     #[serde(default)]
     pub warnings: Vec<String>,
@@ -50,9 +54,19 @@ impl Verdict {
                 true => format!("clearance at least {} m", brief(self.clearance)),
                 false => "there is nothing to hit".to_owned(),
             };
+            let (time, shape) = match &self.trajectory {
+                None => (String::new(), String::new()),
+                Some(t) => {
+                    let at = t
+                        .least_at
+                        .filter(|_| self.clearance.is_finite())
+                        .map(|at| format!(" (the least is at {} s)", brief(at)));
+                    (at.unwrap_or_default(), format!("{} s, {} curve, ", brief(t.duration), t.curve))
+                }
+            };
             let how = if self.clearance > 0.0 { "certified free" } else { "free wherever it was tested" };
             return format!(
-                "{}: {how} in {}\n  {} configurations, length {}, {clearance}",
+                "{}: {how} in {}\n  {} configurations, {shape}length {}, {clearance}{time}",
                 self.path,
                 self.scene,
                 self.configurations,
@@ -144,6 +158,7 @@ pub(crate) fn check(kind: &dyn Robot, path: &PathRows, interrupt: &Interrupt) ->
         clearance,
         clearance_kept: kind.kept(),
         faults,
+        trajectory: None,
     })
 }
 
@@ -162,9 +177,15 @@ pub(crate) fn fault_text(kind: &dyn Robot, path: &Path<Configuration>, fault: Pa
     }
     let state = kind.any_space().interpolate(from, to, check.failed_at().unwrap_or(0.0));
     let at: Vec<_> = kind.row(&state).into_iter().map(plain).collect();
-    let touching = kind.touching(&state);
-    let broken = kind.broken(&state);
-    let what = match (check, touching.is_empty()) {
+    let what = what_happens(kind, &state, check);
+    format!("{what} between configurations {} and {}, at [{}]", edge + 1, edge + 2, at.join(", "))
+}
+
+/// What is wrong at a configuration where a check has failed: what it hits, as a rule.
+pub(crate) fn what_happens(kind: &dyn Robot, state: &Configuration, check: MotionCheck) -> String {
+    let touching = kind.touching(state);
+    let broken = kind.broken(state);
+    match (check, touching.is_empty()) {
         _ if let Some(constraint) = &broken => format!("is against the constraint `{constraint}`"),
         _ if kind.sampled().is_some() => "collides".to_owned(),
         (_, true) if kind.kept() > 0.0 => {
@@ -174,6 +195,5 @@ pub(crate) fn fault_text(kind: &dyn Robot, path: &Path<Configuration>, fault: Pa
             format!("comes nearer to contact than {} m", brief(kind.tolerance()))
         }
         _ => format!("hits {}", list(&touching)),
-    };
-    format!("{what} between configurations {} and {}, at [{}]", edge + 1, edge + 2, at.join(", "))
+    }
 }

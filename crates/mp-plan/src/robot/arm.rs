@@ -534,6 +534,10 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         });
         base.chain(self.arm.coordinates().iter().map(|c| limits(c.range))).collect()
     }
+    fn rates(&self) -> Option<Vec<[Option<f64>; 2]>> {
+        let rates = || self.arm.coordinates().iter().map(|c| self.arm.model().rates(&c.name)).collect();
+        C::BASE.is_empty().then(rates)
+    }
     fn details(&self) -> Vec<(String, String)> {
         let links = crate::count(self.arm.model().links.len(), "link");
         let base = match self.arm.kinematics().floats() {
@@ -551,7 +555,7 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
         details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
         // Those that are said are among the notes of the scene.
-        let notes = self.arm.model().notes.iter().filter(|note| !self.said.contains(note));
+        let notes = self.arm.notes().filter(|note| !self.said.contains(note));
         details.extend(notes.map(|note| ("note".to_owned(), note.clone())));
         details
     }

@@ -8,7 +8,7 @@ use super::{
 use crate::{Error, GoalPart, Length, MetricName};
 use mp_cspace::erased::AnyFactored;
 use mp_cspace::{
-    Clearance, ClearanceSearch, Configuration, Demand, InputSystem, Interrupt, Interrupted,
+    Clearance, ClearanceSearch, Configuration, Curve, Demand, InputSystem, Interrupt, Interrupted,
     IntervalClearance, LeastClearance, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
     ObstacleKnowledge, Space as _, Validity,
 };
@@ -165,6 +165,35 @@ impl MotionValidity<Configuration> for Verifier<'_> {
         }
         checked
     }
+    fn check_curve(&mut self, curve: &dyn Curve) -> Option<MotionCheck> {
+        let checked = self.inner.check_curve(curve)?;
+        if !checked.is_free() {
+            return Some(checked);
+        }
+        let (space, pieces) = (self.robot.robot.any_space(), curve.pieces());
+        let state = |piece: usize, u: f64| -> Configuration {
+            let value = |i| curve.polynomial(piece, i).iter().rev().fold(0.0, |sum, c| sum * u + c);
+            (0..self.robot.columns().len()).map(value).collect()
+        };
+        for piece in 0..pieces {
+            // In order; a part is halved until its ends are near each other.
+            let mut open = vec![(0.5, 1.0), (0.0, 0.5)];
+            while let Some((a, b)) = open.pop() {
+                let at = (piece as f64 + a) / pieces as f64;
+                if self.inner.is_interrupted() {
+                    return Some(MotionCheck::Unproven { at });
+                }
+                let ends = [a, b].map(|u| state(piece, u));
+                if FINER * space.distance(&ends[0], &ends[1]) > self.robot.every {
+                    let middle = 0.5 * (a + b);
+                    open.extend([(middle, b), (a, middle)]);
+                } else if !ends.iter().all(|q| self.robot.holds(q)) {
+                    return Some(MotionCheck::Collision { at });
+                }
+            }
+        }
+        Some(checked)
+    }
     fn interrupt_by(&mut self, interrupt: &Interrupt) {
         self.inner.interrupt_by(interrupt);
     }
@@ -257,6 +286,7 @@ impl Description for Constrained {
         fn end_error(&self, end: End, message: String, help: String) -> Error;
         fn columns(&self) -> Vec<Column>;
         fn limits(&self) -> Vec<Option<[f64; 2]>>;
+        fn rates(&self) -> Option<Vec<[Option<f64>; 2]>>;
         fn path_format(&self) -> PathFormat;
         fn row(&self, q: &Configuration) -> Vec<f64>;
         fn state(&self, row: &[f64]) -> Configuration;

@@ -6,9 +6,9 @@ use crate::robot::{Checker, Queries};
 use crate::{Error, Robot};
 use mp_cspace::erased::{AnyCheck, AnyFactored, AnySpace};
 use mp_cspace::{
-    Certified, Clearance, ClearanceSearch, Configuration, Discrete, Factored, Interrupt, IntervalClearance,
-    KnownFree, LeastClearance, Length, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
-    ObstacleKnowledge, ParameterError, Space, Validity,
+    Certified, Clearance, ClearanceSearch, Configuration, Curve, Discrete, Factored, Interrupt,
+    IntervalClearance, KnownFree, LeastClearance, Length, MotionCheck, MotionClearance, MotionInterval,
+    MotionValidity, ObstacleKnowledge, ParameterError, Space, Validity,
 };
 use std::fmt::{self, Debug};
 use std::sync::Arc;
@@ -315,6 +315,9 @@ impl MotionValidity<Configuration> for AnyVerifier<'_> {
     }
     fn check_extension(&mut self, from: &Configuration, to: &Configuration, known: KnownFree) -> MotionCheck {
         self.0.check_extension(from, to, known)
+    }
+    fn check_curve(&mut self, curve: &dyn Curve) -> Option<MotionCheck> {
+        self.0.check_curve(curve)
     }
     fn interrupt_by(&mut self, interrupt: &Interrupt) {
         self.0.interrupt_by(interrupt);

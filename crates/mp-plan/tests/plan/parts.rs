@@ -258,13 +258,7 @@ fn robots_of_other_formats_are_told_what_they_are() {
             "SDF, the format of Gazebo",
             "URDF of the robot",
         ),
-        (
-            "r.xml",
-            "<!-- m -->\n<mujoco model=\"m\"><worldbody/></mujoco>",
-            "MJCF, the format of MuJoCo",
-            "URDF of the robot",
-        ),
-        ("r.urdf", "<mujoco model=\"m\"/>", "MJCF, the format of MuJoCo", "URDF of the robot"),
+        ("r.urdf", "<mujoco model=\"m\"/>", "there is no <worldbody>", "the file of the whole model"),
         ("sdf.urdf", "<sdf version=\"1.9\"/>", "SDF, the format of Gazebo", "URDF of the robot"),
         ("a.launch.xml", "<launch/>", "a launch file", "names"),
     ] {

@@ -95,6 +95,10 @@ pub struct Joint {
     pub kind: JointKind,
     /// The joint that it follows, if any. A joint that follows another is not a coordinate.
     pub mimic: Option<Mimic>,
+    /// How fast it may move (rad/s or m/s), if that is known: for trajectories. Nothing else depends on it.
+    pub max_velocity: Option<f64>,
+    /// How fast its velocity may change (rad/s² or m/s²), if that is known.
+    pub max_acceleration: Option<f64>,
 }
 
 impl Joint {
@@ -114,6 +118,8 @@ impl Joint {
             axis: Vector3::x(),
             kind,
             mimic: None,
+            max_velocity: None,
+            max_acceleration: None,
         }
     }
 
@@ -203,6 +209,52 @@ impl Default for ArmModel {
 }
 
 impl ArmModel {
+    /// How fast the joint of that name may move (rad/s or m/s), and how fast its velocity may change (rad/s² or m/s²): its own limits, and
+    /// those of the joints that mimic it. `None` where nothing is known.
+    #[must_use]
+    pub fn rates(&self, joint: &str) -> [Option<f64>; 2] {
+        let own = self.joints.iter().filter(|j| j.name == joint).map(|j| (j, 1.0));
+        let followers = self.joints.iter().filter_map(|j| {
+            let mimic = j.mimic.as_ref().filter(|mimic| mimic.joint == joint && mimic.multiplier != 0.0)?;
+            Some((j, mimic.multiplier.abs()))
+        });
+        own.chain(followers).fold([None; 2], |least, (joint, factor)| {
+            let all =
+                [joint.max_velocity, joint.max_acceleration].map(|limit| limit.map(|limit| limit / factor));
+            std::array::from_fn(|i| match (least[i], all[i]) {
+                (Some(a), Some(b)) => Some(f64::min(a, b)),
+                (a, b) => a.or(b),
+            })
+        })
+    }
+
+    /// Sets how fast joints may move (rad/s or m/s), or, with `accelerations`, how fast their velocities may change: of the joint of that
+    /// name, or of all joints.
+    ///
+    /// # Errors
+    /// [`ArmError::NoSuchCoordinate`] when there is no such joint, or it is fixed.
+    pub fn with_rate(
+        mut self,
+        joint: Option<&str>,
+        rate: f64,
+        accelerations: bool,
+    ) -> Result<Self, ArmError> {
+        let is_it = |j: &Joint| j.kind != JointKind::Fixed && joint.is_none_or(|name| j.name == name);
+        if let Some(name) = joint
+            && !self.joints.iter().any(is_it)
+        {
+            let moving = self.joints.iter().filter(|j| j.kind != JointKind::Fixed);
+            let names: Vec<_> = moving.map(|j| format!("\"{}\"", j.name)).collect();
+            let why = format!("the joints that move are {}", names.join(", "));
+            return Err(ArmError::NoSuchCoordinate { joint: name.to_owned(), why });
+        }
+        for joint in self.joints.iter_mut().filter(|j| is_it(j)) {
+            let place = if accelerations { &mut joint.max_acceleration } else { &mut joint.max_velocity };
+            *place = Some(rate);
+        }
+        Ok(self)
+    }
+
     /// Sets the limits (rad or m) of a joint that has limits, or of a continuous joint, which becomes revolute.
     ///
     /// # Errors

@@ -64,6 +64,8 @@ pub(super) struct SharedArm {
     /// In the order of the links.
     pub(super) bodies: Vec<LinkBody>,
     pub(super) pairs: Vec<LinkPair>,
+    /// Which links are not compared, and why, unless the model says so: sentences.
+    pub(super) not_compared: Vec<String>,
     /// An upper bound (m) on the distance of any of its points from the base in any configuration.
     pub(super) reach: f64,
     /// As [`reach`](Self::reach), but without what joints slide.
@@ -108,14 +110,20 @@ impl SharedArm {
             first += entries;
         }
         let (model, reference) = (model.clone(), OnceLock::new());
-        let mut robot = Self { kinematics, bodies, pairs: Vec::new(), reach, length, model, reference };
+        let (none, not_compared) = (Vec::new(), Vec::new());
+        let mut robot =
+            Self { kinematics, bodies, pairs: none, not_compared, reach, length, model, reference };
         // Closer than this no motion can be certified.
         let close = 2.0 * robot.tolerance(0.0);
         let (pairs, notes) = pairs(&robot.kinematics, &robot.bodies, &robot.model, close, interrupt)?;
         tracing::debug!(dof = robot.kinematics.dof(), triangles = count, pairs = pairs.len(), "arm");
-        robot.pairs = pairs;
-        robot.model.notes.extend(notes);
+        (robot.pairs, robot.not_compared) = (pairs, notes);
         Ok(robot)
+    }
+
+    /// Sentences about the model and its pairs.
+    pub(super) fn notes(&self) -> impl Iterator<Item = &String> {
+        self.model.notes.iter().chain(&self.not_compared)
     }
 
     /// The default tolerance (m) among obstacles whose coordinates are at most `farthest`.
@@ -376,6 +384,17 @@ impl Arm {
     #[must_use]
     pub fn model(&self) -> &ArmModel {
         &self.robot.model
+    }
+
+    /// What was odd about the model, and what was decided for it: which links are [not compared](Self::not_compared). Sentences.
+    pub fn notes(&self) -> impl Iterator<Item = &String> {
+        self.robot.notes()
+    }
+
+    /// Which links are not compared with each other, though no file says so, and why: a sentence for each two.
+    #[must_use]
+    pub fn not_compared(&self) -> &[String] {
+        &self.robot.not_compared
     }
 
     /// Its kinematic tree.

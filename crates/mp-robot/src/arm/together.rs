@@ -32,9 +32,8 @@ impl ArmModel {
             let child = |link: &Link| model.joints.iter().any(|joint| joint.child == link.name);
             let root = model.links.iter().find(|link| !child(link)).map_or("", |link| link.name.as_str());
             all.joints.push(Joint::new(named("base"), "world", named(root), JointKind::Fixed).at(model.base));
-            all.notes.extend(
-                alone.model.notes.iter().map(|note| format!("{}: {note}", prefix.trim_end_matches('/'))),
-            );
+            let name = prefix.trim_end_matches('/');
+            all.notes.extend(alone.notes().map(|note| format!("{name}: {note}")));
             all.links.extend(model.links.iter().map(|link| Link { name: named(&link.name), ..link.clone() }));
             all.joints.extend(model.joints.iter().map(|joint| Joint {
                 name: named(&joint.name),

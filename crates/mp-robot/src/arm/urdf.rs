@@ -125,6 +125,8 @@ impl ArmModel {
             let mut made = Joint::new(&joint.name, &joint.parent.link, &joint.child.link, kind)
                 .at(pose(&joint.origin))
                 .axis(Vector3::from(joint.axis.xyz.0));
+            let velocity = joint.limit.velocity;
+            made.max_velocity = (velocity > 0.0 && velocity.is_finite()).then_some(velocity);
             if let Some(mimic) = &joint.mimic {
                 let (multiplier, offset) = (mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0));
                 made = made.mimic(&mimic.joint, multiplier, offset);

@@ -77,10 +77,9 @@ fn other_format(root: &str) -> Option<(&'static str, &'static str)> {
             "SDF, the format of Gazebo",
             "take the URDF of the robot, which mostly comes with it, or convert the model to one, such as by sdf2urdf of pysdf",
         ),
-        "mujoco" | "mujocoinclude" => (
-            "MJCF, the format of MuJoCo",
-            "take the URDF of the robot, which mostly comes with it, or convert the model to one, such as by mjcf-urdf-simple-converter",
-        ),
+        "mujoco" | "mujocoinclude" => {
+            ("MJCF, the format of MuJoCo", "read the file by `mp_io::RobotProblem`, which makes a URDF of it")
+        }
         "launch" => ("a launch file of ROS", "take the robot description that it names"),
         "COLLADA" => ("COLLADA, a mesh", "name it in a <mesh> of a URDF, or as an obstacle"),
         _ => return None,

@@ -90,6 +90,25 @@ fn everything_that_counts_is_read() {
 }
 
 #[test]
+fn velocities_are_read_and_those_of_followers_count() {
+    let limit = "<joint name=\"turn\" type=\"continuous\"><limit effort=\"1\" velocity=\" 2.5 \"/>";
+    let text = GRIPPER.replace("<joint name=\"turn\" type=\"continuous\">", limit);
+    let text = text.replace("upper=\"1\" velocity=\"1\"", "upper=\"1\" velocity=\"0.75\"");
+    let model = read(&text.replace("multiplier=\"-1\"", "multiplier=\"-1.5\"")).unwrap();
+    let rates = ["lift", "open", "turn", "close"].map(|joint| model.rates(joint));
+    assert_eq!(rates, [[Some(1.0), None], [Some(0.5), None], [Some(2.5), None], [Some(0.75), None]]);
+    let slow = model.with_rate(None, 3.0, true).unwrap().with_rate(Some("turn"), 0.1, false).unwrap();
+    assert_eq!(slow.rates("turn"), [Some(0.1), Some(3.0)]);
+    assert_eq!(slow.rates("open"), [Some(0.5), Some(2.0)]);
+    let error = slow.with_rate(Some("up"), 1.0, false).unwrap_err().to_string();
+    assert!(error.contains("\"up\"") && error.contains("\"lift\""), "{error}");
+    for none in ["0", "-1", "inf", "NaN", "", "fast"] {
+        let text = GRIPPER.replacen("velocity=\"1\"", &format!("velocity=\"{none}\""), 1);
+        assert_eq!(read(&text).unwrap().rates("lift"), [None, None], "{none}");
+    }
+}
+
+#[test]
 fn limits_can_be_set_and_pairs_given() {
     let model = read(GRIPPER).unwrap();
     let set = model.clone().with_limits("turn", -1.0, 2.0).unwrap();
@@ -319,6 +338,12 @@ fn faults_are_named() {
 /// What stands in files of robots that others publish.
 #[test]
 fn what_no_planner_reads_may_be_anything() {
+    // Limits of velocity are for trajectories.
+    let read = |text: &str| {
+        let mut model = read(text)?;
+        model.joints.iter_mut().for_each(|joint| joint.max_velocity = None);
+        Ok::<_, UrdfError>(model)
+    };
     let plain = read(GRIPPER).unwrap();
     assert!(plain.notes.is_empty(), "{:?}", plain.notes);
     let notes = |from: &str, to: &str, words: &[&str]| {
@@ -359,8 +384,9 @@ fn what_no_planner_reads_may_be_anything() {
         &format!("{spin}<material/><gazebo><joint/><link/></gazebo><transmission><joint/></transmission>"),
         &[],
     );
-    // Limits without velocity, second elements.
+    // Limits without velocity, or with one that is no number; second elements.
     notes("velocity=\"1\"", "", &[]);
+    notes("velocity=\"1\"", "velocity=\"fast\"", &[]);
     notes(
         "<axis xyz=\"0 0 2\"/>",
         "<axis xyz=\"0 0 2\"/><axis xyz=\"1 0 0\"/><dynamics damping=\"?\"/>",

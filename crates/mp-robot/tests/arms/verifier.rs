@@ -2,13 +2,14 @@
 
 use crate::common::{Six, across, clutter, obstacle, random_tree, six};
 use mp_cspace::{
-    Certified, Clearance, Configuration, Joints, MotionCheck, MotionValidity, Rng, Space, TrueMetric,
+    Certified, Clearance, Configuration, Curve, Joints, MotionCheck, MotionValidity, Rng, Space, TrueMetric,
     Validity,
 };
 use mp_geom::TriMesh;
 use mp_geom::primitives::{cuboid, cylinder, sphere};
 use mp_robot::{Arm, ArmModel, ArmVerifier, Joint, JointKind, Link};
 use nalgebra::{Isometry3, Vector3};
+use rand::RngExt;
 
 /// The verifier proves what is certified, finds what sampling finds, and claims no more clearance than there is.
 pub(crate) fn agree<C: Space<State = Configuration> + TrueMetric>(
@@ -93,6 +94,97 @@ fn it_sees_thin_walls_and_edges_whose_ends_are_free() {
     assert!(!arm.is_valid(&space.interpolate(&at(-1.0), &at(1.0), t)));
     assert!(verifier.check_motion(&at(1.0), &at(2.0)).is_free());
     assert_eq!(verifier.check_motion(&at(0.0), &at(0.0)), MotionCheck::Collision { at: 0.0 });
+}
+
+/// Polynomials: for each piece one for each coordinate.
+struct Pieces(Vec<Vec<[f64; 6]>>);
+
+impl Curve for Pieces {
+    fn pieces(&self) -> usize {
+        self.0.len()
+    }
+    fn polynomial(&self, piece: usize, coordinate: usize) -> [f64; 6] {
+        self.0[piece][coordinate]
+    }
+}
+
+impl Pieces {
+    /// Four pieces, one after the other, each of which bends away from the straight motion by up to `bend` (rad).
+    fn random(rng: &mut Rng, space: &Joints<Configuration>, bend: f64) -> Self {
+        let mut from = space.sample_uniform(rng);
+        let piece = |_| {
+            let to = space.interpolate(&from, &space.sample_uniform(rng), 0.4);
+            let bent = |(a, b): (&f64, &f64)| {
+                // Bent by u²·(1 − u), and u³·(1 − u)².
+                let [x, y] = [bend, 4.0 * bend].map(|most| most * rng.random_range(-1.0..1.0));
+                [*a, b - a, 6.0 * x, y - 6.0 * x, -2.0 * y, y]
+            };
+            let row = from.iter().zip(to.iter()).map(bent).collect();
+            from = to;
+            row
+        };
+        Self((0..4).map(piece).collect())
+    }
+
+    /// The state at a fraction of all pieces.
+    fn at(&self, t: f64) -> Configuration {
+        let x = t * self.0.len() as f64;
+        let piece = (x as usize).min(self.0.len() - 1);
+        let u = x - piece as f64;
+        let value = |c: &[f64; 6]| (0..6).map(|i| c[i] * u.powi(i as i32)).sum::<f64>();
+        self.0[piece].iter().map(value).collect()
+    }
+}
+
+/// Curves are proved, and refuted where dense samples first find contact.
+#[test]
+fn curves_are_proved_and_their_first_fault_is_found() {
+    let mut arm = Arm::new(&six(), clutter()).unwrap();
+    let space: Joints<Configuration> = arm.space().unwrap();
+    let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
+    let (mut rng, mut counts) = (Rng::seed(44), [0; 3]);
+    for case in 0..crate::common::cases_of(400) {
+        let curve = Pieces::random(&mut rng, &space, [0.0, 0.2, 1.0][case % 3]);
+        let samples = |arm: &mut Arm, until: f64| {
+            let mut states = (0..=2000).map(|k| curve.at(until * f64::from(k) / 2000.0));
+            states.all(|q| arm.is_valid(&q))
+        };
+        match verifier.check_curve(&curve).unwrap() {
+            MotionCheck::Free { clearance } => {
+                counts[0] += 1;
+                assert!(clearance >= verifier.tolerance() * (1.0 - 1e-9));
+                for k in 0..=200 {
+                    assert!(arm.clearance(&curve.at(f64::from(k) / 200.0), 1e9) >= clearance - 1e-9);
+                }
+            }
+            MotionCheck::Collision { at } => {
+                counts[1] += 1;
+                assert!(!arm.is_valid(&curve.at(at)), "{case}");
+                // The first contact is found to a thousandth of a piece.
+                assert!(samples(&mut arm, (at - 0.5e-3).max(0.0)) || at == 0.0, "{case}: {at}");
+            }
+            MotionCheck::Unproven { at } => {
+                counts[2] += 1;
+                assert!(arm.clearance(&curve.at(at), 1.0) < 2.0 * arm.tolerance());
+                assert!(samples(&mut arm, (at - 0.5e-3).max(0.0)), "{case}: {at}");
+            }
+        }
+    }
+    assert!(counts[0] > 20 && counts[1] > 100, "{counts:?}");
+    // A pole that only the bent motion meets, in the middle of the second piece.
+    let pole = obstacle("pole", cuboid(0.05, 0.05, 2.0).unwrap(), [0.5, 0.0, 0.5, 0.0, 0.0, 0.0]);
+    let arm = Arm::new(&six(), [pole]).unwrap();
+    let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
+    let still = |x: f64| [x, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let rest = [still(1.2), still(0.4), still(0.0), still(0.0), still(0.0)];
+    let turn = |c: [f64; 6]| [&[c][..], &rest].concat();
+    let around = |by: f64| Pieces(vec![turn(still(1.0)), turn([1.0, -by, by, 0.0, 0.0, 0.0])]);
+    assert!(verifier.check_curve(&around(0.4)).unwrap().is_free());
+    let MotionCheck::Collision { at } = verifier.check_curve(&around(4.0)).unwrap() else { panic!() };
+    assert!((0.5..0.75).contains(&at), "{at}");
+    for x in [f64::NAN, f64::INFINITY, 1e300] {
+        assert!(!verifier.check_curve(&Pieces(vec![turn([0.0, x, 0.0, 0.0, 0.0, 0.0])])).unwrap().is_free());
+    }
 }
 
 #[test]

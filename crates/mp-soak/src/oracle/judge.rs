@@ -153,17 +153,11 @@ impl<'c> Ready<'c> {
         self.pieces.iter().filter(crossed).count() % 2 == 1
     }
 
-    /// Whether a point of it is inside of another body.
+    /// Whether one of its pieces is inside of another body, if they do not touch.
     fn inside_of(&self, own: &Isometry3<f64>, other: &Self, pose: &Isometry3<f64>) -> bool {
-        self.some_point().is_some_and(|p| other.encloses(&pose.inverse_transform_point(&(own * p))))
-    }
-
-    /// A point of its pieces.
-    fn some_point(&self) -> Option<Point3<f64>> {
-        match &self.pieces.first()?.0 {
-            Piece::Triangle([a, ..]) | Piece::Capsule { a, .. } => Some(*a),
-            Piece::Cylinder { pose, .. } => Some(Point3::from(pose.translation.vector)),
-        }
+        let relative = pose.inverse() * own;
+        let mut points = self.pieces.iter().map(|(_, middle, _)| relative * middle);
+        points.any(|p| (p - other.middle).norm() <= other.radius && other.encloses(&p))
     }
 }
 

@@ -138,6 +138,38 @@ fn explains_configurations() {
 }
 
 /// The events of a run give the tree of its report, and the result is that of planning without a session.
+/// Bodies of an arm are drawn to places; the path of a motion's part leads to the next part.
+#[test]
+fn arms_are_drawn_and_motions_have_parts() {
+    let page = Page::new(Opening::default());
+    let opened = page.ask(json!({"do": "open", "scene": "carry"}));
+    assert_eq!(opened.head["links"], true);
+    let left = opened.head["parts_left"].as_u64().unwrap();
+    let (start, goal) = (scene_of(&opened).start, scene_of(&opened).goals.remove(0));
+    let body = start.poses.len() / 7 - 1;
+    let last = |poses: &[f64]| poses[7 * body..].to_vec();
+    // Four centimetres to the side.
+    let mut pose = last(&start.poses);
+    pose[1] += 0.04;
+    let drawn = page.ask(json!({"do": "draw", "row": start.row, "body": body, "pose": pose})).head;
+    let poses: Vec<f64> = serde_json::from_value(drawn["poses"].clone()).unwrap();
+    assert!(last(&poses).iter().zip(&pose).all(|(a, b)| (a - b).abs() < 1e-6), "{poses:?} {pose:?}");
+    assert_ne!(drawn["row"], json!(start.row));
+    pose[0] += 100.0;
+    let far = page.ask(json!({"do": "draw", "row": start.row, "body": body, "pose": pose})).head;
+    assert!(far["row"].is_null(), "{far:?}");
+    assert!(
+        page.refused(json!({"do": "draw", "row": start.row, "body": 0, "pose": [0, 0, 0, 0, 0, 0, 0]}))
+            .contains("pose")
+    );
+
+    let next = page.ask(json!({"do": "next", "row": goal.row}));
+    assert_eq!(next.head["parts_left"], left - 1);
+    assert_eq!(scene_of(&next).start.row, goal.row);
+    page.ask(json!({"do": "open", "scene": "easy"}));
+    assert!(page.refused(json!({"do": "next", "row": [0, 0, 0, 0, 0, 0]})).contains("last part"));
+}
+
 #[test]
 fn plans_as_the_library_does() {
     for (scene, planner) in [("easy", "rrt-connect"), ("rrs-low", "prm"), ("arm", "rrt-connect")] {

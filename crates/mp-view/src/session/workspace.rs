@@ -8,7 +8,8 @@ use crate::message::{Message, json};
 use crate::{PathTrack, SceneFile};
 use mp_geom::TriMesh;
 use mp_io::{Content, DocumentShape, FORMATS, SceneDocument};
-use mp_plan::{EditedScene, Error, MetricName, PathFileKind, PathRows, Request, Scene};
+use mp_plan::{EditedScene, Error, Interrupt, MetricName, PathFileKind, PathRows, Request, Scene};
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -66,6 +67,8 @@ impl Workspace {
             "mesh" => self.mesh(request),
             "path" => self.path(request),
             "check" => self.check(request),
+            "draw" => self.draw(request),
+            "next" => self.next(request),
             "field" => self.field(request),
             "save" => self.save(request),
             "save_path" => self.save_path(request),
@@ -214,6 +217,8 @@ impl Workspace {
         members.insert("notes".to_owned(), notes.into());
         members.insert("planner".to_owned(), open.scene.default_planner().into());
         members.insert("cannot".to_owned(), json(&open.scene.planners_that_cannot()));
+        members.insert("links".to_owned(), open.scene.has_links().into());
+        members.insert("parts_left".to_owned(), open.scene.parts_left().into());
         Ok(members)
     }
 
@@ -304,6 +309,28 @@ impl Workspace {
             .with("poses", poses))
     }
 
+    /// The configuration that puts a body of an arm to a place.
+    fn draw(&self, request: &Message) -> Answer {
+        let scene = &self.opened()?.scene;
+        let (row, pose) = (row_of(&request.head, "row")?, row_of(&request.head, "pose")?);
+        let pose = of_seven(&pose).ok_or_else(|| {
+            Error::new("`pose` of the request is no pose: x y z and the quaternion x y z w, not zero")
+        })?;
+        let drawn = scene.drawn(number_of(&request.head, "body")? as usize, &pose, &row)?;
+        let poses = drawn.as_ref().map(|row| scene.poses(row)).transpose()?.unwrap_or_default();
+        let poses: Vec<f64> = poses.iter().flat_map(crate::of_scene::seven).collect();
+        Ok(Message::default().with("row", drawn).with("poses", poses))
+    }
+
+    /// Opens the next part of the motion, which begins where the last one ended.
+    fn next(&mut self, request: &Message) -> Answer {
+        let end = row_of(&request.head, "row")?;
+        let next = self.opened()?.scene.next_part(&end, &Interrupt::never())?;
+        let next = next.ok_or_else(|| Error::new("this was the last part of the motion"))?;
+        self.adopt(next, None);
+        self.reply()
+    }
+
     fn save(&self, request: &Message) -> Answer {
         let name = plain_name(request)?;
         let document = match request.head.get("document") {
@@ -391,6 +418,14 @@ fn known_mesh(meshes: &BTreeMap<String, TriMesh>, name: &str) -> Result<TriMesh,
         mp_io::Error::new(mp_io::ErrorKind::Io, name, "this mesh has not been opened")
             .help("open its file first")
     })
+}
+
+/// The pose of seven numbers, unless they are none.
+fn of_seven(numbers: &[f64]) -> Option<Isometry3<f64>> {
+    let [x, y, z, i, j, k, w] = *numbers else { return None };
+    let turn = UnitQuaternion::try_new(Quaternion::new(w, i, j, k), 1e-9)?;
+    let sound = numbers.iter().all(|number| number.is_finite());
+    sound.then(|| Isometry3::from_parts(Translation3::new(x, y, z), turn))
 }
 
 /// A configuration in a request.

@@ -139,6 +139,8 @@ impl BodyInfo {
 
 /// How many bodies are listed. The others are only counted.
 const LISTED: usize = 40;
+/// How many goals are.
+const GOALS: usize = 4;
 
 impl fmt::Display for SceneInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -154,7 +156,10 @@ impl fmt::Display for SceneInfo {
             }
         }
         writeln!(f, "  start     {}", row(&self.start))?;
-        self.goals.iter().try_for_each(|goal| writeln!(f, "  goal      {}", row(goal)))?;
+        self.goals.iter().take(GOALS).try_for_each(|goal| writeln!(f, "  goal      {}", row(goal)))?;
+        if self.goals.len() > GOALS {
+            writeln!(f, "  goal      or {} others", self.goals.len() - GOALS)?;
+        }
         for body in self.bodies.iter().filter(|body| body.moves) {
             writeln!(f, "  robot     {}: {}", body.name, body.summary())?;
         }

@@ -37,16 +37,14 @@ impl ArmScene {
                 attached.map_err(|e| wrong([e.to_string(), "name links as the URDF does".to_owned()]))?
             }
         };
-        let mut model = model;
-        // Pairs are looked at again, and what is found is said again.
-        let said: Vec<_> = model.notes.drain(..).filter(|note| !note.contains("are not compared")).collect();
         let bodies = next.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
         let arm =
             Arm::new_until(&model, bodies, interrupt).map_err(|e| Error::from(e).context(what(problem)))?;
         let named = NamedValues::of(&next)?;
         let resolved = resolve(&mut next, &named, arm.kinematics(), arm.model())?;
-        let said = self.said.iter().filter(|note| said.contains(note)).cloned();
-        let said = said.chain(arm.model().notes.iter().cloned()).chain(resolved).collect();
+        // Pairs are looked at again, and what is found is said again.
+        let said = self.said.iter().filter(|note| model.notes.contains(note)).cloned();
+        let said = said.chain(arm.not_compared().iter().cloned()).chain(resolved).collect();
         Self::with_ends_of(next, arm, said, interrupt).map(Some)
     }
 }

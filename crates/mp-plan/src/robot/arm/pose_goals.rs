@@ -5,7 +5,7 @@ use mp_cspace::{Clearance, Configuration, Joints, Space};
 use mp_geom::pose_from_six;
 use mp_io::{FreeTurns, PoseEntry};
 use mp_robot::{Arm, FreeTurn, InverseKinematics, PoseGoal};
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, Vector3};
 use serde::Serialize;
 
 /// How many starts are tried, and how many free solutions are enough.
@@ -157,5 +157,18 @@ impl super::ArmScene {
         let found = found.map_err(|[message, help]| Error::new(message).help(help))?;
         let reached = |(q, free): (Configuration, bool)| Reached { row: q.as_slice().to_vec(), free };
         Ok(found.into_iter().map(reached).collect())
+    }
+
+    /// See [`Scene::drawn`](crate::Scene::drawn).
+    pub(crate) fn drawn(
+        &self,
+        body: usize,
+        pose: &Isometry3<f64>,
+        from: &Configuration,
+    ) -> Option<Configuration> {
+        let link = self.arm.model().links.iter().filter(|link| !link.shapes.is_empty()).nth(body)?;
+        let exact = PoseGoal::new(&link.name, *pose);
+        let placed = |goal: PoseGoal| InverseKinematics::new(self.arm.kinematics(), goal)?.from(from);
+        placed(exact.clone()).or_else(|| placed(PoseGoal { free: FreeTurn::All, ..exact }))
     }
 }

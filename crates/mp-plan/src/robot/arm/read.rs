@@ -57,6 +57,12 @@ fn described(files: &dyn Files, robot: One<'_>) -> Result<ArmModel, Error> {
         let limited = model.with_limits(joint, *low, *high);
         model = limited.map_err(|e| robot.fault(RobotPart::Limits(i), e, NAMES))?;
     }
+    let velocities = entry.max_velocity.iter().map(|(joint, rate)| (joint, *rate, RobotPart::Velocity));
+    let all = entry.max_acceleration.iter().map(|(joint, rate)| (joint, *rate, RobotPart::Acceleration));
+    for (joint, rate, part) in velocities.chain(all) {
+        let limited = model.with_rate(joint.as_deref(), rate, part == RobotPart::Acceleration);
+        model = limited.map_err(|e| robot.fault(part, e, NAMES))?;
+    }
     Ok(model)
 }
 
@@ -180,11 +186,10 @@ impl<C: LinkedSpace> LinkedScene<C> {
         let model = with_start(model, &kinematics, problem).map_err(|e| wrong_arm(problem, &e))?;
         let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
         let arm = Arm::new_until(&model, bodies, &files.interrupt()).map_err(|e| wrong_arm(problem, &e))?;
-        let notes = &arm.model().notes;
-        for note in notes {
+        for note in arm.notes() {
             tracing::info!("{}: {note}", problem.name);
         }
-        let said = notes[ignored..].to_vec();
+        let said = arm.notes().skip(ignored).cloned().collect();
         Ok((arm, said))
     }
 }
@@ -267,14 +272,20 @@ pub(super) fn srdf_help(problem: &RobotProblem, touching: &[[&str; 2]]) -> Strin
     let own = if touching.is_empty() { Some(0) } else { touching.iter().find_map(of) };
     let Some(index) = own else { return "move one of the robots, or its base".to_owned() };
     let robot = &problem.robots[index];
-    if robot.srdf.is_some() {
-        return format!("{in_srdf} {}", srdf_name(problem, index));
-    }
     let urdf = robot.urdf_file.display();
     let made = format!(
         "`mp srdf {urdf} --out {}` makes one from samples",
         robot.urdf_file.with_extension("srdf").display()
     );
+    let named = srdf_name(problem, index);
+    if robot.srdf.is_some() {
+        return match named.is_empty() {
+            false => format!("{in_srdf} {named}"),
+            true => {
+                format!("if these links may touch, say so by <exclude> in the model, or by an SRDF: {made}")
+            }
+        };
+    }
     match &robot.srdf_beside {
         Some(beside) => format!(
             "{in_srdf} an SRDF: `srdf = \"{beside}\"` in a robot problem takes the one beside the URDF; {made}"
@@ -285,12 +296,7 @@ pub(super) fn srdf_help(problem: &RobotProblem, touching: &[[&str; 2]]) -> Strin
 
 /// An error in the URDF of a robot, in a line if that is known.
 fn in_urdf(robot: &DescribedRobot, line: Option<usize>, message: String, remedy: &str) -> Error {
-    let (kind, file) = (mp_io::ErrorKind::Content, robot.urdf_file.display());
-    let error = match line {
-        Some(line) => mp_io::Error::in_line(kind, file, &robot.urdf, line, message),
-        None => mp_io::Error::new(kind, file, message),
-    };
-    error.help(remedy).into()
+    robot.error(line, message).help(remedy).into()
 }
 
 /// The line, counted from 1, in which the URDF begins the last element of this kind and name: the later one of two that have

@@ -228,13 +228,21 @@ impl Writer<'_, '_> {
             let limit = self.needed(node, "limit")?;
             self.numbers(&limit, "lower", 1, false)?;
             self.numbers(&limit, "upper", 1, false)?;
-            self.out.push_str("<limit effort=\"0\" velocity=\"0\"");
-            self.attributes(&limit, &["lower", "upper"]);
-            self.out.push_str("/>");
+            self.limit(&limit, &["lower", "upper"]);
+        } else if let Some(limit) = child(node, "limit").filter(|_| kind == "continuous") {
+            self.limit(&limit, &[]);
         }
         self.out.push_str("</joint>");
         self.joints.push(self.line(node));
         Ok(())
+    }
+
+    /// Writes a limit with these of its attributes, and its velocity; zero where that is no number.
+    fn limit(&mut self, limit: &Node<'_, '_>, keys: &[&str]) {
+        let velocity = attribute(limit, "velocity").and_then(|v| v.trim().parse::<f64>().ok());
+        let _ = write!(self.out, "<limit effort=\"0\" velocity=\"{}\"", velocity.unwrap_or(0.0)); // never fails for strings
+        self.attributes(limit, keys);
+        self.out.push_str("/>");
     }
 
     /// A child element that a joint must have.

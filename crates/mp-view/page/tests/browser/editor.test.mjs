@@ -205,6 +205,31 @@ browserTest("in the plane bodies keep z; a world that is no document lets start 
   assert.deepEqual([moved[0], ...moved.slice(2)], [at[0], ...at.slice(2)]);
 }));
 
+browserTest("an arm is drawn by its gripper, and each part of its motion is planned from where the last one ended", () => withPage("carry", async (driver) => {
+  const state = () => driver.page.evaluate(async () => {
+    const { viewer, links, partsLeft } = (await window.mpView.planner);
+    const { start, robot } = viewer.scene;
+    return { row: start.row, place: start.poses.slice(7 * (robot - 1), 7 * robot - 4), turn: start.poses.slice(7 * robot - 4), links, partsLeft };
+  });
+  const { row, place, turn, partsLeft } = await state();
+  await driver.choose("Selected", "robot at the start");
+  await driver.drag(await onHandle(driver, place, [0.8, 0, 0]), await onHandle(driver, place, [1.4, 0, 0]));
+  await driver.until(async (old) => (await window.mpView.planner).ends.verdicts.has("start") && String((await window.mpView.planner).viewer.scene.start.row) !== old, String(row));
+  const drawn = await state();
+  const shift = drawn.place.map((x, k) => x - place[k]);
+  assert.ok(shift[0] > 1e-3 && Math.hypot(shift[1], shift[2]) < 1e-6, `${shift}`);
+  assert.ok(drawn.turn.every((x, k) => Math.abs(x - turn[k]) < 1e-6), `${drawn.turn} ${turn}`);
+
+  await driver.press("Plan");
+  await driver.untilResult(/verified path/);
+  const end = await driver.page.evaluate(async () => (await window.mpView.planner).viewer.scene.paths.at(-1).written.at(-1));
+  await driver.press("Next part");
+  await driver.until(async (left) => (await window.mpView.planner).partsLeft === left, partsLeft - 1);
+  assert.deepEqual((await state()).row, end);
+  await driver.press("Plan");
+  await driver.untilResult(/verified path/);
+}));
+
 browserTest("unsaved changes are asked about; meshes and files of other kinds", () => withPage("easy", async (driver) => {
   const drop = (name, text) => driver.drop({ name, content: text });
   const count = (await documentOf(driver)).obstacles.length;

@@ -1,0 +1,59 @@
+//! `time`: gives a path times.
+
+use crate::input::{path, refuse_two_standard_inputs, scene};
+use crate::output::{Claims, note, print, write};
+use crate::{cli, interrupt};
+use mp_plan::{Error, Interrupt, TimedPath, TrajectoryKind, trajectory_text};
+use std::path::Path;
+
+/// Times a path. Always true, as one that cannot be timed is an error.
+pub(crate) fn run(args: &cli::Time) -> Result<bool, Error> {
+    refuse_two_standard_inputs(&args.scene, Some(&args.path))?;
+    let scene = scene(&args.scene, &args.changes.of_problem())?;
+    let kind = args.out.as_deref().map_or(Ok(TrajectoryKind::Csv), kind_of)?;
+    if let Some(out) = &args.out {
+        let mut claims = Claims::default();
+        scene.inputs_on_disk().iter().chain([&args.path]).for_each(|file| claims.input(file));
+        claims.output("--out", out)?;
+    }
+    let (rows, interrupt) = (path(&scene, &args.path)?, Interrupt::new(interrupt::flag()));
+    let timed = scene.time(&rows, &args.pace.pace(), &interrupt)?;
+    let trajectory = match args.rate {
+        None => timed.trajectory.clone(),
+        Some(rate) => {
+            let sampled = timed.trajectory.resampled(rate)?.in_nanoseconds()?;
+            let verdict = scene.check_trajectory(&sampled, &interrupt)?;
+            let collides = verdict.trajectory.as_ref().is_none_or(|t| t.collides_at.is_some());
+            if collides {
+                return Err(Error::new(format!(
+                    "at {rate} Hz the curve is not free: {}",
+                    verdict.faults.join("; ")
+                ))
+                .help("take a higher rate"));
+            }
+            verdict.faults.iter().for_each(|fault| note(&format!("warning: at {rate} Hz {fault}")));
+            sampled
+        }
+    };
+    let text = trajectory_text(&trajectory, kind);
+    match &args.out {
+        Some(out) => write(out, text.as_bytes())?,
+        None => print(text.trim_end())?,
+    }
+    say(&timed);
+    Ok(true)
+}
+
+/// The kind of a file for a trajectory, by the ending of its name.
+pub(crate) fn kind_of(file: &Path) -> Result<TrajectoryKind, Error> {
+    TrajectoryKind::of(file).ok_or_else(|| {
+        Error::new(format!("{}: no format for trajectories is called so", file.display()))
+            .help("name a file that ends in .csv, .json or .yaml")
+    })
+}
+
+/// Says what a trajectory is like to the person watching.
+pub(crate) fn say(timed: &TimedPath) {
+    timed.notes.iter().for_each(|line| note(&format!("note: {line}")));
+    note(&format!("trajectory: {}", timed.summary()));
+}

@@ -1,0 +1,284 @@
+//! The files of a model as one tree of elements, and what elements say with their defaults.
+
+use crate::error::{Error, ErrorKind};
+use crate::files::{Files, MAX_TEXT_BYTES};
+use crate::text::clipped;
+use roxmltree::{Document, Node, ParsingOptions};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// The most files of a model, and the most elements of a file.
+const MAX_FILES: usize = 256;
+const MAX_NODES: u32 = 4_000_000;
+/// Elements may be nested this deep: a chain of bodies is as deep as it is long.
+pub(super) const MAX_DEPTH: usize = 200;
+
+pub(super) type Element<'m> = Node<'m, 'm>;
+
+/// A file of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Source {
+    pub(super) file: PathBuf,
+    pub(super) text: String,
+}
+
+impl Source {
+    pub(super) fn parsed(&self) -> Result<Document<'_>, Error> {
+        let options = ParsingOptions { nodes_limit: MAX_NODES, ..Default::default() };
+        Document::parse_with_options(&self.text, options).map_err(|e| {
+            let message = e.to_string();
+            let message = message.split(" at ").next().unwrap_or(&message).to_owned();
+            Error::in_line(ErrorKind::Format, self.file.display(), &self.text, e.pos().row as usize, message)
+                .expected("MJCF, an XML file")
+                .help("the file is cut short or not MJCF; document types and entities (<!DOCTYPE …>) are not read")
+        })
+    }
+}
+
+/// The file at `file` with the content `text`, and those that it includes. Names are relative to its folder, also in those, as MuJoCo has it.
+pub(super) fn sources(files: &dyn Files, file: &Path, text: String) -> Result<Vec<Source>, Error> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let mut all = vec![Source { file: file.to_owned(), text }];
+    let mut at = 0;
+    while at < all.len() {
+        let mut found: Vec<Source> = Vec::new();
+        let source = &all[at];
+        let document = source.parsed()?;
+        let model = Model { sources: &all[at..=at], documents: std::slice::from_ref(&document) };
+        for node in document.descendants().filter(|node| node.has_tag_name("include")) {
+            let name = model.own(node, "file")?;
+            let place = place_of(folder, name);
+            if all.iter().chain(&found).any(|known| known.file == place) {
+                let message = format!("{} is included a second time", clipped(name));
+                return Err(model.error(node, message).help("include each file once"));
+            }
+            if all.len() + found.len() >= MAX_FILES {
+                return Err(model
+                    .error(node, format!("more than {MAX_FILES} files"))
+                    .help("join some of them"));
+            }
+            let bytes = files.read(&place, MAX_TEXT_BYTES).map_err(|e| {
+                let message = format!("the file included here cannot be used: {e}");
+                model.error(node, message).help(e.remedy().unwrap_or("correct its name").to_owned())
+            })?;
+            let text = crate::xml::text(&place.display().to_string(), &bytes)?.into_owned();
+            found.push(Source { file: place, text });
+        }
+        drop(document);
+        all.extend(found);
+        at += 1;
+    }
+    Ok(all)
+}
+
+/// A file that a model in `folder` names, in the way of any operating system.
+fn place_of(folder: &Path, name: &str) -> PathBuf {
+    folder.join(name.trim().replace('\\', "/"))
+}
+
+/// The files of a model, parsed.
+pub(super) struct Model<'m> {
+    pub(super) sources: &'m [Source],
+    pub(super) documents: &'m [Document<'m>],
+}
+
+impl<'m> Model<'m> {
+    /// The elements in `node`; those of the file in place of each `include`.
+    pub(super) fn children(&self, node: Element<'m>) -> Vec<Element<'m>> {
+        let mut found = Vec::new();
+        let mut stack: Vec<Element<'m>> = node.children().filter(Node::is_element).collect();
+        stack.reverse();
+        while let Some(node) = stack.pop() {
+            match node.has_tag_name("include") {
+                true => stack.extend(
+                    self.included(node)
+                        .into_iter()
+                        .flat_map(|root| root.children().rev())
+                        .filter(Node::is_element),
+                ),
+                false => found.push(node),
+            }
+        }
+        found
+    }
+
+    /// The root of the file that `include` names.
+    fn included(&self, include: Element<'m>) -> Option<Element<'m>> {
+        let folder = self.sources[0].file.parent().unwrap_or(Path::new(""));
+        let place = place_of(folder, include.attribute("file")?);
+        let at = self.sources.iter().position(|source| source.file == place)?;
+        Some(self.documents[at].root_element())
+    }
+
+    /// What is inside all elements of this name at the top of the model.
+    pub(super) fn inside(&self, name: &str) -> Vec<Element<'m>> {
+        self.sections(name).into_iter().flat_map(|section| self.children(section)).collect()
+    }
+
+    /// The elements of this name at the top of the model.
+    pub(super) fn sections(&self, name: &str) -> Vec<Element<'m>> {
+        let mut all = self.children(self.documents[0].root_element());
+        all.retain(|node| node.has_tag_name(name));
+        all
+    }
+
+    /// The number of the file that `node` is in.
+    pub(super) fn source(&self, node: Element<'m>) -> usize {
+        let text = node.document().input_text().as_ptr();
+        self.sources.iter().position(|source| source.text.as_ptr() == text).unwrap_or_default()
+    }
+
+    /// An error at `node`.
+    pub(super) fn error(&self, node: Element<'m>, message: impl Into<String>) -> Error {
+        let Source { file, text } = &self.sources[self.source(node)];
+        let length = 1 + node.tag_name().name().len();
+        Error::at(
+            ErrorKind::Content,
+            &file.display().to_string(),
+            text,
+            node.range().start,
+            length,
+            message.into(),
+        )
+    }
+
+    /// An attribute that `node` must have itself.
+    pub(super) fn own(&self, node: Element<'m>, key: &str) -> Result<&'m str, Error> {
+        node.attribute(key).filter(|value| !value.trim().is_empty()).ok_or_else(|| {
+            let message = format!("<{}> has no {key}", node.tag_name().name());
+            self.error(node, message).help(format!("add {key}=\"…\""))
+        })
+    }
+}
+
+/// The default classes: what elements say that do not say it themselves.
+#[derive(Default)]
+pub(super) struct Classes<'m> {
+    /// The number of a class, by its name.
+    names: HashMap<&'m str, usize>,
+    /// The class around each.
+    around: Vec<usize>,
+    /// By class, name of the element, name of the attribute.
+    values: HashMap<(usize, &'m str, &'m str), &'m str>,
+}
+
+impl<'m> Classes<'m> {
+    pub(super) fn of(model: &Model<'m>) -> Result<Self, Error> {
+        // The class of the whole model is the one around itself.
+        let mut classes = Self { around: vec![0], ..Self::default() };
+        classes.names.insert("main", 0);
+        let mut pending: Vec<_> = model.sections("default").into_iter().map(|node| (node, 0, 1)).collect();
+        pending.reverse();
+        while let Some((node, class, depth)) = pending.pop() {
+            if depth > MAX_DEPTH {
+                return Err(too_deep(model, node));
+            }
+            if let Some(name) = node.attribute("class") {
+                classes.names.insert(name, class);
+            }
+            for inner in model.children(node) {
+                if inner.has_tag_name("default") {
+                    let name = model.own(inner, "class")?;
+                    let number = *classes.names.entry(name).or_insert(classes.around.len());
+                    if number == classes.around.len() {
+                        classes.around.push(class);
+                    }
+                    pending.push((inner, number, depth + 1));
+                    continue;
+                }
+                let of =
+                    |a: roxmltree::Attribute<'m, 'm>| ((class, inner.tag_name().name(), a.name()), a.value());
+                classes.values.extend(inner.attributes().map(of));
+            }
+        }
+        Ok(classes)
+    }
+
+    /// The number of a class that `node` names.
+    pub(super) fn number(&self, model: &Model<'m>, node: Element<'m>, name: &str) -> Result<usize, Error> {
+        self.names.get(name).copied().ok_or_else(|| {
+            let message = format!("there is no default class \"{}\"", clipped(name));
+            model
+                .error(node, message)
+                .help("write it as <default class=\"…\"> in <default>, or correct its name")
+        })
+    }
+
+    fn value(&self, mut class: usize, element: &'m str, key: &'m str) -> Option<&'m str> {
+        loop {
+            match self.values.get(&(class, element, key)) {
+                Some(value) => return Some(value),
+                None if class == 0 => return None,
+                None => class = self.around[class],
+            }
+        }
+    }
+}
+
+/// The error of elements nested too deep.
+pub(super) fn too_deep<'m>(model: &Model<'m>, node: Element<'m>) -> Error {
+    let message = format!("elements nested more than {MAX_DEPTH} deep");
+    model.error(node, message).help("make the chain of bodies shorter")
+}
+
+/// What an element says, itself or by its class.
+pub(super) struct Said<'a, 'm> {
+    pub(super) model: &'a Model<'m>,
+    pub(super) node: Element<'m>,
+    classes: &'a Classes<'m>,
+    class: usize,
+}
+
+impl<'a, 'm> Said<'a, 'm> {
+    /// `class` is that of the elements around it, for an element that names none.
+    pub(super) fn of(
+        model: &'a Model<'m>,
+        classes: &'a Classes<'m>,
+        node: Element<'m>,
+        class: usize,
+    ) -> Result<Self, Error> {
+        let class = match node.attribute("class") {
+            Some(name) => classes.number(model, node, name)?,
+            None => class,
+        };
+        Ok(Self { model, node, classes, class })
+    }
+
+    pub(super) fn text(&self, key: &'m str) -> Option<&'m str> {
+        self.node.attribute(key).or_else(|| self.classes.value(self.class, self.node.tag_name().name(), key))
+    }
+
+    /// The numbers of an attribute.
+    pub(super) fn row(&self, key: &'m str) -> Result<Option<Vec<f64>>, Error> {
+        let Some(value) = self.text(key) else { return Ok(None) };
+        let numbers: Option<Vec<f64>> = value
+            .split_ascii_whitespace()
+            .map(|word| word.parse::<f64>().ok().filter(|x| x.is_finite()))
+            .collect();
+        numbers.map(Some).ok_or_else(|| self.wrong(key, "numbers, with blanks between them"))
+    }
+
+    /// An attribute of `N` numbers.
+    pub(super) fn numbers<const N: usize>(&self, key: &'m str) -> Result<Option<[f64; N]>, Error> {
+        let Some(row) = self.row(key)? else { return Ok(None) };
+        let numbers = row.try_into().ok();
+        let expected = || if N == 1 { "a number".to_owned() } else { format!("{N} numbers") };
+        numbers.map(Some).ok_or_else(|| self.wrong(key, expected()))
+    }
+
+    /// An attribute of one number.
+    pub(super) fn number(&self, key: &'m str, default: f64) -> Result<f64, Error> {
+        Ok(self.numbers::<1>(key)?.map_or(default, |[x]| x))
+    }
+
+    /// The error of an attribute.
+    pub(super) fn wrong(&self, key: &str, expected: impl Into<String>) -> Error {
+        let element = self.node.tag_name().name();
+        let value = clipped(self.node.attribute(key).unwrap_or("…"));
+        let message = match self.node.has_attribute(key) {
+            true => format!("{key} of <{element}> is \"{value}\""),
+            false => format!("{key} of <{element}>, which its default class gives, is not usable"),
+        };
+        self.model.error(self.node, message).expected(expected).help(format!("correct {key}=\"…\""))
+    }
+}

@@ -1,0 +1,215 @@
+use super::*;
+use crate::files::InMemory;
+use std::sync::Mutex;
+
+/// Files in memory, and what is said of them.
+#[derive(Debug)]
+struct Heard<'a> {
+    more: &'a str,
+    said: Mutex<Vec<String>>,
+}
+
+impl Files for Heard<'_> {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
+        InMemory(|name: &str| (name == "models/more.xml").then_some(self.more)).read(path, limit)
+    }
+    fn note(&self, _: &Path, remark: &str) {
+        self.said.lock().unwrap().push(remark.to_owned());
+    }
+}
+
+fn read_all(text: &str, more: &str) -> (Result<Mjcf, Error>, Vec<String>) {
+    let files = Heard { more, said: Mutex::default() };
+    let read = read(&files, Path::new("models/arm.xml"), text.to_owned());
+    (read, files.said.into_inner().unwrap())
+}
+
+fn of(text: &str) -> Mjcf {
+    let (read, _) = read_all(text, "");
+    read.unwrap_or_else(|e| panic!("{}", e.report()))
+}
+
+const ARM: &str = r#"<mujoco model="arm">
+  <compiler meshdir="meshes"/>
+  <include file="more.xml"/>
+  <default>
+    <default class="arm">
+      <joint axis="0 1 0" range="-90 90"/>
+      <default class="seen"><geom type="mesh" contype="0" conaffinity="0"/></default>
+    </default>
+  </default>
+  <asset><mesh file="hand.stl" scale="2 2 2" refpos="0 0 0.5"/></asset>
+  <worldbody>
+    <geom type="plane" size="1 1 1"/>
+    <geom type="box" size="1 1 .1" pos="0 0 -1"/>
+    <body name="base" pos="0 0 1" childclass="arm">
+      <geom type="cylinder" size=".1 .2"/>
+      <geom class="seen" mesh="gone"/>
+      <body name="upper" axisangle="0 0 1 90">
+        <joint name="lift" pos="0 0 .5" ref="90"/>
+        <joint name="slide" type="slide" axis="0 0 1" range="0 2"/>
+        <geom type="capsule" size=".05" fromto="0 0 0 0 0 1"/>
+        <frame pos="0 0 1" euler="90 0 0">
+          <body name="hand">
+            <joint type="ball" range="0 45"/>
+            <geom type="mesh" mesh="hand"/>
+            <geom type="ellipsoid" size=".1 .2 .3"/>
+          </body>
+        </frame>
+      </body>
+    </body>
+    <body name="ball" pos="2 0 0"><freejoint/><geom size=".1" contype="2" conaffinity="2"/></body>
+  </worldbody>
+  <contact><exclude body1="base" body2="hand"/></contact>
+  <equality><joint joint1="finger" joint2="slide" polycoef="0.1 -0.5"/></equality>
+  <tendon><spatial name="wire"/></tendon>
+  <keyframe><key name="home" qpos="1.5 0.25 0.7071067811865476 0.7071067811865476 0 0 2 0 0 1 0 0 0 0.3"/></keyframe>
+</mujoco>"#;
+
+const MORE: &str = "<mujocoinclude>\n<worldbody/>\n</mujocoinclude>";
+
+/// A finger, which ends the world.
+fn arm() -> String {
+    let finger = "<body name=\"finger\">\n<joint name=\"finger\" type=\"slide\"/><geom size=\"0.01\"/></body>\n</worldbody>";
+    ARM.replace("</worldbody>", finger)
+}
+
+#[test]
+fn a_model_as_urdf_and_srdf() {
+    let (read, said) = read_all(&arm(), MORE);
+    let read = read.unwrap();
+    insta::assert_snapshot!([read.urdf.as_str(), &read.srdf, &said.join("\n")].join("\n"));
+    assert_eq!(read.made.keys().collect::<Vec<_>>(), ["mjcf://ellipsoid"]);
+    // Errors are where the model has what is wrong.
+    let line = 1 + read.urdf.lines().position(|line| line.contains("name=\"slide\"")).unwrap();
+    let shown = read.origin.error(Some(line), "no".to_owned()).to_string();
+    assert!(shown.starts_with("models/arm.xml:19:9: no"), "{shown}");
+    let included =
+        arm().replace("<worldbody>", "<worldbody><body name='first'><include file='more.xml'/></body>");
+    let included = included.replacen("  <include file=\"more.xml\"/>\n", "", 1);
+    let (read, _) = read_all(&included, "<mujocoinclude>\n\n <joint name='j'/>\n</mujocoinclude>");
+    let read = read.unwrap();
+    let line = 1 + read.urdf.lines().position(|line| line.contains("name=\"j\"")).unwrap();
+    assert!(read.origin.error(Some(line), String::new()).to_string().starts_with("models/more.xml:3:2:"));
+}
+
+#[test]
+fn turns_mean_the_same_however_they_are_given() {
+    // A quarter turn about z.
+    for turn in
+        ["quat='1 0 0 1'", "axisangle='0 0 2 90'", "xyaxes='0 3 0 -1 7 0'", "euler='0 0 90'", "class='q'"]
+    {
+        let text = format!(
+            "<mujoco><default><default class='q'><geom quat='1 0 0 1'/></default></default><worldbody><body><joint/>\
+             <geom size='1' {turn}/></body></worldbody></mujoco>"
+        );
+        let urdf = of(&text).urdf;
+        assert!(urdf.contains("rpy=\"0 0 1.57079632679489"), "{turn}: {urdf}");
+    }
+    // Of a class that has one an element takes no other.
+    let text = "<mujoco><default><geom quat='1 0 0 1'/></default><worldbody><body><joint/><geom size='1' euler='0 0 45'/></body>\
+                </worldbody></mujoco>";
+    assert!(of(text).urdf.contains("rpy=\"0 0 0.785398163397448"));
+    let upward = "<mujoco><compiler eulerseq='ZYX' angle='radian'/><worldbody><body><joint/><geom size='1' euler='0.1 0.2 0.3'/></body>\
+                  </worldbody></mujoco>";
+    // Capital letters turn about the axes that stand still: as roll, pitch and yaw in the opposite order.
+    let turn = nalgebra::UnitQuaternion::from_euler_angles(0.3, 0.0, 0.0)
+        * nalgebra::UnitQuaternion::from_euler_angles(0.0, 0.2, 0.0)
+        * nalgebra::UnitQuaternion::from_euler_angles(0.0, 0.0, 0.1);
+    let (roll, pitch, yaw) = turn.euler_angles();
+    let urdf = of(upward).urdf;
+    let rpy = urdf.split("rpy=\"").nth(1).unwrap().split('"').next().unwrap();
+    let read: Vec<f64> = rpy.split(' ').map(|x| x.parse().unwrap()).collect();
+    let off = read.iter().zip([roll, pitch, yaw]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-14, "{rpy}, {roll} {pitch} {yaw}");
+}
+
+#[test]
+fn bits_and_bodies_say_what_may_touch() {
+    let text = "<mujoco><worldbody><geom name='w' size='1'/><body name='a'><geom size='1'/>\
+                <body name='b'><joint/><joint axis='1 0 0'/><geom size='1'/>\
+                <body name='c'><joint/><geom size='1'/><body name='d'><joint/><geom name='d' size='1' conaffinity='0' contype='4'/></body></body></body></body>\
+                </worldbody><contact>PAIR</contact></mujoco>";
+    let pairs = |pair: &str| {
+        let srdf = of(&text.replace("PAIR", pair)).srdf;
+        let pairs = srdf.lines().filter(|line| line.contains("collisions"));
+        pairs
+            .map(|line| {
+                line.split('"')
+                    .step_by(2)
+                    .zip(line.split('"').skip(1).step_by(2))
+                    .take(2)
+                    .map(|(_, v)| v)
+                    .collect::<String>()
+            })
+            .collect::<Vec<_>>()
+    };
+    // b hangs on a by two joints, but a stands still, as the world does; d touches nothing by its bits.
+    assert_eq!(pairs(""), ["bc", "worldd", "ad", "bd", "cd", "worldb"]);
+    assert_eq!(
+        pairs("<pair geom1='w' geom2='d'/><exclude body1='world' body2='c'/>"),
+        ["worldc", "bc", "ad", "bd", "cd", "worldb", "worldd"]
+    );
+}
+
+#[test]
+fn errors_say_the_element_and_the_line() {
+    let body =
+        |inside: &str| format!("<mujoco>\n<worldbody><body name='b'>\n{inside}</body></worldbody></mujoco>");
+    for (text, place, words) in [
+        ("<mujoco><body>".to_owned(), ":1", "MJCF, an XML file"),
+        ("<mujoco model='m'/>".to_owned(), ":1:1", "no <worldbody>"),
+        (body("<joint type='screw'/>"), ":3:1", "hinge, slide, ball or free"),
+        (body("<joint axis='0 0 0'/>"), ":3:1", "has a direction"),
+        (body("<joint range='2 1'/>"), ":3:1", "the lower one first"),
+        (body("<joint limited='true'/>"), ":3:1", "as the joint is limited"),
+        (body("<joint pos='1 2'/>"), ":3:1", "3 numbers"),
+        (body("<joint pos='1 2 inf'/>"), ":3:1", "numbers, with blanks"),
+        (body("<geom type='box' size='1 1'/>"), ":3:1", "3 numbers above 0"),
+        (body("<geom type='mesh' mesh='m'/>"), ":3:1", "there is no mesh \"m\""),
+        (body("<geom type='cone' size='1'/>"), ":3:1", "box, sphere"),
+        (body("<geom size='1' class='none'/>"), ":3:1", "no default class \"none\""),
+        (body("<geom size='1' quat='0 0 0 0'/>"), ":3:1", "not all of them 0"),
+        (body("<replicate count='3'/>"), ":3:1", "mj_saveLastXML"),
+        (body("<body name='b'/>"), ":3:1", "two bodies named \"b\""),
+        (body("<joint name='j'/><body><joint name='j'/></body>"), ":3:24", "two joints named \"j\""),
+        (body("<include file='gone.xml'/>"), ":3:1", "no such file"),
+        (body("<include file='more.xml'/><include file='more.xml'/>"), ":3:27", "a second time"),
+        (body("<include/>"), ":3:1", "no file"),
+        ("<mujoco>\n<compiler coordinate='global'/></mujoco>".to_owned(), ":2:1", "MuJoCo 2.3"),
+        ("<mujoco>\n<compiler eulerseq='xy'/></mujoco>".to_owned(), ":2:1", "three letters"),
+        (
+            "<mujoco><worldbody/>\n<contact><exclude body1='world' body2='x'/></contact></mujoco>".to_owned(),
+            ":2:10",
+            "no body \"x\"",
+        ),
+        (
+            format!(
+                "<mujoco><worldbody>{}{}</worldbody></mujoco>",
+                "<body>".repeat(300),
+                "</body>".repeat(300)
+            ),
+            ":1",
+            "200 deep",
+        ),
+    ] {
+        let e = read_all(&text, "<mujocoinclude/>").0.expect_err(&text);
+        let shown = e.to_string() + e.remedy().unwrap_or_else(|| panic!("{text}: no remedy"));
+        assert!(shown.contains(&format!("arm.xml{place}")) && shown.contains(words), "{text}: {shown}");
+        crate::fuzz::check_error(&e);
+    }
+}
+
+#[test]
+fn models_are_told_by_their_first_element() {
+    for (text, is) in [
+        ("<mujoco/>", true),
+        ("<?xml version='1.0'?>\n<!-- <robot> --> <mujoco\nmodel='x'>", true),
+        ("<mujocoinclude>", true),
+        ("<mujocos/>", false),
+        ("<robot/>", false),
+        ("<!-- <mujoco> -->", false),
+    ] {
+        assert_eq!(is_mjcf(text), is, "{text}");
+    }
+}

@@ -1,0 +1,256 @@
+//! Trajectories in files: comma-separated values with a column of times, and `JointTrajectory` of ROS as JSON and YAML, alone or in messages
+//! of MoveIt. docs/formats/trajectory.md describes them.
+
+mod csv;
+mod ros;
+mod yaml;
+
+use crate::columns::Column;
+use crate::error::{Error, ErrorKind};
+use crate::formats::Content;
+use std::path::Path;
+
+/// The points of a trajectory, as a file has them. Rows are in the order and in the units of [`joints`](Self::joints).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TrajectoryFile {
+    /// Name and unit (`rad` or `m`) of each joint.
+    pub joints: Vec<Column>,
+    /// The time (s) of each point.
+    pub times: Vec<f64>,
+    /// The position of each joint, at each point.
+    pub positions: Vec<Vec<f64>>,
+    /// The velocities (rad/s or m/s); empty if the file has none.
+    pub velocities: Vec<Vec<f64>>,
+    /// The accelerations (rad/s² or m/s²); empty if the file has none.
+    pub accelerations: Vec<Vec<f64>>,
+}
+
+/// A kind of file for trajectories.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TrajectoryKind {
+    /// Comma-separated values: a line of names with units, then one point on each line.
+    Csv,
+    /// `JointTrajectory` of ROS, as JSON.
+    Json,
+    /// The same as YAML.
+    Yaml,
+}
+
+/// The page that describes the formats.
+const GUIDE: &str = "trajectory.md";
+
+impl TrajectoryKind {
+    /// The kind of a file, by the ending of its name.
+    #[must_use]
+    pub fn of(file: &Path) -> Option<Self> {
+        Content::of(file).find_map(|content| match content {
+            Content::CsvPath => Some(Self::Csv),
+            Content::JsonPath => Some(Self::Json),
+            Content::Map => Some(Self::Yaml),
+            _ => None,
+        })
+    }
+}
+
+impl TrajectoryFile {
+    /// Reads `bytes`, the content of a file that errors call `file`. Joints are matched by name to those `wanted`, and their units converted.
+    /// `None` if the file has no times: then it is a path, or nothing that is known here.
+    ///
+    /// # Errors
+    /// [`Error`] with line and column where they are known: also when a name is unknown, missing or there twice, a unit does not fit, and when
+    /// times do not increase.
+    pub fn parse(
+        file: &str,
+        bytes: &[u8],
+        kind: TrajectoryKind,
+        wanted: &[Column],
+    ) -> Result<Option<Self>, Error> {
+        let read = match kind {
+            TrajectoryKind::Csv => csv::parse(file, bytes, wanted)?,
+            TrajectoryKind::Json => ros::parse_json(file, bytes, wanted)?,
+            TrajectoryKind::Yaml => ros::parse_yaml(file, bytes, wanted)?,
+        };
+        let Some(read) = read else { return Ok(None) };
+        if let Some(i) = read.times.windows(2).position(|t| t[1] <= t[0]) {
+            let (before, time) = (read.times[i], read.times[i + 1]);
+            let message =
+                format!("the time of point {} is {time} s, and that of the point before {before} s", i + 2);
+            return Err(Error::new(ErrorKind::Content, file, message).expected("times that increase"));
+        }
+        Ok(Some(read))
+    }
+
+    /// The content of a file of this kind. Numbers have the digits that read back to the same bits; times in JSON and YAML are whole
+    /// nanoseconds.
+    #[must_use]
+    pub fn to_text(&self, kind: TrajectoryKind) -> String {
+        match kind {
+            TrajectoryKind::Csv => csv::text(self),
+            TrajectoryKind::Json => ros::json_text(self),
+            TrajectoryKind::Yaml => ros::yaml_text(self),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    fn wanted() -> Vec<Column> {
+        [("lift", "m"), ("elbow", "rad")].map(|(name, unit)| Column::new(name, unit)).to_vec()
+    }
+
+    fn read(text: &str, kind: TrajectoryKind) -> Result<Option<TrajectoryFile>, String> {
+        TrajectoryFile::parse("t", text.as_bytes(), kind, &wanted()).map_err(|e| e.report())
+    }
+
+    fn sample() -> TrajectoryFile {
+        TrajectoryFile {
+            joints: wanted(),
+            times: vec![0.0, 0.5, 12.000000001],
+            positions: vec![vec![0.1, -2.0], vec![1e-9, 3.0], vec![0.25, PI]],
+            velocities: vec![vec![0.0, 0.0], vec![1e-7, -0.3], vec![0.0, 0.0]],
+            accelerations: Vec::new(),
+        }
+    }
+
+    const KINDS: [TrajectoryKind; 3] = [TrajectoryKind::Csv, TrajectoryKind::Json, TrajectoryKind::Yaml];
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let plain = sample();
+        let bare = TrajectoryFile { velocities: Vec::new(), ..sample() };
+        let full = TrajectoryFile { accelerations: vec![vec![1.0, 2.0]; 3], ..sample() };
+        for kind in KINDS {
+            for made in [&plain, &bare, &full] {
+                let text = made.to_text(kind);
+                assert_eq!(read(&text, kind).unwrap().as_ref(), Some(made), "{text}");
+                // Lines of Windows.
+                assert_eq!(read(&text.replace('\n', "\r\n"), kind).unwrap().as_ref(), Some(made), "{text}");
+            }
+        }
+        assert_eq!(bare.to_text(TrajectoryKind::Csv).lines().next(), Some("time [s],lift [m],elbow [rad]"));
+        let yaml = plain.to_text(TrajectoryKind::Yaml);
+        assert!(yaml.contains("time_from_start: {sec: 12, nanosec: 1}"), "{yaml}");
+        // Numbers that YAML 1.1 takes for numbers too.
+        assert!(yaml.contains("0.000000001") && !yaml.contains("e-"), "{yaml}");
+    }
+
+    #[test]
+    fn columns_are_found_by_name_unit_and_kind() {
+        let numbers = |text: &str| {
+            let read = read(text, TrajectoryKind::Csv).unwrap().unwrap();
+            (read.times, read.positions, read.velocities)
+        };
+        let same =
+            (vec![0.0, 0.5], vec![vec![0.25, PI], vec![0.5, 0.0]], vec![vec![1.0, 0.0], vec![0.0, 2.0 * PI]]);
+        for text in [
+            "time,lift,elbow,lift_velocity,elbow_velocity\n0,0.25,3.141592653589793,1,0\n0.5,0.5,0,0,6.283185307179586\n",
+            "t [ms];elbow [deg];lift [cm];v_elbow [deg/s];v_lift\n0;180;25;0;1\n500;0;50;360;0\n",
+            "time_from_start\televation_is_no_joint\n",
+            ",elbow_vel [deg/s],lift_vel,time_ms,elbow_deg,lift_mm\r\n0,0,1,0,180,250\r\n1,360,0,500,0,500\r\n",
+        ] {
+            if text.contains("no_joint") {
+                assert!(read(text, TrajectoryKind::Csv).unwrap_err().contains("is no number"), "{text}");
+                continue;
+            }
+            assert_eq!(numbers(text), same, "{text}");
+        }
+        // Paths have no times.
+        for text in ["lift,elbow\n0,1\n", "0,1\n2,3\n", ""] {
+            assert_eq!(read(text, TrajectoryKind::Csv).unwrap(), None, "{text}");
+        }
+        for (text, words) in [
+            ("time,lift,elbow,elbow\n0,1,2,3\n", "the same number"),
+            ("time,lift\n0,1\n", "no column for elbow"),
+            ("time,lift,wrist\n0,1,2\n", "t:1:11"),
+            ("time,t,lift,elbow\n0,1,2,3\n", "time"),
+            ("time,lift,elbow,elbow_velocity\n0,1,2,3\n", "no column for lift"),
+            ("time,lift [deg],elbow\n0,1,2\n", "cannot be converted"),
+            ("time [m],lift,elbow\n0,1,2\n", "cannot be converted"),
+            ("time,lift,elbow\n0,1,2\n1,2\n", "t:3:1"),
+            ("time,lift,elbow\n0,1,x\n", "not a number"),
+            ("time,lift,elbow\n0,1,2\n0,1,2\n", "times that increase"),
+            ("time,lift,elbow\n", "ends too early"),
+        ] {
+            let error = read(text, TrajectoryKind::Csv).unwrap_err();
+            assert!(error.contains(words), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn messages_of_ros_and_moveit_are_read() {
+        let point = |time: &str, positions: &str| {
+            format!(
+                "{{\"positions\": {positions}, \"velocities\": [], \"effort\": [], \"time_from_start\": {time}}}"
+            )
+        };
+        let points =
+            |times: [&str; 2]| format!("[{}, {}]", point(times[0], "[1, 0.25]"), point(times[1], "[2, 0.5]"));
+        let joints = r#""header": {"frame_id": ""}, "joint_names": ["elbow", "lift"]"#;
+        let times = [r#"{"sec": 0, "nanosec": 0}"#, r#"{"sec": 1, "nanosec": 500000000}"#];
+        let plain = format!("{{{joints}, \"points\": {}}}", points(times));
+        let inside = format!(
+            r#"{{"joint_trajectory": {plain}, "multi_dof_joint_trajectory": {{"joint_names": [], "points": []}}}}"#
+        );
+        for text in [
+            plain.clone(),
+            format!(
+                "{{{joints}, \"points\": {}}}",
+                points([r#"{"secs": 0, "nsecs": 0}"#, r#"{"secs": 1, "nsecs": 500000000}"#])
+            ),
+            format!("{{{joints}, \"points\": {}}}", points(["0", "1.5"])),
+            inside.clone(),
+            format!(r#"{{"model_id": "arm", "trajectory": [{inside}], "trajectory_start": {{}}}}"#),
+        ] {
+            let read = read(&text, TrajectoryKind::Json).unwrap().unwrap();
+            assert_eq!(
+                (read.times, read.positions),
+                (vec![0.0, 1.5], vec![vec![0.25, 1.0], vec![0.5, 2.0]]),
+                "{text}"
+            );
+            assert!(read.velocities.is_empty());
+            // JSON is YAML.
+            assert!(super::tests::read(&text, TrajectoryKind::Yaml).unwrap().is_some(), "{text}");
+        }
+        let yaml = "joint_names:\n- elbow\n- \"lift\"\npoints:\n- positions: [1.0, 0.25]\n  velocities:\n  - 0\n  - .5\n  time_from_start:\n    sec: 0\n    nanosec: 0\n---\n";
+        let read_yaml = read(yaml, TrajectoryKind::Yaml).unwrap().unwrap();
+        assert_eq!(
+            (read_yaml.positions, read_yaml.velocities),
+            (vec![vec![0.25, 1.0]], vec![vec![0.5, 0.0]])
+        );
+        assert_eq!(read(r#"{"path": [[1, 2]]}"#, TrajectoryKind::Json).unwrap(), None);
+        assert_eq!(read("image: a.png\n", TrajectoryKind::Yaml).unwrap(), None);
+        for (from, to, words) in [
+            ("\"lift\"", "\"wrist\"", "`wrist` is no number"),
+            ("\"lift\"", "\"elbow\"", "the same number"),
+            ("[2, 0.5]", "[2]", "point 2 has 1 position"),
+            ("[2, 0.5]", "[2, null]", "t:1"),
+            ("\"sec\": 1", "\"sec\": 0, \"x\": 0", ""),
+            (
+                "\"velocities\": [], \"effort\": [], \"time_from_start\": {\"sec\": 1",
+                "\"velocities\": [0, 1], \"time_from_start\": {\"sec\": 1",
+                "point 1 has no velocities",
+            ),
+            ("500000000", "-3", ""),
+            ("{\"sec\": 0, \"nanosec\": 0}", "{\"sec\": 2, \"nanosec\": 0}", "times that increase"),
+        ] {
+            assert!(plain.contains(from), "{from}");
+            match read(&plain.replace(from, to), TrajectoryKind::Json) {
+                Err(error) => assert!(error.contains(words), "{to}: {error}"),
+                Ok(_) => assert!(words.is_empty(), "{to}"),
+            }
+        }
+        let two = format!(r#"{{"trajectory": [{inside}, {inside}]}}"#);
+        assert!(read(&two, TrajectoryKind::Json).unwrap_err().contains("2 trajectories"));
+        let base = r#"{"joint_trajectory": {"joint_names": [], "points": []}, "multi_dof_joint_trajectory": {"joint_names": ["base"], "points": []}}"#;
+        assert!(read(base, TrajectoryKind::Json).unwrap_err().contains("several degrees of freedom"));
+        assert!(
+            read("joint_names: [&a lift, *a]\npoints: []\n", TrajectoryKind::Yaml)
+                .unwrap_err()
+                .contains("alias")
+        );
+        assert!(read("points: [\n", TrajectoryKind::Yaml).is_err());
+    }
+}

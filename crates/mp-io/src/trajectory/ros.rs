@@ -1,0 +1,230 @@
+//! `trajectory_msgs/JointTrajectory` of ROS as JSON and YAML, also inside of `RobotTrajectory` and `DisplayTrajectory` of MoveIt.
+
+use super::{GUIDE, TrajectoryFile, yaml};
+use crate::columns::{Column, Fault, HELP, Matching};
+use crate::error::{Error, ErrorKind};
+use crate::files::decode;
+use crate::json;
+use serde::Deserialize;
+use serde_json::Value;
+use std::fmt::Write as _;
+
+/// Any of the messages. Other members are skipped.
+#[derive(Deserialize)]
+struct Message {
+    joint_names: Option<Vec<String>>,
+    points: Option<Vec<Point>>,
+    joint_trajectory: Option<Box<Message>>,
+    multi_dof_joint_trajectory: Option<Joints>,
+    trajectory: Option<Several>,
+}
+
+/// What `trajectory` is: a list in DisplayTrajectory, one in answers of MoveIt's services.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Several {
+    List(Vec<Message>),
+    One(Box<Message>),
+}
+
+#[derive(Deserialize)]
+struct Joints {
+    #[serde(default)]
+    joint_names: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct Point {
+    #[serde(default)]
+    positions: Vec<f64>,
+    #[serde(default)]
+    velocities: Vec<f64>,
+    #[serde(default)]
+    accelerations: Vec<f64>,
+    time_from_start: Time,
+}
+
+/// Seconds, or a duration of ROS 2 or of ROS.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a duration: `{\"sec\": 1, \"nanosec\": 500000000}`")]
+enum Time {
+    Seconds(f64),
+    Duration {
+        #[serde(alias = "secs")]
+        sec: i64,
+        #[serde(alias = "nsecs", alias = "nsec")]
+        nanosec: i64,
+    },
+}
+
+impl Time {
+    fn seconds(&self) -> f64 {
+        match *self {
+            Self::Seconds(seconds) => seconds,
+            // One rounding, so that whole nanoseconds read back.
+            Self::Duration { sec, nanosec } => {
+                (i128::from(sec) * 1_000_000_000 + i128::from(nanosec)) as f64 / 1e9
+            }
+        }
+    }
+}
+
+/// What is expected.
+const WHAT: &str = "{\"joint_names\": [\"NAME\", …], \"points\": [{\"positions\": […], \"time_from_start\": {\"sec\": 0, \"nanosec\": 0}}, …]}";
+
+fn guide() -> String {
+    format!("the format is described in docs/formats/{GUIDE}")
+}
+
+/// Whether an object may be one of the messages.
+fn is_message(value: &Value) -> bool {
+    ["points", "joint_trajectory", "trajectory"].iter().any(|key| value.get(key).is_some())
+}
+
+/// As [`TrajectoryFile::parse`].
+pub(super) fn parse_json(
+    file: &str,
+    bytes: &[u8],
+    wanted: &[Column],
+) -> Result<Option<TrajectoryFile>, Error> {
+    let text = decode(file, bytes)?;
+    // What is no JSON is said by what reads the path.
+    if !serde_json::from_str::<Value>(text).is_ok_and(|value| is_message(&value)) {
+        return Ok(None);
+    }
+    let message: Message = json::parse(file, text, WHAT, &guide())?;
+    made(file, message, wanted).map(Some)
+}
+
+/// As [`TrajectoryFile::parse`].
+pub(super) fn parse_yaml(
+    file: &str,
+    bytes: &[u8],
+    wanted: &[Column],
+) -> Result<Option<TrajectoryFile>, Error> {
+    let value = yaml::value(file, decode(file, bytes)?)?;
+    if !is_message(&value) {
+        return Ok(None);
+    }
+    let message = serde_json::from_value(value)
+        .map_err(|e| Error::new(ErrorKind::Format, file, e.to_string()).expected(WHAT).help(guide()))?;
+    made(file, message, wanted).map(Some)
+}
+
+/// The trajectory of a message.
+fn made(file: &str, message: Message, wanted: &[Column]) -> Result<TrajectoryFile, Error> {
+    let error = |message: String| Error::new(ErrorKind::Content, file, message).help(guide());
+    let several = message.multi_dof_joint_trajectory.is_some_and(|joints| !joints.joint_names.is_empty());
+    if several {
+        return Err(error("a joint of several degrees of freedom moves, such as a base".to_owned()));
+    }
+    match (message.joint_trajectory, message.trajectory) {
+        (Some(inner), _) | (None, Some(Several::One(inner))) => return made(file, *inner, wanted),
+        (None, Some(Several::List(mut all))) => {
+            let count = all.len();
+            return match (all.pop(), count) {
+                (Some(only), 1) => made(file, only, wanted),
+                _ => Err(error(format!("there are {count} trajectories")).expected("one")),
+            };
+        }
+        (None, None) => {}
+    }
+    let (Some(names), Some(points)) = (message.joint_names, message.points) else {
+        return Err(error("there are no `joint_names` or no `points`".to_owned()).expected(WHAT));
+    };
+    if points.is_empty() {
+        return Err(error("the trajectory has no points".to_owned()));
+    }
+    let faulty = |fault: Fault| error(fault.message).expected(fault.expected).help(HELP);
+    let matching = Matching::new(&names, wanted).map_err(faulty)?;
+    let mut read = TrajectoryFile { joints: wanted.to_vec(), ..TrajectoryFile::default() };
+    let has = |numbers: fn(&Point) -> &Vec<f64>| points.iter().any(|point| !numbers(point).is_empty());
+    let (velocities, accelerations) = (has(|point| &point.velocities), has(|point| &point.accelerations));
+    for (i, point) in points.iter().enumerate() {
+        let time = point.time_from_start.seconds();
+        if !time.is_finite() {
+            return Err(error(format!("the time of point {} is not finite", i + 1)));
+        }
+        read.times.push(time);
+        for (what, numbers, needed, rows) in [
+            ("position", &point.positions, true, &mut read.positions),
+            ("velocity", &point.velocities, velocities, &mut read.velocities),
+            ("acceleration", &point.accelerations, accelerations, &mut read.accelerations),
+        ] {
+            if !needed {
+                continue;
+            }
+            let several =
+                format!("{}s", what.strip_suffix('y').map_or(what.to_owned(), |stem| format!("{stem}ie")));
+            if numbers.is_empty() {
+                return Err(error(format!("point {} has no {several}, and others have", i + 1)));
+            }
+            if numbers.len() != names.len() {
+                let found = if numbers.len() == 1 {
+                    format!("1 {what}")
+                } else {
+                    format!("{} {several}", numbers.len())
+                };
+                let expected = format!("one for each of the {} joints", names.len());
+                return Err(error(format!("point {} has {found}", i + 1)).expected(expected));
+            }
+            rows.push(matching.configuration(numbers).map_err(faulty)?);
+        }
+    }
+    Ok(read)
+}
+
+/// A list of numbers that JSON, YAML 1.1 and YAML 1.2 read as such: with a point, and without an exponent.
+fn list(numbers: Option<&Vec<f64>>) -> String {
+    let word = |x: &f64| {
+        let word = x.to_string();
+        if word.contains('.') { word } else { word + ".0" }
+    };
+    let words: Vec<String> = numbers.into_iter().flatten().map(word).collect();
+    format!("[{}]", words.join(", "))
+}
+
+/// Whole seconds, and nanoseconds.
+fn duration(time: f64) -> [i64; 2] {
+    let all = (time * 1e9).round() as i64;
+    [all.div_euclid(1_000_000_000), all.rem_euclid(1_000_000_000)]
+}
+
+/// The names of the joints, between quotes.
+fn names(trajectory: &TrajectoryFile) -> String {
+    let names: Vec<_> = trajectory.joints.iter().map(|joint| &joint.name).collect();
+    serde_json::to_string(&names).unwrap_or_default()
+}
+
+/// As [`TrajectoryFile::to_text`].
+pub(super) fn json_text(trajectory: &TrajectoryFile) -> String {
+    let TrajectoryFile { times, positions, velocities, accelerations, .. } = trajectory;
+    let mut out = format!("{{\"joint_names\": {}, \"points\": [", names(trajectory));
+    for (i, time) in times.iter().enumerate() {
+        let [p, v, a] = [positions.get(i), velocities.get(i), accelerations.get(i)].map(list);
+        let [sec, nanosec] = duration(*time);
+        let _ = write!(
+            out,
+            "{}\n{{\"positions\": {p}, \"velocities\": {v}, \"accelerations\": {a}, \"effort\": [], \
+             \"time_from_start\": {{\"sec\": {sec}, \"nanosec\": {nanosec}}}}}",
+            if i > 0 { "," } else { "" }
+        );
+    }
+    out + "\n]}\n"
+}
+
+/// As [`TrajectoryFile::to_text`].
+pub(super) fn yaml_text(trajectory: &TrajectoryFile) -> String {
+    let TrajectoryFile { times, positions, velocities, accelerations, .. } = trajectory;
+    let mut out = format!("joint_names: {}\npoints:\n", names(trajectory));
+    for (i, time) in times.iter().enumerate() {
+        let [p, v, a] = [positions.get(i), velocities.get(i), accelerations.get(i)].map(list);
+        let [sec, nanosec] = duration(*time);
+        let _ = writeln!(
+            out,
+            "- positions: {p}\n  velocities: {v}\n  accelerations: {a}\n  effort: []\n  \
+             time_from_start: {{sec: {sec}, nanosec: {nanosec}}}"
+        );
+    }
+    out
+}

@@ -1,0 +1,63 @@
+//! What only scenes of arms are asked for.
+
+use super::Scene;
+use crate::{ArmScene, Error, Reached};
+use mp_cspace::Interrupt;
+use mp_io::PoseEntry;
+use nalgebra::Isometry3;
+use std::sync::Arc;
+
+impl Scene {
+    /// Configurations that place a link of an arm, the free ones first: see [`ArmScene::reaching`].
+    ///
+    /// # Errors
+    /// As there, and when the robot is no arm whose base stands still.
+    pub fn reaching(
+        &self,
+        place: &PoseEntry,
+        most: usize,
+        interrupt: &Interrupt,
+    ) -> Result<Vec<Reached>, Error> {
+        let arm = self.robot::<ArmScene>().ok_or_else(|| {
+            Error::new(format!("{} is no arm whose base stands still", self.name()))
+                .help("only such have links to be placed; one that moves by inputs, or among obstacles that move, is none here")
+        })?;
+        arm.reaching(place, most, interrupt)
+    }
+
+    /// How many parts of the motion come after this one: zero, but for arms whose problem says so.
+    #[must_use]
+    pub fn parts_left(&self) -> usize {
+        self.robot::<ArmScene>().map_or(0, ArmScene::parts_left)
+    }
+
+    /// The scene of the next part of the motion: see [`ArmScene::next_part`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn next_part(&self, end: &[f64], interrupt: &Interrupt) -> Result<Option<Self>, Error> {
+        let Some(arm) = self.robot::<ArmScene>() else { return Ok(None) };
+        let Some(next) = arm.next_part(end, interrupt)? else { return Ok(None) };
+        let (notes, kept) = (next.said(), self.clearance_kept());
+        let scene = Self { robot: Arc::new(next), notes: notes.into(), ..self.clone() };
+        if kept > 0.0 { scene.keeping(kept) } else { Ok(scene) }.map(Some)
+    }
+
+    /// Whether the robot is an arm whose base stands still: bodies of such can be [drawn](Self::drawn).
+    #[must_use]
+    pub fn has_links(&self) -> bool {
+        self.robot::<ArmScene>().is_some()
+    }
+
+    /// The configuration near `from` in which a body of an arm has the pose `pose`, or, where that is not reached, only its origin is
+    /// there. `body` is a number in [`bodies`](Self::bodies). `None` when neither is reached, when no joint moves the body, and when the
+    /// robot is no arm whose base stands still. Whether it is free is not looked at.
+    ///
+    /// # Errors
+    /// When `from` does not have as many numbers as the robot's configurations.
+    pub fn drawn(&self, body: usize, pose: &Isometry3<f64>, from: &[f64]) -> Result<Option<Vec<f64>>, Error> {
+        let from = self.state(from)?;
+        let drawn = self.robot::<ArmScene>().and_then(|arm| arm.drawn(body, pose, &from));
+        Ok(drawn.map(|row| self.robot.row(&row)))
+    }
+}

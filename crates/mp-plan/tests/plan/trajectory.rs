@@ -1,0 +1,398 @@
+//! Paths with times: the curve is proved, looked at again by other means, and stretched back where it is not free.
+
+use mp_cspace::{Clearance, Configuration, Length, Rng, Validity};
+use mp_plan::{
+    ArmScene, Constraint, Interrupt, Knots, Pace, PathRows, Request, Scene, TimedPath, Trajectory,
+};
+use rand::RngExt;
+
+/// All shipped scenes of arms whose base stands still or drives.
+const ARMS: [&str; 9] =
+    ["arm", "arm-6", "arm-7", "mobile-arm", "humanoid", "tool-pose", "two-arms", "carry", "rsrt-arm-64"];
+
+fn planned(scene: &Scene, seed: u64) -> PathRows {
+    let report = scene.plan(&Request::default().seed(seed)).unwrap();
+    assert!(report.solved, "{}: {:?}", scene.name(), report.why);
+    PathRows { format: scene.path_format(), columns: scene.columns(), rows: report.path.unwrap() }
+}
+
+fn timed(scene: &Scene, path: &PathRows, pace: &Pace) -> TimedPath {
+    scene.time(path, pace, &Interrupt::never()).unwrap_or_else(|e| panic!("{}: {e}", scene.name()))
+}
+
+/// Positions of a cubic trajectory every `step` seconds, by Hermite's basis, and its last point.
+fn sampled(trajectory: &Trajectory, step: f64) -> Vec<Vec<f64>> {
+    let Knots { times, positions, velocities, .. } = trajectory.knots();
+    let (mut rows, mut piece) = (Vec::new(), 0);
+    let last = times[times.len() - 1];
+    for i in 0.. {
+        let t = f64::from(i) * step;
+        if t >= last {
+            break;
+        }
+        while times[piece + 1] < t {
+            piece += 1;
+        }
+        let h = times[piece + 1] - times[piece];
+        let u = (t - times[piece]) / h;
+        let w = 1.0 - u;
+        let basis = [(1.0 + 2.0 * u) * w * w, u * w * w * h, u * u * (3.0 - 2.0 * u), -u * u * w * h];
+        let value = |j: usize| {
+            let ends = [
+                positions[piece][j],
+                velocities[piece][j],
+                positions[piece + 1][j],
+                velocities[piece + 1][j],
+            ];
+            basis.iter().zip(ends).map(|(b, x)| b * x).sum()
+        };
+        rows.push((0..positions[0].len()).map(value).collect());
+    }
+    rows.push(positions[positions.len() - 1].clone());
+    rows
+}
+
+#[test]
+fn trajectories_of_all_shipped_arms_are_proved() {
+    for name in ARMS {
+        let scene = Scene::find(name).unwrap();
+        let path = planned(&scene, 1);
+        let made = timed(&scene, &path, &Pace::default());
+        let rows = sampled(&made.trajectory, 1e-3);
+        // The chords of a thousandth of a second, by the verifier of straight motions.
+        let chords = PathRows { rows: rows.clone(), ..path.clone() };
+        let verdict = scene.check(&chords).unwrap();
+        assert!(verdict.free, "{name}: {:?}", verdict.faults);
+        // Limits, by differences; those that are not known are 1.
+        for (joint, column) in scene.columns().iter().enumerate() {
+            let q: Vec<f64> = rows[..rows.len() - 1].iter().map(|row| row[joint]).collect();
+            let [velocity, acceleration] = rates(name, &column.name);
+            let v = q.windows(2).map(|w| (w[1] - w[0]).abs() / 1e-3).fold(0.0, f64::max);
+            let a = q.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).abs() / 1e-6).fold(0.0, f64::max);
+            assert!(v <= velocity * 1.001 + 1e-9, "{name}: {v} of {velocity} of {}", column.name);
+            assert!(a <= acceleration * 1.001 + 1e-6, "{name}: {a} of {acceleration} of {}", column.name);
+        }
+        let verdict = scene.check_trajectory(&made.trajectory, &Interrupt::never()).unwrap();
+        assert!(verdict.free && verdict.clearance > 0.0, "{name}: {:?}", verdict.faults);
+        let least = verdict.trajectory.unwrap().least_at.unwrap();
+        let there = scene.explain(&made.trajectory.at(least).position).unwrap().clearance;
+        assert!(
+            there >= verdict.clearance && there <= verdict.clearance + 0.5 * there,
+            "{name}: {there} {}",
+            verdict.clearance
+        );
+        assert_eq!(timed(&scene, &path, &Pace::default()), made, "{name}");
+        // All limits halved: velocities by two, so that it takes longer than before, but not more than twice as long.
+        let slow = timed(&scene, &path, &Pace { velocity: 0.5, acceleration: 0.25, ..Pace::default() });
+        let ratio = slow.trajectory.duration() / made.trajectory.duration();
+        assert!((1.9..2.1).contains(&ratio), "{name}: {ratio}");
+        // Stopping at each corner takes longer.
+        let stops = timed(&scene, &path, &Pace { deviation: 0.0, ..Pace::default() });
+        assert!(stops.trajectory.duration() >= made.trajectory.duration() && stops.tightened.is_empty());
+    }
+}
+
+/// The limits of a joint of a shipped scene: velocities are those of the URDF.
+fn rates(scene: &str, joint: &str) -> [f64; 2] {
+    let file = format!("{}/../mp-scenes/assets/robots", env!("CARGO_MANIFEST_DIR"));
+    let urdf = match scene {
+        "arm" | "tool-pose" | "two-arms" | "carry" => "six",
+        "rsrt-arm-64" => "rsrt-arm",
+        other => other,
+    };
+    let text = std::fs::read_to_string(format!("{file}/{urdf}.urdf")).unwrap();
+    let own = joint.rsplit('/').next().unwrap();
+    let element = text.split("<joint ").find(|part| part.starts_with(&format!("name=\"{own}\"")));
+    let element = element.map_or("", |part| part.split("</joint>").next().unwrap());
+    let velocity = element.split("velocity=\"").nth(1).and_then(|rest| rest.split('"').next());
+    [velocity.map_or(1.0, |v| v.parse().unwrap()), 1.0]
+}
+
+/// An arm of one joint that slides and one that turns past posts.
+fn posts(posts: &str) -> Scene {
+    let urdf = "<robot name='crane'><link name='rail'/><link name='cart'/>\
+        <link name='tip'><collision><geometry><box size='0.1 0.1 0.1'/></geometry></collision></link>\
+        <joint name='x' type='prismatic'><parent link='rail'/><child link='cart'/><axis xyz='1 0 0'/>\
+        <limit lower='-3' upper='3' effort='1' velocity='1'/></joint>\
+        <joint name='y' type='prismatic'><parent link='cart'/><child link='tip'/><axis xyz='0 1 0'/>\
+        <limit lower='-3' upper='3' effort='1' velocity='2'/></joint></robot>";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("crane.urdf"), urdf).unwrap();
+    let text = format!(
+        "[robot]\nurdf = \"crane.urdf\"\nmax_acceleration = {{ x = 2, y = 4 }}\n\n\
+         [motion]\nstart = [0, 0]\ngoal = [1, 1]\n\n{posts}"
+    );
+    let file = folder.path().join("posts.toml");
+    std::fs::write(&file, text).unwrap();
+    Scene::load(&file).unwrap()
+}
+
+fn corner(scene: &Scene) -> PathRows {
+    let rows = vec![vec![0.0, 0.0], vec![1.0, 0.0], vec![1.0, 1.0]];
+    PathRows { format: scene.path_format(), columns: scene.columns(), rows }
+}
+
+#[test]
+fn corners_are_rounded_only_as_far_as_is_free() {
+    let pace = Pace { deviation: 0.2, ..Pace::default() };
+    let open = posts("");
+    let made = timed(&open, &corner(&open), &pace);
+    assert!(made.tightened.is_empty() && made.corners == 1 && made.notes.is_empty(), "{:?}", made.notes);
+    // The least distance from the corner, in the middle of the parabola.
+    let nearest = |made: &TimedPath| {
+        let off = |row: &Vec<f64>| mp_math::hypot(row[0] - 1.0, row[1]);
+        sampled(&made.trajectory, 1e-3).iter().map(off).fold(9.0, f64::min)
+    };
+    // Each line is long enough for half of what is allowed: a quarter of √2 times half of it.
+    assert!((nearest(&made) - 0.25 * 0.5 * std::f64::consts::SQRT_2).abs() < 1e-3, "{}", nearest(&made));
+    // A post inside of the corner: the path passes it by 2 cm, the rounded one would not.
+    let post = |size: f64| {
+        format!(
+            "[[obstacle]]\nname = \"post\"\nbox = [{size}, {size}, 1]\nat = [{0}, {1}, 0]\n",
+            0.93 - 0.5 * size,
+            0.07 + 0.5 * size
+        )
+    };
+    let near = posts(&post(0.2));
+    let close = timed(&near, &corner(&near), &pace);
+    assert_eq!((close.tightened.len(), close.tightened[0].configuration), (1, 2));
+    assert!(close.tightened[0].deviation > 0.0 && nearest(&close) < nearest(&made));
+    assert!(close.trajectory.duration() > made.trajectory.duration());
+    assert!(
+        close.summary().contains("1 of 1 corner rounded less, for the curve to be free: configuration 2 at"),
+        "{}",
+        close.summary()
+    );
+    // So near that it must stop there, at the corner itself.
+    let touching = posts(&post(0.2).replace("at = [0.8", "at = [0.8499").replace(", 0.17,", ", 0.1501,"));
+    let stops = timed(&touching, &corner(&touching), &pace);
+    assert!(stops.tightened[0].deviation < 1e-3 && nearest(&stops) < 1e-3, "{:?}", stops.tightened);
+    let chords = |scene: &Scene, made: &TimedPath| {
+        let path = PathRows { rows: sampled(&made.trajectory, 1e-4), ..corner(scene) };
+        scene.check(&path).unwrap()
+    };
+    for (scene, made) in [(&near, &close), (&touching, &stops)] {
+        assert!(chords(scene, made).free);
+        assert!(scene.check_trajectory(&made.trajectory, &Interrupt::never()).unwrap().free);
+    }
+    // What is free among nothing is refused among posts, at the time at which samples find it.
+    for scene in [&near, &touching] {
+        let verdict = scene.check_trajectory(&made.trajectory, &Interrupt::never()).unwrap();
+        let time = verdict.trajectory.as_ref().unwrap().collides_at.unwrap();
+        assert!(!verdict.free && verdict.faults[0].contains("hits tip in post"), "{:?}", verdict.faults);
+        let free = |t: f64| scene.explain(&made.trajectory.at(t).position).unwrap().free;
+        assert!(!free(time) && (0..1000).all(|i| free((time - 1e-3) * f64::from(i) / 1000.0)), "{time}");
+        let verdict = chords(scene, &made);
+        assert!(!verdict.free);
+    }
+    // Paths that are not free get no times.
+    let wall = posts("[[obstacle]]\nname = \"wall\"\nbox = [0.1, 1, 1]\nat = [0.5, 0, 0]\n");
+    let error = wall.time(&corner(&wall), &pace, &Interrupt::never()).unwrap_err();
+    assert!(error.to_string().contains("the path is not free: it hits tip in wall"), "{error}");
+    let constraint = Constraint::new("low", Length::Fraction(0.01), |row: &[f64]| row[0] + row[1] < 3.0);
+    assert_eq!(timed(&near.under(constraint).unwrap(), &corner(&near), &pace), close);
+    // One that holds at the corner alone: it is not rounded at all.
+    let constraint =
+        Constraint::new("along", Length::Fraction(0.001), |row: &[f64]| row[1] < 1e-6 || row[0] > 1.0 - 1e-6);
+    let along = timed(&open.under(constraint).unwrap(), &corner(&open), &pace);
+    assert_eq!(along.tightened[0].deviation, 0.0);
+}
+
+#[test]
+fn what_controllers_run_is_what_is_checked() {
+    // A post beside the straight motion between two points: how it is met depends on the curve between them.
+    let scene = posts("[[obstacle]]\nname = \"post\"\nbox = [0.1, 0.1, 1]\nat = [0.5, 0.75, 0]\n");
+    let times = vec![0.0, 2.0];
+    let rows = |a: [f64; 2], b: [f64; 2]| vec![a.to_vec(), b.to_vec()];
+    let made = |velocities: Vec<Vec<f64>>, accelerations: Vec<Vec<f64>>| {
+        let knots = Knots {
+            times: times.clone(),
+            positions: rows([0.0, 0.0], [1.0, 1.0]),
+            velocities,
+            accelerations,
+        };
+        Trajectory::of_controller([("x", "m"), ("y", "m")], knots).unwrap()
+    };
+    let check = |trajectory: &Trajectory| scene.check_trajectory(trajectory, &Interrupt::never()).unwrap();
+    let straight = made(Vec::new(), Vec::new());
+    let verdict = check(&straight);
+    assert!(verdict.free && verdict.summary().contains("2 s, linear curve"), "{verdict:?}");
+    let smooth = made(rows([0.0; 2], [0.0; 2]), Vec::new());
+    assert!(check(&smooth).free);
+    // Quick to the side first: the knots are as free as before.
+    let bent = made(rows([0.0, 1.0], [0.0, 0.0]), Vec::new());
+    let verdict = check(&bent);
+    assert!(
+        !verdict.free && verdict.faults.iter().any(|f| f.contains("hits tip in post")),
+        "{:?}",
+        verdict.faults
+    );
+    let quintic = made(rows([0.0; 2], [0.0; 2]), rows([0.0, 9.0], [0.0, 0.0]));
+    let verdict = check(&quintic);
+    assert_eq!(verdict.trajectory.as_ref().unwrap().curve, "quintic");
+    // Beyond the limits of velocity and acceleration, each with its time.
+    let limits = &verdict.trajectory.as_ref().unwrap().limits;
+    let of: Vec<_> = limits.iter().map(|fault| (fault.joint.as_str(), fault.of.as_str())).collect();
+    assert!(of.contains(&("y", "acceleration")), "{of:?}");
+    assert!(limits.iter().all(|fault| fault.reached > fault.limit && (0.0..=2.0).contains(&fault.time)));
+    // Others than the joints of the scene, and ends elsewhere.
+    let knots = smooth.knots().clone();
+    let swapped = Trajectory::of_controller([("y", "m"), ("x", "m")], knots.clone()).unwrap();
+    assert!(scene.check_trajectory(&swapped, &Interrupt::never()).is_err());
+    let mut elsewhere = knots;
+    elsewhere.positions[0] = vec![0.2, -3.5];
+    let verdict = check(&Trajectory::of_controller([("x", "m"), ("y", "m")], elsewhere).unwrap());
+    let faults = verdict.faults.join("\n");
+    assert!(
+        faults.contains("does not begin at the start") && faults.contains("the position of y reaches -3.5"),
+        "{faults}"
+    );
+}
+
+#[test]
+fn robots_without_trajectories_say_so() {
+    for name in ["easy", "gempa-2", "wrench", "velocities", "crossing"] {
+        let scene = Scene::find(name).unwrap();
+        let path =
+            PathRows { format: scene.path_format(), columns: scene.columns(), rows: vec![scene.start()] };
+        let error = scene.time(&path, &Pace::default(), &Interrupt::never()).unwrap_err();
+        assert!(error.to_string().contains("there are no trajectories"), "{name}: {error}");
+    }
+    let scene = posts("");
+    for pace in [
+        Pace { velocity: 0.0, ..Pace::default() },
+        Pace { acceleration: f64::NAN, ..Pace::default() },
+        Pace { deviation: -1.0, ..Pace::default() },
+    ] {
+        assert!(scene.time(&corner(&scene), &pace, &Interrupt::never()).is_err(), "{pace:?}");
+    }
+    let still = PathRows { rows: vec![vec![0.0, 0.0]; 3], ..corner(&scene) };
+    assert_eq!(timed(&scene, &still, &Pace::default()).trajectory.duration(), 0.0);
+}
+
+/// Judges curves whose points were changed at random: the verdict, and what samples `step` seconds apart find by the checker of planners, which
+/// shares no code with it. Returns how many were free, and how many samples found to collide.
+fn judged(name: &str, count: usize, step: f64) -> [usize; 2] {
+    let file = format!("{}/../mp-scenes/assets/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let mut arm = ArmScene::from_problem(mp_io::RobotProblem::load(file).unwrap()).unwrap().arm().clone();
+    let scene = Scene::find(name).unwrap();
+    let made = timed(&scene, &planned(&scene, 1), &Pace::default()).trajectory;
+    let names: Vec<_> = scene.columns().into_iter().map(|c| (c.name, c.unit)).collect();
+    let (mut rng, mut counts) = (Rng::seed(44), [0; 2]);
+    for case in 0..count {
+        let mut knots = made.knots().clone();
+        let last = knots.times.len() - 1;
+        for _ in 0..rng.random_range(1..4) {
+            let (knot, joint) = (rng.random_range(0..=last), rng.random_range(0..names.len()));
+            let size = mp_math::powi(rng.random_range(0.0..1.0), 3);
+            match rng.random_range(0..3) {
+                0 if knot > 0 && knot < last => {
+                    knots.positions[knot][joint] += size * rng.random_range(-1.0..1.0)
+                }
+                1 => knots.velocities[knot][joint] += 10.0 * size * rng.random_range(-1.0..1.0),
+                // Fewer points: the curve between the others is another.
+                _ if knot > 0 && knot < last => {
+                    let many = rng.random_range(1..8).min(last - knot);
+                    knots.times.drain(knot..knot + many);
+                    knots.positions.drain(knot..knot + many);
+                    knots.velocities.drain(knot..knot + many);
+                    break;
+                }
+                _ => {}
+            }
+        }
+        let joints = names.iter().map(|(name, unit)| (name.as_str(), unit.as_str()));
+        let curve = Trajectory::of_controller(joints, knots).unwrap();
+        let verdict = scene.check_trajectory(&curve, &Interrupt::never()).unwrap();
+        let collides_at = verdict.trajectory.unwrap().collides_at;
+        let hit = sampled(&curve, step).into_iter().position(|row| !arm.is_valid(&Configuration::from(row)));
+        match (hit, collides_at) {
+            (None, None) => counts[0] += 1,
+            (Some(hit), Some(at)) => {
+                counts[1] += 1;
+                // The first contact is not behind the first sample that finds one, but for what the proof resolves.
+                assert!(
+                    at <= hit as f64 * step + 2e-3,
+                    "{name} {case}: {at} s, and {} s by samples",
+                    hit as f64 * step
+                );
+            }
+            (Some(hit), None) => {
+                panic!("{name} {case}: certified free, and in contact at {} s", hit as f64 * step)
+            }
+            // Between samples, or too near to contact to tell.
+            (None, Some(at)) => {
+                let there: Configuration = curve.at(at).position.into();
+                assert!(arm.clearance(&there, 1.0) < 2.0 * arm.tolerance(), "{name} {case}: {at} s");
+            }
+        }
+    }
+    counts
+}
+
+#[test]
+fn changed_curves_are_judged_as_samples_judge_them() {
+    for name in ["arm", "arm-7"] {
+        let [free, hit] = judged(name, 40, 2e-3);
+        assert!(free > 3 && hit > 3, "{name}: {free} free, {hit} in contact");
+    }
+}
+
+/// The same with many more: `cargo test --release -p mp-plan --test plan a_thousand -- --ignored --nocapture`.
+#[test]
+#[ignore = "minutes: a measurement"]
+#[allow(clippy::print_stdout, reason = "it is a measurement")]
+fn a_thousand_changed_curves_are_judged_as_dense_samples_judge_them() {
+    for name in ["arm", "arm-6", "arm-7", "humanoid"] {
+        let [free, hit] = judged(name, 250, 1e-4);
+        println!("{name}: of 250 changed curves {free} are free, and {hit} in contact by samples of 0.1 ms");
+    }
+}
+
+/// How long the proof of curves takes beside planning, and how often corners have to be rounded less, between random free ends:
+/// `cargo test --release -p mp-plan --test plan random_arm_problems -- --ignored --nocapture`.
+#[test]
+#[ignore = "minutes: a measurement"]
+#[allow(clippy::print_stdout, reason = "it is a measurement")]
+fn random_arm_problems_are_timed() {
+    let mut rng = Rng::seed(44);
+    for name in ["arm", "arm-6", "arm-7", "humanoid", "mobile-arm"] {
+        let scene = Scene::find(name).unwrap();
+        let limits = scene.limits();
+        let mut free = || loop {
+            let number = |limits: &Option<[f64; 2]>| {
+                let [low, high] = limits.unwrap_or([-3.0, 3.0]);
+                rng.random_range(low..high)
+            };
+            let row: Vec<f64> = limits.iter().map(number).collect();
+            if scene.explain(&row).unwrap().clearance > 0.005 {
+                return row;
+            }
+        };
+        let (mut solved, mut corners, mut tightened, mut stretched) = (0, 0, 0, 0);
+        let [mut planning, mut timing, mut seconds] = [0.0; 3];
+        for seed in 0..20 {
+            let problem = scene.with_ends(&free(), &[free()]).unwrap();
+            let began = std::time::Instant::now();
+            let report = problem.plan(&Request::default().seed(seed).iterations(20_000)).unwrap();
+            let Some(rows) = report.path else { continue };
+            planning += began.elapsed().as_secs_f64();
+            let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+            let began = std::time::Instant::now();
+            let made = timed(&problem, &path, &Pace::default());
+            timing += began.elapsed().as_secs_f64();
+            (solved, corners, tightened) =
+                (solved + 1, corners + made.corners, tightened + made.tightened.len());
+            stretched += usize::from(!made.tightened.is_empty());
+            seconds += made.trajectory.duration();
+        }
+        let each = 1e3 / f64::from(solved);
+        println!(
+            "{name}: {solved} solved, {corners} corners, {tightened} rounded less, in {stretched} trajectories; in the mean {:.0} ms \
+             planning, {:.0} ms timing with both proofs, {:.2} s long",
+            planning * each,
+            timing * each,
+            seconds * each / 1e3
+        );
+    }
+}

@@ -1,0 +1,64 @@
+//! What can be wrong with trajectories, paths and limits.
+
+use crate::Interpolation;
+
+/// What is wrong with a trajectory, or with what one is to be made from.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TimeError {
+    /// There is no point, or a path has less than two different ones.
+    #[error("there are not enough points: {found}, and {least} are needed")]
+    TooFew {
+        /// How many there are.
+        found: usize,
+        /// How many there must be.
+        least: usize,
+    },
+    /// A list does not have as many numbers as there are joints, or as many rows as there are times.
+    #[error("there are {found} {what}, not {expected}")]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// How many there should be.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A number is not finite.
+    #[error("a number of point {} is not finite", point + 1)]
+    NotFinite {
+        /// The index of the point.
+        point: usize,
+    },
+    /// Times do not increase.
+    #[error("the time of point {} is {time} s, not after that of the point before, {before} s", point + 1)]
+    Times {
+        /// The index of the point.
+        point: usize,
+        /// Its time (s).
+        time: f64,
+        /// The time before (s).
+        before: f64,
+    },
+    /// A curve needs numbers that are not there.
+    #[error("a {curve} curve needs {what}, which are missing")]
+    Missing {
+        /// The curve.
+        curve: Interpolation,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// A limit is not above zero.
+    #[error("the limit of {what} of joint {} is {limit}, not above zero", joint + 1)]
+    Limit {
+        /// Velocity or acceleration.
+        what: &'static str,
+        /// The index of the joint.
+        joint: usize,
+        /// The limit.
+        limit: f64,
+    },
+    /// A path cannot be timed: rounding leaves no speed along it.
+    #[error("the path cannot be timed: it is too long, or too short, for its limits")]
+    NoSpeed,
+}

@@ -1,0 +1,129 @@
+//! Limits hold along timed paths, looked at a thousand times a second: by the points of the trajectory alone, and cubic polynomials written
+//! down here another time.
+
+use mp_cspace::Rng;
+use mp_time::{BlendedPath, Limits, Trajectory, timed};
+use rand::RngExt;
+
+/// Positions at 1 kHz, by the form of Hermite's basis. The last row is at the last point.
+fn sampled(trajectory: &Trajectory, joint: usize) -> Vec<f64> {
+    let knots = trajectory.knots();
+    let (mut piece, mut positions) = (0, Vec::new());
+    let last = *knots.times.last().unwrap();
+    for i in 0.. {
+        let t = f64::from(i) * 1e-3;
+        if t > last {
+            return positions;
+        }
+        while piece + 2 < knots.times.len() && knots.times[piece + 1] < t {
+            piece += 1;
+        }
+        let [t0, t1] = [knots.times[piece], knots.times[piece + 1]];
+        let (h, u) = (t1 - t0, (t - t0) / (t1 - t0));
+        let of = |rows: &[Vec<f64>]| [rows[piece][joint], rows[piece + 1][joint]];
+        let ([p0, p1], [v0, v1]) = (of(&knots.positions), of(&knots.velocities));
+        positions.push(
+            (1.0 + 2.0 * u) * (1.0 - u) * (1.0 - u) * p0
+                + u * (1.0 - u) * (1.0 - u) * h * v0
+                + u * u * (3.0 - 2.0 * u) * p1
+                + u * u * (u - 1.0) * h * v1,
+        );
+    }
+    unreachable!()
+}
+
+/// A path as planners make it: some lines of very different lengths, at times with a point twice, in a line, or back the same way.
+fn path(rng: &mut Rng, joints: usize) -> Vec<Vec<f64>> {
+    let mut points = vec![(0..joints).map(|_| rng.random_range(-2.0..2.0)).collect::<Vec<f64>>()];
+    for _ in 0..rng.random_range(1..9) {
+        let last = points[points.len() - 1].clone();
+        let length = if rng.random_bool(0.2) { 1e-3 } else { rng.random_range(0.1..1.5) };
+        let moved = |rng: &mut Rng, x: &f64| match rng.random_bool(0.2) {
+            true => *x,
+            false => x + length * rng.random_range(-1.0..1.0),
+        };
+        points.push(match (rng.random_range(0..12), points.len()) {
+            (0, _) => last,
+            (1, n) if n > 1 => last.iter().zip(&points[n - 2]).map(|(b, a)| b + 0.5 * (b - a)).collect(),
+            (2, n) if n > 1 => points[n - 2].clone(),
+            _ => last.iter().map(|x| moved(rng, x)).collect(),
+        });
+    }
+    points
+}
+
+#[test]
+fn limits_hold_at_1_khz() {
+    let mut rng = Rng::seed(44);
+    let (mut timed_paths, mut busy, mut total) = (0, 0.0, 0.0);
+    for case in 0..200 {
+        let joints = rng.random_range(1..8);
+        let points = path(&mut rng, joints);
+        let Ok(mut blended) = BlendedPath::new(&points, rng.random_range(0.0..0.2)) else { continue };
+        for corner in 0..blended.corners() {
+            blended.tighten(corner, [1.0, 0.1, 0.0][rng.random_range(0..3)]);
+        }
+        let velocity: Vec<f64> = (0..joints).map(|_| rng.random_range(0.5..3.0)).collect();
+        let acceleration: Vec<f64> = (0..joints).map(|_| rng.random_range(0.5..9.0)).collect();
+        let limits = Limits::new(velocity.clone(), acceleration.clone()).unwrap();
+        let timing = timed(&blended, &limits, (0..joints).map(|_| ("j", "rad"))).unwrap();
+        let trajectory = &timing.trajectory;
+        let all: Vec<Vec<f64>> = (0..joints).map(|joint| sampled(trajectory, joint)).collect();
+        for joint in 0..joints {
+            let q = &all[joint];
+            let velocities = q.windows(2).map(|w| (w[1] - w[0]) / 1e-3);
+            let accelerations = q.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]) / 1e-6);
+            // Differences round to 1e-16 · 2 / 1e-6.
+            for (what, numbers, limit, rounding) in [
+                ("velocity", velocities.collect::<Vec<_>>(), velocity[joint], 1e-12),
+                ("acceleration", accelerations.collect(), acceleration[joint], 1e-8),
+            ] {
+                let most = numbers.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+                assert!(most <= limit * (1.0 + 1e-3) + rounding, "{case}: {what} {most} of {limit}");
+            }
+            let (first, last) = (&points[0], &points[points.len() - 1]);
+            assert!((q[0] - first[joint]).abs() < 1e-12);
+            assert!((trajectory.knots().positions.last().unwrap()[joint] - last[joint]).abs() < 1e-9);
+        }
+        // At every moment something is at its limit, or nearly so: it is not only slow.
+        for i in 1..all[0].len() - 1 {
+            let at_limit = (0..joints).any(|joint| {
+                let q = &all[joint][i - 1..=i + 1];
+                let (v, a) = ((q[2] - q[0]) / 2e-3, (q[2] - 2.0 * q[1] + q[0]) / 1e-6);
+                v.abs() > 0.95 * velocity[joint] || a.abs() > 0.9 * acceleration[joint]
+            });
+            (busy, total) = (busy + f64::from(u8::from(at_limit)), total + 1.0);
+        }
+        // Corners are where it says.
+        for (corner, time) in timing.corners.iter().enumerate() {
+            let at = trajectory.at(*time).position;
+            let off =
+                at.iter().zip(blended.corner(corner)).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+            assert!(
+                off <= 1.2 * blended.deviation(corner) + 1e-9,
+                "{case}: {off} {}",
+                blended.deviation(corner)
+            );
+        }
+        timed_paths += 1;
+    }
+    assert!(timed_paths > 190, "{timed_paths}");
+    assert!(busy > 0.9 * total, "{busy} of {total}");
+}
+
+#[test]
+fn a_straight_motion_takes_what_the_formula_says() {
+    // 1 rad at 1 rad/s and 2 rad/s²: half a second up, half a second down, and the rest at full speed. The grid has the switch a little late.
+    let path = BlendedPath::new(&[vec![0.0], vec![1.0]], 0.1).unwrap();
+    let limits = Limits::new(vec![1.0], vec![2.0]).unwrap();
+    let timing = timed(&path, &limits, [("a", "rad")]).unwrap();
+    assert!((timing.trajectory.duration() - 1.5).abs() < 2e-3, "{}", timing.trajectory.duration());
+    // Three pieces are exact.
+    assert!(timing.trajectory.knots().times.len() <= 6);
+    let half = limits.scaled(0.5, 0.25).unwrap();
+    let slow = timed(&path, &half, [("a", "rad")]).unwrap().trajectory;
+    assert!((slow.duration() - 3.0).abs() < 4e-3, "{}", slow.duration());
+    let errors = [(0.0, 1.0), (1.0, 0.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)];
+    assert!(errors.iter().all(|(v, a)| Limits::new(vec![*v], vec![*a]).is_err()));
+    assert!(Limits::new(vec![f64::INFINITY], vec![1.0]).is_ok());
+}
