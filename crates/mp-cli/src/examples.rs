@@ -30,6 +30,11 @@ pub(crate) const CHECK: &str = r#"Examples:
   mp check easy --at "0 0 1 0 0 0"          what is wrong there, and which configuration near is free
   mp check carry path-1.txt path-2.txt path-3.txt"#;
 
+pub(crate) const TIME: &str = "Examples:
+  mp time arm path.csv --out motion.csv
+  mp time arm path.csv --out motion.yaml --rate 100   for JointTrajectory of ROS, a point every 10 ms
+  mp check arm motion.csv                             proves the curve that a controller runs";
+
 pub(crate) const INFO: &str = "Examples:
   mp info easy
   mp info robot.urdf --json";
