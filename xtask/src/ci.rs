@@ -78,7 +78,8 @@ fn run_cargo(args: &[&str]) -> bool {
     let mut cargo = cargo();
     cargo.args(args).env("RUSTDOCFLAGS", "-D warnings").current_dir(root());
     if let (Some("doc"), Some(driver)) = (args.first().copied(), clippy_driver()) {
-        // What `cargo clippy` sets: documentation takes what lints have compiled. Were it set otherwise some day, it would be compiled again.
+        // What `cargo clippy` sets: documentation takes what lints have compiled. Were it set otherwise some
+        // day, it would be compiled again.
         let lints = "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__";
         cargo.env("RUSTC_WORKSPACE_WRAPPER", driver).env("CLIPPY_ARGS", lints);
     }

@@ -1,4 +1,5 @@
-//! `cargo xtask fuzz`: every reader under libFuzzer, which changes inputs and keeps those that reach new code.
+//! `cargo xtask fuzz`: every reader under libFuzzer, which changes inputs and keeps those that reach new
+//! code.
 
 use crate::{bad, cargo, note, root};
 use std::collections::BTreeMap;
@@ -20,7 +21,8 @@ kept in FOLDER/TARGET/corpus (FOLDER: target/fuzz), and all executions so far ar
   --built          use the fuzzers in FOLDER, as they were built before
   --out FOLDER     where fuzzers, corpora, findings and the tally are";
 
-/// How the compiler counts coverage. The crates are compiled with it, programs that build them are not: see `--target`.
+/// How the compiler counts coverage. The crates are compiled with it, programs that build them are not: see
+/// `--target`.
 const COVERAGE: [&str; 5] = [
     "-Cpasses=sancov-module",
     "-Cllvm-args=-sanitizer-coverage-level=4",
@@ -230,8 +232,8 @@ fn turn(target: &str, out: &Path, seconds: u64, executions: u64) -> Result<Row, 
     })
 }
 
-/// Replaces the corpus of a target by few inputs that reach as much: those that people have named, such as `good-1`, and what was
-/// found.
+/// Replaces the corpus of a target by few inputs that reach as much: those that people have named, such as
+/// `good-1`, and what was found.
 fn minimise(target: &str, out: &Path) -> Result<(), String> {
     let kept = root().join("fuzz/corpus").join(target);
     let (found, least) = (out.join(target).join("corpus"), out.join(target).join("least"));

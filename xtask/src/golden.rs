@@ -131,8 +131,8 @@ const WAYS: [Way; 5] = [
 /// Tests whose results must not depend on the machine have names with this.
 const GOLDEN: &str = "on_every_machine";
 
-/// `cargo xtask golden [--required] [--built] [WAY…]`. What is missing is an error if all is `--required`. The programs are
-/// those of an earlier `cargo test` if they are `--built`.
+/// `cargo xtask golden [--required] [--built] [WAY…]`. What is missing is an error if all is `--required`.
+/// The programs are those of an earlier `cargo test` if they are `--built`.
 pub(crate) fn run(arguments: &[OsString]) -> ExitCode {
     let mut arguments: Vec<&str> = arguments.iter().filter_map(|a| a.to_str()).collect();
     let [required, built] = ["--required", "--built"].map(|option| arguments.contains(&option));

@@ -1,5 +1,5 @@
-//! Tests under valgrind: reads of memory that was never written or is not ours, in the only crate with `unsafe` code and in
-//! what calls it with large sizes.
+//! Tests under valgrind: reads of memory that was never written or is not ours, in the only crate with
+//! `unsafe` code and in what calls it with large sizes.
 
 use crate::programs::test_programs;
 use crate::{bad, note, root};
@@ -33,7 +33,8 @@ pub(crate) fn run(filters: &[OsString]) -> ExitCode {
         note(&format!("under valgrind: {}", program.display()));
         let mut command = Command::new("valgrind");
         command.args(["--quiet", "--track-origins=yes", &format!("--error-exitcode={ERROR}")]).arg(program);
-        // Valgrind runs one thread at a time. It has no AVX-512, so the kernels of AVX2 and narrower ones are run.
+        // Valgrind runs one thread at a time. It has no AVX-512, so the kernels of AVX2 and narrower ones are
+        // run.
         command.arg("--test-threads=1").args(filters).current_dir(root());
         // Tests with many cases take fewer of them.
         command.env("MP_MEMCHECK", "1");

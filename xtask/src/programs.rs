@@ -3,7 +3,8 @@
 use crate::{cargo, root};
 use std::path::{Path, PathBuf};
 
-/// Builds what `cargo test` builds with these arguments and environment variables. Returns the programs with these names.
+/// Builds what `cargo test` builds with these arguments and environment variables. Returns the programs with
+/// these names.
 pub(crate) fn test_programs(
     arguments: &[&str],
     variables: impl Iterator<Item = (&'static str, &'static str)>,

@@ -55,7 +55,8 @@ pub(crate) fn run() -> ExitCode {
     }
 }
 
-/// The environment of `mp`: where the module is. If the arguments ask for a planner inside a page, it is built.
+/// The environment of `mp`: where the module is. If the arguments ask for a planner inside a page, it is
+/// built.
 pub(crate) fn environment(arguments: &[OsString]) -> Result<Option<(&'static str, PathBuf)>, String> {
     let wanted = arguments.iter().any(|a| a == "--with-planner");
     if !wanted || std::env::var_os(VARIABLE).is_some() {

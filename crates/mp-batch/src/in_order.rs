@@ -8,12 +8,13 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 /// So many results for each thread may wait for an earlier one that takes long.
 const AHEAD: usize = 512;
 
-/// Draws `items` one after the other, does `job` with each and its number on `threads` threads, and gives the results in
-/// the order of the items to `take`, which runs in the calling thread while other items are worked on. At most 512
-/// items for each thread are drawn before the result of the first of them is taken: however many items there are, memory stays
-/// the same. Returns how many results were taken.
+/// Draws `items` one by one and runs `job` on each, with its number, on `threads` threads. `take` gets the
+/// results in the order of the items; it runs in the calling thread while others work. At most 512 items for
+/// each thread are drawn before the result of the first of them is taken: however many items there are,
+/// memory stays the same. Returns how many results were taken.
 ///
-/// When `cancel` is raised, or `take` breaks, no further item is drawn; `take` still gets the results of those that were, unless it broke.
+/// When `cancel` is raised, or `take` breaks, no further item is drawn; `take` still gets the results of
+/// those that were, unless it broke.
 ///
 /// ```
 /// use std::ops::ControlFlow;

@@ -14,7 +14,8 @@ pub(crate) fn timeless(request: &Request) -> Request {
     timeless
 }
 
-/// The scene with its ends, what is asked for, and the version of the program; without the files of the scene, which not all ranks have.
+/// The scene with its ends, what is asked for, and the version of the program; without the files of the
+/// scene, which not all ranks have.
 pub(crate) fn identity(scene: &Scene, asked: &impl Serialize) -> Result<String, Error> {
     let json = serde_json::to_string(&(scene.start(), scene.goals(), asked))
         .map_err(|e| Error::new(format!("the request cannot be written as JSON: {e}")))?;

@@ -1,7 +1,7 @@
 //! Many runs: streams and lists of problems, races, and work for the ranks of a cluster.
 //!
-//! Scenes, requests and reports are those of [`mp_plan`]; ranks are those of [`mp_ranks`]. Results are the same for any number of threads
-//! and ranks.
+//! Scenes, requests and reports are those of [`mp_plan`]; ranks are those of [`mp_ranks`]. Results are the
+//! same for any number of threads and ranks.
 //!
 //! ```
 //! use mp_batch::plan_many;

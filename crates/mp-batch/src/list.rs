@@ -1,4 +1,5 @@
-//! Lists of planning problems: their items are numbered, and their results are logs that go on where they ended.
+//! Lists of planning problems: their items are numbered, and their results are logs that go on where they
+//! ended.
 
 mod items;
 mod merge;
@@ -34,8 +35,8 @@ use std::path::{Path, PathBuf};
 /// The largest number of items of a list.
 const MAX_ITEMS: u64 = 1 << 30;
 
-/// A list of planning problems: a text with one JSON object a line, which docs/formats/many.md describes. Its *items* are the
-/// lines, each with each of its seeds, numbered from 0 in order.
+/// A list of planning problems: a text with one JSON object a line, which docs/formats/many.md describes. Its
+/// *items* are the lines, each with each of its seeds, numbered from 0 in order.
 ///
 /// ```
 /// let text = r#"
@@ -236,7 +237,7 @@ impl ProblemList {
         &self.file
     }
 
-    /// How many items it has.
+    /// The problems of all lines, each counted once for each of its seeds.
     #[must_use]
     pub fn items(&self) -> u64 {
         self.items

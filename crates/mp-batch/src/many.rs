@@ -4,12 +4,14 @@ use crate::in_order;
 use mp_plan::{Cancel, Control, Error, Report, Request, Scene};
 use std::ops::ControlFlow;
 
-/// Plans many problems on `threads` threads, and gives their results in the order of the problems to `take`, which runs in the calling
-/// thread and may [break](ControlFlow::Break) off. A problem that cannot be planned is a value as well: its error. Results do not depend
-/// on the number of threads, except for their times. Problems are drawn when there is a thread for them, so they can be made as they are
-/// needed: memory does not grow with their number. Returns how many results were taken.
+/// Plans many problems on `threads` threads, and gives their results in the order of the problems to `take`,
+/// which runs in the calling thread and may [break](ControlFlow::Break) off. A problem that cannot be planned
+/// is a value as well: its error. Results do not depend on the number of threads, except for their times.
+/// Problems are drawn when there is a thread for them, so they can be made as they are needed: memory does
+/// not grow with their number. Returns how many results were taken.
 ///
-/// When `cancel` is raised, no further problem begins, and those that have begun end soon, with what they found.
+/// When `cancel` is raised, no further problem begins, and those that have begun end soon, with what they
+/// found.
 ///
 /// ```
 /// use mp_batch::plan_many;

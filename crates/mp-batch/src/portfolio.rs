@@ -1,4 +1,5 @@
-//! Portfolios: many runs of one request, with random numbers of their own, over threads and over the ranks of a cluster.
+//! Portfolios: many runs of one request, with random numbers of their own, over threads and over the ranks of
+//! a cluster.
 
 mod group;
 mod rounds;
@@ -26,32 +27,36 @@ const MAX_UNIT: u64 = 1_000_000_000_000;
 
 /// Which runs are made.
 ///
-/// A portfolio is a fixed list of runs, numbered from 1. Run i draws from stream *(seed, i)*, and its *cap*, the most iterations it may
-/// make, is that of the [schedule](PortfolioSchedule). The runs are made in *rounds* of a fixed number; a round begins when the one before has no
-/// path. The winner is the run of the first round with a path that has the fewest iterations, and of several such the one with the
-/// least number. So it depends on the request and the portfolio alone, whoever finished first, and on how many machines.
+/// A portfolio is a fixed list of runs, numbered from 1. Run i draws from stream *(seed, i)*, and its *cap*,
+/// the most iterations it may make, is that of the [schedule](PortfolioSchedule). The runs are made in
+/// *rounds* of a fixed number; a round begins when the one before has no path. The winner is the run of the
+/// first round with a path that has the fewest iterations, and of several such the one with the least number.
+/// So it depends on the request and the portfolio alone, whoever finished first, and on how many machines.
 ///
-/// - Portfolios: C. Gomes and B. Selman, *Algorithm portfolios*, Artificial Intelligence 126, 2001. For trees of motion planning, N. Wedge and
-///   M. Branicky, *On heavy-tailed runtimes and restarts in rapidly-exploring random trees*, AAAI workshop, 2008.
-/// - Schedules over many processors: M. Luby and W. Ertel, *Optimal parallelization of Las Vegas algorithms*, STACS 1994; A. Cire,
-///   S. Kadioglu and M. Sellmann, *Parallel restarted search*, AAAI 2014, where processors take the runs of one sequence of lengths in
-///   turn, as here. There the first to finish wins; that the one with the fewest iterations does is as in `or-` planners
+/// - Portfolios: C. Gomes and B. Selman, *Algorithm portfolios*, Artificial Intelligence 126, 2001. For trees
+///   of motion planning, N. Wedge and M. Branicky, *On heavy-tailed runtimes and restarts in
+///   rapidly-exploring random trees*, AAAI workshop, 2008.
+/// - Schedules over many processors: M. Luby and W. Ertel, *Optimal parallelization of Las Vegas algorithms*,
+///   STACS 1994; A. Cire, S. Kadioglu and M. Sellmann, *Parallel restarted search*, AAAI 2014, where
+///   processors take the runs of one sequence of lengths in turn, as here. There the first to finish wins;
+///   that the one with the fewest iterations does is as in `or-` planners
 ///   ([there](mp_tree::algo::or_parallel)).
 ///
 /// How it is worked on, which changes nothing in the result:
-/// 1. the runs of a round are dealt to as many *groups* as there are threads on all ranks, the largest caps first, one to each group in turn,
-///    there and back again;
-/// 2. a group advances its runs by turns, the one as far as the other, until each has a path, has reached its cap, or has made as many
-///    iterations as the best run known: then it cannot win any more;
-/// 3. a group that is an eighth ahead of the one that is furthest behind waits for it, which must come as far as the winner anyway;
+/// 1. the runs of a round are dealt to as many *groups* as there are threads on all ranks, the largest caps
+///    first, one to each group in turn, there and back again;
+/// 2. a group advances its runs by turns, the one as far as the other, until each has a path, has reached its
+///    cap, or has made as many iterations as the best run known: then it cannot win any more;
+/// 3. a group that is an eighth ahead of the one that is furthest behind waits for it, which must come as far
+///    as the winner anyway;
 /// 4. when a group is done, the others hear of its best run.
 ///
-/// Where the request has no budget of iterations, queries or nodes, a portfolio of which no run has a path when all have reached their caps
-/// goes on with as many further runs, until its time is up: their caps are the next ones of the schedule; of the wide one, those of
-/// the runs before twice over.
+/// All runs may reach their caps without a path. If the request has no budget of iterations, queries or
+/// nodes, as many further runs follow, until the time is up. Their caps are the next ones of the schedule;
+/// under the wide schedule they are twice the caps of the runs before.
 ///
-/// So a round costs each run as many iterations as the winner needs, and at most a sixteenth or an eighth of that more, or what is made
-/// until news have spread. A round keeps the trees of all its runs.
+/// So a round costs each run as many iterations as the winner needs, and at most a sixteenth or an eighth of
+/// that more, or what is made until news have spread. A round keeps the trees of all its runs.
 ///
 /// ```
 /// use mp_batch::{Portfolio, PortfolioOptions};
@@ -70,14 +75,15 @@ const MAX_UNIT: u64 = 1_000_000_000_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Portfolio {
-    /// How many runs there are, 1 to 2^30; at most as many where the request has a budget of iterations, queries or nodes.
+    /// How many runs there are, 1 to 2^30; at most as many where the request has a budget of iterations,
+    /// queries or nodes.
     pub runs: u64,
     /// Their caps.
     pub schedule: PortfolioSchedule,
     /// How many iterations a run of length 1 may make, 1 to 10^12. Runs without caps have no unit.
     pub unit: u64,
-    /// How many runs are in a round, 1 to 2^20. Ranks and threads beyond that number have nothing to do, and where caps differ they are
-    /// all busy only if there are some times as many runs as threads.
+    /// How many runs are in a round, 1 to 2^20. Ranks and threads beyond that number have nothing to do, and
+    /// where caps differ they are all busy only if there are some times as many runs as threads.
     pub round: u64,
 }
 
@@ -136,7 +142,6 @@ impl Portfolio {
         before + 1..=before.saturating_add(self.round).min(first.saturating_add(self.runs))
     }
 
-    /// The round of a run.
     fn round_of(&self, run: u64) -> u64 {
         let (turn, run) = ((run - 1) / self.runs, (run - 1) % self.runs);
         turn * self.rounds() + run / self.round
@@ -159,7 +164,8 @@ pub struct RankWork {
 pub struct PortfolioOptions {
     /// On how many threads; of several ranks, on how many each. The same on all ranks.
     pub threads: usize,
-    /// Keeps finished runs in this file, and goes on with those in it; it is deleted in the end. Used by the first rank alone.
+    /// Keeps finished runs in this file, and goes on with those in it; it is deleted in the end. Used by the
+    /// first rank alone.
     pub checkpoint: Option<PathBuf>,
 }
 
@@ -173,8 +179,8 @@ impl Default for PortfolioOptions {
 /// What became of a portfolio.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PortfolioOutcome {
-    /// The report of the winner, with the [counts](Report::portfolio) of the portfolio. Without a winner its counts are sums over all runs,
-    /// and the nodes those of the largest run.
+    /// The report of the winner, with the [counts](Report::portfolio) of the portfolio. Without a winner its
+    /// counts are sums over all runs, and the nodes those of the largest run.
     pub report: Report,
     /// What each rank has done.
     pub work: Vec<RankWork>,
@@ -183,8 +189,8 @@ pub struct PortfolioOutcome {
 }
 
 impl PortfolioOutcome {
-    /// The iterations that the result needs, divided by those that could have been made while the busiest rank worked. Means something only
-    /// when nothing came from a checkpoint.
+    /// The iterations that the result needs, divided by those that could have been made while the busiest
+    /// rank worked. Means something only when nothing came from a checkpoint.
     #[must_use]
     pub fn efficiency(&self) -> f64 {
         let needed = self.report.portfolio.as_ref().map_or(0, |counts| counts.iterations);
@@ -194,12 +200,13 @@ impl PortfolioOutcome {
 }
 
 impl Portfolio {
-    /// Plans for a scene: makes many runs of one request, of which the one with the fewest iterations wins. Anytime planners end with their
-    /// first path; time is that of the whole portfolio, and other budgets are those of each run. Of `control`, the stop is
-    /// not asked, and the watch hears of no single events.
+    /// Plans for a scene: makes many runs of one request, of which the one with the fewest iterations wins.
+    /// Anytime planners end with their first path; time is that of the whole portfolio, and other budgets are
+    /// those of each run. The stop of `control` is not asked, and its watch gets no single events.
     ///
     /// # Errors
-    /// As [`Scene::plan`], when a number is out of its range, the request names a file for a roadmap, or the checkpoint cannot be used.
+    /// As [`Scene::plan`], when a number is out of its range, the request names a file for a roadmap, or the
+    /// checkpoint cannot be used.
     pub fn plan(
         &self,
         scene: &Scene,
@@ -212,7 +219,8 @@ impl Portfolio {
         outcome.ok_or_else(|| Error::new("there is no rank that hands out the runs"))
     }
 
-    /// The planner of the runs where none is named: that of the scene, but `rrt-connect` in place of `auto`, as one portfolio is enough.
+    /// The planner of the runs where none is named: that of the scene, but `rrt-connect` in place of `auto`,
+    /// as one portfolio is enough.
     #[must_use]
     pub fn default_planner(scene: &Scene) -> &'static str {
         match scene.default_planner() {
@@ -221,8 +229,8 @@ impl Portfolio {
         }
     }
 
-    /// As [`plan`](Self::plan), on all ranks of `link`: each calls this with the same scene, request, portfolio and number of
-    /// threads. The first has the outcome, the others `None`.
+    /// As [`plan`](Self::plan), on all ranks of `link`: each calls this with the same scene, request,
+    /// portfolio and number of threads. The first has the outcome, the others `None`.
     ///
     /// ```
     /// use mp_batch::{Portfolio, PortfolioOptions};
@@ -335,7 +343,8 @@ struct Allocation {
 }
 
 impl Allocation {
-    /// The runs of a group of a round, with their caps, the largest first; those that `known` says are left out before.
+    /// The runs of a group of a round, with their caps, the largest first; those that `known` says are left
+    /// out before.
     fn group(&self, item: u64, known: impl Fn(u64) -> bool) -> Vec<(u64, Option<u64>)> {
         let (round, group) = (item / self.groups, item % self.groups);
         let runs = self.portfolio.round_runs(round);
@@ -348,7 +357,8 @@ impl Allocation {
     }
 }
 
-/// The group that gets the run in a place: there and back again, so that none has the larger cap of each turn.
+/// The group that gets the run in a place: there and back again, so that none has the larger cap of each
+/// turn.
 fn group_of(place: u64, groups: u64) -> u64 {
     let (turn, group) = (place / groups, place % groups);
     if turn.is_multiple_of(2) { group } else { groups - 1 - group }
@@ -373,7 +383,8 @@ struct RunOutcome {
     rejected: u64,
     queries: u64,
     map: Option<[usize; 2]>,
-    /// What ended a run without a path. Neither this nor a path is there when it was outrun: it did not have a path that could win.
+    /// What ended a run without a path. Neither this nor a path is there when it was outrun: it did not have
+    /// a path that could win.
     stopped_by: Option<StoppedBy>,
     /// The states of its path as numbers.
     path: Option<Vec<Vec<f64>>>,

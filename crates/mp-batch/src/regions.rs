@@ -9,7 +9,8 @@ use mp_ranks::{Checkpoint, ItemContext, Items, Job, Link, Options, Work};
 use std::ops::Range;
 use std::path::Path;
 
-/// Opens a file, or begins it, that keeps results of [`Scene::regions`] with this request: [`build_regions`] goes on with those in it.
+/// Opens a file, or begins it, that keeps results of [`Scene::regions`] with this request: [`build_regions`]
+/// goes on with those in it.
 ///
 /// # Errors
 /// When the file is in use, damaged, of another scene or request, or cannot be read or written.
@@ -18,9 +19,10 @@ pub fn regions_checkpoint(scene: &Scene, request: &Request, file: &Path) -> Resu
     job::checkpoint(scene, "roadmap by regions", file, &identity)
 }
 
-/// Does all of the work on a roadmap by regions on the ranks of `link`, the dearest items first. All ranks call this, with the same scene and
-/// request; the results of items are kept in the `checkpoint` of the master, and those in it are not done again. The roadmap is the same for any
-/// number of ranks and threads. `None` on all ranks but the master, and when the job was cancelled.
+/// Does all of the work on a roadmap by regions on the ranks of `link`, the dearest items first. All ranks
+/// call this, with the same scene and request; the results of items are kept in the `checkpoint` of the
+/// master, and those in it are not done again. The roadmap is the same for any number of ranks and threads.
+/// `None` on all ranks but the master, and when the job was cancelled.
 ///
 /// # Errors
 /// On the master, when an item fails or a rank cannot be reached.
@@ -115,7 +117,8 @@ impl Phases<'_> {
         Ok((!ran.cancelled).then_some(estimates))
     }
 
-    /// Does these items, but for those whose results are known, the dearest first. Whether all were done.
+    /// Does these items, the most expensive first, and skips those whose results are known. Whether all were
+    /// done.
     fn run(&mut self, items: Range<u64>, cost: &dyn Fn(u64) -> f64, work: &Work<'_>) -> Result<bool, Error> {
         if !self.link.is_master() {
             run(self.link, self.options, None, work)?;

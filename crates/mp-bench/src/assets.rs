@@ -15,8 +15,8 @@ pub(crate) struct Options {
     /// Write nothing; exit 0 only if every file is there and identical.
     #[arg(long)]
     check: bool,
-    /// The folder of the crate to write or check: scenes are in `assets`, their list is `src/files.rs` [default: the
-    /// crate mp-scenes of the workspace].
+    /// The folder of the crate to write or check: scenes are in `assets`, their list is `src/files.rs`
+    /// [default: the crate mp-scenes of the workspace].
     #[arg(long = "crate-dir", value_name = "DIR")]
     dir: Option<PathBuf>,
 }

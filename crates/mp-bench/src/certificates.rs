@@ -1,4 +1,5 @@
-//! What proofs of paths cost: planning, certifying, and replaying by the program that shares no code with the planner.
+//! What proofs of paths cost: planning, certifying, and replaying by the program that shares no code with the
+//! planner.
 
 use crate::clock::{nanoseconds, seconds_since};
 use crate::error::Result;
@@ -14,7 +15,8 @@ struct Case {
     seed: u64,
 }
 
-/// The result of a case. Times are seconds of processor time, the shortest of several for those that are repeated.
+/// The result of a case. Times are seconds of processor time, the shortest of several for those that are
+/// repeated.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Run {
     edges: usize,

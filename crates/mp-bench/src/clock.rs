@@ -8,8 +8,8 @@ use std::time::Duration;
 /// Whether time is [counted](count).
 static COUNTED: AtomicBool = AtomicBool::new(false);
 
-/// From now on time passes by how often it is asked for, a tenth of a millisecond each: it is the same on every machine and in every run,
-/// and means nothing.
+/// From now on time passes by how often it is asked for, a tenth of a millisecond each: it is the same on
+/// every machine and in every run, and means nothing.
 pub(crate) fn count() {
     COUNTED.store(true, Ordering::Relaxed);
 }

@@ -1,8 +1,9 @@
 //! Queries between two meshes, with this project and with other libraries.
 //!
-//! For each pair of meshes, in rounds: build the trees, then run all boolean, tolerance, distance and motion queries at
-//! the pair's poses; then parry3d once, in this process; then the other programs, one after the other. All
-//! answers are compared. For two scenes, certified checks of a planner's edges are compared with discrete ones.
+//! For each pair of meshes, in rounds: build the trees, then run all boolean, tolerance, distance and motion
+//! queries at the pair's poses; then parry3d once, in this process; then the other programs, one after the
+//! other. All answers are compared. For two scenes, certified checks of a planner's edges are compared with
+//! discrete ones.
 
 mod edges;
 mod export;
@@ -112,8 +113,8 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
 /// The numbers of poses of a short run.
 const QUICK: Counts = Counts { uniform: 1_000, near: 1_000, edges: 50 };
 
-/// A pair that takes less than this per round gets more rounds, up to `MANY` times as many: short measurements are
-/// the ones that other work on the machine disturbs most.
+/// A pair that takes less than this per round gets more rounds, up to `MANY` times as many: short
+/// measurements are the ones that other work on the machine disturbs most.
 const SHORT: Duration = Duration::from_secs(20);
 const MANY: usize = 10;
 
@@ -162,7 +163,6 @@ fn measure(
     Ok((measured, complete))
 }
 
-/// The progress line of a measured pair.
 fn progress_line(m: &PairResults) -> String {
     let own = m.records.iter().filter(|r| r.what.lib == OURS);
     let figures = own.map(|r| format!("{} {} {:.0} ns", r.what.query, r.what.set, r.least));

@@ -1,4 +1,5 @@
-//! The base of all experiments: cases that are run once each, the log of their results, statistics and tables.
+//! The base of all experiments: cases that are run once each, the log of their results, statistics and
+//! tables.
 
 mod lab;
 mod log;

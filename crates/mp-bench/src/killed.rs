@@ -1,7 +1,7 @@
 //! Measurements that are killed: what was measured is kept, and goes on from there.
 //!
-//! Here and not in `tests`, and the test program itself is what is killed: another one would compile the whole library a second
-//! time.
+//! Here and not in `tests`, and the test program itself is what is killed: another one would compile the
+//! whole library a second time.
 
 #![cfg(test)]
 
@@ -44,7 +44,8 @@ fn lines(out: &Path) -> usize {
     complete.len()
 }
 
-/// Kills measurements into one folder, each of `kills` at another time of a second; what is in the log stays there.
+/// Kills measurements into one folder, each of `kills` at another time of a second; what is in the log stays
+/// there.
 fn kill_measurements(kills: Range<usize>) {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("bench");

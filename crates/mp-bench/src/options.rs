@@ -31,14 +31,16 @@ pub(crate) struct Common {
     /// How many runs at once, in suites whose results do not depend on it [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Measure a part only, I of N, in suites whose results do not depend on the machine's load; `--merge` puts the parts together.
+    /// Measure a part only, I of N, in suites whose results do not depend on the machine's load; `--merge`
+    /// puts the parts together.
     #[arg(long, value_name = "I/N", default_value = "1/1", hide_default_value = true)]
     pub(crate) shard: Shard,
-    /// Begin with what was measured in these folders, one for each shard. In any order; all of them, of the same command.
+    /// Begin with what was measured in these folders, one for each shard. In any order; all of them, of the
+    /// same command.
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["shard", "fresh"])]
     pub(crate) merge: Vec<PathBuf>,
-    /// Count how often the time is asked for instead of measuring it: then all results are the same on every machine, and times mean
-    /// nothing.
+    /// Count how often the time is asked for instead of measuring it: then all results are the same on every
+    /// machine, and times mean nothing.
     #[arg(long)]
     pub(crate) counted_time: bool,
     /// Measure again what the folder for results already has.

@@ -18,7 +18,8 @@ pub(crate) struct FirstPath {
     pub(crate) valid_at_20x_finer: i32,
 }
 
-/// Runs another planner once on a problem that [`mp_io::export_ompl`] has written. A range of 0 stands for its own longest step.
+/// Runs another planner once on a problem that [`mp_io::export_ompl`] has written. A range of 0 stands for
+/// its own longest step.
 ///
 /// # Errors
 /// As [`json_lines`].

@@ -1,4 +1,5 @@
-//! Every planner on shipped scenes, to the first verified path: the source of the table in `docs/choosing-a-planner.md`.
+//! Every planner on shipped scenes, to the first verified path: the source of the table in
+//! `docs/choosing-a-planner.md`.
 
 use crate::error::Result;
 use crate::experiment::{Lab, Table};
@@ -10,7 +11,6 @@ use serde::{Deserialize, Serialize};
 /// Open and crowded rooms, traps and narrow passages, in the plane and in space.
 const SCENES: [&str; 6] = ["maze", "planar-bugtrap", "easy", "cubicles", "twisty", "bugtrap"];
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,
@@ -18,7 +18,8 @@ struct Case {
     seed: u64,
 }
 
-/// Runs the suite. True when it was measured completely; a planner that does not solve a scene in time is a result.
+/// Runs the suite. True when it was measured completely; a planner that does not solve a scene in time is a
+/// result.
 pub(crate) fn run(common: &Common) -> Result<bool> {
     let lab = Lab::one_at_a_time(common)?;
     let scenes = common.scenes_or(&SCENES);

@@ -50,8 +50,8 @@ impl ChartCurve {
         Self { thin: true, ..self }
     }
 
-    /// The same curve with other dashes and markers: solid with discs, dashed with triangles, dotted with crosses, and
-    /// long dashes with rings.
+    /// The same curve with other dashes and markers: solid with discs, dashed with triangles, dotted with
+    /// crosses, and long dashes with rings.
     pub(crate) fn pattern(self, pattern: usize) -> Self {
         Self { pattern, ..self }
     }
@@ -103,7 +103,8 @@ impl Axis<'_> {
         v.is_finite() && (v > 0.0 || !matches!(self, Self::Log | Self::LogAt(_)))
     }
 
-    /// The range of the axis for these values; a logarithmic axis extends it by the factors `below` and `above`.
+    /// The range of the axis for these values; a logarithmic axis extends it by the factors `below` and
+    /// `above`.
     fn range(&self, values: impl Iterator<Item = f64>, [below, above]: [f64; 2]) -> Range<f64> {
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |b, v| (b.0.min(v), b.1.max(v)));
         let side = if high > low { 0.02 * (high - low) } else { 1.0 };
@@ -117,7 +118,8 @@ impl Axis<'_> {
     }
 }
 
-/// Charts of any number of curves, each with a suffix for its name: one with all of them, or several, which all have the first curve.
+/// Charts of any number of curves, each with a suffix for its name: one with all of them, or several, which
+/// all have the first curve.
 pub(crate) fn charts(
     labels: Labels<'_>,
     axes: [Axis<'_>; 2],
@@ -139,7 +141,8 @@ pub(crate) fn charts(
 /// A chart as SVG.
 ///
 /// # Errors
-/// When no curve has a point that the axes show, and when there are more than [`MOST_CURVES`], not counting thin companions.
+/// When no curve has a point that the axes show, and when there are more than [`MOST_CURVES`], not counting
+/// thin companions.
 pub(crate) fn chart(labels: Labels<'_>, [x, y]: [Axis<'_>; 2], curves: &[ChartCurve]) -> Result<String> {
     let count = curves.iter().filter(|curve| !curve.thin).count();
     if count > MOST_CURVES {

@@ -1,9 +1,10 @@
-//! Graded scenes × planners: `auto`, RRT-Connect and the best single planners, to the first verified path, in processor time; with
-//! `--peer` also planners of another program, on the same problems.
+//! Graded scenes × planners: `auto`, RRT-Connect and the best single planners, to the first verified path, in
+//! processor time; with `--peer` also planners of another program, on the same problems.
 //!
-//! A run that is not solved within `--time` was cut short, ours at nine tenths of it, as the last is for the proof: curves and intervals
-//! are those of survival analysis. The other program is called as by the suite `rigid`, with `rrtconnect`, `bitstar`, `kpiece` and `est`; its
-//! paths that collide at twenty times finer steps count as not solved.
+//! A run that is not solved within `--time` was cut short, ours at nine tenths of it, as the last is for the
+//! proof: curves and intervals are those of survival analysis. The other program is called as by the suite
+//! `rigid`, with `rrtconnect`, `bitstar`, `kpiece` and `est`; its paths that collide at twenty times finer
+//! steps count as not solved.
 
 mod tables;
 
@@ -31,7 +32,8 @@ const PLANNERS: [&str; 8] = [
     "rrt-connect step=1%",
     "bridge-prm metric=scaled",
 ];
-/// Those of the other program, after this word; without `range` with its own longest step, a fifth of the extent.
+/// Those of the other program, after this word; without `range` with its own longest step, a fifth of the
+/// extent.
 const PEER: &str = "peer ";
 const PEERS: [&str; 5] =
     ["peer rrtconnect", "peer rrtconnect range=5%", "peer bitstar", "peer kpiece", "peer est"];
@@ -43,7 +45,8 @@ const QUICK_CAP: f64 = 1.0;
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `puzzles`")]
 pub(crate) struct Options {
-    /// A planner to measure, with its settings and metric: `rrt-connect step=1% metric=scaled` [default: auto and seven others].
+    /// A planner to measure, with its settings and metric: `rrt-connect step=1% metric=scaled` [default: auto
+    /// and seven others].
     #[arg(long = "planner", value_name = "PLANNER")]
     planners: Vec<String>,
     /// Only scenes of this grade or below.
@@ -51,7 +54,6 @@ pub(crate) struct Options {
     grade: Option<u8>,
 }
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,
@@ -150,7 +152,8 @@ fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>, peer: Option<&PathB
     )
 }
 
-/// The request for the first path of a planner that is written as `NAME SETTING=VALUE …`, where a setting may be the metric.
+/// The request for the first path of a planner that is written as `NAME SETTING=VALUE …`, where a setting may
+/// be the metric.
 fn request(planner: &str) -> Result<Request> {
     let mut words = planner.split_whitespace();
     let request = bare(words.next().unwrap_or_default());

@@ -1,4 +1,5 @@
-//! Roadmaps by regions: what they answer beside plain ones of as many nodes, and how evenly their work is spread over ranks.
+//! Roadmaps by regions: what they answer beside plain ones of as many nodes, and how evenly their work is
+//! spread over ranks.
 
 use crate::error::Result;
 use crate::experiment::{Lab, Table};
@@ -20,7 +21,8 @@ const ROADMAPS: [(&str, usize, usize); 6] = [
 ];
 /// The numbers of ranks that are simulated.
 const RANKS: [usize; 3] = [16, 64, 256];
-/// What the simulation takes as the seconds of a collision query, of a message on its way, and of the master's work for a message.
+/// What the simulation takes as the seconds of a collision query, of a message on its way, and of the
+/// master's work for a message.
 const QUERY_S: f64 = 20e-6;
 const LATENCY_S: f64 = 20e-6;
 const MESSAGE_S: f64 = 10e-6;

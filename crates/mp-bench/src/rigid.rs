@@ -1,14 +1,15 @@
 //! RRT-Connect on the shipped scenes, alternating, seed by seed, with another program on the same problems.
 //!
-//! Both plan with motion checks at 1% of the extent and steps of `--step`, by default 20% as in the other program, in
-//! the metric ‖Δp‖ + 0.5·angle, from the same start to the same goal in the same bounds, on one thread, until the first
-//! solution. Neither time includes reading files and building the trees of meshes, our verifier's trees
-//! included. Our time includes the independent verification of candidate solutions; the other program does not verify.
+//! Both plan on one thread until the first solution, from the same start to the same goal in the same bounds.
+//! Motions are checked at 1% of the extent; steps are those of `--step`, by default 20% as in the other
+//! program; the metric is ‖Δp‖ + 0.5·angle. Neither time includes reading files and building the trees of
+//! meshes, our verifier's trees included. Our time includes the independent verification of candidate
+//! solutions; the other program does not verify.
 //!
-//! The other program is called as
-//! `PEER --problem FILE.json --planner rrtconnect --seeds 1 --seed0 N --time S --range D`, where D is the longest step. It
-//! reads the files that [`mp_io::export_ompl`] writes, and prints a line of JSON with `solved`, `time` (seconds), `checks` and
-//! `valid_at_20x_finer` (0 when its path collides at twenty times finer steps).
+//! The other program is called as `PEER --problem FILE.json --planner rrtconnect --seeds 1 --seed0 N --time S
+//! --range
+//! D`, where D is the longest step. It reads the files that [`mp_io::export_ompl`] writes, and prints a line of JSON with `solved`, `time` (seconds), `checks` and `valid_at_20x_finer`
+//! (0 when its path collides at twenty times finer steps).
 
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table, bit, mean};
@@ -33,7 +34,6 @@ pub(crate) struct Options {
     step: Length,
 }
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,

@@ -1,7 +1,8 @@
-//! Planners that build roadmaps, in corridors of decreasing width and on shipped scenes, each until it has a
-//! verified path or its budget of collision queries is used up; many queries to one roadmap, against RRT-Connect;
-//! building time against the number of nodes; how many nodes cover the free space; pictures of all roadmaps; and what the
-//! paper of key elements says of making and connecting nodes ([`claims`]). With `--scene`, only the runs on these scenes.
+//! Measurements of planners that build roadmaps. Each plans in corridors of decreasing width and on shipped
+//! scenes, until it has a verified path or has used up its budget of collision queries. One roadmap answers
+//! many queries, beside RRT-Connect. Further parts measure the building time against the number of nodes, and
+//! how many nodes cover the free space, and draw all roadmaps. [`claims`] tests what the paper of key
+//! elements says of making and connecting nodes. With `--scene`, only the runs on these scenes.
 
 mod claims;
 mod claims_tables;

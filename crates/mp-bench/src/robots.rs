@@ -1,7 +1,9 @@
-//! Descriptions of robots below a folder, as other people wrote them: which of them are planned for, and why not the rest.
+//! Descriptions of robots below a folder, as other people wrote them: which of them are planned for, and why
+//! not the rest.
 //!
-//! Each is opened alone, which chooses a free start and a free goal, and planned for; then to a goal at random. A robot that collides with
-//! itself in all configurations tried gets the SRDF that `mp srdf` makes, and is opened again.
+//! Each is opened alone, which chooses a free start and a free goal, and planned for; then to a goal at
+//! random. A robot that collides with itself in all configurations tried gets the SRDF that `mp srdf` makes,
+//! and is opened again.
 
 mod poses;
 
@@ -24,10 +26,12 @@ use std::time::Duration;
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `robots`")]
 pub(crate) struct Options {
-    /// A folder with descriptions of robots, such as a package of Python [default: the robots that `mp robots` lists].
+    /// A folder with descriptions of robots, such as a package of Python [default: the robots that
+    /// `mp robots` lists].
     #[arg(long = "dir", value_name = "DIR")]
     folders: Vec<PathBuf>,
-    /// Instead, inverse kinematics: so many poses of the last link of each robot, made from configurations at random.
+    /// Instead, inverse kinematics: so many poses of the last link of each robot, made from configurations at
+    /// random.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     link_poses: Option<u32>,
 }
@@ -311,7 +315,8 @@ fn outcome_of(error: &Error) -> Outcome {
 mod tests {
     use super::*;
 
-    /// An arm, one whose links touch at all times, one with a mesh that is lost, one that cannot move, and a table.
+    /// An arm, one whose links touch at all times, one with a mesh that is lost, one that cannot move, and a
+    /// table.
     #[test]
     fn each_description_has_its_outcome() {
         let folder = tempfile::tempdir().unwrap();

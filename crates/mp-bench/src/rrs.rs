@@ -1,7 +1,7 @@
 //! The experiment of Baizid, Chellali, Luza, Vitezslav and Arrichiello, *RRS: rapidly-exploring random
-//! snakes, a new method for mobile robot path planning*, §4 and §5: RRT against RRS in four worlds, for steps of 30 to
-//! 150 cm, 100 trials each, by six measures. With `--follow`, §6: a simulated robot follows the paths. With
-//! `--flying`, a body in space; with `--pictures`, pictures of a field and of a tree.
+//! snakes, a new method for mobile robot path planning*, §4 and §5: RRT against RRS in four worlds, for steps
+//! of 30 to 150 cm, 100 trials each, by six measures. With `--follow`, §6: a simulated robot follows the
+//! paths. With `--flying`, a body in space; with `--pictures`, pictures of a field and of a tree.
 
 mod flying;
 mod follow_suite;
@@ -25,10 +25,12 @@ pub(crate) struct Options {
     /// Instead, let a robot with noisy wheels and a noisy laser follow the paths.
     #[arg(long)]
     follow: bool,
-    /// Instead, compare RRT and RRS for a body in space, on `gempa-3` or the given scenes, with the same steps.
+    /// Instead, compare RRT and RRS for a body in space, on `gempa-3` or the given scenes, with the same
+    /// steps.
     #[arg(long, conflicts_with = "follow")]
     flying: bool,
-    /// Instead, draw the field that pushes snakes, a tree with bent edges, a path relaxed, and the landscape of risk.
+    /// Instead, draw the field that pushes snakes, a tree with bent edges, a path relaxed, and the landscape
+    /// of risk.
     #[arg(long, conflicts_with_all = ["follow", "flying"])]
     pictures: bool,
 }

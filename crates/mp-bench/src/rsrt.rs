@@ -1,10 +1,12 @@
-//! The experiments of Jouandeau, Touati and Ali Cherif 2008, *Incremental motion planning with Las Vegas algorithms*, in
-//! four parts: the natural expansion of an RRT (§2.4); a factorial experiment on what RSRT changes, over the number of inputs
-//! (§3.2); restarts of runs with heavy tails; and RRT against RSRT in worlds of 2 to 512 obstacles (§4), for a free-flyer
-//! and an arm of six joints, with states that are positions or have velocities, under three metrics.
+//! The experiments of Jouandeau, Touati and Ali Cherif 2008, *Incremental motion planning with Las Vegas
+//! algorithms*, in four parts. The first is the natural expansion of an RRT (§2.4). The second is a factorial
+//! experiment on what RSRT changes, over the number of inputs (§3.2). The third restarts runs with heavy
+//! tails. The fourth compares RRT with RSRT in worlds of 2 to 512 obstacles (§4): a free-flyer and an arm of
+//! six joints, positions alone or with velocities, three metrics.
 //!
-//! The paper stops a series when solving takes more than 60 s on a computer of 2008; `--cap` says how
-//! many seconds of processor time correspond to that here. A series also ends at the level at which no instance is solved.
+//! The paper stops a series when solving takes more than 60 s on a computer of 2008; `--cap` says how many
+//! seconds of processor time correspond to that here. A series also ends at the level at which no instance is
+//! solved.
 
 mod expansion;
 mod factorial;
@@ -51,7 +53,8 @@ enum Part {
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `rsrt`")]
 pub(crate) struct Options {
-    /// Seconds of processor time per run, in place of the paper's 60 s of 2008 [default: 6; 0.25 with --quick].
+    /// Seconds of processor time per run, in place of the paper's 60 s of 2008 [default: 6; 0.25 with
+    /// --quick].
     #[arg(long, value_name = "S", value_parser = positive_number)]
     cap: Option<f64>,
     /// A part to run [default: all].

@@ -1,7 +1,8 @@
 //! What more ranks bring than there are here: measured costs of real items, replayed for 1 to 10,000 ranks.
 //!
-//! Measured are planning problems over the shipped scenes, lengths of runs of problems with heavy tails, and portfolios on 1, 2 and 4
-//! ranks; the other costs are those of the experiments in `docs/results/data`. `docs/results/scale.md` has the results.
+//! Measured are planning problems over the shipped scenes, lengths of runs of problems with heavy tails, and
+//! portfolios on 1, 2 and 4 ranks; the other costs are those of the experiments in `docs/results/data`.
+//! `docs/results/scale.md` has the results.
 
 mod portfolios;
 mod problems;
@@ -13,11 +14,12 @@ use crate::options::Common;
 
 /// How many ranks are replayed.
 const RANKS: [usize; 9] = [1, 2, 4, 16, 64, 256, 1000, 4000, 10_000];
-/// From when a message is sent until the other rank acts on it, s: where little happens both look for messages of MPI every
-/// millisecond, and a small message takes 0.1 ms at most in the networks of clusters (MPI over Ethernet; a hundredth of that over InfiniBand).
+/// The time (s) from sending a message until the other rank acts on it. Idle ranks look for messages of MPI
+/// every millisecond, and a small message takes at most 0.1 ms in the network of a cluster (MPI over
+/// Ethernet; a hundredth of that over InfiniBand).
 const LATENCY_S: f64 = 2.1e-3;
-/// What the master needs for a result and the item that it sends in return, s. See [`sweeps::master_seconds`], to which ten microseconds of MPI
-/// are added.
+/// What the master needs for a result and the item that it sends in return, s. See
+/// [`sweeps::master_seconds`], to which ten microseconds of MPI are added.
 const MESSAGE_S: f64 = 2e-5;
 
 /// Runs the suite. True when it was measured completely.

@@ -63,7 +63,8 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
         return Ok(false);
     }
     let reached = log.each(&cases).all(|(_, run)| run.ours.len() == sizes.len());
-    // If the other program ran out of time, its rate at the size it reached, which is an upper bound of its rate here.
+    // If the other program ran out of time, its rate at the size it reached, which is an upper bound of its
+    // rate here.
     let peer =
         |run: &Run, nodes: usize| run.theirs.iter().find(|t| t.nodes >= nodes).or(run.theirs.last()).copied();
     let rows = log

@@ -107,8 +107,8 @@ impl Rigid {
         }))
     }
 
-    /// A search, timed by the processor, and whether it was solved within `queries` collision and distance queries; `None` when it was
-    /// interrupted.
+    /// A search, timed by the processor, and whether it was solved within `queries` collision and distance
+    /// queries; `None` when it was interrupted.
     pub(crate) fn search(
         &self,
         request: Request,

@@ -1,6 +1,7 @@
 //! Experiments over ranks and in shards: the same bytes as alone.
 //!
-//! Each is run by the test program itself, as another process: how time passes and what is printed is one for a process.
+//! Each is run by the test program itself, as another process: how time passes and what is printed is one for
+//! a process.
 
 #![cfg(test)]
 

@@ -40,6 +40,7 @@ pub(crate) enum Command {
     Check(Check),
     /// Give a path of an arm times: along it as fast as the limits of its joints allow, with rounded corners, and the curve that a controller
     /// runs proved free.
+    #[command(after_long_help = examples::TIME)]
     Time(Time),
     /// Describe a mesh, scene or path file.
     #[command(after_long_help = examples::INFO)]

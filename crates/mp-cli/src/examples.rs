@@ -21,7 +21,7 @@ pub(crate) const MANY: &str = "Examples:
   mp many problems.jsonl --out results.jsonl
   mp many problems.jsonl --out part-2.jsonl --shard 2/3";
 
-pub(crate) const MERGE: &str = "Example:
+pub(crate) const MERGE: &str = "Examples:
   mp merge results.jsonl part-1.jsonl part-2.jsonl part-3.jsonl";
 
 pub(crate) const CHECK: &str = r#"Examples:
@@ -30,14 +30,19 @@ pub(crate) const CHECK: &str = r#"Examples:
   mp check easy --at "0 0 1 0 0 0"          what is wrong there, and which configuration near is free
   mp check carry path-1.txt path-2.txt path-3.txt"#;
 
+pub(crate) const TIME: &str = "Examples:
+  mp time arm path.csv --out motion.csv
+  mp time arm path.csv --out motion.yaml --rate 100   for JointTrajectory of ROS, a point every 10 ms
+  mp check arm motion.csv                             proves the curve that a controller runs";
+
 pub(crate) const INFO: &str = "Examples:
   mp info easy
   mp info robot.urdf --json";
 
-pub(crate) const SRDF: &str = "Example:
+pub(crate) const SRDF: &str = "Examples:
   mp srdf robot.urdf --out robot.srdf";
 
-pub(crate) const IK: &str = r#"Example:
+pub(crate) const IK: &str = r#"Examples:
   mp ik arm --link hand --position "0.8 0.1 0.55""#;
 
 pub(crate) const RENDER: &str = "Examples:
@@ -59,8 +64,8 @@ pub(crate) const VERIFY: &str = "Examples:
   mp verify-certificate easy.json --scene easy
   mp verify-certificate easy.json --mesh robot=robot.off";
 
-pub(crate) const COMPLETIONS: &str = "Example:
+pub(crate) const COMPLETIONS: &str = "Examples:
   mp completions bash > ~/.local/share/bash-completion/completions/mp";
 
-pub(crate) const MAN: &str = "Example:
+pub(crate) const MAN: &str = "Examples:
   mp man > ~/.local/share/man/man1/mp.1";

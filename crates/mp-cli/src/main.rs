@@ -98,6 +98,8 @@ fn man() -> Result<bool, Error> {
     for one in pages {
         page(one, &mut text).map_err(|e| Error::new(format!("cannot make the manual page: {e}")))?;
     }
-    output::print(String::from_utf8_lossy(&text).trim_end())?;
+    // What follows the options of a command has no heading of its own there.
+    let text = String::from_utf8_lossy(&text).replace(".SH EXTRA\nExamples:\n", ".SH EXAMPLES\n.nf\n");
+    output::print(text.trim_end())?;
     Ok(true)
 }

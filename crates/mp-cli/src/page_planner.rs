@@ -12,7 +12,6 @@ const MODULE: &str = "planner.wasm";
 /// The largest module that is read, bytes (64 MiB).
 const MAX_MODULE_BYTES: u64 = 64 << 20;
 
-/// A planner for a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PagePlanner {
     /// The WebAssembly module.

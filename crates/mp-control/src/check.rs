@@ -21,7 +21,7 @@ pub struct SuccessorMotion<'a, S, U> {
     pub node: &'a S,
     /// The state the motion leads to, in a backward tree the state it comes from. Within the space.
     pub successor: &'a S,
-    /// The input.
+    /// The input that is held along the motion.
     pub input: &'a U,
     /// How long it is applied, seconds.
     pub duration: f64,

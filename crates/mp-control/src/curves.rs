@@ -1,8 +1,9 @@
-//! Shortest curves of cars: those of Dubins, which drive forward only, and those of Reeds and Shepp, which also reverse.
+//! Shortest curves of cars: those of Dubins, which drive forward only, and those of Reeds and Shepp, which
+//! also reverse.
 //!
-//! L. E. Dubins, *On curves of minimal length with a constraint on average curvature*, American Journal of Mathematics 79, 1957;
-//! J. A. Reeds and L. A. Shepp, *Optimal paths for a car that goes both forwards and backwards*, Pacific Journal of Mathematics
-//! 145, 1990, whose formulas have their numbers here.
+//! L. E. Dubins, *On curves of minimal length with a constraint on average curvature*, American Journal of
+//! Mathematics 79, 1957; J. A. Reeds and L. A. Shepp, *Optimal paths for a car that goes both forwards and
+//! backwards*, Pacific Journal of Mathematics 145, 1990, whose formulas have their numbers here.
 
 use mp_cspace::{Se2State, angle::wrap_angle};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -22,8 +23,8 @@ const L: f64 = 1.0;
 const S: f64 = 0.0;
 const R: f64 = -1.0;
 
-/// The shortest curve from one pose to another of a car that drives forward only and turns in circles of `radius` (m): at most
-/// three parts, none for equal poses.
+/// The shortest curve from one pose to another of a car that drives forward only and turns in circles of
+/// `radius` (m): at most three parts, none for equal poses.
 #[must_use]
 pub fn dubins(from: &Se2State, to: &Se2State, radius: f64) -> Vec<CurvePart> {
     let [x, y, phi] = seen_from(from, to, radius);
@@ -64,8 +65,8 @@ pub fn dubins(from: &Se2State, to: &Se2State, radius: f64) -> Vec<CurvePart> {
     best.scaled(radius)
 }
 
-/// The shortest curve from one pose to another of a car that drives forward and backward and turns in circles of `radius` (m):
-/// at most five parts, none for equal poses.
+/// The shortest curve from one pose to another of a car that drives forward and backward and turns in circles
+/// of `radius` (m): at most five parts, none for equal poses.
 #[must_use]
 pub fn reeds_shepp(from: &Se2State, to: &Se2State, radius: f64) -> Vec<CurvePart> {
     let [x, y, phi] = seen_from(from, to, radius);
@@ -259,8 +260,9 @@ mod tests {
         })
     }
 
-    /// Curves end at the goal; none is shorter than the straight line; those that may reverse are never longer than those that
-    /// may not, and as long from the goal to the start; and with corners cut off, no curve is found that is shorter.
+    /// Curves end at the goal; none is shorter than the straight line; those that may reverse are never
+    /// longer than those that may not, and as long from the goal to the start; and with corners cut off, no
+    /// curve is found that is shorter.
     #[test]
     fn curves_lead_to_the_goal_and_are_shortest() {
         let mut rng = Rng::seed(1);

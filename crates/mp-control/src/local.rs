@@ -58,9 +58,10 @@ pub trait InputChoice {
     /// How many inputs there are.
     fn count(&self) -> usize;
 
-    /// Tries each input at most once per node from now on: extends only by inputs not marked in `tried`, one entry per
-    /// input (all unmarked when it has another length), and marks those it tries. Each extension tests at most `most` for
-    /// collision. Any successor is accepted, in the order of [`SortFirst`](Order::SortFirst).
+    /// Tries each input at most once per node from now on: extends only by inputs not marked in `tried`, one
+    /// entry per input (all unmarked when it has another length), and marks those it tries. Each extension
+    /// tests at most `most` for collision. Any successor is accepted, in the order of
+    /// [`SortFirst`](Order::SortFirst).
     fn lend_tried(&mut self, tried: Vec<bool>, most: usize);
 
     /// Ends [`lend_tried`](Self::lend_tried) and returns the marks.
@@ -138,7 +139,8 @@ impl<S: PartialEq> Exact<S> {
 /// Number of states from which the flow is tried at construction.
 const PROBES: usize = 32;
 
-/// The most states tried while every input leads out of the space: with many joints near their limits most states are such.
+/// The most states tried while every input leads out of the space: with many joints near their limits most
+/// states are such.
 const MOST_PROBES: usize = 1024;
 
 /// The most inputs tried from each of these states.
@@ -223,7 +225,7 @@ where
         self.counters
     }
 
-    /// The inputs.
+    /// The inputs among which the planner chooses.
     #[must_use]
     pub fn inputs(&self) -> &InputSet<U> {
         &self.inputs

@@ -12,8 +12,8 @@ fn replays<S: PartialEq, U, F: Flow<S, U>>(flow: &F, from: &S, segment: &Control
     runs && flow.integrate(from, &segment.input, segment.duration) == *to
 }
 
-/// Verifies the edges of [`RecordedFlowCheck`](crate::RecordedFlowCheck): replays each, which must end in the state after it,
-/// bit for bit, and verifies the straight motion between.
+/// Verifies the edges of [`RecordedFlowCheck`](crate::RecordedFlowCheck): replays each, which must end in the
+/// state after it, bit for bit, and verifies the straight motion between.
 #[derive(Clone, Debug)]
 pub struct ReplayMotions<F, V> {
     flow: F,
@@ -51,9 +51,9 @@ impl<F, V> ReplayMotions<F, V> {
     }
 }
 
-/// Verifies any edge that stores its input: replays it, which must end in the state after it, bit for bit, and
-/// tests states along it at a resolution, some twenty times finer than that of the local planner. Shares only the
-/// flow with [`DiscreteFlowCheck`](crate::DiscreteFlowCheck): the flow defines the motion.
+/// Verifies any edge that stores its input: replays it, which must end in the state after it, bit for bit,
+/// and tests states along it at a resolution, some twenty times finer than that of the local planner. Shares
+/// only the flow with [`DiscreteFlowCheck`](crate::DiscreteFlowCheck): the flow defines the motion.
 #[derive(Clone, Debug)]
 pub struct ReplayFinely<'c, C, F, V> {
     space: &'c C,

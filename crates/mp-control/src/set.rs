@@ -149,11 +149,11 @@ impl InputSet<DVector<f64>> {
 }
 
 impl InputSet<Vec<f64>> {
-    /// Velocities that move states of `space` by `reach` in one second, in its metric: spread evenly
-    /// over its degrees of freedom, translation and rotation alike. `directions` is the number of
+    /// Velocities that move states of `space` by `reach` in one second, in its metric: spread evenly over its
+    /// degrees of freedom, translation and rotation alike. `directions` is the number of
     /// [directions](InputSet::directions), zero for both ways along each degree of freedom; `levels` the
-    /// number of magnitudes of each, every one a quarter of the one before. Turns are limited to about half a turn. Levels beyond
-    /// the hundredth have the magnitude of the hundredth.
+    /// number of magnitudes of each, every one a quarter of the one before. Turns are limited to about half a
+    /// turn. Levels beyond the hundredth have the magnitude of the hundredth.
     ///
     /// # Errors
     /// When the space has no velocities, `reach` is not positive and finite, or there is no level.

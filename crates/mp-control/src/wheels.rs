@@ -60,8 +60,8 @@ impl Car {
         Ok(Self { wheelbase: ParameterError::positive("the wheelbase", wheelbase)? })
     }
 
-    /// Inputs forward and in reverse at `speed` (m/s), with the steering in `2 · each_side + 1` positions up to
-    /// `steering` (rad) to either side.
+    /// Inputs forward and in reverse at `speed` (m/s), with the steering in `2 · each_side + 1` positions up
+    /// to `steering` (rad) to either side.
     ///
     /// # Errors
     /// When the speed is not positive and finite, or the steering angle not in (0, π/2).

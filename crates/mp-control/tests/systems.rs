@@ -179,7 +179,8 @@ fn systems_move_as_their_equations_say() {
     assert!((decay.integrate(&[1.0].into(), &1.0, 1.0).x - mp_math::exp(-1.0)).abs() < 1e-6);
 }
 
-/// With many joints that are soon too fast, few states have an input that does not leave the space; these are looked for.
+/// With many joints that are soon too fast, few states have an input that does not leave the space; these are
+/// looked for.
 #[test]
 fn inputs_that_seldom_stay_in_the_space_are_enough() {
     let joints = Rn::new([-1.0; 6], [1.0; 6]).unwrap();

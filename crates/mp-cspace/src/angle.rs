@@ -14,8 +14,8 @@ pub fn wrap_angle(angle: f64) -> f64 {
     if wrapped > PI { wrapped - TAU } else { wrapped }
 }
 
-/// The signed angle (rad) of the shorter arc from `from` to `to`, in \[-π, π\]. Reversing the arguments changes only the
-/// sign, for half turns too.
+/// The signed angle (rad) of the shorter arc from `from` to `to`, in \[-π, π\]. Reversing the arguments
+/// changes only the sign, for half turns too.
 ///
 /// ```
 /// # use mp_cspace::angle::angle_difference;

@@ -7,11 +7,12 @@ use std::ops::{Deref, DerefMut};
 /// The most numbers that lie in the value itself, without memory on the heap.
 const INLINE: usize = 16;
 
-/// A configuration as a row of numbers, whose meaning its space knows: joint values; the shift of a rigid body and its rotation
-/// as a unit quaternion x y z w; a time or velocities behind them. Up to 16 numbers lie in the value itself, more on the heap.
+/// A configuration as a row of numbers, whose meaning its space knows: joint values; the shift of a rigid
+/// body and its rotation as a unit quaternion x y z w; a time or velocities behind them. Up to 16 numbers lie
+/// in the value itself, more on the heap.
 ///
-/// [`Joints`](crate::Joints) and [`FloatingJoints`](crate::FloatingJoints) have it as their state; [`AsVectors`](crate::AsVectors) gives
-/// it to any other space.
+/// [`Joints`](crate::Joints) and [`FloatingJoints`](crate::FloatingJoints) have it as their state;
+/// [`AsVectors`](crate::AsVectors) gives it to any other space.
 ///
 /// ```
 /// use mp_cspace::Configuration;

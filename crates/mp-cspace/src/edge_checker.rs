@@ -6,12 +6,14 @@ use crate::{
 };
 use std::fmt;
 
-/// The space, the local planner that makes edges, and the verifier of paths, with counts of what they were asked.
+/// The space, the local planner that makes edges, and the verifier of paths, with counts of what they were
+/// asked.
 ///
-/// After `patience` rejected paths the checker no longer trusts the local planner: then every new edge is verified too.
+/// After `patience` rejected paths the checker no longer trusts the local planner: then every new edge is
+/// verified too.
 ///
-/// Once the [interrupt](Problem::with_interrupt) of the problem says so, nothing is computed any more: there are no motions, and
-/// nothing passes.
+/// Once the [interrupt](Problem::with_interrupt) of the problem says so, nothing is computed any more: there
+/// are no motions, and nothing passes.
 pub struct EdgeChecker<'c, C: Space, L: LocalPlanner<C::State>> {
     space: &'c C,
     local: L,
@@ -24,7 +26,8 @@ pub struct EdgeChecker<'c, C: Space, L: LocalPlanner<C::State>> {
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
-    /// The checker of motions of `local` in `space`. The verifier should share no code with the check inside `local`.
+    /// The checker of motions of `local` in `space`. The verifier should share no code with the check inside
+    /// `local`.
     pub fn new(
         space: &'c C,
         local: L,
@@ -52,7 +55,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
         Self { step, ..self }
     }
 
-    /// The space.
+    /// The space whose states the edges join.
     #[must_use]
     pub fn space(&self) -> &'c C {
         self.space
@@ -107,7 +110,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
         self.rejected += 1;
     }
 
-    /// Whether a state may be a node: it is in the space, and the local planner lets motions begin and end there.
+    /// Whether a state may be a node: it is in the space, and the local planner lets motions begin and end
+    /// there.
     pub fn admits(&mut self, q: &C::State) -> bool {
         !self.interrupt.ask() && self.space.contains(q) && self.local.admits(q)
     }
@@ -133,8 +137,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
         self.local.extend(from, toward, direction, reach)
     }
 
-    /// The whole motion from `from`, which is free, to `to`, if the local planner has one; verified where the local
-    /// planner is [not trusted](Self::distrusts).
+    /// The whole motion from `from`, which is free, to `to`, if the local planner has one; verified where the
+    /// local planner is [not trusted](Self::distrusts).
     pub fn reach(
         &mut self,
         from: &C::State,
@@ -145,8 +149,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
         (!self.distrusts() || self.passes(from, &motion.edge, to, direction)).then_some(motion)
     }
 
-    /// What [`reach`](Self::reach) returns in forward time when the answer of the local planner, `motion`, is known
-    /// already. Counts it.
+    /// What [`reach`](Self::reach) returns in forward time when the answer of the local planner, `motion`, is
+    /// known already. Counts it.
     pub fn replay(
         &mut self,
         from: &C::State,
@@ -164,7 +168,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
         self.rejected >= self.patience
     }
 
-    /// Whether the verifier passes a motion from `from` to `to`; with [`Direction::Backward`] it runs from `to` to `from`.
+    /// Whether the verifier passes a motion from `from` to `to`; with [`Direction::Backward`] it runs from
+    /// `to` to `from`.
     pub fn passes(&mut self, from: &C::State, edge: &L::Edge, to: &C::State, direction: Direction) -> bool {
         let (start, end) = match direction {
             Direction::Forward => (from, to),

@@ -1,5 +1,5 @@
-//! Type erasure: spaces, indexes and checks behind pointers, so that a planner is compiled once for each kind of
-//! *state* and not once for each robot, metric and motion check.
+//! Type erasure: spaces, indexes and checks behind pointers, so that a planner is compiled once for each kind
+//! of *state* and not once for each robot, metric and motion check.
 //!
 //! | generic | erased |
 //! |---|---|

@@ -9,7 +9,7 @@ pub enum SpaceError {
     /// A bound is NaN or infinite, or the bounds are so far apart that distances overflow.
     #[error("bounds of axis {axis} must be finite with a finite difference, found {low} to {high}")]
     NotFinite {
-        /// Which axis.
+        /// The index of the axis, from 0.
         axis: usize,
         /// Its lower bound.
         low: f64,
@@ -19,7 +19,7 @@ pub enum SpaceError {
     /// A lower bound is not below its upper bound.
     #[error("axis {axis} is empty: its lower bound {low} must be below its upper bound {high}")]
     EmptyRange {
-        /// Which axis.
+        /// The index of the axis, from 0.
         axis: usize,
         /// Its lower bound.
         low: f64,
@@ -31,7 +31,7 @@ pub enum SpaceError {
     Weight {
         /// Which weight.
         name: &'static str,
-        /// Its value.
+        /// The weight that was given.
         value: f64,
     },
     /// Two things that must have the same number of entries do not.

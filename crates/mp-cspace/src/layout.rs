@@ -100,8 +100,8 @@ impl Layout {
         Self { groups: vec![n], tight: both.tight && single, ..both }
     }
 
-    /// Says that the distance may be much greater than its bound even for states that are near each other. Answers do
-    /// not depend on it, only how soon they are found.
+    /// Says that the distance may be much greater than its bound even for states that are near each other.
+    /// Answers do not depend on it, only how soon they are found.
     #[must_use]
     pub fn loose(mut self) -> Self {
         self.tight = false;

@@ -4,7 +4,8 @@ use crate::{BuildError, ParameterError, Space};
 use std::fmt;
 use std::str::FromStr;
 
-/// A length in the metric of a space: how far one step goes, how far apart states are tested. As text, `0.5` or `20%`.
+/// A length in the metric of a space: how far one step goes, how far apart states are tested. As text, `0.5`
+/// or `20%`.
 ///
 /// ```
 /// use mp_cspace::{Length, Rn};
@@ -43,7 +44,8 @@ impl Length {
         Err(BuildError::OutOfRange { name: "step", value, range: format!("in (0, {most}], {unit}") })
     }
 
-    /// The resolution of a sampled motion check: how far apart the states are that it tests in `space`. 1% of the extent is customary.
+    /// The resolution of a sampled motion check: how far apart the states are that it tests in `space`. 1% of
+    /// the extent is customary.
     ///
     /// # Errors
     /// When it is not positive and finite, or below 10⁻⁹ of the extent.

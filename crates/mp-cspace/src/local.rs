@@ -74,8 +74,8 @@ pub trait LocalPlanner<S> {
     fn admits(&mut self, _q: &S) -> bool {
         true
     }
-    /// The states between the ends of an edge at which it bends, in forward time: for pictures. The default is none: such an
-    /// edge is the space's own interpolation, or knows only how to replay it.
+    /// The states between the ends of an edge at which it bends, in forward time: for pictures. The default
+    /// is none: such an edge is the space's own interpolation, or knows only how to replay it.
     fn vertices<'e>(&self, _edge: &'e Self::Edge) -> &'e [S]
     where
         S: 'e,

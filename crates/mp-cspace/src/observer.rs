@@ -14,9 +14,9 @@ pub enum Event<'a, S> {
     Rooted {
         /// Which tree (0 from the start, 1 from the goal).
         tree: usize,
-        /// The new node.
+        /// Its index in the tree or roadmap.
         id: NodeId,
-        /// Its state.
+        /// Where it is.
         state: &'a S,
         /// Of a node of a roadmap, the name of its kind; `None` for the root of a tree.
         kind: Option<&'static str>,
@@ -25,23 +25,23 @@ pub enum Event<'a, S> {
     Added {
         /// Which tree (0 from the start, 1 from the goal).
         tree: usize,
-        /// The new node.
+        /// Its index in the tree.
         id: NodeId,
-        /// Its parent.
+        /// The node that it was reached from; in tree 1 the node that it leads to.
         parent: NodeId,
-        /// Its state.
+        /// Where it is.
         state: &'a S,
-        /// The states at which the edge between them bends, in forward time: from the parent on in tree 0, to the parent in
-        /// tree 1. Empty for a straight edge.
+        /// The states at which the edge between them bends, in forward time: from the parent on in tree 0, to
+        /// the parent in tree 1. Empty for a straight edge.
         through: &'a [S],
     },
     /// A node of tree `tree` got another parent, through which it costs less.
     Rewired {
         /// Which tree (0 from the start, 1 from the goal).
         tree: usize,
-        /// The node.
+        /// The node that was moved within the tree.
         id: NodeId,
-        /// Its new parent.
+        /// The parent that it has from now on.
         parent: NodeId,
         /// The states at which the new edge bends, as in [`Added`](Self::Added).
         through: &'a [S],
@@ -62,7 +62,7 @@ pub enum Event<'a, S> {
     },
     /// An extension of `tree` failed.
     Trapped {
-        /// Which tree.
+        /// Which tree (0 from the start, 1 from the goal).
         tree: usize,
     },
     /// The motion from a node of a tree or roadmap toward a state was not free.
@@ -76,7 +76,7 @@ pub enum Event<'a, S> {
     Rejected,
     /// Nodes of `tree` were removed and the others renumbered, in unchanged order.
     Pruned {
-        /// Which tree.
+        /// Which tree (0 from the start, 1 from the goal).
         tree: usize,
         /// The former ids of the nodes that remain: node `i` was `survivors[i]`.
         survivors: &'a [NodeId],
@@ -126,7 +126,7 @@ impl<S, A: Observer<S>, B: Observer<S>> Observer<S> for Both<A, B> {
     }
 }
 
-/// Counts events.
+/// An observer that only counts, for measurements and tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EventCounts {
     /// States sampled.

@@ -13,8 +13,9 @@ use thiserror::Error;
 ///
 /// Between the states of a `Path<S>`, whose edges are `()`, the space interpolates.
 ///
-/// With the feature `serde` it is written as an object with the members `states` and `edges`. Reading refuses a path whose
-/// numbers of states and edges do not fit. The file does not say whether the path is free: verify it after reading.
+/// With the feature `serde` it is written as an object with the members `states` and `edges`. Reading refuses
+/// a path whose numbers of states and edges do not fit. The file does not say whether the path is free:
+/// verify it after reading.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -24,9 +24,9 @@ pub trait Planner<S> {
     fn improves(&self) -> bool {
         false
     }
-    /// At most `k` verified paths that are far apart, the cheapest first: each is somewhere farther than `apart`, in the metric
-    /// of the space, from all before it. To be called when a path was found; more steps give more of them. `None`, the default,
-    /// where the planner lists no paths.
+    /// At most `k` verified paths that are far apart, the cheapest first: each is somewhere farther than
+    /// `apart`, in the metric of the space, from all before it. To be called when a path was found; more
+    /// steps give more of them. `None`, the default, where the planner lists no paths.
     fn routes(&mut self, _k: usize, _apart: f64) -> Option<Vec<Path<S, Self::Edge>>> {
         None
     }

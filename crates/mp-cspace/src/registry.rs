@@ -24,7 +24,7 @@ pub struct PlannerInfo {
     pub summary: &'static str,
     /// Its paper.
     pub citation: &'static str,
-    /// Its parameters.
+    /// What can be set, in the order in which help lists it.
     pub parameters: &'static [Parameter],
     /// Its other names.
     pub aliases: &'static [&'static str],
@@ -39,8 +39,8 @@ impl PlannerInfo {
         self.reason_against(demand).is_none()
     }
 
-    /// Why the planner cannot meet the demand; `None` if it can. Planners that move by inputs are those with the parameter
-    /// `inputs`.
+    /// Why the planner cannot meet the demand; `None` if it can. Planners that move by inputs are those with
+    /// the parameter `inputs`.
     #[must_use]
     pub fn reason_against(&self, demand: Demand) -> Option<&'static str> {
         let by_inputs = || self.parameters.iter().any(|parameter| parameter.name == "inputs");
@@ -247,7 +247,8 @@ fn malformed(setting: String, expected: &'static str) -> BuildError {
     BuildError::Malformed { setting, expected }
 }
 
-/// The known name that `name` was probably meant to be: the one fewest edits away, at most a third of its length.
+/// The known name that `name` was probably meant to be: the one fewest edits away, at most a third of its
+/// length.
 ///
 /// ```
 /// assert_eq!(mp_cspace::registry::closest("rrt-conect", ["rrt", "rrt-connect"]), Some("rrt-connect"));

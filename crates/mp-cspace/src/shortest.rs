@@ -91,7 +91,8 @@ fn shortest(arcs: &[Vec<(u32, f64)>], root: &[u32], to: u32, taken: &[u32]) -> O
 
 /// The shortest path through one of the nodes `via`: a shortest path to it, then a shortest path from it to
 /// the end. It visits no node twice and makes no detour: the part from `window` before the node to `window`
-/// behind it is a shortest path. Ties by node. Arcs as in [`shortest_paths`]. Two searches, and one for each path tried.
+/// behind it is a shortest path. Ties by node. Arcs as in [`shortest_paths`]. Two searches, and one for each
+/// path tried.
 ///
 /// I. Abraham, D. Delling, A. V. Goldberg and R. F. Werneck, *Alternative routes in road networks*, ACM
 /// J. of Experimental Algorithmics 18, 2013.

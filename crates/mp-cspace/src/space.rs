@@ -24,11 +24,11 @@ pub use vectors::{AsVectors, OnVectors};
 use crate::{Rng, layout::Layout};
 use std::fmt::Debug;
 
-/// Marks a distance that is symmetric and satisfies the triangle inequality: that of the space itself, or that of a
-/// [`Metric`](crate::Metric) on the space `C`.
+/// Marks a distance that is symmetric and satisfies the triangle inequality: that of the space itself, or
+/// that of a [`Metric`](crate::Metric) on the space `C`.
 ///
-/// Metric trees require it, as they prune with the triangle inequality. Different states may be at distance zero
-/// (the unit quaternions `q` and `-q` are).
+/// Metric trees require it, as they prune with the triangle inequality. Different states may be at distance
+/// zero (the unit quaternions `q` and `-q` are).
 pub trait TrueMetric<C: ?Sized = Self> {}
 
 /// A configuration space (or state space): its states, their distances, and the interpolation between them.
@@ -51,9 +51,9 @@ pub trait Space: Sync {
     /// A configuration. Equality is exact: planners use it to recognise a state they already have.
     type State: Clone + Debug + PartialEq + Send + Sync;
 
-    /// The distance from `from` to `to`, in the space's own unit: finite, not negative, and zero from a state to itself.
-    /// It need neither be symmetric nor satisfy the triangle inequality; a space where both hold is marked
-    /// [`TrueMetric`].
+    /// The distance from `from` to `to`, in the space's own unit: finite, not negative, and zero from a state
+    /// to itself. It need neither be symmetric nor satisfy the triangle inequality; a space where both hold
+    /// is marked [`TrueMetric`].
     fn distance(&self, from: &Self::State, to: &Self::State) -> f64;
 
     /// Number of degrees of freedom.
@@ -104,18 +104,18 @@ pub trait Space: Sync {
         None
     }
 
-    /// The constant velocity that leads from `from` to `to` in one second along the interpolation, written
-    /// to `out`: the inverse of [`moved`](Space::moved). `false`, the default, where the space has no velocities
+    /// The constant velocity that leads from `from` to `to` in one second along the interpolation, written to
+    /// `out`: the inverse of [`moved`](Space::moved). `false`, the default, where the space has no velocities
     /// or the length of `out` is not [`dim`](Space::dim).
     fn velocity_into(&self, _from: &Self::State, _to: &Self::State, _out: &mut [f64]) -> bool {
         false
     }
 
-    /// The state with the position of `position` and the rotation of `rotation`. In a space without rotations, the
-    /// default, this is `position` itself.
+    /// The state with the position of `position` and the rotation of `rotation`. In a space without
+    /// rotations, the default, this is `position` itself.
     ///
-    /// Contract: interpolation between states of the same rotation does not turn, and between states of the same
-    /// position does not move.
+    /// Contract: interpolation between states of the same rotation does not turn, and between states of the
+    /// same position does not move.
     fn with_rotation_of(&self, position: &Self::State, _rotation: &Self::State) -> Self::State {
         position.clone()
     }
@@ -137,7 +137,7 @@ pub trait Space: Sync {
 /// [`Euclidean`](crate::Euclidean), [`ScaledEuclidean`](crate::ScaledEuclidean),
 /// [`Manhattan`](crate::Manhattan) and partial shortcuts work on factors.
 pub trait Factored: Space {
-    /// Number of factors.
+    /// The factors are numbered from 0 up to this.
     fn factors(&self) -> usize;
 
     /// Calls `f(i, d)` for each factor `i` in order, `d` ≥ 0 being the distance in that factor.
@@ -156,15 +156,16 @@ pub trait Factored: Space {
         out: &mut Self::State,
     );
 
-    /// How the coordinates of each factor bound the distance in it: a [`KdTree`](crate::KdTree) uses them under a metric
-    /// made of factors.
+    /// How the coordinates of each factor bound the distance in it: a [`KdTree`](crate::KdTree) uses them
+    /// under a metric made of factors.
     fn factor_layouts(&self) -> Vec<Layout>;
 
     /// Calls `put(i, x)` with the coordinates `x` of each factor `i`, factors in order.
     fn embed_factors(&self, state: &Self::State, put: &mut impl FnMut(usize, f64));
 }
 
-/// The methods of [`Space`] that the space in a field answers: all but `distance`, `extent` and `sample_between`.
+/// The methods of [`Space`] that the space in a field answers: all but `distance`, `extent` and
+/// `sample_between`.
 macro_rules! as_inside {
     ($field:tt) => {
         fn dim(&self) -> usize {

@@ -197,11 +197,11 @@ impl<S: Clone> Sampler<(S, f64)> for AtAnyTime<S> {
     }
 }
 
-/// A motion check or verifier that refuses motions back in time or beyond the speed limit, and leaves all
-/// others to the one inside.
+/// A motion check or verifier that refuses motions back in time or beyond the speed limit, and asks another
+/// one about the rest.
 #[derive(Clone, Debug)]
 pub struct ForwardInTime<'c, C, M> {
-    /// The space.
+    /// The space with time, which knows the speed limit.
     pub space: &'c SpaceTime<C>,
     /// The check of possible motions.
     pub check: M,

@@ -32,8 +32,8 @@ pub trait Stop {
     /// `Some(reason)` to stop now. Called once per iteration, before it.
     fn check(&mut self, progress: &Progress) -> Option<StopReason>;
     /// `Some(reason)` when the last iteration was interrupted: then the iteration counts for nothing, and
-    /// neither does a path that it returned. Called after each iteration. `None`, the default, for stops that act between
-    /// iterations only.
+    /// neither does a path that it returned. Called after each iteration. `None`, the default, for stops that
+    /// act between iterations only.
     fn cut_short(&self) -> Option<StopReason> {
         None
     }
@@ -159,7 +159,8 @@ impl Stop for Cancel {
     }
 }
 
-/// Stops before an iteration as an [`Interrupt`] does inside one, and says when it has cut an iteration short.
+/// Stops before an iteration as an [`Interrupt`] does inside one, and says when it has cut an iteration
+/// short.
 impl Stop for Interrupt {
     fn check(&mut self, _: &Progress) -> Option<StopReason> {
         if self.ask() { self.raised() } else { None }

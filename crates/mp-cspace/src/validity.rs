@@ -241,7 +241,7 @@ impl MotionCheck {
 /// Which end of a motion is already known to be free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KnownFree {
-    /// Neither.
+    /// No end: both have to be tested.
     Neither,
     /// The state it starts from.
     From,

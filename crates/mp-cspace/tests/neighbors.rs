@@ -340,8 +340,8 @@ fn k_nearest_computes_hardly_more_distances_than_it_returns() {
     }
 }
 
-/// Distances that are up to `factor` times their bounds, infinite beyond 1.5 along the first axis, and not a number
-/// beyond 1.9, in a layout that tells none of it.
+/// Distances that are up to `factor` times their bounds, infinite beyond 1.5 along the first axis, and not a
+/// number beyond 1.9, in a layout that tells none of it.
 #[derive(Clone, Debug)]
 struct Stretched {
     space: Rn<2>,

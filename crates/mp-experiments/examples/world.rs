@@ -1,4 +1,5 @@
-//! Prints a world of the experiment of Jouandeau et al. 2008 as a scene file, or the arm that its scenes name:
+//! Prints a world of the experiment of Jouandeau et al. 2008 as a scene file, or the arm that its scenes
+//! name:
 //!
 //! ```text
 //! cargo run -p mp-experiments --example world free-flyer 64 0 > flyer.toml     # robot, number of boxes, instance

@@ -1,6 +1,6 @@
-//! The problems of Jouandeau, Touati and Ali Cherif 2008, *Incremental motion planning with Las Vegas algorithms*, §4, and one
-//! run of a planner on one of them: a free-flyer and an arm of six joints among 2 to 512 boxes, with states that are positions
-//! or have velocities, under three metrics.
+//! The problems of Jouandeau, Touati and Ali Cherif 2008, *Incremental motion planning with Las Vegas
+//! algorithms*, §4, and single runs of a planner on them. A free-flyer or an arm of six joints moves among 2
+//! to 512 boxes. Its states are positions, or positions and velocities; there are three metrics.
 
 mod boxes;
 mod robots;
@@ -42,7 +42,8 @@ impl Mover {
         }))
     }
 
-    /// `count` boxes of an instance, none of them at the start or the goal. The first n are those of its problem with n.
+    /// `count` boxes of an instance, none of them at the start or the goal. The first n are those of its
+    /// problem with n.
     ///
     /// # Errors
     /// When a box cannot be made, of which no case is known.
@@ -75,9 +76,10 @@ impl Mover {
         }
     }
 
-    /// The problem with `count` boxes of an instance as the text of a scene file (`docs/formats/rigid-problem.md`, `robot-problem.md`).
-    /// It differs from what is planned for here in two things: its goal is a configuration, the middle of the goal region, and its
-    /// boxes are solid, so that nothing may be wholly inside of one. The scene of the arm names the file of [`urdf`](Self::urdf).
+    /// The problem with `count` boxes of an instance as the text of a scene file
+    /// (`docs/formats/rigid-problem.md`, `robot-problem.md`). It differs from what is planned for here in two
+    /// things: its goal is a configuration, the middle of the goal region, and its boxes are solid, so that
+    /// nothing may be wholly inside of one. The scene of the arm names the file of [`urdf`](Self::urdf).
     ///
     /// # Errors
     /// As [`obstacles`](Self::obstacles).
@@ -92,7 +94,8 @@ impl Mover {
         ))
     }
 
-    /// The file of the robot that its scenes name, seen from the folder above theirs, and its text; the free-flyer has none.
+    /// The file of the robot that its scenes name, seen from the folder above theirs, and its text; the
+    /// free-flyer has none.
     #[must_use]
     pub fn urdf(&self) -> Option<(&'static str, String)> {
         match &self.0 {
@@ -101,7 +104,8 @@ impl Mover {
         }
     }
 
-    /// Plans among obstacles, with states of one of [`MODELS`], under one of [`METRICS`]. `None` when it was cancelled.
+    /// Plans among obstacles, with states of one of [`MODELS`], under one of [`METRICS`]. `None` when it was
+    /// cancelled.
     ///
     /// # Errors
     /// When there is no such model or metric, and when trees that grow by accelerations are to meet.

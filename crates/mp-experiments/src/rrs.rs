@@ -1,5 +1,6 @@
-//! The experiment of Baizid, Chellali, Luza, Vitezslav and Arrichiello, *RRS: rapidly-exploring random snakes, a new method
-//! for mobile robot path planning*: a trial (§4 and §5), and a simulated robot that follows what was found (§6).
+//! The experiment of Baizid, Chellali, Luza, Vitezslav and Arrichiello, *RRS: rapidly-exploring random
+//! snakes, a new method for mobile robot path planning*: a trial (§4 and §5), and a simulated robot that
+//! follows what was found (§6).
 
 mod follow;
 pub mod noisy_robot;

@@ -28,8 +28,8 @@ impl TriMesh {
         Ok(Self { balls: Arc::new(vec![(all, radius)]), ..mesh })
     }
 
-    /// The triangles that are single points, each the centre of a ball of this radius (m): ranges, ascending. The ball belongs to the
-    /// mesh, with its inside.
+    /// The triangles that are single points, each the centre of a ball of this radius (m): ranges, ascending.
+    /// The ball belongs to the mesh, with its inside.
     #[must_use]
     pub fn balls(&self) -> &[(Range<u32>, f64)] {
         &self.balls
@@ -47,14 +47,15 @@ impl TriMesh {
         self.balls.iter().map(|(_, radius)| *radius).reduce(f64::max)
     }
 
-    /// The same with triangles alone, for what knows no balls, as files of meshes do: an icosahedron around each ball, larger by at most
-    /// 26%. A mesh without balls is cloned.
+    /// The same with triangles alone, for what knows no balls, as files of meshes do: an icosahedron around
+    /// each ball, larger by at most 26%. A mesh without balls is cloned.
     #[must_use]
     pub fn faceted(&self) -> Self {
         self.with_facets(usize::MAX)
     }
 
-    /// A mesh to be drawn in its place: [`faceted`](Self::faceted), of many balls only so many that they look alike.
+    /// A mesh to be drawn in its place: [`faceted`](Self::faceted), of many balls only so many that they look
+    /// alike.
     #[must_use]
     pub fn drawn(&self) -> Self {
         self.with_facets(DRAWN)
@@ -74,7 +75,8 @@ impl TriMesh {
         Self::merged(&parts).unwrap_or_else(|| self.clone())
     }
 
-    /// Icosahedra around balls: as many as there are, or fewer and larger ones where there are more than `most`.
+    /// Icosahedra around balls: as many as there are, or fewer and larger ones where there are more than
+    /// `most`.
     fn facets(&self, range: &Range<u32>, radius: f64, most: usize) -> Option<Self> {
         let mut centers: Vec<_> = range.clone().map(|i| self.triangle(i as usize)[0]).collect();
         let mut cell = radius;

@@ -157,7 +157,8 @@ impl TriMesh {
         Self::new(vertices, triangles)
     }
 
-    /// The same triangles and solids, with vertices at identical coordinates merged and unused vertices dropped.
+    /// The same triangles and solids, with vertices at identical coordinates merged and unused vertices
+    /// dropped.
     #[must_use]
     pub fn welded(&self) -> Self {
         let soup: Vec<_> = (0..self.triangles().len()).map(|i| self.triangle(i)).collect();

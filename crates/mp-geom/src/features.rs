@@ -1,14 +1,15 @@
 //! Features of a body for obstacle-geometry planners: its place, size, volume and direction.
 //!
-//! A. Benitez and D. Vallejo, "New technique to improve probabilistic roadmap methods", IBERAMIA 2004, as described
-//! in A. Benitez et al., "Key Elements for Motion Planning Algorithms", 2010, section 3.5:
+//! A. Benitez and D. Vallejo, "New technique to improve probabilistic roadmap methods", IBERAMIA 2004, as
+//! described in A. Benitez et al., "Key Elements for Motion Planning Algorithms", 2010, section 3.5:
 //!
 //! - *straightness* is "the direction of an object with respect its longest side": here the longest side of
 //!   its tight [oriented box](TriMesh::obb);
 //! - *volume* is "the size of an object respect to the volume of its surrounding sphere": here the solid's
 //!   volume over that of the sphere;
 //! - the surrounding sphere is about the centre of gravity;
-//! - where an obstacle "is built by smaller ones" each part has its own features: here parts are connected components.
+//! - where an obstacle "is built by smaller ones" each part has its own features: here parts are connected
+//!   components.
 
 use crate::{MassError, Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
@@ -21,8 +22,8 @@ pub struct Features {
     pub center: Point3<f64>,
     /// The largest distance of a point of the body from `center`: the radius of the surrounding sphere.
     pub radius: f64,
-    /// Straightness: the direction of the longest side of its tight box, with its largest coordinate positive. Any of
-    /// several sides of equal length.
+    /// Straightness: the direction of the longest side of its tight box, with its largest coordinate
+    /// positive. Any of several sides of equal length.
     pub axis: Unit<Vector3<f64>>,
     /// Volume of the solid (m³); of the tight box, where the mesh bounds no solid.
     pub volume: f64,
@@ -35,8 +36,8 @@ impl Features {
         Sphere { center: self.center, radius: self.radius }
     }
 
-    /// The volume as a fraction of that of the surrounding sphere, in \[0, 1\]; 1 for a single point. A ball has
-    /// 1, a cube 0.37, a rod or a plate nearly 0.
+    /// The volume as a fraction of that of the surrounding sphere, in \[0, 1\]; 1 for a single point. A ball
+    /// has 1, a cube 0.37, a rod or a plate nearly 0.
     #[must_use]
     pub fn volume_ratio(&self) -> f64 {
         let sphere = 4.0 / 3.0 * PI * mp_math::powi(self.radius, 3);

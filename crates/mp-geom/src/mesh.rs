@@ -17,11 +17,11 @@ pub enum MeshError {
     NotFinite {
         /// Which vertex, counted from 0.
         vertex: usize,
-        /// Its x.
+        /// Its first coordinate, as it was given.
         x: f64,
-        /// Its y.
+        /// Its second coordinate.
         y: f64,
-        /// Its z.
+        /// Its third coordinate.
         z: f64,
     },
     /// A triangle refers to a vertex that does not exist.
@@ -41,7 +41,7 @@ pub enum MeshError {
         what: &'static str,
         /// Which one, counted from 0.
         index: usize,
-        /// How many corners it has.
+        /// The corners found, fewer than three.
         corners: usize,
     },
     /// More than `u32::MAX` vertices or triangles.
@@ -70,12 +70,12 @@ pub(crate) fn check_finite(vertices: &[Point3<f64>]) -> Result<(), MeshError> {
 /// An indexed triangle mesh (boundary representation): a soup, with no promise of being closed,
 /// manifold, oriented or free of degenerate triangles.
 ///
-/// It is never empty, every coordinate is finite and every index in range: the constructors check this. Clones share vertices
-/// and triangles.
+/// It is never empty, every coordinate is finite and every index in range: the constructors check this.
+/// Clones share vertices and triangles.
 ///
-/// A mesh is a surface. Some of its triangles, or all, may bound [solids](TriMesh::solids): then what is inside of these belongs to
-/// the mesh too. [Primitives](crate::primitives) are solids; what is read from a file is a surface until
-/// [`into_solid`](TriMesh::into_solid).
+/// A mesh is a surface. Some of its triangles, or all, may bound [solids](TriMesh::solids): then what is
+/// inside of these belongs to the mesh too. [Primitives](crate::primitives) are solids; what is read from a
+/// file is a surface until [`into_solid`](TriMesh::into_solid).
 ///
 /// A mesh may also be [balls](TriMesh::balls), as of a point cloud: then each triangle is a single point.
 #[derive(Clone, Debug)]
@@ -88,7 +88,8 @@ pub struct TriMesh {
     pub(crate) balls: Arc<Vec<(Range<u32>, f64)>>,
 }
 
-/// The same vertices and triangles in the same order, and the same solids and balls. Clones are not compared number by number.
+/// The same vertices and triangles in the same order, and the same solids and balls. Clones are not compared
+/// number by number.
 impl PartialEq for TriMesh {
     fn eq(&self, other: &Self) -> bool {
         self.solids == other.solids
@@ -119,7 +120,7 @@ impl TriMesh {
         Ok(Self::surface(vertices.into(), triangles))
     }
 
-    /// The vertices.
+    /// The vertices, in the order in which they were given: triangles name them by index.
     #[must_use]
     pub fn vertices(&self) -> &[Point3<f64>] {
         &self.vertices
@@ -150,8 +151,8 @@ impl TriMesh {
         Self { vertices, triangles: triangles.into(), solids: Arc::default(), balls: Arc::default() }
     }
 
-    /// The mesh moved by `pose`, with the same solids. It shares the triangles with this one, and the vertices, too, if the pose is
-    /// the identity.
+    /// The mesh moved by `pose`, with the same solids. It shares the triangles with this one, and the
+    /// vertices, too, if the pose is the identity.
     #[must_use]
     pub fn transformed(&self, pose: &Isometry3<f64>) -> Self {
         if *pose == Isometry3::identity() {
@@ -161,7 +162,8 @@ impl TriMesh {
         Self { vertices: vertices.into(), ..self.clone() }
     }
 
-    /// All of `meshes` in one, with their solids and balls. `None` when there are none. A single one is cloned.
+    /// All of `meshes` in one, with their solids and balls. `None` when there are none. A single one is
+    /// cloned.
     #[must_use]
     pub fn merged<'a>(meshes: impl IntoIterator<Item = &'a TriMesh>) -> Option<Self> {
         let mut meshes = meshes.into_iter();

@@ -184,7 +184,8 @@ impl TriMesh {
             })
             .collect();
         sized.sort_by(|a, b| b.0.total_cmp(&a.0));
-        // Areas of triangles in parallel planes are added; only the largest triangles are used, to stay linear.
+        // Areas of triangles in parallel planes are added; only the largest triangles are used, to stay
+        // linear.
         let mut parts: Vec<(f64, Vector3<f64>)> = Vec::new();
         for (size, n) in sized.into_iter().take(4096) {
             match parts.iter().position(|(_, m)| m.dot(&n) > 1.0 - 1e-8) {

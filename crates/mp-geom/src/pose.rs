@@ -1,9 +1,9 @@
 //! Rigid poses from and to six numbers (as in the key-elements paper), quaternions and homogeneous matrices.
 //!
 //! A. Benitez, I. Huitzil, D. Vallejo, J. de la Calleja, M. A. Medina, "Key Elements for Motion Planning
-//! Algorithms", 2010, section 2.2, equations 1 to 4. Equations 2 and 4 are garbled in print (signs and
-//! rows are missing, and sines are printed as cosines). This module follows the paper's text and its equations
-//! 1 and 3: *yaw* α is a counter-clockwise rotation about Z, *pitch* β about Y, *roll* γ about X, and
+//! Algorithms", 2010, section 2.2, equations 1 to 4. Equations 2 and 4 are garbled in print (signs and rows
+//! are missing, and sines are printed as cosines). This module follows the paper's text and its equations 1
+//! and 3: *yaw* α is a counter-clockwise rotation about Z, *pitch* β about Y, *roll* γ about X, and
 //!
 //! ```text
 //! R(α, β, γ) = Rz(α) · Ry(β) · Rx(γ)
@@ -82,8 +82,8 @@ pub fn six_from_pose(pose: &Isometry3<f64>) -> [f64; 6] {
     [t.x, t.y, t.z, alpha, beta, gamma]
 }
 
-/// As [`six_from_pose`], for files that people read: an angle is rounded to twelve decimals if the pose stays the same to the last
-/// bits, so that 0.5 is not written as 0.5000000000000001. No number is −0.
+/// As [`six_from_pose`], for files that people read: an angle is rounded to twelve decimals if the pose stays
+/// the same to the last bits, so that 0.5 is not written as 0.5000000000000001. No number is −0.
 #[must_use]
 pub fn short_six_from_pose(pose: &Isometry3<f64>) -> [f64; 6] {
     let six = six_from_pose(pose);

@@ -1,7 +1,9 @@
-//! Shapes: what robots and obstacles are made of, as people give them, and the meshes that are checked in their place.
+//! Shapes: what robots and obstacles are made of, as people give them, and the meshes that are checked in
+//! their place.
 //!
-//! A file for each. All but [`Shape::Mesh`] are solids ([`TriMesh::solids`]): what is wholly inside of one collides with it. Round
-//! shapes become meshes of flat faces that contain them, so that what is free of the mesh is free of the shape.
+//! A file for each. All but [`Shape::Mesh`] are solids ([`TriMesh::solids`]): what is wholly inside of one
+//! collides with it. Round shapes become meshes of flat faces that contain them, so that what is free of the
+//! mesh is free of the shape.
 
 mod capsule;
 mod cone;
@@ -62,16 +64,17 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The primitive that files call `name`, with these lengths (m); `None` when there is none of the name, or it has another
-    /// number of lengths.
+    /// The primitive that files call `name`, with these lengths (m); `None` when there is none of the name,
+    /// or it has another number of lengths.
     #[must_use]
     pub fn primitive(name: &str, lengths: &[f64]) -> Option<Self> {
         let kind = PRIMITIVES.into_iter().find(|kind| kind.name == name)?;
         (kind.lengths.len() == lengths.len()).then(|| Self::Primitive(kind, lengths.to_vec()))
     }
 
-    /// The mesh that is checked in its place. It contains the shape: faces are flat, so that round shapes grow, by less than 0.5% of
-    /// the radius (cylinders, cones), 1% (capsules) and 2% (spheres, tori). Points become [balls](TriMesh::balls).
+    /// The mesh that is checked in its place. It contains the shape: faces are flat, so that round shapes
+    /// grow, by less than 0.5% of the radius (cylinders, cones), 1% (capsules) and 2% (spheres, tori). Points
+    /// become [balls](TriMesh::balls).
     ///
     /// ```
     /// use mp_geom::Shape;

@@ -12,8 +12,8 @@ const DEVIATION: f64 = 0.01;
 const DEPTH: u32 = 10;
 
 /// Six-tuples (x, y, z, α, β, γ) along the motion through `segments + 1` poses, where `at(i, t)` is the pose
-/// at fraction `t` of segment `i`. Angles are continuous along the path, so they may leave (-π, π]. `radius` is the
-/// distance of the robot's farthest point from its origin.
+/// at fraction `t` of segment `i`. Angles are continuous along the path, so they may leave (-π, π]. `radius`
+/// is the distance of the robot's farthest point from its origin.
 #[must_use]
 pub fn six_tuples(segments: usize, radius: f64, at: impl Fn(usize, f64) -> Isometry3<f64>) -> Vec<[f64; 6]> {
     // Adding zero removes the sign of negative zeros.
@@ -46,7 +46,8 @@ pub fn displacement_bound(a: &Isometry3<f64>, b: &Isometry3<f64>, radius: f64) -
     (a.translation.vector - b.translation.vector).norm() + radius * a.rotation.angle_to(&b.rotation)
 }
 
-/// The six-tuple of the same pose as `six` whose angles differ least from those of `last`: they may leave (-π, π].
+/// The six-tuple of the same pose as `six` whose angles differ least from those of `last`: they may leave
+/// (-π, π].
 #[must_use]
 pub fn continued_six(last: &[f64; 6], six: &[f64; 6]) -> [f64; 6] {
     let [x, y, z, a, b, g] = *six;

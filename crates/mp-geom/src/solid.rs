@@ -21,7 +21,7 @@ pub enum SolidError {
     /// Neighbouring triangles have opposite orientations.
     #[error("the surface is not oriented: the triangles at {edges} edges are turned against each other")]
     NotOriented {
-        /// At how many edges.
+        /// Edges whose two triangles run the same way along them.
         edges: usize,
     },
     /// It encloses no volume.
@@ -32,22 +32,25 @@ pub enum SolidError {
     Mixed,
 }
 
-/// A winding number of at least this is taken for that of a component with others around it, which it may touch.
+/// A winding number of at least this is taken for that of a component with others around it, which it may
+/// touch.
 const AROUND: f64 = 0.1;
 
 impl TriMesh {
-    /// The solids: the triangles of each, ascending. The triangles of a solid are a closed surface that faces outward; the solid is
-    /// that surface and the points around which it winds. Solids may overlap. Triangles of none are surfaces.
+    /// The solids: the triangles of each, ascending. The triangles of a solid are a closed surface that faces
+    /// outward; the solid is that surface and the points around which it winds. Solids may overlap. Triangles
+    /// of none are surfaces.
     #[must_use]
     pub fn solids(&self) -> &[Range<u32>] {
         &self.solids
     }
 
-    /// The mesh as a solid. A mesh that faces inward is reversed. Components that face inward inside of others are cavities.
+    /// The mesh as a solid. A mesh that faces inward is reversed. Components that face inward inside of
+    /// others are cavities.
     ///
     /// # Errors
-    /// [`SolidError`] when it is not closed or not consistently oriented, vertices in one place counting as one, or encloses no
-    /// volume, or a component faces inward that is no cavity.
+    /// [`SolidError`] when it is not closed or not consistently oriented, vertices in one place counting as
+    /// one, or encloses no volume, or a component faces inward that is no cavity.
     pub fn into_solid(self) -> Result<Self, SolidError> {
         if !self.is_closed_and_oriented() {
             let found = self.topology();
@@ -86,14 +89,15 @@ impl TriMesh {
         Self { solids: Arc::new(vec![0..self.triangles.len() as u32]), ..self }
     }
 
-    /// The mesh, which is `count` equally large closed meshes, one after the other, that face outward: each is a solid.
+    /// The mesh, which is `count` equally large closed meshes, one after the other, that face outward: each
+    /// is a solid.
     pub(crate) fn trusted_solids(self, count: u32) -> Self {
         let each = self.triangles.len() as u32 / count;
         Self { solids: Arc::new((0..count).map(|i| each * i..each * (i + 1)).collect()), ..self }
     }
 
-    /// The mesh with coordinates scaled about the origin, and the same solids; balls grow with the largest factor. An odd number of negative factors reverses the
-    /// triangles, so that outside stays outside.
+    /// The mesh with coordinates scaled about the origin, and the same solids; balls grow with the largest
+    /// factor. An odd number of negative factors reverses the triangles, so that outside stays outside.
     ///
     /// # Errors
     /// When a coordinate is no longer finite.
@@ -109,9 +113,9 @@ impl TriMesh {
         Ok(scaled)
     }
 
-    /// How often the surface winds around `p`: the solid angle of the surface seen from `p`, over 4π, summed over triangles as
-    /// in A. van Oosterom and J. Strackee, "The solid angle of a plane triangle", 1983. A whole number, up to rounding, where the
-    /// surface is closed and `p` not on it.
+    /// How often the surface winds around `p`: the solid angle of the surface seen from `p`, over 4π, summed
+    /// over triangles as in A. van Oosterom and J. Strackee, "The solid angle of a plane triangle", 1983. A
+    /// whole number, up to rounding, where the surface is closed and `p` not on it.
     #[must_use]
     pub fn winding_number(&self, p: &Point3<f64>) -> f64 {
         self.winding_number_of(0..self.triangles.len() as u32, p)
@@ -134,7 +138,8 @@ impl TriMesh {
         angle / (4.0 * PI)
     }
 
-    /// A vertex of each connected component, in the order of their first triangles. Triangles that share a place are connected.
+    /// A vertex of each connected component, in the order of their first triangles. Triangles that share a
+    /// place are connected.
     #[must_use]
     pub fn component_vertices(&self) -> Vec<Point3<f64>> {
         let names = self.names();

@@ -9,8 +9,8 @@
 //! 3. among the spheres through that point and at most three support points, take the one that best
 //!    encloses all five, and go to 2. The radius grows at every turn, so this ends.
 //!
-//! Step 3 compares the distances of the farthest points instead of testing signs of barycentric coordinates, so no
-//! tolerance is needed, and repeated, collinear or cospherical points are no problem.
+//! Step 3 compares the distances of the farthest points instead of testing signs of barycentric coordinates,
+//! so no tolerance is needed, and repeated, collinear or cospherical points are no problem.
 
 use crate::TriMesh;
 use nalgebra::{DMatrix, DVector, Point3, Vector3};

@@ -1,7 +1,7 @@
 //! Evenly spaced places along a path, for pictures of a robot that moves along it.
 
-/// Places spread evenly along edges of these lengths, about `spacing` apart, 11 to 69 of them: the index of an edge
-/// and a fraction of it. No places on a path of no length.
+/// Places spread evenly along edges of these lengths, about `spacing` apart, 11 to 69 of them: the index of
+/// an edge and a fraction of it. No places on a path of no length.
 #[must_use]
 pub fn evenly(lengths: &[f64], spacing: f64) -> Vec<(usize, f64)> {
     let mut at = vec![0.0];

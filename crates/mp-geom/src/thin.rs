@@ -6,10 +6,11 @@ use thiserror::Error;
 /// Points that stand for others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Thinned {
-    /// One for each cell of the grid that holds a point: the middle of the box around its points. In an order that does not depend on that
-    /// of the points.
+    /// One for each cell of the grid that holds a point: the middle of the box around its points. In an order
+    /// that does not depend on that of the points.
     pub centers: Vec<Point3<f64>>,
-    /// No point is farther (m) from that of its cell: at most half the diagonal of a cell, zero where no two points share one.
+    /// No point is farther (m) from that of its cell: at most half the diagonal of a cell, zero where no two
+    /// points share one.
     pub padding: f64,
     /// How many points were left out because a coordinate is not finite.
     pub not_finite: usize,
@@ -38,9 +39,9 @@ pub enum ThinError {
 /// The numbers of cells along an axis are below this by magnitude, so that three fit 128 bits.
 const MOST: f64 = (1_u64 << 41) as f64;
 
-/// Keeps one point for each cell of a grid of cubes with sides of `cell` (m): a ball around the kept one that is larger by
-/// [`padding`](Thinned::padding) has every ball inside. Points that are not finite, which depth cameras give where they see nothing, are left
-/// out. O(n log n).
+/// Keeps one point for each cell of a grid of cubes with sides of `cell` (m): a ball around the kept one that
+/// is larger by [`padding`](Thinned::padding) has every ball inside. Points that are not finite, which depth
+/// cameras give where they see nothing, are left out. O(n log n).
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -87,7 +88,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Every ball is inside of a kept one; the order of the points does not matter; no more are kept than there are cells.
+        /// Every ball is inside of a kept one; the order of the points does not matter; no more are kept than
+        /// there are cells.
         #[test]
         fn kept_balls_hold_all(
             points in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 1..200),

@@ -164,8 +164,8 @@ impl TriMesh {
         out
     }
 
-    /// Whether the surface is [closed](Topology::closed) and [consistently oriented](Topology::oriented): the same as of its
-    /// [topology](TriMesh::topology), with a tenth of the memory.
+    /// Whether the surface is [closed](Topology::closed) and [consistently oriented](Topology::oriented): the
+    /// same as of its [topology](TriMesh::topology), with a tenth of the memory.
     #[must_use]
     pub fn is_closed_and_oriented(&self) -> bool {
         // Each edge is used as often in one direction as in the other, and so an even number of times.
@@ -191,8 +191,9 @@ impl TriMesh {
         })
     }
 
-    /// The components connected through edges, as surfaces, each with only its own vertices, in the order of their first
-    /// triangles. Triangles with two corners in one place belong to none; a mesh of only such triangles is one part.
+    /// The components connected through edges, as surfaces, each with only its own vertices, in the order of
+    /// their first triangles. Triangles with two corners in one place belong to none; a mesh of only such
+    /// triangles is one part.
     #[must_use]
     pub fn parts(&self) -> Vec<TriMesh> {
         let topology = self.topology();

@@ -2,8 +2,8 @@
 //!
 //! G. H. Meisters, "Polygons have ears", 1975. Orientation tests are exact (J. R. Shewchuk, "Adaptive
 //! precision floating-point arithmetic and fast robust geometric predicates", 1997), so collinear runs,
-//! needles and large coordinates are decided correctly. The ear with the best-shaped triangle is cut first, which also
-//! keeps collinear corners from becoming degenerate triangles.
+//! needles and large coordinates are decided correctly. The ear with the best-shaped triangle is cut first,
+//! which also keeps collinear corners from becoming degenerate triangles.
 
 use nalgebra::{Point2, Point3, Vector3};
 use robust::{Coord, orient2d};
@@ -36,8 +36,8 @@ pub(crate) fn triangulate(corners: &[Point3<f64>]) -> Vec<[usize; 3]> {
     triangulate_ccw(&projected)
 }
 
-/// A simple polygon always has an ear, and mostly one beside the last cut. After so many searches of the whole ring for one, the
-/// polygon crosses itself, and is not worth the time.
+/// A simple polygon always has an ear, and mostly one beside the last cut. After so many searches of the
+/// whole ring for one, the polygon crosses itself, and is not worth the time.
 const SEARCHES: usize = 16;
 
 /// As [`triangulate`], for a counter-clockwise polygon of the plane. O(n log n) on ordinary polygons, O(n²)
@@ -85,11 +85,13 @@ pub(crate) fn triangulate_ccw(corners: &[Point2<f64>]) -> Vec<[usize; 3]> {
     triangles
 }
 
-/// A ring with holes as one ring that goes around all: each hole is joined to it by a bridge to a corner that it sees. `outer` goes
-/// counter-clockwise and the holes clockwise, inside it and apart from each other; a hole that sees no corner is left out.
+/// A ring with holes as one ring that goes around all: each hole is joined to it by a bridge to a corner that
+/// it sees. `outer` goes counter-clockwise and the holes clockwise, inside it and apart from each other; a
+/// hole that sees no corner is left out.
 pub(crate) fn bridged(outer: Vec<Point2<f64>>, mut holes: Vec<Vec<Point2<f64>>>) -> Vec<Point2<f64>> {
     let lexical = |p: &Point2<f64>, q: &Point2<f64>| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y));
-    // Each hole begins at its rightmost corner, and the rightmost hole comes first: then no later hole is in the way.
+    // Each hole begins at its rightmost corner, and the rightmost hole comes first: then no later hole is in
+    // the way.
     for hole in &mut holes {
         let first = (0..hole.len()).max_by(|&i, &j| lexical(&hole[i], &hole[j])).unwrap_or(0);
         hole.rotate_left(first);
@@ -305,7 +307,8 @@ mod tests {
         Ok(())
     }
 
-    /// To search for ears that do not exist would take hours here. The number of triangles is right, and each corner is in one.
+    /// To search for ears that do not exist would take hours here. The number of triangles is right, and each
+    /// corner is in one.
     #[test]
     fn polygons_that_cross_themselves_are_cut_into_as_many_triangles() {
         for n in [4, 5, 50, 20_000_usize] {

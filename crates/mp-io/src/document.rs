@@ -28,13 +28,13 @@ pub struct SceneDocument {
     /// The lowest and the highest corner (m) of the box in which the origin of the robot may be; without, around everything.
     #[serde(default)]
     pub bounds: Option<[[f64; 3]; 2]>,
-    /// The robot.
+    /// The body that moves.
     pub robot: DocumentBody,
     /// The start: x, y, z (m), α, β, γ (rad), as in GEMPA environments.
     pub start: [f64; 6],
-    /// The goal.
+    /// The goal, as the start.
     pub goal: [f64; 6],
-    /// The obstacles.
+    /// The bodies that stand still, each with a pose.
     pub obstacles: Vec<DocumentBody>,
 }
 
@@ -42,12 +42,12 @@ pub struct SceneDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DocumentBody {
-    /// Its name.
+    /// What messages and the list of bodies call it.
     pub name: String,
     /// Its colour, `#rrggbb`; without, as viewers like.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub color: Option<String>,
-    /// Its shape.
+    /// Its geometry before it is scaled.
     pub shape: DocumentShape,
     /// The scale along its own axes, each above zero; without, 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -61,9 +61,9 @@ pub struct DocumentBody {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub enum DocumentShape {
-    /// A sphere.
+    /// A ball with an inside.
     Sphere {
-        /// Its radius.
+        /// From the middle or the axis to the surface.
         radius: f64,
     },
     /// A box.
@@ -75,14 +75,14 @@ pub enum DocumentShape {
     Cone {
         /// The radius of its base.
         radius: f64,
-        /// Its height.
+        /// From base to apex or from base to base.
         height: f64,
     },
     /// A cylinder about z.
     Cylinder {
-        /// Its radius.
+        /// From the middle or the axis to the surface.
         radius: f64,
-        /// Its height.
+        /// From base to apex or from base to base.
         height: f64,
     },
     /// A torus about z.
@@ -97,7 +97,7 @@ pub enum DocumentShape {
         /// The length of its edges.
         edge: f64,
     },
-    /// A mesh.
+    /// Triangles of a file.
     Mesh {
         /// The name of its file.
         file: String,

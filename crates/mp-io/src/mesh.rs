@@ -77,7 +77,6 @@ pub(crate) fn parse_noting(file: &str, bytes: &[u8], remark: &mut dyn FnMut(&str
     reader(file, bytes)?(file, bytes, &mut Reading { axes: Axes::YUp, interrupt, remark })
 }
 
-/// What reads the mesh in a file.
 fn reader(file: &str, bytes: &[u8]) -> Result<ReadMesh, Error> {
     Content::of_mesh(Path::new(file), bytes).and_then(Content::mesh_reader).ok_or_else(|| {
         Error::new(ErrorKind::Unsupported, file, "this is not a mesh format that is read here")

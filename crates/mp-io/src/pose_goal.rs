@@ -47,7 +47,6 @@ pub struct PoseEntry {
     pub free: FreeTurns,
 }
 
-/// What is expected.
 const EXPECTED: &str = "{ link = \"tool\", pose = [x, y, z, α, β, γ] }, or `position = [x, y, z]`; also `free = \"z\"` and `position_tolerance = 0.01`";
 
 impl PoseEntry {

@@ -41,7 +41,6 @@ impl TomlText<'_> {
         })
     }
 
-    /// An error at `span`.
     pub(crate) fn error(&self, span: &Range<usize>, message: impl Into<String>) -> Error {
         let length = span.end.saturating_sub(span.start).max(1);
         let error = Error::at(ErrorKind::Content, self.file, self.text, span.start, length, message.into());
@@ -357,7 +356,6 @@ impl Goals {
     }
 }
 
-/// A goal, and where it is.
 fn one_goal(text: &TomlText<'_>, goal: Spanned<GoalText>) -> Result<(GoalEntry, Range<usize>), Error> {
     let span = goal.span();
     let goal = match goal.into_inner() {

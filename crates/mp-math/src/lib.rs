@@ -1,13 +1,14 @@
 //! Mathematical functions that give the same bits on every processor and operating system.
 //!
-//! The methods of `f64` with the same names call the C library, which chooses among variants by processor, and the compiler
-//! computes them itself where their arguments are constants. Their last bits differ from machine to machine, so a planner
-//! with the same seed would find another path. The functions here are those of the crate [`libm`]: additions,
-//! multiplications, divisions and square roots in a fixed order, each rounded as IEEE 754 says. The result is at most two
-//! units in the last place from the true value ([`powi`]: a unit for each multiplication).
+//! The methods of `f64` with the same names call the C library, which chooses among variants by processor,
+//! and the compiler computes them itself where their arguments are constants. Their last bits differ from
+//! machine to machine, so a planner with the same seed would find another path. The functions here are those
+//! of the crate [`libm`]: additions, multiplications, divisions and square roots in a fixed order, each
+//! rounded as IEEE 754 says. The result is at most two units in the last place from the true value ([`powi`]:
+//! a unit for each multiplication).
 //!
-//! Not here, because IEEE 754 fixes their bits and `f64` has them: `sqrt`, `abs`, `floor`, `ceil`, `round`, `trunc`,
-//! `rem_euclid`, `mul_add`, `to_radians`, `to_degrees`.
+//! Not here, because IEEE 754 fixes their bits and `f64` has them: `sqrt`, `abs`, `floor`, `ceil`, `round`,
+//! `trunc`, `rem_euclid`, `mul_add`, `to_radians`, `to_degrees`.
 //!
 //! ```
 //! assert_eq!(mp_math::sin(1e5).to_bits(), 0x3fa2_4daa_9c52_7e96);
@@ -57,15 +58,16 @@ functions! {
     cbrt = cbrt(x);
 }
 
-/// The sine and the cosine of an angle in radians, for little more than the price of one: [`sin`] and [`cos`], bit for bit.
+/// The sine and the cosine of an angle in radians, for little more than the price of one: [`sin`] and
+/// [`cos`], bit for bit.
 #[inline]
 #[must_use]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     libm::sincos(x)
 }
 
-/// `x` to an integer power, by squaring. The square and the cube are `x * x` and `x * x * x`; a negative power is one
-/// over the positive one.
+/// `x` to an integer power, by squaring. The square and the cube are `x * x` and `x * x * x`; a negative
+/// power is one over the positive one.
 #[inline]
 #[must_use]
 pub fn powi(x: f64, exponent: i32) -> f64 {

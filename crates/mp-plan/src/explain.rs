@@ -24,7 +24,6 @@ pub struct Explanation {
     pub nearest_free: Option<Vec<f64>>,
 }
 
-/// Explains a configuration.
 pub(crate) fn explain(kind: &dyn Robot, q: &Configuration) -> Explanation {
     let (in_bounds, fault) = (kind.any_space().contains(q), fault(kind, q));
     let clearance = match in_bounds {

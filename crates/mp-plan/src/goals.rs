@@ -40,12 +40,10 @@ fn row_at(turning: &[bool], goal: &[GoalPart], mut row: Vec<f64>) -> Vec<f64> {
     row
 }
 
-/// The configuration of a goal that is next to `q`.
 pub(crate) fn next_to(kind: &dyn Robot, goal: &[GoalPart], q: &Configuration) -> Configuration {
     kind.state(&row_at(&turning(kind), goal, kind.row(q)))
 }
 
-/// A configuration of a goal, drawn at random.
 fn drawn(kind: &dyn Robot, goal: &[GoalPart], rng: &mut Rng) -> Configuration {
     let mut row = kind.row(&kind.any_space().sample_uniform(rng));
     for (part, x) in goal.iter().zip(&mut row) {

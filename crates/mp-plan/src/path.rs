@@ -166,7 +166,6 @@ pub(crate) fn continued(turning: &[bool], given: &[f64], mut rows: Vec<Vec<f64>>
     rows
 }
 
-/// The states of the rows of a path from a file.
 pub(crate) fn states(kind: &dyn Robot, path: &PathRows) -> Result<Vec<Configuration>, Error> {
     let columns = kind.columns();
     if !path.columns.is_empty() && path.columns != columns {
@@ -194,7 +193,6 @@ pub(crate) fn states(kind: &dyn Robot, path: &PathRows) -> Result<Vec<Configurat
     }
 }
 
-/// The configuration of one row.
 pub(crate) fn state(kind: &dyn Robot, row: &[f64]) -> Result<Configuration, Error> {
     let columns = kind.columns();
     if row.len() == columns.len() && row.iter().all(|v| v.is_finite()) {

@@ -148,7 +148,6 @@ pub struct FoundRun {
     pub ended_by: Option<StopReason>,
 }
 
-/// The request, prepared for a robot.
 pub(crate) fn prepare<'s>(kind: &'s dyn Robot, request: &'s Request) -> Result<Prepared<'s>, Error> {
     request.check()?;
     PlannerKind::new(&request.planner)?;
@@ -172,7 +171,6 @@ impl<'p> NamedPlanner<'p> {
     }
 }
 
-/// A run.
 pub(crate) struct RobotRun<'p, 'k> {
     prepared: &'p Prepared<'k>,
     /// None where the run ended before its planner was made.

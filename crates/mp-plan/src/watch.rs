@@ -33,9 +33,9 @@ pub trait Watch {
     fn wants_events(&self) -> bool {
         false
     }
-    /// An event of the search.
+    /// Called for what happens in the search, if [wanted](Self::wants_events), in the thread that plans.
     fn event(&mut self, _event: SearchEvent<'_>) {}
-    /// Whether [`roadmap`](Self::roadmap) is to be called.
+    /// Whether [`roadmap`](Self::roadmap) is to be called, for which the whole roadmap is copied.
     fn wants_roadmap(&self) -> bool {
         false
     }
@@ -67,7 +67,7 @@ pub enum SearchEvent<'a> {
     Rooted {
         /// Which tree: 0 from the start, 1 from the goal.
         tree: usize,
-        /// The new node.
+        /// Its index in the tree or roadmap.
         id: NodeId,
         /// Its configuration.
         row: Vec<f64>,
@@ -76,11 +76,11 @@ pub enum SearchEvent<'a> {
     },
     /// A node was added under another.
     Added {
-        /// Which tree.
+        /// Which tree: 0 from the start, 1 from the goal.
         tree: usize,
-        /// The new node.
+        /// Its index in the tree or roadmap.
         id: NodeId,
-        /// Its parent.
+        /// The node it was reached from; in tree 1 the node it leads to.
         parent: NodeId,
         /// Its configuration.
         row: Vec<f64>,
@@ -89,11 +89,11 @@ pub enum SearchEvent<'a> {
     },
     /// A node got another parent.
     Rewired {
-        /// Which tree.
+        /// Which tree: 0 from the start, 1 from the goal.
         tree: usize,
-        /// The node.
+        /// The node that was moved within the tree.
         id: NodeId,
-        /// Its new parent.
+        /// The parent that it has from now on.
         parent: NodeId,
         /// The configurations between parent and node at which their edge bends. Empty for a straight edge.
         through: Vec<Vec<f64>>,
@@ -128,7 +128,7 @@ pub enum SearchEvent<'a> {
     Rejected,
     /// Nodes were removed and the others renumbered, in unchanged order.
     Pruned {
-        /// Which tree.
+        /// Which tree: 0 from the start, 1 from the goal.
         tree: usize,
         /// The former ids of the nodes that remain.
         survivors: &'a [NodeId],

@@ -11,8 +11,8 @@ use xxhash_rust::xxh3::xxh3_64;
 /// The largest checkpoint that is read, bytes (16 GiB).
 const MAX_BYTES: u64 = 1 << 34;
 
-/// The results of a job that are known, in a file that grows by a line for each: its item, a checksum, and its bytes as base64. The
-/// first line says which job it is.
+/// The results of a job that are known, in a file that grows by a line for each: its item, a checksum, and
+/// its bytes as base64. The first line says which job it is.
 ///
 /// A process that is killed loses nothing that was kept.
 #[derive(Debug)]
@@ -25,8 +25,8 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Opens the checkpoint in `file`, or begins it. `job` says in a line which job it is: everything that its results depend on, best as
-    /// hashes. An incomplete last line is dropped.
+    /// Opens the checkpoint in `file`, or begins it. `job` says in a line which job it is: everything that
+    /// its results depend on, best as hashes. An incomplete last line is dropped.
     ///
     /// # Errors
     /// When the file is in use, cannot be read or written, is damaged, or is that of another job.

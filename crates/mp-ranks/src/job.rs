@@ -13,7 +13,8 @@ pub trait Job {
     /// # Errors
     /// When the result is not what it should be: what is wrong.
     fn take(&mut self, item: u64, rank: usize, result: Vec<u8>) -> Result<(), String>;
-    /// A number that only falls, which the [context](crate::ItemContext) of all items that are worked on gets: for searches, the best so far.
+    /// A number that only falls, which the [context](crate::ItemContext) of all items that are worked on
+    /// gets: for searches, the best so far.
     fn bound(&self) -> u64 {
         u64::MAX
     }
@@ -32,8 +33,8 @@ impl<F: FnMut(u64, usize, Vec<u8>) -> Result<(), String>> Items<F> {
         Self { left: items.into_iter().collect(), take }
     }
 
-    /// Hands out the items of the greatest cost first, equal ones in their order: what takes long and begins late makes all others
-    /// wait. Costs need only be right in proportion.
+    /// Hands out the items of the greatest cost first, equal ones in their order: what takes long and begins
+    /// late makes all others wait. Costs need only be right in proportion.
     pub fn dearest_first(items: impl IntoIterator<Item = u64>, cost: impl Fn(u64) -> f64, take: F) -> Self {
         let mut order: Vec<(u64, f64)> = items.into_iter().map(|item| (item, cost(item))).collect();
         order.sort_by(|a, b| b.1.total_cmp(&a.1));

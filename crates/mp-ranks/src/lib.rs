@@ -1,8 +1,9 @@
 //! Numbered work items over the ranks of a cluster.
 //!
-//! All ranks run the same program and come to the same calls of [`run`]. The first rank is the master: it hands out the items of a
-//! [`Job`], to itself as well, one after the other as others are done, and takes their results. A result depends on its item alone, so
-//! the whole is the same for any number of ranks, whoever did what, and when.
+//! All ranks run the same program and come to the same calls of [`run`]. The first rank is the master. It
+//! hands out the items of a [`Job`] one by one, to itself too, as earlier ones are finished, and takes their
+//! results. A result depends on its item alone, so the whole is the same for any number of ranks, whoever did
+//! what, and when.
 //!
 //! - A [`Link`] carries messages. [`threads`] makes links between threads; that of MPI is elsewhere.
 //! - A [`Checkpoint`] keeps results, so that a job that was killed goes on.
@@ -58,7 +59,7 @@ pub enum Error {
     /// An item cannot be done, or its result cannot be taken.
     #[error("item {item}, done by rank {rank}: {message}")]
     Item {
-        /// The item.
+        /// The number of the item, from 0.
         item: u64,
         /// Who did it.
         rank: usize,
@@ -70,13 +71,13 @@ pub enum Error {
         "rank {rank} sent a message that nobody expects: do all ranks run the same program with the same files?"
     )]
     OutOfStep {
-        /// Which rank.
+        /// The rank whose message nobody expected.
         rank: usize,
     },
     /// A checkpoint cannot be used.
     #[error("{file}: {message}; {remedy}")]
     Checkpoint {
-        /// Its file.
+        /// The file, as it was named.
         file: String,
         /// What is wrong.
         message: String,

@@ -13,7 +13,7 @@ pub(crate) const MASTER: usize = 0;
 ///
 /// Only one thread of each rank uses its link.
 pub trait Link {
-    /// The number of this rank, from 0.
+    /// This rank: 0 is the master, which hands out work.
     fn rank(&self) -> usize;
     /// How many ranks there are.
     fn ranks(&self) -> usize;
@@ -27,8 +27,9 @@ pub trait Link {
     /// # Errors
     /// When no rank can be reached any more.
     fn poll(&self) -> Result<Option<(usize, Vec<u8>)>, Error>;
-    /// Waits until a message has arrived, someone [unparks](Thread::unpark) this thread, or as long as seems good for a link that cannot tell
-    /// that messages arrive, but not longer than `most`. May return at any time.
+    /// Waits until a message has arrived, someone [unparks](Thread::unpark) this thread, or as long as seems
+    /// good for a link that cannot tell that messages arrive, but not longer than `most`. May return at any
+    /// time.
     fn wait(&self, most: Duration) {
         std::thread::park_timeout(most.min(Duration::from_millis(1)));
     }

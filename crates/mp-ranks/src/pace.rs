@@ -14,11 +14,12 @@ const REPORT: Duration = Duration::from_micros(50);
 /// How often one who waits asks whether it is over.
 const OVER: Duration = Duration::from_millis(5);
 
-/// The pace of the work on an item of a job whose winner is the item that needs the least, by the measure of [`ItemContext::reached`]: one that is an
-/// eighth ahead of the one that is furthest behind waits for it, as what it makes beyond the winner is in vain.
+/// Keeps items that race at about the same pace. The winner of such a job is the item that needs the least,
+/// by the measure of [`ItemContext::reached`], and work beyond the winner is lost. So an item that is an
+/// eighth ahead of the slowest one waits for it.
 ///
-/// It costs no time that it waits: the last must get as far as the winner anyway. News take some time, so that what was made in the last
-/// fifth of a millisecond does not count.
+/// It costs no time that it waits: the last must get as far as the winner anyway. News take some time, so
+/// that what was made in the last fifth of a millisecond does not count.
 ///
 /// All items of the job must be worked on at a time.
 #[derive(Debug)]
@@ -36,8 +37,8 @@ impl Pace {
         Self { item, was: VecDeque::new(), reported: None }
     }
 
-    /// Says that so much has been reached, which must not fall, and waits for the last if that is too far behind. Nobody is waited for when it is
-    /// `over`. `now` is the time since any moment.
+    /// Says that so much has been reached, which must not fall, and waits for the last if that is too far
+    /// behind. Nobody is waited for when it is `over`. `now` is the time since any moment.
     pub fn keep(
         &mut self,
         context: &ItemContext,

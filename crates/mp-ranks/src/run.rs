@@ -12,7 +12,8 @@ use std::time::Duration;
 
 /// How often it is asked at least whether the job is cancelled.
 const CANCEL: Duration = Duration::from_millis(5);
-/// While there are at least this number of items for each thread, each rank has one more than it works on, and never waits for the next.
+/// While there are at least this number of items for each thread, each rank has one more than it works on,
+/// and never waits for the next.
 const PLENTY: u64 = 8;
 
 /// How a job is run.
@@ -20,8 +21,8 @@ const PLENTY: u64 = 8;
 pub struct Options {
     /// How many items each rank works on at a time. The same on all ranks.
     pub threads: usize,
-    /// Ends the job, on whichever rank it is raised: no further item is handed out, and those that are worked on are dropped. On the
-    /// ranks other than the master it is also raised when the job ends early.
+    /// Ends the job, on whichever rank it is raised: no further item is handed out, and those that are worked
+    /// on are dropped. On the ranks other than the master it is also raised when the job ends early.
     pub cancel: Cancel,
 }
 
@@ -55,7 +56,8 @@ impl ItemContext {
         self.bound.load(Ordering::Relaxed)
     }
 
-    /// Reports how far the work on an item is, by a measure that all items of the job share. Of items that never report it is 0.
+    /// Reports how far the work on an item is, by a measure that all items of the job share. Of items that
+    /// never report it is 0.
     pub fn reached(&self, item: u64, far: u64) {
         let mut reports = self.reports.lock().unwrap_or_else(PoisonError::into_inner);
         reports.retain(|(other, _)| *other != item);
@@ -64,15 +66,15 @@ impl ItemContext {
         self.reader.unpark();
     }
 
-    /// How far the item is that is furthest behind of all that are worked on, as far as it is known here: news take some tenths of a
-    /// millisecond between processes.
+    /// How far the item is that is furthest behind of all that are worked on, as far as it is known here:
+    /// news take some tenths of a millisecond between processes.
     #[must_use]
     pub fn least_reached(&self) -> u64 {
         self.least.load(Ordering::Relaxed)
     }
 
-    /// Waits while `not_yet`, which is asked again when there are news of [`least_reached`](Self::least_reached) or [`bound`](Self::bound),
-    /// and each `interval`.
+    /// Waits while `not_yet`, which is asked again when there are news of
+    /// [`least_reached`](Self::least_reached) or [`bound`](Self::bound), and each `interval`.
     pub fn wait_while(&self, interval: Duration, mut not_yet: impl FnMut() -> bool) {
         let mut held = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
         while not_yet() {
@@ -253,7 +255,8 @@ fn said(panic: &(dyn std::any::Any + Send)) -> String {
 /// Does a job on all ranks: each of them calls this, the master with the job.
 ///
 /// # Errors
-/// When an item fails, a result cannot be taken, or a rank cannot be reached. All ranks end then, the others without an error.
+/// When an item fails, a result cannot be taken, or a rank cannot be reached. All ranks end then, the others
+/// without an error.
 pub fn run(
     link: &dyn Link,
     options: &Options,
@@ -279,7 +282,8 @@ struct Master<'a, 'c> {
     busy: Vec<usize>,
     done: Vec<u64>,
     bound: u64,
-    /// How far each item is that is worked on, whether any ever said so, and the least that the ranks know of.
+    /// How far each item is that is worked on, whether any ever said so, and the least that the ranks know
+    /// of.
     reached: HashMap<u64, u64>,
     reported: bool,
     least: u64,

@@ -5,7 +5,8 @@ use std::fmt;
 /// Most ranks whose numbers are listed one by one.
 const LISTED: usize = 16;
 
-/// How many items each rank has done, and how much work they were, counted or timed: by these it is seen how evenly a job was spread.
+/// How many items each rank has done, and the counted or timed work in them. They show how evenly a job was
+/// spread.
 ///
 /// ```
 /// let mut shares = mp_ranks::Shares::new(3);
@@ -47,8 +48,8 @@ impl Shares {
         &self.work
     }
 
-    /// The mean work of a rank, divided by the most: 1 when all have done the same. While the busiest one works, the others do this
-    /// part of what they could.
+    /// The mean work of a rank, divided by the most: 1 when all have done the same. While the busiest one
+    /// works, the others do this part of what they could.
     #[must_use]
     pub fn efficiency(&self) -> f64 {
         let most = self.work.iter().copied().fold(0.0, f64::max);

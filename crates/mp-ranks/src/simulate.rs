@@ -8,7 +8,8 @@ use std::collections::BinaryHeap;
 pub enum Policy {
     /// Each rank has as many items in a row as the others.
     Blocks,
-    /// Item `k` is done by rank `k` modulo the number of ranks: [shards](https://slurm.schedmd.com/job_array.html).
+    /// Item `k` is done by rank `k` modulo the number of ranks:
+    /// [shards](https://slurm.schedmd.com/job_array.html).
     Shards,
     /// The master hands out items in their order, as [`run`](crate::run) does.
     InOrder,
@@ -42,8 +43,9 @@ impl Ord for At {
     }
 }
 
-/// Replays items of these costs (s) on `ranks` ranks. A message takes `latency_s`, and the master `message_s` for a result and the item that it
-/// sends in return. The master works on no items: of ranks that do, there are `ranks`.
+/// Replays items of these costs (s) on `ranks` ranks. A message takes `latency_s`, and the master `message_s`
+/// for a result and the item that it sends in return. The master works on no items: of ranks that do, there
+/// are `ranks`.
 ///
 /// Takes time in proportion to the number of items times the logarithm of the number of ranks.
 #[must_use]
@@ -74,7 +76,8 @@ pub fn simulate(costs: &[f64], policy: Policy, ranks: usize, latency_s: f64, mes
     }
 }
 
-/// The makespan of items that are handed out in this order; while there are plenty, each rank has one more than it works on.
+/// The makespan of items that are handed out in this order; while there are plenty, each rank has one more
+/// than it works on.
 fn handed_out(costs: &[f64], ranks: usize, latency_s: f64, message_s: f64) -> f64 {
     let mut master = Master {
         left: costs.iter(),

@@ -238,8 +238,8 @@ proptest! {
             prop_assert!(s.makespan_s <= total + 1e-3 * costs.len() as f64, "{policy:?} {s:?}");
             prop_assert!(s.efficiency <= 1.0 + 1e-9 && s.master_load < 0.5, "{policy:?} {s:?}");
         }
-        // Graham 1969: items handed out in any order end within twice the best, and the dearest first within four thirds. With one more
-        // item in hand than is worked on, that holds for the items without.
+        // Graham 1969: items handed out in any order end within twice the best, and the dearest first within
+        // four thirds. With one more item in hand than is worked on, that holds for the items without.
         let best = longest.max(total / ranks as f64);
         let in_order = simulate(&costs, Policy::InOrder, ranks, 0.0, 0.0).makespan_s;
         prop_assert!(in_order <= 2.0 * best + longest + 1e-9, "{in_order} {best}");
@@ -255,11 +255,13 @@ fn simulated_jobs_are_those_done_by_hand() {
     assert_eq!(last(&costs, Policy::InOrder, 2), 6.0);
     assert_eq!(last(&costs, Policy::DearestFirst, 2), 5.0);
     let slow = simulate(&[1.0; 4], Policy::InOrder, 2, 0.5, 0.25);
-    // Sent at 0.25 and 0.5, there at 0.75 and 1, done at 1.75 and 2, known at 2.25 and 2.5, the next ones sent at 2.5 and 2.75 …
+    // Sent at 0.25 and 0.5, there at 0.75 and 1, done at 1.75 and 2, known at 2.25 and 2.5, the next ones
+    // sent at 2.5 and 2.75 …
     assert_eq!((slow.makespan_s, slow.master_load), (4.25, 1.0 / 4.25));
 }
 
-/// Items that race, all at a time. Each calls `wait` at each step; `most` is how far it may then be, when the last is so far.
+/// Items that race, all at a time. Each calls `wait` at each step; `most` is how far it may then be, when the
+/// last is so far.
 fn race(
     [ranks, threads]: [usize; 2],
     steps: u64,
@@ -301,7 +303,8 @@ fn items_hear_how_far_the_last_of_them_is() {
 
 #[test]
 fn those_who_race_keep_pace() {
-    // The steps of the clock, microseconds: with long ones nothing is too new to count; with short ones most reports are left out.
+    // The steps of the clock, microseconds: with long ones nothing is too new to count; with short ones most
+    // reports are left out.
     for step in [1000, 30] {
         for on in [[1, 4], [3, 1], [3, 2]] {
             let clock = AtomicU64::new(0);

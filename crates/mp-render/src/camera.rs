@@ -43,8 +43,8 @@ fn basis(forward: &Vector3<f64>, up: &Vector3<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rows))
 }
 
-/// The rotation (camera from world) of a camera that sees the scene from `azimuth` and `elevation`, radians, with z upwards; from
-/// above and from below too.
+/// The rotation (camera from world) of a camera that sees the scene from `azimuth` and `elevation`, radians,
+/// with z upwards; from above and from below too.
 pub(crate) fn seen_from(azimuth: f64, elevation: f64) -> UnitQuaternion<f64> {
     let ((sa, ca), (se, ce)) = (mp_math::sin_cos(azimuth), mp_math::sin_cos(elevation));
     let (toward_eye, right) = (Vector3::new(ca * ce, sa * ce, se), Vector3::new(-sa, ca, 0.0));
@@ -71,7 +71,8 @@ impl Camera {
         Self::perspective(basis(&-toward_eye, &Vector3::z()), points, (width, height), margin)
     }
 
-    /// A perspective camera turned by `rotation` (camera from world), as near as possible with all `points` inside `margin`.
+    /// A perspective camera turned by `rotation` (camera from world), as near as possible with all `points`
+    /// inside `margin`.
     pub(crate) fn perspective(
         rotation: UnitQuaternion<f64>,
         points: &[Point3<f64>],
@@ -113,7 +114,8 @@ impl Camera {
         Self::parallel(basis(&-Vector3::z(), &Vector3::y()), points, (width, height), margin)
     }
 
-    /// A parallel camera turned by `rotation` (camera from world) that shows all `points` inside `margin`, as large as possible.
+    /// A parallel camera turned by `rotation` (camera from world) that shows all `points` inside `margin`, as
+    /// large as possible.
     pub(crate) fn parallel(
         rotation: UnitQuaternion<f64>,
         points: &[Point3<f64>],
@@ -138,8 +140,9 @@ impl Camera {
         Self { pose_cw, width, height, scale, perspective: false, nearest: 1.0, near: 0.0 }
     }
 
-    /// A camera at `eye` that looks at `target`, which is in the middle of the picture. `field_of_view` (radians) is that of the
-    /// height at the target, for parallel cameras too. `points` are what the picture is of.
+    /// A camera at `eye` that looks at `target`, which is in the middle of the picture. `field_of_view`
+    /// (radians) is that of the height at the target, for parallel cameras too. `points` are what the picture
+    /// is of.
     pub(crate) fn placed(
         [eye, target]: [Point3<f64>; 2],
         field_of_view: f64,
@@ -166,8 +169,8 @@ impl Camera {
         }
     }
 
-    /// The camera moved so that it sees at `centre` what it saw at `from`, and turned around the vertical axis there by `angle`
-    /// radians, counter-clockwise seen from above.
+    /// The camera moved so that it sees at `centre` what it saw at `from`, and turned around the vertical
+    /// axis there by `angle` radians, counter-clockwise seen from above.
     pub(crate) fn moved(&self, from: &Point3<f64>, centre: &Point3<f64>, angle: f64) -> Self {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -angle);
         let turned = Isometry3::from_parts(Translation3::from(from.coords), turn);
@@ -239,7 +242,8 @@ mod tests {
         }
     }
 
-    /// The target is in the middle, what is higher is higher on the picture, and the field of view is that of the height.
+    /// The target is in the middle, what is higher is higher on the picture, and the field of view is that of
+    /// the height.
     #[test]
     fn placed_cameras_look_at_their_target() {
         for (eye, parallel) in [([3.0, -4.0, 2.0], false), ([3.0, -4.0, 2.0], true), ([0.5, 0.5, 9.0], false)]

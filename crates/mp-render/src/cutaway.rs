@@ -5,9 +5,9 @@
 
 use crate::camera::Camera;
 
-/// For every sample, the key before which obstacles become translucent. `path` holds the keys of the path's nearest
-/// surface, infinite where there is no path; `slope` is metres of depth per metre across; obstacles within `slack`
-/// metres of the path stay opaque.
+/// For every sample, the key before which obstacles become translucent. `path` holds the keys of the path's
+/// nearest surface, infinite where there is no path; `slope` is metres of depth per metre across; obstacles
+/// within `slack` metres of the path stay opaque.
 pub(crate) fn thresholds(camera: &Camera, path: &[f32], slope: f32, slack: f32) -> Vec<f32> {
     let (w, h) = (camera.width, camera.height);
     let mut depth: Vec<f32> =
@@ -18,7 +18,8 @@ pub(crate) fn thresholds(camera: &Camera, path: &[f32], slope: f32, slack: f32) 
         return vec![f32::NEG_INFINITY; w * h];
     }
     let step = slope * camera.sample_size((sum / f64::from(n)) as f32);
-    // Two sweeps of a chamfer distance transform, in the max-plus sense: from the neighbours before each sample, and from those behind.
+    // Two sweeps of a chamfer distance transform, in the max-plus sense: from the neighbours before each
+    // sample, and from those behind.
     for _ in 0..2 {
         sweep(&mut depth, w, step, step * std::f32::consts::SQRT_2);
         depth.reverse();

@@ -10,7 +10,8 @@ use crate::text;
 use mp_geom::Aabb;
 use nalgebra::Point3;
 
-/// Whether a line at `key` lies on or before a surface at `surface`, with some tolerance in favour of the line.
+/// Whether a line at `key` lies on or before a surface at `surface`, with some tolerance in favour of the
+/// line.
 pub(crate) fn nearer(key: f32, surface: f32) -> bool {
     key - 2e-3 * key.abs() < surface
 }
@@ -38,8 +39,8 @@ pub(crate) fn outline(layer: &mut Layer, camera: &Camera, body: &Body, strength:
     });
 }
 
-/// Draws all edges of a body without its faces. `seen` and `hidden` are the strengths before and behind the surfaces of the
-/// layer; edges between faces that meet nearly flat are fainter.
+/// Draws all edges of a body without its faces. `seen` and `hidden` are the strengths before and behind the
+/// surfaces of the layer; edges between faces that meet nearly flat are fainter.
 pub(crate) fn wires(
     layer: &mut Layer,
     camera: &Camera,
@@ -57,7 +58,8 @@ pub(crate) fn wires(
     model.lines(&model.edges, camera, &body.pose_wb, 0.8, |i, key, coverage| draw(sharp, i, key, coverage));
 }
 
-/// Draws the edges of obstacles: dark where they are opaque, faint where they are translucent, which is before `cut`.
+/// Draws the edges of obstacles: dark where they are opaque, faint where they are translucent, which is
+/// before `cut`.
 pub(crate) fn outlines(
     layer: &mut Layer,
     ghosts: &mut Veil,

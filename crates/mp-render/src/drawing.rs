@@ -44,9 +44,9 @@ impl Item {
         Self { points, colour, width: Some(width), opacity: 1.0 }
     }
 
-    /// A map of numbers, from white for 0 to red for 1, as areas of one shade each. `corner` is the lower left corner of the first
-    /// of its square cells of `cell` metres; `parts` has the numbers, `width` to a row, row after row from the lowest. Where a
-    /// number rounds to 0 there is no item.
+    /// A map of numbers, from white for 0 to red for 1, as areas of one shade each. `corner` is the lower
+    /// left corner of the first of its square cells of `cell` metres; `parts` has the numbers, `width` to a
+    /// row, row after row from the lowest. Where a number rounds to 0 there is no item.
     #[must_use]
     pub fn shades(corner: Point2<f64>, cell: f64, width: usize, parts: &[f64]) -> Vec<Self> {
         let shade = |part: &f64| (part.clamp(0.0, 1.0) * SHADES as f64).round() as usize;

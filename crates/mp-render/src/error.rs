@@ -51,7 +51,7 @@ pub enum RenderError {
     /// A text does not name what it should.
     #[error("`{text}`: expected {expected}")]
     Text {
-        /// The text.
+        /// The text that was given.
         text: String,
         /// What it should name.
         expected: &'static str,
@@ -66,7 +66,8 @@ pub enum RenderError {
     },
 }
 
-/// What a picture takes while it is drawn: bytes for each pixel, and for threads and their stacks. Measured, and a third more.
+/// What a picture takes while it is drawn: bytes for each pixel, and for threads and their stacks. Measured,
+/// and a third more.
 const BYTES: [usize; 2] = [256, 64 << 20];
 
 /// Refuses pictures without pixels, with too many, and with more than there is memory for.

@@ -8,7 +8,8 @@ use ::gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 /// The index of the colour that leaves a pixel as it was; the others are colours.
 const UNCHANGED: u8 = 255;
 
-/// A GIF file that grows frame by frame. It has one palette, repeats without end, and holds of each frame only what changed.
+/// A GIF file that grows frame by frame. It has one palette, repeats without end, and holds of each frame
+/// only what changed.
 ///
 /// ```
 /// use mp_render::{Gif, Scene};
@@ -37,7 +38,8 @@ impl Gif {
     /// The most frames per second: players slow down those that are faster.
     pub const MAX_RATE: f64 = 50.0;
 
-    /// A file with `rate` frames per second, whose palette suits pictures like `samples`, which have its size.
+    /// A file with `rate` frames per second, whose palette suits pictures like `samples`, which have its
+    /// size.
     ///
     /// # Errors
     /// When there is no sample, or the rate is not above 0 and up to [`MAX_RATE`](Self::MAX_RATE).

@@ -1,12 +1,14 @@
-//! Pictures of scenes in space and in the plane, drawn on the CPU: no window, no driver, the same pixels everywhere.
+//! Pictures of scenes in space and in the plane, drawn on the CPU: no window, no driver, the same pixels
+//! everywhere.
 //!
-//! - [`Scene`]: bodies (meshes with poses), a robot at its start, at its goal and on its way; drawn as a [`Picture`].
+//! - [`Scene`]: bodies (meshes with poses), a robot at its start, at its goal and on its way; drawn as a
+//!   [`Picture`].
 //! - [`Drawing`]: areas and lines in the plane, as SVG or as a [`Picture`].
 //! - [`palette`]: the colours, for drawings in the same style.
 //! - [`Shot`]: a scene drawn at many moments, as the frames of a film; [`Gif`] puts frames into one file.
 //!
-//! Nothing here writes files: a [`Picture`] becomes the bytes of a PNG file by [`Picture::to_png`]. Lengths are
-//! metres, colours `0xRRGGBB` in sRGB.
+//! Nothing here writes files: a [`Picture`] becomes the bytes of a PNG file by [`Picture::to_png`]. Lengths
+//! are metres, colours `0xRRGGBB` in sRGB.
 //!
 //! ```
 //! use mp_geom::primitives::cuboid;

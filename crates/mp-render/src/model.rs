@@ -10,8 +10,8 @@ use std::collections::HashMap;
 /// Faces that meet at less than this angle are shaded as one smooth surface (cosine of 35°).
 const SMOOTH: f64 = 0.82;
 
-/// Meshes of more triangles than a picture has pixels are drawn flat and without edges, as they are: smooth normals and edges take seven times
-/// the memory of the mesh.
+/// Meshes of more triangles than a picture has pixels are drawn flat and without edges, as they are: smooth
+/// normals and edges take seven times the memory of the mesh.
 const LARGE: usize = 1 << 21;
 
 /// A mesh with the data for drawing it many times.
@@ -74,7 +74,6 @@ impl Model {
         Self { points: vec![Point3::origin()], ..Self::default() }
     }
 
-    /// Its points.
     pub(crate) fn points(&self) -> &[Point3<f64>] {
         self.large.as_ref().map_or(&self.points, TriMesh::vertices)
     }
@@ -136,7 +135,8 @@ fn radius(points: &[Point3<f64>]) -> f64 {
     points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max)
 }
 
-/// For each corner of each triangle, the mean normal of the faces around it that are at less than 35° to its own.
+/// For each corner of each triangle, the mean normal of the faces around it that are at less than 35° to its
+/// own.
 fn smooth_normals(points: usize, triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[Vector3<f64>; 3]> {
     let mut around: Vec<Vec<u32>> = vec![Vec::new(); points];
     for (f, t) in triangles.iter().enumerate() {
@@ -204,7 +204,8 @@ mod tests {
         assert!(model.normals.iter().flatten().all(|n| (n.amax() - 1.0).abs() < 1e-12));
     }
 
-    /// A large mesh is drawn as others are, but for smooth normals and edges: where faces are flat, to the last pixel.
+    /// A large mesh is drawn without smooth normals and edges. Where faces are flat its pixels are those of
+    /// the other way.
     #[test]
     fn large_meshes_are_drawn_flat() {
         let mesh = mp_geom::primitives::cuboid(1.0, 2.0, 3.0).unwrap();

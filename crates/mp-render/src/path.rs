@@ -20,8 +20,8 @@ fn travel(robot: &Model, a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
 }
 
 impl Body {
-    /// Copies of the body along `path`, poses in the world, evenly spaced by how far the body moves; its own pose does not
-    /// matter. There are none on a path that does not move.
+    /// Copies of the body along `path`, poses in the world, evenly spaced by how far the body moves; its own
+    /// pose does not matter. There are none on a path that does not move.
     #[must_use]
     pub fn along(&self, path: &[Isometry3<f64>]) -> Vec<Body> {
         let lengths: Vec<f64> = path.windows(2).map(|w| travel(&self.model, &w[0], &w[1])).collect();

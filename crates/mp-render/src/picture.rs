@@ -41,7 +41,8 @@ impl Picture {
         &self.rgb
     }
 
-    /// Red, green and blue of the pixel in column `x` and row `y`, counted from 0 at the upper left; `None` outside.
+    /// Red, green and blue of the pixel in column `x` and row `y`, counted from 0 at the upper left; `None`
+    /// outside.
     #[must_use]
     pub fn pixel(&self, x: usize, y: usize) -> Option<[u8; 3]> {
         let inside = x < self.width && y < self.height;
@@ -60,7 +61,8 @@ impl Picture {
             writer.write_image_data(&self.rgb)?;
             writer.finish()
         });
-        // This cannot fail: a picture has at least one pixel and the right number of bytes, and a vector takes all of them.
+        // This cannot fail: a picture has at least one pixel and the right number of bytes, and a vector
+        // takes all of them.
         debug_assert!(written.is_ok(), "{written:?}");
         bytes
     }

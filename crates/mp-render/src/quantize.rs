@@ -1,5 +1,5 @@
-//! Palettes of at most 256 colours for many pictures, by splitting boxes of colours where they vary most (after
-//! P. Heckbert, "Color image quantization for frame buffer display", 1982).
+//! Palettes of at most 256 colours for many pictures, by splitting boxes of colours where they vary most
+//! (after P. Heckbert, "Color image quantization for frame buffer display", 1982).
 
 use crate::picture::Picture;
 use std::collections::BTreeMap;

@@ -72,7 +72,8 @@ fn fill(camera: &Camera, mut v: [(Projected, f32); 3], fragment: &mut impl FnMut
     }
 }
 
-/// Calls `fragment(sample, key, coverage)` for the samples that a line with a half width of `half` samples covers.
+/// Calls `fragment(sample, key, coverage)` for the samples that a line with a half width of `half` samples
+/// covers.
 pub(crate) fn line(
     camera: &Camera,
     a: &Point3<f64>,

@@ -17,15 +17,17 @@ pub struct Scene {
     pub title: String,
     /// The subtitle, in small letters below the title.
     pub subtitle: String,
-    /// Whether the best view is from above, as a map; otherwise it is from where the path is seen best, through obstacles.
+    /// Whether the best view is from above, as a map; otherwise it is from where the path is seen best,
+    /// through obstacles.
     pub planar: bool,
-    /// The obstacles.
+    /// Everything that stands still; the cutaway opens it in front of the path.
     pub obstacles: Vec<Body>,
     /// The robot at the start, if there is one.
     pub start: Option<Body>,
     /// The robot at the goal, if there is one.
     pub goal: Option<Body>,
-    /// Copies of the robot along the path, as [`Body::along`] or [`evenly`](crate::evenly) space them; none without a path.
+    /// Copies of the robot along the path, as [`Body::along`] or [`evenly`](crate::evenly) space them; none
+    /// without a path.
     pub copies: Vec<Body>,
     /// The line along which a point of the robot moves, metres.
     pub trace: Vec<Point3<f64>>,
@@ -41,8 +43,8 @@ impl Scene {
     /// The picture, `width` × `height` pixels, with all configurations of the path at once.
     ///
     /// # Errors
-    /// When a side is not from 1 to [`MAX_SIDE`](crate::MAX_SIDE) pixels, the view makes no picture, or a coordinate is not
-    /// finite or beyond 10⁶⁰ m.
+    /// When a side is not from 1 to [`MAX_SIDE`](crate::MAX_SIDE) pixels, the view makes no picture, or a
+    /// coordinate is not finite or beyond 10⁶⁰ m.
     pub fn draw(&self, (width, height): (usize, usize)) -> Result<Picture, RenderError> {
         self.shot((width, height), Animation::default())?.picture(&Moment::default())
     }

@@ -24,8 +24,8 @@ const GLASS: f32 = 0.2;
 /// What moves in a film.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Animation {
-    /// The robot: each moment shows one configuration, with start and goal translucent. Otherwise all configurations are
-    /// shown at once.
+    /// The robot: each moment shows one configuration, with start and goal translucent. Otherwise all
+    /// configurations are shown at once.
     pub step: bool,
     /// The camera turns around the vertical axis.
     pub turntable: bool,
@@ -118,7 +118,8 @@ impl<'s> Shot<'s> {
         Self { scene, size, animation, frame, camera, centre, half_angle, map, still: OnceLock::new() }
     }
 
-    /// The picture of a moment. Moments may be drawn in any order and in several threads: each has the same pixels.
+    /// The picture of a moment. Moments may be drawn in any order and in several threads: each has the same
+    /// pixels.
     ///
     /// # Errors
     /// When a coordinate of the moment is not finite or beyond 10⁶⁰ m.

@@ -42,7 +42,8 @@ impl FromStr for Mode {
 /// From where a scene in space is seen. z is up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum View {
-    /// From where most of the path is visible, with everything on the picture; planar scenes are seen from above.
+    /// From where most of the path is visible, with everything on the picture; planar scenes are seen from
+    /// above.
     #[default]
     Best,
     /// From a direction, with everything on the picture.
@@ -117,7 +118,8 @@ impl FromStr for View {
     type Err = RenderError;
 
     /// `best`, a standard view (`front`, `back`, `left`, `right`, `top`, `bottom`, `iso`), or
-    /// `eye=x,y,z target=x,y,z fov=degrees`, where `fov` may be left out; then `ortho` for a parallel projection.
+    /// `eye=x,y,z target=x,y,z fov=degrees`, where `fov` may be left out; then `ortho` for a parallel
+    /// projection.
     fn from_str(text: &str) -> Result<Self, RenderError> {
         const FORMS: &str = "front, back, left, right, top, bottom or iso, or \"eye=x,y,z target=x,y,z fov=degrees\", \
                              each also with ortho";

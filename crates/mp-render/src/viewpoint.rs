@@ -15,8 +15,8 @@ pub(crate) struct Viewpoint {
     pub(crate) visible: f64,
 }
 
-/// Tries viewpoints all around and takes the one from which most of `path` is visible and spread widest on the picture;
-/// the usual one, from the front right, is taken unless another is clearly better.
+/// Tries viewpoints all around and takes the one from which most of `path` is visible and spread widest on
+/// the picture; the usual one, from the front right, is taken unless another is clearly better.
 pub(crate) fn choose(frame: &[Point3<f64>], obstacles: &[Body], path: &[&Body]) -> Viewpoint {
     let marks = marks(path);
     let mut best: Option<(f64, Viewpoint)> = None;
@@ -51,7 +51,8 @@ fn marks(path: &[&Body]) -> Vec<Point3<f64>> {
     path.iter().flat_map(of_body).collect()
 }
 
-/// The fraction of `marks` that is visible, and how far they spread on the picture, as a fraction of its width.
+/// The fraction of `marks` that is visible, and how far they spread on the picture, as a fraction of its
+/// width.
 fn judge(camera: &Camera, obstacles: &[Body], marks: &[Point3<f64>]) -> (f64, f64) {
     let mut nearest = vec![f32::INFINITY; camera.width * camera.height];
     let lights = Lights::of(camera);

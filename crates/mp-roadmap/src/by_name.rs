@@ -32,9 +32,10 @@ where
     C: Space + 'c,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    /// A problem with `checkers` edge checkers that work at the same time, best as many as `workers` has threads.
-    /// `problem` makes the same problem on every call. The roadmap is the same to the bit for any number of checkers. Only
-    /// generators with [independent](crate::NodeGenerator::independent) attempts use them.
+    /// A problem with `checkers` edge checkers that work at the same time, best as many as `workers` has
+    /// threads. `problem` makes the same problem on every call. The roadmap is the same to the bit for any
+    /// number of checkers. Only generators with [independent](crate::NodeGenerator::independent) attempts use
+    /// them.
     ///
     /// # Errors
     /// Those of `problem`.
@@ -117,7 +118,6 @@ pub(crate) struct BuildArgs<'c, 's, T: Types<'c>> {
     index: T::Index,
     /// All parameters that are set; the planner has parameters of these names.
     pub(crate) settings: &'s Settings,
-    /// The space.
     pub(crate) space: &'c T::Space,
     geometry: Option<AnyGeometry<'c, T::State>>,
 }

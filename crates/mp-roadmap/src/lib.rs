@@ -1,8 +1,9 @@
 //! The probabilistic roadmap family: one engine, and the algorithms on it. [`algo`] has the table of them.
 //!
 //! A roadmap is built once and answers many queries; or it grows until one start and goal are connected.
-//! [`build`] makes planners of the second kind by name. Those by obstacles ([`Obprm`] and [`ObstacleGeometryPrm`]) need
-//! the geometry of obstacles ([`ObstacleGeometry`](mp_cspace::obstacles::ObstacleGeometry)).
+//! [`build`] makes planners of the second kind by name. Those by obstacles ([`Obprm`] and
+//! [`ObstacleGeometryPrm`]) need the geometry of obstacles
+//! ([`ObstacleGeometry`](mp_cspace::obstacles::ObstacleGeometry)).
 //!
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Problem, Length, Rn, Rng, Straight, registry::Settings};
@@ -25,8 +26,8 @@
 //! ```
 //!
 //! # The engine
-//! Every attempt of every variant generates candidates and connects each to the [`Roadmap`], or refuses it. Queries
-//! search for a path in the roadmap. Each of these verbs is a slot:
+//! Every attempt of every variant generates candidates and connects each to the [`Roadmap`], or refuses it.
+//! Queries search for a path in the roadmap. Each of these verbs is a slot:
 //!
 //! | slot | trait | here |
 //! |---|---|---|
@@ -35,16 +36,16 @@
 //! | how a path is searched for | [`Query`] | [`AStar`] |
 //! | how one state is connected to another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you; its edges are [`Reversible`](mp_cspace::Reversible) |
 //!
-//! A variant is a set of [`RoadmapPlannerParts`] for two loops: [`Builder`] builds until stopped, [`RoadmapPlanner`] until
-//! start and goal are connected.
+//! A variant is a set of [`RoadmapPlannerParts`] for two loops: [`Builder`] builds until stopped,
+//! [`RoadmapPlanner`] until start and goal are connected.
 //!
 //! # Guarantees
-//! - A path is returned only after the verifier has passed each of its edges, in the direction of the path. An edge that
-//!   fails is blocked, and planning goes on. Edges that passed are not verified again.
+//! - A path is returned only after the verifier has passed each of its edges, in the direction of the path.
+//!   An edge that fails is blocked, and planning goes on. Edges that passed are not verified again.
 //! - On several threads ([`Builder::on`], [`ParallelProblem`]) the roadmap is the same to the bit as on one.
 //! - Bad input is a [`BuildError`] before planning begins.
-//! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping and continuing
-//!   changes nothing.
+//! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping
+//!   and continuing changes nothing.
 
 pub mod algo;
 mod by_name;

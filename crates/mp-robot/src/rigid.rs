@@ -67,7 +67,6 @@ pub(crate) struct Shared {
 }
 
 impl Shared {
-    /// The obstacles that are solids.
     pub(crate) fn solids(&self) -> &[(BodyId, SolidObstacle)] {
         self.obstacles.solids()
     }

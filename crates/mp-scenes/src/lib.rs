@@ -39,7 +39,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     names.into_iter()
 }
 
-/// The file of the scene called `name`.
+/// The problem file of a shipped scene, by the name of the scene.
 #[must_use]
 pub fn scene(name: &str) -> Option<File> {
     let named = |file: &&File| {

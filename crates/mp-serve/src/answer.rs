@@ -47,8 +47,8 @@ impl Body for Content {
     }
 }
 
-/// What the page may do: run its own modules, which are inline and `data:` addresses, and talk to this server. It loads nothing
-/// from elsewhere, and no other page shows it in a frame.
+/// What the page may do: run its own modules, which are inline and `data:` addresses, and talk to this
+/// server. It loads nothing from elsewhere, and no other page shows it in a frame.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' data: blob:; style-src 'unsafe-inline'; \
                       connect-src 'self'; img-src data: blob:; worker-src blob:; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'";
@@ -73,17 +73,14 @@ fn answer(status: StatusCode, kind: &'static str, content: Content) -> Answer {
     answer
 }
 
-/// The page.
 pub(crate) fn page(page: Bytes) -> Answer {
     answer(StatusCode::OK, "text/html; charset=utf-8", Content::Whole(page))
 }
 
-/// A message.
 pub(crate) fn message(message: Vec<u8>) -> Answer {
     answer(StatusCode::OK, "application/octet-stream", Content::Whole(message.into()))
 }
 
-/// A stream of events.
 pub(crate) fn stream(events: Receiver<Bytes>) -> Answer {
     answer(StatusCode::OK, "application/octet-stream", Content::Stream(events))
 }

@@ -5,8 +5,8 @@ use hyper::header::{HOST, HeaderName, ORIGIN};
 
 /// Why a request with these headers is refused, or `None`.
 ///
-/// The name in `Host` must be of this machine, or a name of somebody else has been pointed here (DNS rebinding). The page that
-/// sends the request, `Origin`, must be our own.
+/// The name in `Host` must be of this machine, or a name of somebody else has been pointed here (DNS
+/// rebinding). The page that sends the request, `Origin`, must be our own.
 pub(crate) fn refusal(headers: &HeaderMap, port: u16) -> Option<&'static str> {
     let own = |text: &str| text == format!("127.0.0.1:{port}") || text == format!("localhost:{port}");
     let Ok(Some(host)) = only(headers, HOST) else {

@@ -16,8 +16,8 @@ use tokio::time::timeout;
 /// How long a new tab waits for the session of one that was just closed, as when a page is loaded again.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Opens a session, and gives its stream of events: each as u32 length (little-endian) and the message. `None` when there are
-/// too many sessions.
+/// Opens a session, and gives its stream of events: each as u32 length (little-endian) and the message.
+/// `None` when there are too many sessions.
 ///
 /// # Errors
 /// When the system gives no random numbers.

@@ -1,8 +1,9 @@
 //! The server of a viewer on this machine: one page, and a session for each tab that shows it.
 //!
-//! [`Server`] listens on 127.0.0.1 only. Its [`address`](Server::address) begins with a random token, and it refuses what comes
-//! without the token, from another page, or under another name of this machine. Each tab that shows the page has a [`Session`]
-//! of its own, which ends when the tab is closed. The requests are those of docs/formats/session.md, "Over HTTP".
+//! [`Server`] listens on 127.0.0.1 only. Its [`address`](Server::address) begins with a random token, and it
+//! refuses what comes without the token, from another page, or under another name of this machine. Each tab
+//! that shows the page has a [`Session`] of its own, which ends when the tab is closed. The requests are
+//! those of docs/formats/session.md, "Over HTTP".
 //!
 //! ```
 //! use mp_serve::{Limits, Server, Session};

@@ -44,8 +44,9 @@ impl Stop {
 }
 
 impl Server {
-    /// A server on `port` of 127.0.0.1; 0 means any free port. It gives `page` to browsers, and opens a session by `open` for
-    /// each tab that asks for events. `open` runs in a thread of its own and may take long.
+    /// A server on `port` of 127.0.0.1; 0 means any free port. It gives `page` to browsers, and opens a
+    /// session by `open` for each tab that asks for events. `open` runs in a thread of its own and may take
+    /// long.
     ///
     /// # Errors
     /// When the port is in use or not allowed, or the system gives no random numbers.
@@ -66,14 +67,15 @@ impl Server {
         Ok(Self { listener, service, stop: Stop::default() })
     }
 
-    /// The address of the page, with the token: `http://127.0.0.1:PORT/TOKEN/`. Whoever has it can use the sessions.
+    /// The address of the page, with the token: `http://127.0.0.1:PORT/TOKEN/`. Whoever has it can use the
+    /// sessions.
     #[must_use]
     pub fn address(&self) -> String {
         format!("http://127.0.0.1:{}/{}/", self.service.port, self.service.token.text())
     }
 
-    /// An address that leads to the page once, for the program that opens a browser: other users of this machine can read
-    /// the arguments of programs, and must not find the token there.
+    /// An address that leads to the page once, for the program that opens a browser: other users of this
+    /// machine can read the arguments of programs, and must not find the token there.
     #[must_use]
     pub fn ticket(&self) -> String {
         let ticket = self.service.ticket.lock().unwrap_or_else(PoisonError::into_inner);
@@ -162,8 +164,8 @@ async fn serve(stream: TcpStream, service: Arc<Service>) {
     }
 }
 
-/// Ends the own side, and reads what the other side still sends: a connection that is closed with unread bytes is reset, and
-/// the client might lose the answer.
+/// Ends the own side, and reads what the other side still sends: a connection that is closed with unread
+/// bytes is reset, and the client might lose the answer.
 async fn discard(mut stream: TcpStream) -> std::io::Result<()> {
     poll_fn(|context| Pin::new(&mut stream).poll_shutdown(context)).await?;
     let mut rest = vec![0; 64 << 10];

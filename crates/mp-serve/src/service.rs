@@ -10,8 +10,8 @@ use hyper::{Method, Request, StatusCode};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::task::spawn_blocking;
 
-/// Bodies above this many bytes are read and handled one after the other in each session, so that memory is bounded. Smaller
-/// ones do not wait for them.
+/// Bodies above this many bytes are read and handled one after the other in each session, so that memory is
+/// bounded. Smaller ones do not wait for them.
 const LARGE: u64 = 1 << 20;
 
 /// What all connections share.

@@ -10,8 +10,8 @@ pub trait Session: Send + Sync + 'static {
     /// The reply to a request. It may take long, and is called from several threads.
     fn handle(&self, request: &[u8]) -> Vec<u8>;
 
-    /// The next event, if there is one. The server asks for it when the tab has taken the last one, and after a
-    /// [`Wake::wake`].
+    /// The next event, if there is one. The server asks for it when the tab has taken the last one, and after
+    /// a [`Wake::wake`].
     fn take_event(&self) -> Option<Vec<u8>>;
 }
 
@@ -20,7 +20,8 @@ pub trait Session: Send + Sync + 'static {
 pub struct Wake(Arc<Notify>);
 
 impl Wake {
-    /// There are events: the server asks for them by [`Session::take_event`]. Calls are joined: one is enough.
+    /// There are events: the server asks for them by [`Session::take_event`]. Calls are joined: one is
+    /// enough.
     pub fn wake(&self) {
         self.0.notify_one();
     }
@@ -44,7 +45,6 @@ pub(crate) struct Running {
     pub(crate) large: tokio::sync::Mutex<()>,
 }
 
-/// All sessions.
 pub(crate) struct Sessions {
     /// Opens another one.
     pub(crate) open: Box<dyn Fn(Wake) -> Box<dyn Session> + Send + Sync>,

@@ -4,8 +4,8 @@
 /// differences (2 on the diagonal, −1 beside it) of a curve whose ends are fixed.
 ///
 /// `T` is the second variation of the membrane energy `½·Σ|vᵢ₊₁ − vᵢ|²`, and `T²` that of the thin plate
-/// `½·Σ|vᵢ₋₁ − 2vᵢ + vᵢ₊₁|²` whose ends are free to turn. The factorisation takes O(n) operations, as does solving
-/// for one column.
+/// `½·Σ|vᵢ₋₁ − 2vᵢ + vᵢ₊₁|²` whose ends are free to turn. The factorisation takes O(n) operations, as does
+/// solving for one column.
 ///
 /// ```
 /// use mp_snake::Band;
@@ -96,7 +96,6 @@ impl Band {
         }
     }
 
-    /// Solves for column `k` of `width`.
     fn solve_column(&self, columns: &mut [f64], width: usize, k: usize) {
         let ([mut last, mut before], mut below) = ([0.0; 2], [[0.0; 2]; 2]);
         for (row, &next) in columns.chunks_exact_mut(width).zip(&self.below) {

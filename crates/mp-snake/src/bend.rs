@@ -21,11 +21,11 @@ pub enum Bent {
 
 /// A strategy to bend blocked motions. [`Bending`] has those of this crate; implement it for your own.
 pub trait Bend<C: Space> {
-    /// Bends `curve` until every piece of it has been found free by `check`. Returns what made it free, and the number of
-    /// steps that snakes took.
+    /// Bends `curve` until every piece of it has been found free by `check`. Returns what made it free, and
+    /// the number of steps that snakes took.
     ///
-    /// At first the curve is a straight motion in forward time, with nodes as [`Snake::between`] lays them; its ends are free
-    /// and stay. It may get more or fewer nodes between them. The field only guides.
+    /// At first the curve is a straight motion in forward time, with nodes as [`Snake::between`] lays them;
+    /// its ends are free and stay. It may get more or fewer nodes between them. The field only guides.
     fn bend(
         &mut self,
         snake: &mut Snake<'_, C>,
@@ -37,25 +37,29 @@ pub trait Bend<C: Space> {
 
 /// How a blocked motion is bent around obstacles.
 ///
-/// A snake in collision stops early when for 6 steps it has not come nearer to freedom. It is done as soon as it is free and
-/// its nodes have the [clearance](crate::Params::clearance) wanted; if it comes to rest before, it only has to be free.
+/// A snake in collision stops early when for 6 steps it has not come nearer to freedom. It is done as soon as
+/// it is free and its nodes have the [clearance](crate::Params::clearance) wanted; if it comes to rest
+/// before, it only has to be free.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Bending {
-    /// The active contour of Baizid et al., step 6: it starts on the straight motion and relaxes in the field, from few nodes
-    /// to many. As soon as it is free it relaxes once more, with nodes half the spacing apart, to keep the clearance wanted.
+    /// The active contour of Baizid et al., step 6: it starts on the straight motion and relaxes in the
+    /// field, from few nodes to many. As soon as it is free it relaxes once more, with nodes half the spacing
+    /// apart, to keep the clearance wanted.
     ///
-    /// Where it stays blocked, two further attempts start on the straight motion, while at most 8 motions that they do not free
-    /// come to each that they free, and 32 more. All lower the same energy, in steps of other lengths and smoothness.
+    /// Where it stays blocked, two further attempts start on the straight motion, while at most 8 motions
+    /// that they do not free come to each that they free, and 32 more. All lower the same energy, in steps of
+    /// other lengths and smoothness.
     #[default]
     Snake,
-    /// Ours, not the paper's: all of the motion moves to one side at once ([`Snake::bulge`]). Nothing relaxes. It is the
-    /// fastest way to bend one motion, and keeps the least clearance.
+    /// Ours, not the paper's: all of the motion moves to one side at once ([`Snake::bulge`]). Nothing
+    /// relaxes. It is the fastest way to bend one motion, and keeps the least clearance.
     Bulge,
-    /// Ours, not the paper's: a [bulge](Snake::bulge) is the initial contour, and relaxes. Where that does not become free,
-    /// the bulge is taken as it was laid, if it is free; otherwise a snake starts on the straight motion.
+    /// Ours, not the paper's: a [bulge](Snake::bulge) is the initial contour, and relaxes. Where that does
+    /// not become free, the bulge is taken as it was laid, if it is free; otherwise a snake starts on the
+    /// straight motion.
     ///
-    /// Where no bulge is free, snakes must pay: they are tried while at most 8 of them fail for each one that becomes free,
-    /// and 32 more. In a maze of long walls they never do.
+    /// Where no bulge is free, snakes must pay: they are tried while at most 8 of them fail for each one that
+    /// becomes free, and 32 more. In a maze of long walls they never do.
     Hybrid,
 }
 
@@ -68,8 +72,8 @@ pub(crate) fn pays([freed, failed]: [u64; 2]) -> bool {
     failed <= FREE_FAILURES + FAILURES_PER_SUCCESS * freed
 }
 
-/// A snake in collision is abandoned when for this many steps its depth has not shrunk by this part of the clearance
-/// wanted.
+/// A snake in collision is abandoned when for this many steps its depth has not shrunk by this part of the
+/// clearance wanted.
 pub(crate) const PATIENCE: u32 = 6;
 pub(crate) const GAIN: f64 = 0.1;
 
@@ -98,7 +102,7 @@ impl fmt::Display for Bending {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{name}` is no way to bend a motion: expected snake, bulge or hybrid")]
 pub struct UnknownBending {
-    /// The name.
+    /// The name that was asked for.
     pub name: String,
 }
 
@@ -187,8 +191,8 @@ fn bulged<C: Space>(
     snake.bulge(curve, field, wanted, |a, b, known| check.check_extension(a, b, known).failed_at())
 }
 
-/// Lets a curve relax until it is free with the clearance wanted, or comes to rest. Returns whether it is free, and the
-/// number of steps.
+/// Lets a curve relax until it is free with the clearance wanted, or comes to rest. Returns whether it is
+/// free, and the number of steps.
 fn relaxed<C: Space>(
     snake: &mut Snake<'_, C>,
     curve: &mut [C::State],

@@ -35,20 +35,22 @@ pub enum Bulged {
 }
 
 impl<C: Space> Snake<'_, C> {
-    /// Bends a straight curve around what blocks it, all of it to one side. If the bulge is not free, it is still a better
-    /// start for [`deform`](Self::deform): the field pushes a curve that enters an obstacle by one face and leaves it by
-    /// another to different sides along its length, and a curve perpendicular to a face to no side at all.
+    /// Bends a straight curve around what blocks it, all of it to one side. If the bulge is not free, it is
+    /// still a better start for [`deform`](Self::deform): the field pushes a curve that enters an obstacle by
+    /// one face and leaves it by another to different sides along its length, and a curve perpendicular to a
+    /// face to no side at all.
     ///
-    /// The nodes from the first to the last blocked one (without a blocked one, the node of least clearance) move together
-    /// to the side to which the field pushes them, until all have the clearance `wanted` (m), in steps of the clearance
-    /// they lack, by at most half the length of the curve. The nodes just before and after them, moved as far, are the
-    /// corners of the bulge, so that its ramps do not graze. A ramp whose middle is blocked gets one more corner, pushed
-    /// away there, and so does the first piece that `blocks` reports, where it is blocked. When the bulge is not free, the
-    /// other side is tried; where the field pushes along the curve only, the two axes most perpendicular to the curve, in
-    /// both directions.
+    /// The nodes from the first to the last blocked one move together to the side to which the field pushes
+    /// them, until all have the clearance `wanted` (m). They move in steps of the clearance they lack, by at
+    /// most half the length of the curve. If no node is blocked, the one of least clearance moves. The nodes
+    /// just before and after them, moved as far, are the corners of the bulge, so that its ramps do not
+    /// graze. A ramp whose middle is blocked gets one more corner, pushed away there, and so does the first
+    /// piece that `blocks` reports, where it is blocked. When the bulge is not free, the other side is tried;
+    /// where the field pushes along the curve only, the two axes most perpendicular to the curve, in both
+    /// directions.
     ///
-    /// `blocks` is called for each piece, with which of its ends are known to be free, and returns the fraction at which
-    /// the piece is blocked: `None` where it is free.
+    /// `blocks` is called for each piece, with which of its ends are known to be free, and returns the
+    /// fraction at which the piece is blocked: `None` where it is free.
     ///
     /// Evaluates the field once per node, and per step until a node is blocked, from the middle outward.
     pub fn bulge(
@@ -142,7 +144,8 @@ impl<C: Space> Snake<'_, C> {
         }
     }
 
-    /// The height of the bulge at which the blocked nodes have the clearance wanted, or the most where none has.
+    /// The height of the bulge at which the blocked nodes have the clearance wanted, or the most where none
+    /// has.
     fn height(
         &mut self,
         step: &SideStep<'_>,
@@ -192,8 +195,9 @@ impl<C: Space> Snake<'_, C> {
         self.space.moved(q, &self.velocity, by).filter(|moved| self.space.contains(moved))
     }
 
-    /// Whether no piece of the curve is blocked, according to `blocks`. Adds corners where they help: where the field finds
-    /// the middle of the first or the last piece blocked, and at most one where `blocks` finds a piece blocked.
+    /// Whether no piece of the curve is blocked, according to `blocks`. Adds corners where they help: where
+    /// the field finds the middle of the first or the last piece blocked, and at most one where `blocks`
+    /// finds a piece blocked.
     fn fit(
         &mut self,
         curve: &mut Vec<C::State>,
@@ -234,8 +238,8 @@ impl<C: Space> Snake<'_, C> {
         true
     }
 
-    /// Adds a corner at fraction `at` of piece `piece`, pushed away by the field, across the piece, by the clearance it
-    /// lacks. `false` where the corner is still blocked.
+    /// Adds a corner at fraction `at` of piece `piece`, pushed away by the field, across the piece, by the
+    /// clearance it lacks. `false` where the corner is still blocked.
     fn corner(
         &mut self,
         curve: &mut Vec<C::State>,
@@ -270,7 +274,8 @@ impl<C: Space> Snake<'_, C> {
     }
 }
 
-/// The part of the height of the bulge by which node `i` of `inner` moves: 1 for blocked nodes, less on the ramps.
+/// The part of the height of the bulge by which node `i` of `inner` moves: 1 for blocked nodes, less on the
+/// ramps.
 fn part(i: usize, blocked: &Range<usize>, inner: usize) -> f64 {
     let (up, down) =
         ((i + 1) as f64 / (blocked.start + 1) as f64, (inner - i) as f64 / (inner + 1 - blocked.end) as f64);
@@ -282,7 +287,8 @@ fn from_the_middle(range: &Range<usize>) -> impl Iterator<Item = usize> + use<> 
     (middle..range.end).chain((range.start..middle).rev())
 }
 
-/// The field along a straight curve, and the sides to which to bend it. Numbers are scaled: lengths in the metric.
+/// The field along a straight curve, and the sides to which to bend it. Numbers are scaled: lengths in the
+/// metric.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blockage {
     /// The vector from end to end.
@@ -308,8 +314,8 @@ impl Blockage {
         self.clearances.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// From the first to the last node without clearance; the node of least clearance where all have some; `None` where
-    /// the clearance is unknown.
+    /// From the first to the last node without clearance; the node of least clearance where all have some;
+    /// `None` where the clearance is unknown.
     fn blocked(&self) -> Option<Range<usize>> {
         let none = |c: &f64| *c <= 0.0;
         let mut clearances = self.clearances.iter();
@@ -322,8 +328,9 @@ impl Blockage {
         Some(at..at + 1)
     }
 
-    /// Finds the sides: where the field pushes the blocked nodes together, across the curve, and the opposite; where it
-    /// pushes along the curve only, the two axes most perpendicular to it, in both directions.
+    /// Finds the sides: where the field pushes the blocked nodes together, across the curve, and the
+    /// opposite; where it pushes along the curve only, the two axes most perpendicular to it, in both
+    /// directions.
     fn find_sides(&mut self, blocked: &Range<usize>) {
         let dim = self.chord.len();
         self.sides.clear();

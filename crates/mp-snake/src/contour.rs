@@ -1,17 +1,18 @@
 //! The contour of Baizid et al., step 6, from coarse to fine.
 //!
-//! Few nodes decide together to which side of an obstacle they go; many would be pushed to both. So a contour begins with few
-//! and gets more where that does not suffice, as in the multiresolution contours of F. Leymarie and M. Levine, *Tracking
-//! deformable objects in the plane using an active contour model*, PAMI 15, 1993. Smooth steps do the same: they lower the same
-//! energy, but in another metric of displacements (G. Sundaramoorthi, A. Yezzi and A. Mennucci, *Sobolev active contours*,
-//! IJCV 73, 2007).
+//! Few nodes decide together to which side of an obstacle they go; many would be pushed to both. So a contour
+//! begins with few and gets more where that does not suffice, as in the multiresolution contours of F.
+//! Leymarie and M. Levine, *Tracking deformable objects in the plane using an active contour model*, PAMI
+//! 15, 1993. Smooth steps do the same: they lower the same energy, but in another metric of displacements (G.
+//! Sundaramoorthi, A. Yezzi and A. Mennucci, *Sobolev active contours*, IJCV 73, 2007).
 
 use crate::bend::{GAIN, PATIENCE, pays};
 use crate::snake::Manner;
 use crate::{Field, Rest, Snake};
 use mp_cspace::{KnownFree, MotionValidity, Space};
 
-/// How one attempt moves a contour: its first spacing and its pace, in those of the parameters, and the smoothness of its steps.
+/// How one attempt moves a contour: its first spacing and its pace, in those of the parameters, and the
+/// smoothness of its steps.
 struct Attempt {
     coarse: f64,
     pace: f64,
@@ -28,8 +29,8 @@ const ATTEMPTS: [Attempt; 3] = [
 /// How often an attempt splits its pieces.
 const SPLITS: u32 = 2;
 
-/// A contour need only keep this part of the clearance wanted at its nodes to be taken when it is free; it keeps more where it
-/// [relaxes on](keep_away).
+/// A contour need only keep this part of the clearance wanted at its nodes to be taken when it is free; it
+/// keeps more where it [relaxes on](keep_away).
 const ENOUGH: f64 = 0.2;
 
 /// The spacing of the nodes of a contour that is free, in that of the parameters, and its most steps.
@@ -79,8 +80,8 @@ pub(crate) fn freed<C: Space>(
     (free, all)
 }
 
-/// Lets a free curve, whose nodes are `spacing` (m) apart, relax on with more of them, and keeps what is free. Returns the number
-/// of steps.
+/// Lets a free curve, whose nodes are `spacing` (m) apart, relax on with more of them, and keeps what is
+/// free. Returns the number of steps.
 fn keep_away<C: Space>(
     snake: &mut Snake<'_, C>,
     curve: &mut Vec<C::State>,
@@ -106,8 +107,8 @@ fn keep_away<C: Space>(
     steps
 }
 
-/// Lets a curve relax for at most `most` steps, until it is free and its nodes have the clearance `wanted` (m), or it comes to
-/// rest, or it is hopeless. Returns whether it is free, and the number of steps.
+/// Lets a curve relax for at most `most` steps, until it is free and its nodes have the clearance `wanted`
+/// (m), or it comes to rest, or it is hopeless. Returns whether it is free, and the number of steps.
 fn relaxed<C: Space>(
     snake: &mut Snake<'_, C>,
     curve: &mut [C::State],

@@ -3,11 +3,11 @@
 use crate::Grid;
 use crate::image::by_lines;
 
-/// The squared distance (m²), from the middle of each cell, to the nearest middle of a cell whose number is above one
-/// half; infinite where there is no such cell.
+/// The squared distance (m²), from the middle of each cell, to the nearest middle of a cell whose number is
+/// above one half; infinite where there is no such cell.
 ///
-/// P. Felzenszwalb and D. Huttenlocher, *Distance transforms of sampled functions*, Theory of Computing 8, 2012: the
-/// lower envelope of parabolas, row by row and column by column. Exact, O(cells).
+/// P. Felzenszwalb and D. Huttenlocher, *Distance transforms of sampled functions*, Theory of Computing 8,
+/// 2012: the lower envelope of parabolas, row by row and column by column. Exact, O(cells).
 #[must_use]
 pub fn squared_distance(mask: &Grid) -> Grid {
     let seeds = mask.clone().map(|v| if v > 0.5 { 0.0 } else { f64::INFINITY });
@@ -45,12 +45,12 @@ fn envelope(from: &[f64], to: &mut [f64], roots: &mut Vec<usize>, bounds: &mut V
     }
 }
 
-/// The signed distance (m) of the middle of each cell to the boundary of the occupied region, cells whose number is
-/// above one half: positive outside, negative inside, exact between middles and half a cell less. At most `far` (m),
-/// as everywhere on an empty map.
+/// The signed distance (m) of the middle of each cell to the boundary of the occupied region, cells whose
+/// number is above one half: positive outside, negative inside, exact between middles and half a cell less.
+/// At most `far` (m), as everywhere on an empty map.
 ///
-/// Used as a [clearance gradient](mp_cspace::obstacles::ClearanceGradient) it is that of a point robot; for a disc use
-/// `map(|d| d - radius)`.
+/// Used as a [clearance gradient](mp_cspace::obstacles::ClearanceGradient) it is that of a point robot; for a
+/// disc use `map(|d| d - radius)`.
 #[must_use]
 pub fn signed_distance(mask: &Grid, far: f64) -> Grid {
     let _span = tracing::debug_span!("distance", cells = mask.values().len()).entered();

@@ -7,8 +7,8 @@ use mp_cspace::{ParameterError, obstacles::ClearanceGradient};
 ///
 /// Closures that return the energy and write the gradient are fields too.
 pub trait Field<S> {
-    /// The energy (no unit) at `q`; its gradient is written to `gradient`, one number per degree of freedom, as
-    /// the velocities of [`Space::moved`](mp_cspace::Space::moved). Both finite.
+    /// The energy (no unit) at `q`; its gradient is written to `gradient`, one number per degree of freedom,
+    /// as the velocities of [`Space::moved`](mp_cspace::Space::moved). Both finite.
     fn energy(&mut self, q: &S, gradient: &mut [f64]) -> f64;
 
     /// The signed clearance (m) that was computed with the last energy, if the field has one.
@@ -16,7 +16,8 @@ pub trait Field<S> {
         None
     }
 
-    /// The signed clearance (m) at `q`, infinite if the field has none. Leaves meaningless numbers in `gradient`.
+    /// The signed clearance (m) at `q`, infinite if the field has none. Leaves meaningless numbers in
+    /// `gradient`.
     #[inline]
     fn clearance_at(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
         self.energy(q, gradient);
@@ -44,13 +45,13 @@ impl<S> Field<S> for Nothing {
 
 /// The repulsion of obstacles: `½·(1 − c/range)²` where the clearance `c` is below `range`, and 0 elsewhere.
 ///
-/// Inside obstacles `c` is minus the depth, so the energy falls toward the outside wherever the clearance gradient is known.
+/// Inside obstacles `c` is minus the depth, so the energy falls toward the outside wherever the clearance
+/// gradient is known.
 #[derive(Clone, Debug)]
 pub struct Repulsion<F> {
     /// The clearance and its gradient.
     pub clearance: F,
     range: f64,
-    /// 1 / range.
     per_range: f64,
     last: f64,
 }

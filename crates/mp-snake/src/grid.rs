@@ -5,8 +5,8 @@ use crate::params::positive;
 use mp_cspace::{ParameterError, obstacles::ClearanceGradient};
 use nalgebra::Vector2;
 
-/// Numbers at the middles of square cells, row after row: an image with a position and a scale. Row 0 is the lowest
-/// (the smallest y): flip images, whose first row is the top one.
+/// Numbers at the middles of square cells, row after row: an image with a position and a scale. Row 0 is the
+/// lowest (the smallest y): flip images, whose first row is the top one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     origin: Vector2<f64>,
@@ -21,12 +21,12 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The map of `values`, `width` to a row, of cells of size `cell` (m); `origin` (m) is the lower left corner of
-    /// the first.
+    /// The map of `values`, `width` to a row, of cells of size `cell` (m); `origin` (m) is the lower left
+    /// corner of the first.
     ///
     /// # Errors
-    /// When the cell is not positive and finite, the origin or a value is not finite, or `values` are not some
-    /// whole number of rows, two rows and two columns at least and 2³² at most.
+    /// When the cell is not positive and finite, the origin or a value is not finite, or `values` are not
+    /// some whole number of rows, two rows and two columns at least and 2³² at most.
     pub fn new(
         origin: impl Into<Vector2<f64>>,
         cell: f64,
@@ -105,8 +105,8 @@ impl Grid {
         Self { values, ..*self }
     }
 
-    /// The number at a point, bilinear between the middles of cells, and its gradient. Beyond the outermost middles the
-    /// number at the nearest point within, with a gradient of zero in that direction.
+    /// The number at a point, bilinear between the middles of cells, and its gradient. Beyond the outermost
+    /// middles the number at the nearest point within, with a gradient of zero in that direction.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, p: &Vector2<f64>) -> (f64, Vector2<f64>) {

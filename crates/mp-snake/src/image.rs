@@ -20,8 +20,8 @@ pub(crate) fn by_lines(grid: &Grid, mut line: impl FnMut(&[f64], &mut [f64])) ->
     grid.with_values(values)
 }
 
-/// The map convolved with a Gaussian of standard deviation `sigma` (m): `G_σ ∗ I`. The border is continued outward. The
-/// kernel is cut at four deviations and sums to one.
+/// The map convolved with a Gaussian of standard deviation `sigma` (m): `G_σ ∗ I`. The border is continued
+/// outward. The kernel is cut at four deviations and sums to one.
 ///
 /// # Errors
 /// When `sigma` is not positive and finite, or takes a kernel of more than a million cells.
@@ -60,13 +60,13 @@ pub fn laplacian(grid: &Grid) -> Grid {
     grid.with_values(values.collect())
 }
 
-/// The external energy of eq. 3 of the paper, of the image of a world: `weight · (G_σ ∗ ∇²I)² / max (G_σ ∗ ∇²I)²`, so
-/// from 0 to `weight`.
+/// The external energy of eq. 3 of the paper, of the image of a world:
+/// `weight · (G_σ ∗ ∇²I)² / max (G_σ ∗ ∇²I)²`, so from 0 to `weight`.
 ///
-/// As printed, `1 − (G_σ ∗ ∇²I)²` is least on the outlines of obstacles and attracts snakes, as in image segmentation;
-/// the text wants repulsion. So the sign is inverted here, and the constant, which has no force, left out. The energy is a
-/// ridge about two `sigma` wide along each outline. Deep inside an obstacle larger than that it is flat: use a
-/// [`Repulsion`](crate::Repulsion) by [`signed_distance`] there.
+/// As printed, `1 − (G_σ ∗ ∇²I)²` is least on the outlines of obstacles and attracts snakes, as in image
+/// segmentation; the text wants repulsion. So the sign is inverted here, and the constant, which has no
+/// force, left out. The energy is a ridge about two `sigma` wide along each outline. Deep inside an obstacle
+/// larger than that it is flat: use a [`Repulsion`](crate::Repulsion) by [`signed_distance`] there.
 ///
 /// # Errors
 /// When `sigma` or `weight` is not positive and finite.

@@ -1,8 +1,8 @@
-//! Active contours for motion planning: curves with fixed ends that minimize an energy, which keeps them away from
-//! obstacles and straight otherwise.
+//! Active contours for motion planning: curves with fixed ends that minimize an energy, which keeps them away
+//! from obstacles and straight otherwise.
 //!
-//! M. Kass, A. Witkin and D. Terzopoulos, *Snakes: active contour models*, IJCV 1, 1988; for paths as by K. Baizid et
-//! al., *RRS: rapidly-exploring random snakes, a new method for mobile robot path planning*.
+//! M. Kass, A. Witkin and D. Terzopoulos, *Snakes: active contour models*, IJCV 1, 1988; for paths as by K.
+//! Baizid et al., *RRS: rapidly-exploring random snakes, a new method for mobile robot path planning*.
 //!
 //! | to | use |
 //! |---|---|
@@ -15,8 +15,8 @@
 //! | choose how they bend | [`Bending`]: by snakes, by bulges, by both; or your own [`Bend`] |
 //! | relax a whole path | [`relax`] |
 //!
-//! A snake only guides and does not guarantee freedom of collision: [`SnakePlanner`] and [`relax`] accept curves that the
-//! motion check has found free, piece by piece.
+//! A snake only guides and does not guarantee freedom of collision: [`SnakePlanner`] and [`relax`] accept
+//! curves that the motion check has found free, piece by piece.
 //!
 //! A motion that is blocked by a disc goes around it:
 //! ```

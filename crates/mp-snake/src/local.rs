@@ -33,7 +33,7 @@ impl SnakeCounters {
         self.bulged + self.relaxed + self.by_snake
     }
 
-    /// The number of all motions.
+    /// Motions asked for, however they were answered.
     #[must_use]
     pub fn motions(&self) -> u64 {
         self.straight + self.bent() + self.not_tried + self.not_bent
@@ -42,11 +42,12 @@ impl SnakeCounters {
 
 /// A local planner of straight motions that bends blocked ones around obstacles.
 ///
-/// A motion ends where the straight one would. One whose end is not free fails at once. Otherwise, where it is blocked, it is
-/// bent by a strategy `B`: [`Bending`] or your own [`Bend`]. Any [`Field`] may push; [`Repulsion`] knows the clearance, so
-/// that snakes can stop early and bulges can be laid. Each piece of a bent motion has been found free by `check`; the field
-/// only guides. Its cost is its length in the metric of the space. Motions of more than 24 nodes are not bent.
-/// [`Path::flattened`](mp_cspace::Path::flattened) turns paths of such edges into straight ones.
+/// A motion ends where the straight one would. One whose end is not free fails at once. Otherwise, where it
+/// is blocked, it is bent by a strategy `B`: [`Bending`] or your own [`Bend`]. Any [`Field`] may push;
+/// [`Repulsion`] knows the clearance, so that snakes can stop early and bulges can be laid. Each piece of a
+/// bent motion has been found free by `check`; the field only guides. Its cost is its length in the metric of
+/// the space. Motions of more than 24 nodes are not bent. [`Path::flattened`](mp_cspace::Path::flattened)
+/// turns paths of such edges into straight ones.
 #[derive(Clone, Debug)]
 pub struct SnakePlanner<'c, C: Space, M, F, B = Bending> {
     /// The motion check: discrete, certified or your own.
@@ -70,9 +71,9 @@ where
     M: MotionValidity<C::State>,
     G: ClearanceGradient<C::State>,
 {
-    /// Motions in `space`, checked by `check` and bent by the clearance gradient `gradient` of obstacles that repel within
-    /// `range` (m), with the [parameters](Params::for_edges) for edges of that range, in the way that is the
-    /// [default](Bending).
+    /// Motions in `space`, checked by `check` and bent by the clearance gradient `gradient` of obstacles that
+    /// repel within `range` (m), with the [parameters](Params::for_edges) for edges of that range, in the way
+    /// that is the [default](Bending).
     ///
     /// # Errors
     /// When the range is not positive and finite, or the space knows no velocities.

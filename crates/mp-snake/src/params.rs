@@ -40,8 +40,8 @@ pub struct Params {
     pub straighten: f64,
     /// Distance between nodes (m): curves are resampled to at most this distance.
     pub spacing: f64,
-    /// Length of an implicit step (m²). Steps of more than a curvature radius of the external energy overshoot, and
-    /// are halved.
+    /// Length of an implicit step (m²). Steps of more than a curvature radius of the external energy
+    /// overshoot, and are halved.
     pub pace: f64,
     /// Most steps.
     pub iterations: u32,
@@ -70,8 +70,8 @@ impl Params {
         })
     }
 
-    /// The same for edges of a tree, where a snake must be cheap: nodes a full range apart, four times the membrane
-    /// stiffness, and converged at a tenth of the spacing.
+    /// The same for edges of a tree, where a snake must be cheap: nodes a full range apart, four times the
+    /// membrane stiffness, and converged at a tenth of the spacing.
     ///
     /// # Errors
     /// When the range is not positive and finite.
@@ -96,8 +96,8 @@ impl Params {
         Ok(self)
     }
 
-    /// The two coefficients of the [matrix](crate::Band) of a step. The weight of the length is added to that of the
-    /// membrane: for a curve of even spacing both vary alike across it.
+    /// The two coefficients of the [matrix](crate::Band) of a step. The weight of the length is added to that
+    /// of the membrane: for a curve of even spacing both vary alike across it.
     pub(crate) fn stiffness(&self, Manner { spacing, pace, .. }: Manner) -> [f64; 2] {
         let square = spacing * spacing;
         let first = pace * (self.membrane + self.straighten) / square;

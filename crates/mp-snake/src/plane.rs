@@ -18,9 +18,9 @@ pub const BLUR: f64 = 1.0 / 3.0;
 /// The length of a step of the robot in the landscape of risk, as a part of the range.
 pub const STRIDE: f64 = 5.0 / 3.0;
 
-/// The image of a world within `bounds` (of x, then of y; m): 1 in the middles of cells where the robot `touches`
-/// something, and 0 elsewhere. 7.5 cells are as long as the `range` of repulsion (m), or more where a side would have more
-/// than 2048.
+/// The image of a world within `bounds` (of x, then of y; m). A cell is 1 if the robot `touches` something in
+/// its middle, and 0 if not. 7.5 cells are as long as the `range` of repulsion (m), or more where a side
+/// would have more than 2048.
 ///
 /// # Errors
 /// When the range is not positive and finite, or the bounds are not finite.
@@ -36,7 +36,8 @@ pub fn occupancy(
     Grid::from_fn([x[0], y[0]], cell, (width, height), |p| f64::from(u8::from(touches(p))))
 }
 
-/// Eq. 3 of Baizid et al. of such an image, as [`outline_energy`] says: blurred by a third of the range, from 0 to 1.
+/// Eq. 3 of Baizid et al. of such an image, as [`outline_energy`] says: blurred by a third of the range, from
+/// 0 to 1.
 ///
 /// # Errors
 /// When the range is not positive and finite.
@@ -44,8 +45,9 @@ pub fn paper_energy(occupied: &Grid, range: f64) -> Result<Grid, ParameterError>
     outline_energy(occupied, BLUR * range, 1.0)
 }
 
-/// The [risk](everywhere) of a robot that may pass everywhere in such an image, in steps of five thirds of the range,
-/// from 0 to 1 where it is greatest. The deviations of its motion and of its sensor are the default ones times `factor`.
+/// The [risk](everywhere) of a robot that may pass everywhere in such an image, in steps of five thirds of
+/// the range, from 0 to 1 where it is greatest. The deviations of its motion and of its sensor are the
+/// default ones times `factor`.
 ///
 /// # Errors
 /// When the factor is negative or not finite, or the range is not.
@@ -95,7 +97,8 @@ mod tests {
             assert!((field.values().iter().copied().fold(0.0, f64::max) - 1.0).abs() < 1e-9);
             assert!(at(field, 0.04) > at(field, 0.08) && at(field, 0.5) < 1e-6);
         }
-        // Where the robot touches the disc it hits it in half of all cases; the sum of both deviations is about 4 cm.
+        // Where the robot touches the disc it hits it in half of all cases; the sum of both deviations is
+        // about 4 cm.
         assert!((at(&risk, 0.0) - 0.5).abs() < 0.06, "{}", at(&risk, 0.0));
         assert!(at(&risk, 0.08) < 0.05 && at(&wide, 0.08) > 2.0 * at(&risk, 0.08));
         assert!(risk_energy(&image, 0.15, -1.0).is_err() && paper_energy(&image, 0.0).is_err());

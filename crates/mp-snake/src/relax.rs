@@ -32,13 +32,14 @@ impl<S> Relaxed<S> {
 /// - it has less energy than the original: it is safer, smoother or shorter, and
 /// - its length is at most that of the original times `stretch` (at least 1): with 1 it never gets longer.
 ///
-/// After each step of the snake, the ends of every piece that is not free move back to where they were. So the curve is
-/// always free, and only nodes in tight places stay behind. A step that gains nothing is tried again at a quarter of the
-/// pace, since a field that changes over short distances needs short steps; the pace grows again while steps succeed. It ends
-/// when a step at a thousandth of the pace gains nothing. A path that needs more than ten thousand nodes is returned
-/// unchanged. Use a `check` you trust, as nothing else is checked. Each step costs one check per piece that moved, and three
-/// evaluations of the field per node. When `check` is [interrupted](MotionValidity::interrupt_by), the path of the last whole step
-/// is returned.
+/// After each step of the snake, the ends of every piece that is not free move back to where they were. So
+/// the curve is always free, and only nodes in tight places stay behind. A step that gains nothing is tried
+/// again at a quarter of the pace, since a field that changes over short distances needs short steps; the
+/// pace grows again while steps succeed. It ends when a step at a thousandth of the pace gains nothing. A
+/// path that needs more than ten thousand nodes is returned unchanged. Use a `check` you trust, as nothing
+/// else is checked. Each step costs one check per piece that moved, and three evaluations of the field per
+/// node. When `check` is [interrupted](MotionValidity::interrupt_by), the path of the last whole step is
+/// returned.
 ///
 /// # Errors
 /// When a parameter is out of range, or the space knows no velocities.
@@ -113,8 +114,8 @@ const LEAST_PACE: f64 = 1e-3;
 /// After this number of successful steps in a row the pace is doubled, up to the one that was given.
 const SUCCESSES: u32 = 4;
 
-/// Moves the ends of each piece of `next` that is not free back to where they were in `curve`, until all pieces are free,
-/// as those of `curve` are.
+/// Moves the ends of each piece of `next` that is not free back to where they were in `curve`, until all
+/// pieces are free, as those of `curve` are.
 fn go_back_where_blocked<S: Clone + PartialEq>(
     check: &mut impl MotionValidity<S>,
     curve: &[S],

@@ -1,9 +1,9 @@
 //! The risk landscape: where a robot that moves inexactly may hit an obstacle that was measured inexactly.
 //!
-//! After Fig. 1 and §3.1 of K. Baizid et al., *RRS: rapidly-exploring random snakes*: a step that turns and goes
-//! straight ends in a banana-shaped cloud, the product of two Gaussians; a range sensor measures the distance of obstacles
-//! with noise; the product of both probabilities is the risk. Models of S. Thrun, W. Burgard and D. Fox,
-//! *Probabilistic robotics*, 2005.
+//! After Fig. 1 and §3.1 of K. Baizid et al., *RRS: rapidly-exploring random snakes*: a step that turns and
+//! goes straight ends in a banana-shaped cloud, the product of two Gaussians; a range sensor measures the
+//! distance of obstacles with noise; the product of both probabilities is the risk. Models of S. Thrun, W.
+//! Burgard and D. Fox, *Probabilistic robotics*, 2005.
 
 use crate::params::{not_negative, positive};
 use crate::{Grid, blurred};
@@ -11,7 +11,8 @@ use mp_cspace::{ParameterError, Path, angle::wrap_angle};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 
-/// The noise of a robot that executes a step: turn, then go straight. Deviations grow with the turn and the distance.
+/// The noise of a robot that executes a step: turn, then go straight. Deviations grow with the turn and the
+/// distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionNoise {
     /// Constant deviation of the heading (rad).
@@ -56,8 +57,8 @@ impl MotionNoise {
         Ok(self)
     }
 
-    /// The probability density (1/m²) that the robot is at `p` after a step from `from` at `heading` (rad) that turns by
-    /// `turn` (rad), then goes `way` (m). In polar coordinates about `from` both are Gaussian.
+    /// The probability density (1/m²) that the robot is at `p` after a step from `from` at `heading` (rad)
+    /// that turns by `turn` (rad), then goes `way` (m). In polar coordinates about `from` both are Gaussian.
     #[must_use]
     pub fn density(
         &self,
@@ -78,8 +79,9 @@ impl MotionNoise {
         gauss(angle, turns) * gauss(far - way, ways) / far
     }
 
-    /// The probability that a step of the path ends in each cell, `1 − Π(1 − pᵢ)` over all steps. Long steps should be
-    /// [resampled](Path::resampled) first. The first step needs no turn; each later one starts exactly at its state.
+    /// The probability that a step of the path ends in each cell, `1 − Π(1 − pᵢ)` over all steps. Long steps
+    /// should be [resampled](Path::resampled) first. The first step needs no turn; each later one starts
+    /// exactly at its state.
     #[must_use]
     pub fn envelope(&self, path: &Path<Vector2<f64>>, of: &Grid) -> Grid {
         let (width, _) = of.size();
@@ -126,8 +128,8 @@ impl RangeNoise {
         Self { constant: factor * self.constant, per_metre: factor * self.per_metre }
     }
 
-    /// The probability that each cell is occupied, of a map that is above one half where obstacles were seen from
-    /// `distance` (m) away: the map blurred by the deviation at that distance.
+    /// The probability that each cell is occupied, of a map that is above one half where obstacles were seen
+    /// from `distance` (m) away: the map blurred by the deviation at that distance.
     ///
     /// # Errors
     /// When the deviation is not positive and finite, or too wide for the map.
@@ -138,8 +140,8 @@ impl RangeNoise {
     }
 }
 
-/// The product of two maps of the same cells, such as the probability that the robot passes and that the cell is
-/// occupied: the landscape of Fig. 1 d. As a [`Field`](crate::Field) it pushes snakes out of the risk.
+/// The product of two maps of the same cells, such as the probability that the robot passes and that the cell
+/// is occupied: the landscape of Fig. 1 d. As a [`Field`](crate::Field) it pushes snakes out of the risk.
 ///
 /// # Errors
 /// When the maps differ in place, scale or size.
@@ -153,12 +155,12 @@ pub fn landscape(passing: &Grid, occupied: &Grid) -> Result<Grid, ParameterError
     Ok(passing.with_values(product.collect()))
 }
 
-/// The landscape of risk of a robot that may pass everywhere: at each place the probability that a robot which was to end a
-/// straight step of length `way` (m) there, from any direction, touches an obstacle that its range sensor has `seen` from a
-/// metre away.
+/// The landscape of risk of a robot that may pass everywhere. At each place it is the probability of touching
+/// an obstacle when a straight step of length `way` (m) was to end there, from any direction. The range
+/// sensor has `seen` the obstacles from a metre away.
 ///
-/// The cloud in which such steps end, in the mean of all directions, is taken as a Gaussian of the same variance: half the
-/// sum of the variances along the step and across it.
+/// The cloud in which such steps end, in the mean of all directions, is taken as a Gaussian of the same
+/// variance: half the sum of the variances along the step and across it.
 ///
 /// # Errors
 /// When a number of the noise or the step is out of range.
@@ -187,9 +189,9 @@ pub struct RiskMaps {
 }
 
 impl RiskMaps {
-    /// Of a robot that makes the steps of `path`, with the noise of its motion, past obstacles that its range sensor has `seen`
-    /// from a metre away: a map that is above one half where the robot collides. Long steps should be
-    /// [resampled](Path::resampled) first.
+    /// Of a robot that makes the steps of `path`, with the noise of its motion, past obstacles that its range
+    /// sensor has `seen` from a metre away: a map that is above one half where the robot collides. Long steps
+    /// should be [resampled](Path::resampled) first.
     ///
     /// # Errors
     /// When a number of the noise is out of range.
@@ -240,7 +242,8 @@ mod tests {
         assert!(at(across) < polar(0.8 + mp_math::atan(0.6 / 1.2), 1.2));
     }
 
-    /// The Gaussian of a step from anywhere has the variance of the cloud itself, in the mean of all directions.
+    /// The Gaussian of a step from anywhere has the variance of the cloud itself, in the mean of all
+    /// directions.
     #[test]
     fn steps_from_everywhere_spread_as_much() {
         let noise = MotionNoise { turn: 0.1, turn_per_turn: 0.0, way: 0.03, way_per_way: 0.05 };

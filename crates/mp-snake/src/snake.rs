@@ -44,7 +44,7 @@ pub struct Moment<'a, S> {
     pub curve: &'a [S],
     /// The least clearance (m) at a node between the ends, by the field; infinite if the field has none.
     pub clearance: f64,
-    /// Its energy.
+    /// What the contour costs as it is now.
     pub energy: Energy,
     /// Steps done.
     pub iteration: u32,
@@ -52,23 +52,25 @@ pub struct Moment<'a, S> {
 
 /// An open active contour with fixed ends, in any space with velocities.
 ///
-/// M. Kass, A. Witkin and D. Terzopoulos, *Snakes: active contour models*, IJCV 1, 1988, as modified by K. Baizid et
-/// al., *RRS: rapidly-exploring random snakes* (eq. 1 to 4). For a curve `v` of nodes `h` apart the energy is
+/// M. Kass, A. Witkin and D. Terzopoulos, *Snakes: active contour models*, IJCV 1, 1988, as modified by K.
+/// Baizid et al., *RRS: rapidly-exploring random snakes* (eq. 1 to 4). For a curve `v` of nodes `h` apart the
+/// energy is
 ///
 /// `E = α/2h·Σ|vᵢ₊₁ − vᵢ|² + β/2h³·Σ|vᵢ₋₁ − 2vᵢ + vᵢ₊₁|² + h·ΣP(vᵢ) + γ·Σ|vᵢ₊₁ − vᵢ|`
 ///
 /// with differences in the metric of the space: velocities from node to node, each degree of freedom
 /// weighted by the length that it travels. Where the paper differs:
 /// - Eq. 2 prints `|v|²` and `|v'|²`; membrane and plate are `|v'|²` and `|v''|²` as in Kass et al.
-/// - Eq. 4 sums forces `γ·n̄` along the normal. The energy of which this is the direction of descent is the length;
-///   its force is `γ·κ·n̄`, towards the inside of each bend and zero where the curve is straight.
+/// - Eq. 4 sums forces `γ·n̄` along the normal. The energy of which this is the direction of descent is the
+///   length; its force is `γ·κ·n̄`, towards the inside of each bend and zero where the curve is straight.
 /// - The field acts across the curve only: a force along the curve would move nodes, but not the curve.
 ///
 /// One step is semi-implicit: `(I + a·T + b·T²)·δ = −τ/h·∇E`, the stiff part by a [`Band`] that is factorised
-/// once for each number of nodes. The step is halved until the energy does not rise, so it never does. In spaces
-/// with rotations, differences about neighbouring nodes are taken as if in one tangent space.
+/// once for each number of nodes. The step is halved until the energy does not rise, so it never does. In
+/// spaces with rotations, differences about neighbouring nodes are taken as if in one tangent space.
 ///
-/// A step takes O(n·d) operations and one evaluation of the field per node, for n nodes and d degrees of freedom.
+/// A step takes O(n·d) operations and one evaluation of the field per node, for n nodes and d degrees of
+/// freedom.
 ///
 /// ```
 /// use mp_cspace::Rn;
@@ -126,8 +128,8 @@ pub(crate) struct Manner {
     pub(crate) spacing: f64,
     /// Length of an implicit step (m²).
     pub(crate) pace: f64,
-    /// How much alike neighbouring nodes move: added to the first coefficient of the [matrix](Band) of a step, as if the curve
-    /// were that stiff, but not to its energy.
+    /// How much alike neighbouring nodes move: added to the first coefficient of the [matrix](Band) of a
+    /// step, as if the curve were that stiff, but not to its energy.
     pub(crate) smoothing: f64,
 }
 
@@ -215,7 +217,7 @@ impl<'c, C: Space> Snake<'c, C> {
         })
     }
 
-    /// Its parameters.
+    /// How stiff it is, how hard the field pushes, and when it ends.
     #[must_use]
     pub fn params(&self) -> &Params {
         &self.params
@@ -236,7 +238,7 @@ impl<'c, C: Space> Snake<'c, C> {
         }
     }
 
-    /// The space.
+    /// The space in which its nodes move.
     #[must_use]
     pub fn space(&self) -> &'c C {
         self.space
@@ -248,8 +250,8 @@ impl<'c, C: Space> Snake<'c, C> {
         &self.trace
     }
 
-    /// The straight curve from one state to another, with as many nodes as the spacing needs, at least five and at most
-    /// ten thousand.
+    /// The straight curve from one state to another, with as many nodes as the spacing needs, at least five
+    /// and at most ten thousand.
     pub fn between(&self, from: &C::State, to: &C::State) -> Vec<C::State> {
         let mut curve = Vec::new();
         self.between_into(from, to, &mut curve);
@@ -261,8 +263,8 @@ impl<'c, C: Space> Snake<'c, C> {
         self.spread_into(from, to, self.params.spacing, 4, curve);
     }
 
-    /// Lays a straight curve of nodes that are at most `spacing` (m) apart, but at least of so many pieces, into `curve`,
-    /// which is cleared first.
+    /// Lays a straight curve of nodes that are at most `spacing` (m) apart, but at least of so many pieces,
+    /// into `curve`, which is cleared first.
     pub(crate) fn spread_into(
         &self,
         from: &C::State,
@@ -291,8 +293,8 @@ impl<'c, C: Space> Snake<'c, C> {
         std::mem::swap(curve, &mut self.next);
     }
 
-    /// Lays nodes along a polyline into `curve`, which is cleared first: at its corners, and between them at most the
-    /// spacing apart.
+    /// Lays nodes along a polyline into `curve`, which is cleared first: at its corners, and between them at
+    /// most the spacing apart.
     pub(crate) fn resample(&self, corners: &[C::State], curve: &mut Vec<C::State>) {
         curve.clear();
         for pair in corners.windows(2) {
@@ -303,7 +305,7 @@ impl<'c, C: Space> Snake<'c, C> {
         curve.extend(corners.last().cloned());
     }
 
-    /// The energy of a curve.
+    /// What a curve costs: its tension and rigidity, its length, and the field along it.
     pub fn energy(&mut self, curve: &[C::State], field: &mut impl Field<C::State>) -> Energy {
         let mut measured = std::mem::take(&mut self.trial);
         self.measure(curve, field, &mut measured);
@@ -311,9 +313,9 @@ impl<'c, C: Space> Snake<'c, C> {
         self.trial.energy
     }
 
-    /// Moves the nodes between the ends until the energy is least, or until `watch` returns true; it is called before the
-    /// first step and after each. A curve of less than three nodes stays as it is, and nodes do not leave the bounds of
-    /// the space.
+    /// Moves the nodes between the ends until the energy is least, or until `watch` returns true; it is
+    /// called before the first step and after each. A curve of less than three nodes stays as it is, and
+    /// nodes do not leave the bounds of the space.
     ///
     /// The energy never rises from one step to the next, but for rounding.
     pub fn deform(
@@ -408,7 +410,8 @@ impl<'c, C: Space> Snake<'c, C> {
             if energy == 0.0 {
                 continue;
             }
-            // The part of the push along the curve, the sum of both segments, does not move the curve: it is removed.
+            // The part of the push along the curve, the sum of both segments, does not move the curve: it is
+            // removed.
             let [mut along, mut part] = [0.0; 2];
             for (((c, g), push), s) in incoming.iter().zip(outgoing).zip(push.iter_mut()).zip(unscale) {
                 *push *= s;
@@ -457,7 +460,8 @@ impl<'c, C: Space> Snake<'c, C> {
         bands[rows].get_or_insert_with(|| Band::new(rows, a + smoothing, b)).solve(&mut self.step, dim);
     }
 
-    /// Takes the largest part of the step that does not raise the energy. Returns that part, or `None` when there is none.
+    /// Takes the largest part of the step that does not raise the energy. Returns that part, or `None` when
+    /// there is none.
     fn advance(
         &mut self,
         curve: &mut [C::State],

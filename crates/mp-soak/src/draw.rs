@@ -1,6 +1,7 @@
 //! Random numbers of problems: a stream for each problem, the same on every machine.
 
-/// A stream of random numbers that comes from a seed and the number of a problem only (SplitMix64 of Steele, Lea and Flood, 2014).
+/// A stream of random numbers that comes from a seed and the number of a problem only (SplitMix64 of Steele,
+/// Lea and Flood, 2014).
 #[derive(Clone, Debug)]
 pub struct Draw(u64);
 
@@ -29,7 +30,7 @@ impl Draw {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number in \[low, high).
+    /// A number from `low` to below `high`, all equally likely.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }

@@ -11,7 +11,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Plans random problems with every planner, and has each path judged by an oracle that shares no code with the planners.
+/// Plans random problems with every planner, and has each path judged by an oracle that shares no code with
+/// the planners.
 ///
 /// Exit code: 0 nothing found, 1 findings, 2 bad input.
 #[derive(Clone, Debug, Parser)]

@@ -62,7 +62,8 @@ fn every_planner_solves_problems_that_the_oracle_accepts() {
 fn the_oracle_refuses_damaged_paths_in_worlds_of_every_kind() {
     for kind in KINDS {
         let wanted = of_kind(kind.name);
-        // Of these an input leads nowhere near a row that was moved; tests of thin walls are about their collisions.
+        // Of these an input leads nowhere near a row that was moved; tests of thin walls are about their
+        // collisions.
         let by_inputs = ["flyer", "driven", "driven-moving"].contains(&kind.name);
         let (mut contacts, mut refused, mut paths) = (0, 0, 0);
         for number in 0..60 {

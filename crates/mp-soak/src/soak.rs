@@ -46,11 +46,12 @@ pub fn read_tally(out: &Path) -> Result<Option<Tally>, String> {
     Tally::from_json(&bytes).map(Some).map_err(|e| format!("{}: {e}", file.display()))
 }
 
-/// Runs the problems that the folder does not have yet, until `stop` is raised: then it ends after the problems that have begun.
-/// `progress` is told of the tally now and then.
+/// Runs the problems that the folder does not have yet, until `stop` is raised: then it ends after the
+/// problems that have begun. `progress` is told of the tally now and then.
 ///
 /// # Errors
-/// When the folder cannot be read or written, another process grows it, or it is of another seed or other problems.
+/// When the folder cannot be read or written, another process grows it, or it is of another seed or other
+/// problems.
 pub fn run(options: &Options, stop: &Cancel, progress: &mut dyn FnMut(&Tally)) -> Result<Tally, String> {
     let out = &options.out;
     mp_store::make_folder(out).map_err(|e| e.to_string())?;
@@ -84,7 +85,8 @@ struct Done {
     seconds: f64,
 }
 
-/// Runs the problems of a block, in the order of their numbers. When `stop` is raised, those that have not begun are left out.
+/// Runs the problems of a block, in the order of their numbers. When `stop` is raised, those that have not
+/// begun are left out.
 fn block(options: &Options, numbers: Range<u64>, stop: &Cancel) -> Result<Vec<Done>, String> {
     let one = |i: usize| {
         let (number, began) = (numbers.start + i as u64, Instant::now());
@@ -102,7 +104,8 @@ fn block(options: &Options, numbers: Range<u64>, stop: &Cancel) -> Result<Vec<Do
     in_parallel(count, options.threads, stop, one).into_iter().flatten().collect()
 }
 
-/// Writes a problem to a folder: its files, request and path, and what was found with the commands that repeat it.
+/// Writes a problem to a folder: its files, request and path, and what was found with the commands that
+/// repeat it.
 ///
 /// # Errors
 /// When a file cannot be written.

@@ -11,7 +11,7 @@ const VERSION: u32 = 1;
 /// Counts of problems.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
-    /// All problems.
+    /// Problems that were drawn, whatever came of them.
     pub problems: u64,
     /// Those with a path.
     pub solved: u64,
@@ -33,11 +33,12 @@ pub struct Counts {
     pub out_of_time: u64,
     /// Damaged paths that the oracle refused, and that the verifier was asked to refuse too.
     pub damaged: u64,
-    /// Findings.
+    /// What was found wrong with the program, or with the oracle.
     pub findings: u64,
     /// The least distance of two bodies that the oracle saw on a path, as a part of the size of the world.
     pub least: Option<f64>,
-    /// Seconds that all of it took, the oracle included. The only number here that another run would not repeat.
+    /// Seconds that all of it took, the oracle included. The only number here that another run would not
+    /// repeat.
     pub seconds: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The oracle sees what is wrong with a path, for every kind of robot: a wall thinner than a hair, a wrong end, a leap.
+//! Tests of the oracle. For every kind of robot it must find walls as thin as a hair, wrong ends and leaps.
 
 #![cfg(test)]
 
@@ -155,7 +155,8 @@ fn a_part_inside_of_a_solid_touches_it() {
 
 #[test]
 fn arms() {
-    // The second joint turns back what the first turns: the hand goes around on a circle of radius one about (cos, sin).
+    // The second joint turns back what the first turns: the hand goes around on a circle of radius one about
+    // (cos, sin).
     let arm = tree(false, vec![turning(0, 0.0, 0), turning(1, 1.0, 1)]);
     let (a, b) = (vec![-1.0, 0.3], vec![1.0, 0.3]);
     let wall = Body::new(

@@ -62,7 +62,7 @@ pub struct Trial {
     pub out_of_time: bool,
     /// The request that was answered; `None` if none was.
     pub request: Option<Request>,
-    /// Findings.
+    /// What is wrong, by the oracle or by a panic; empty after most trials.
     pub findings: Vec<Finding>,
     /// The message with which the program refused.
     pub refusal: Option<String>,
@@ -75,7 +75,7 @@ pub struct Trial {
 pub struct Problem {
     /// The kind of its world.
     pub kind: &'static Kind,
-    /// Its world.
+    /// The files of the scene, and what the oracle knows of it.
     pub world: World,
     /// What follows in its stream of random numbers.
     rest: Draw,
@@ -102,7 +102,7 @@ impl Problem {
         Scene::load_from(&InMemory(found), Path::new(&self.world.main))
     }
 
-    /// Its request for this scene.
+    /// A planner, settings and budgets for this scene, drawn after the world.
     #[must_use]
     pub fn request(&self, scene: &Scene, wanted: &Wanted) -> Request {
         request(&mut self.rest.clone(), scene, wanted.planner.as_deref())
@@ -283,8 +283,8 @@ impl Problem {
         trial.path = Some(text);
     }
 
-    /// Moves a configuration of a good path. Where the oracle refuses that, the verifier must refuse it too; and the verifier must
-    /// accept the path as it was.
+    /// Moves a configuration of a good path. Where the oracle refuses that, the verifier must refuse it too;
+    /// and the verifier must accept the path as it was.
     fn judge_damaged(
         &self,
         scene: &Scene,

@@ -1,7 +1,8 @@
 //! How long work ends early.
 //!
-//! Somebody raises a [`Cancel`], or a deadline passes on a [`Clock`]. Long work has an [`Interrupt`] and asks it again and again,
-//! also deep inside: planners within their iterations, checks of motions, verification, and readers of files.
+//! Somebody raises a [`Cancel`], or a deadline passes on a [`Clock`]. Long work has an [`Interrupt`] and asks
+//! it again and again, also deep inside: planners within their iterations, checks of motions, verification,
+//! and readers of files.
 //!
 //! ```
 //! use mp_stop::{Cancel, Interrupt, StopReason};
@@ -125,8 +126,8 @@ impl fmt::Debug for Clock {
 /// Most iterations in a row at which a [`SparseClock`] does not read its clock.
 const MOST_SKIPS: u32 = 15;
 
-/// Reads a clock as seldom as short iterations allow: not at each, but at least at every 16th; after two readings more than
-/// a millisecond apart, at the next.
+/// Reads a clock as seldom as short iterations allow: not at each, but at least at every 16th; after two
+/// readings more than a millisecond apart, at the next.
 #[derive(Clone, Copy, Debug)]
 pub struct SparseClock {
     clock: Clock,
@@ -165,11 +166,12 @@ impl SparseClock {
 
 /// The token that long work asks whether to end: when a [`Cancel`] is raised, or at a time of a clock.
 ///
-/// Clones are for the parts of one piece of work, on any thread: once one of them was interrupted, all are. Asking costs two atomic
-/// loads; with a deadline the clock is read as by a [`SparseClock`]. The default never ends anything.
+/// Clones are for the parts of one piece of work, on any thread: once one of them was interrupted, all are.
+/// Asking costs two atomic loads; with a deadline the clock is read as by a [`SparseClock`]. The default
+/// never ends anything.
 ///
-/// Work that was interrupted returns as soon as it can, with any answer. Whoever started it asks [`raised`](Self::raised)
-/// afterwards, and drops the answer if so.
+/// Work that was interrupted returns as soon as it can, with any answer. Whoever started it asks
+/// [`raised`](Self::raised) afterwards, and drops the answer if so.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt {
     shared: Option<Arc<Shared>>,
@@ -327,7 +329,8 @@ mod tests {
         assert_eq!(other.reason(), Some(StopReason::Cancelled));
     }
 
-    /// However quick the asks before were, a late one is at most 16 asks behind the clock; slow asks are not late at all.
+    /// However quick the asks before were, a late one is at most 16 asks behind the clock; slow asks are not
+    /// late at all.
     #[test]
     fn clocks_are_read_often_enough() {
         static TIME: AtomicU64 = AtomicU64::new(0);

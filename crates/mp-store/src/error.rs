@@ -48,7 +48,8 @@ impl Error {
         Self::new(kind, path, format!("cannot {doing}: {why}"), remedy)
     }
 
-    /// An error of the system while the file at `path` is read: for those who read what [`open`](crate::open) opened.
+    /// An error of the system while the file at `path` is read: for those who read what [`open`](crate::open)
+    /// opened.
     #[must_use]
     pub fn reading(path: &Path, error: &io::Error) -> Self {
         crate::read::failed(path, error)

@@ -4,8 +4,8 @@ use crate::write::followed;
 use std::ffi::OsString;
 use std::path::{Component, Path, PathBuf};
 
-/// The identity of a file: equal for all names that lead to the same file, by links, `./x`, or letters of another case
-/// where the system does not tell them apart. The file need not exist.
+/// The identity of a file: equal for all names that lead to the same file, by links, `./x`, or letters of
+/// another case where the system does not tell them apart. The file need not exist.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct FileId(Id);
 

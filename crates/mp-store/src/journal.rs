@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 /// Lines are on the disk at the latest after this time, if the machine loses its power.
 const SYNC: Duration = Duration::from_secs(1);
 
-/// A file that grows by whole lines, from several threads. A process that is killed loses no line that was appended; at most
-/// the last line of the file is incomplete, and whoever opens the file again drops it.
+/// A file that grows by whole lines, from several threads. A process that is killed loses no line that was
+/// appended; at most the last line of the file is incomplete, and whoever opens the file again drops it.
 ///
 /// Hold a [`Lock`](crate::Lock) on the file or its folder: two processes must not append to one file.
 #[derive(Debug)]
@@ -37,8 +37,8 @@ impl Journal {
         Self::resume(path, lines.len() as u64)
     }
 
-    /// The journal at `path`, which exists, with its first `length` bytes: what is behind them, such as a line that is not whole, is
-    /// cut off.
+    /// The journal at `path`, which exists, with its first `length` bytes: what is behind them, such as a
+    /// line that is not whole, is cut off.
     ///
     /// # Errors
     /// When the file cannot be opened or cut.

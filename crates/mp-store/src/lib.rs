@@ -1,10 +1,11 @@
 //! Files of a program: read within limits, written whole or not at all, locked while a run grows them.
 //!
-//! - [`read`] and [`open`] accept regular files up to a limit. A pipe, a device or a file that is too large is an error
-//!   before anything is read.
-//! - [`write`](fn@write) replaces a file in one step, [`write_parts`] one that is large, and [`writable`] says before a
-//!   long run whether that will work.
-//! - [`check_name`] decides what the name of a file inside a folder may be, and [`write_all`] writes several files into one, all or none.
+//! - [`read`] and [`open`] accept regular files up to a limit. A pipe, a device or a file that is too large
+//!   is an error before anything is read.
+//! - [`write`](fn@write) replaces a file in one step, [`write_parts`] one that is large, and [`writable`]
+//!   says before a long run whether that will work.
+//! - [`check_name`] decides what the name of a file inside a folder may be, and [`write_all`] writes several
+//!   files into one, all or none.
 //! - [`FileId`] tells whether two names lead to the same file.
 //! - [`Lock`] keeps other processes from growing the same file or folder.
 //! - [`Journal`] is a file that grows by whole lines.
@@ -20,8 +21,8 @@
 //! # Ok::<(), mp_store::Error>(())
 //! ```
 //!
-//! Errors say the file, what is wrong and what to do. Where there is no file system, as in a browser, every call is an
-//! error.
+//! Errors say the file, what is wrong and what to do. Where there is no file system, as in a browser, every
+//! call is an error.
 
 mod error;
 mod id;

@@ -6,12 +6,12 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// The right of this process to grow a file, or the files of a folder. It ends when the lock is dropped or the process ends,
-/// however it ends.
+/// The right of this process to grow a file, or the files of a folder. It ends when the lock is dropped or
+/// the process ends, however it ends.
 ///
-/// The lock is on a small file of its own beside the file, which holds the number of the process. It binds those who ask
-/// for it. Readers need no lock, because files are written whole. On file systems without locks nothing is locked, and
-/// the log says so.
+/// The lock is on a small file of its own beside the file, which holds the number of the process. It binds
+/// those who ask for it. Readers need no lock, because files are written whole. On file systems without locks
+/// nothing is locked, and the log says so.
 #[derive(Debug)]
 pub struct Lock {
     #[cfg_attr(not(unix), expect(dead_code, reason = "the file stays"))]
@@ -23,8 +23,8 @@ impl Lock {
     /// Locks the file at `path`, which need not exist. Its folder must.
     ///
     /// # Errors
-    /// Of kind [`ErrorKind::Locked`] when another process, or another lock of this one, has locked it: the message has the
-    /// number of the process. When the folder is missing or not writable.
+    /// Of kind [`ErrorKind::Locked`] when another process, or another lock of this one, has locked it: the
+    /// message has the number of the process. When the folder is missing or not writable.
     pub fn of_file(path: &Path) -> Result<Self, Error> {
         let target = followed(path).map_err(|e| failed(path, &e))?;
         let mut name = std::ffi::OsString::from(".");

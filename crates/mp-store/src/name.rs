@@ -14,9 +14,10 @@ const SIGNS: &str = "-_ .()+,@";
 /// Names that lead to devices on Windows, whatever follows after a dot.
 const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "conin$", "conout$"];
 
-/// Whether `name` may be the name of a file inside a folder: on no system does such a name lead to another folder, a device or a stream, or
-/// become another name. It has letters, digits, blanks and `-_.()+,@`, at most 255 bytes; it neither begins with a dot or a blank, nor
-/// ends with one, and is not what Windows calls a device.
+/// Whether `name` may be the name of a file inside a folder: on no system does such a name lead to another
+/// folder, a device or a stream, or become another name. It has letters, digits, blanks and `-_.()+,@`, at
+/// most 255 bytes; it neither begins with a dot or a blank, nor ends with one, and is not what Windows calls
+/// a device.
 ///
 /// ```
 /// assert!(mp_store::check_name("my room.env").is_ok());
@@ -40,7 +41,8 @@ pub fn check_name(name: &str) -> Result<(), Error> {
 /// The file called `name` inside `folder`, and never one outside.
 ///
 /// # Errors
-/// When it is [no such name](check_name), and when there is a link of that name, which could lead out of the folder.
+/// When it is [no such name](check_name), and when there is a link of that name, which could lead out of the
+/// folder.
 pub fn in_folder(folder: &Path, name: &str) -> Result<PathBuf, Error> {
     check_name(name)?;
     let file = folder.join(name);
@@ -71,13 +73,13 @@ fn is_plain(name: &str) -> bool {
         && !numbered
 }
 
-/// Writes files into a folder, all or none: each is written to a temporary file first, and they get their [names](in_folder) in the end, in
-/// this order. So that a failure, such as a full disk, leaves everything as it was, and a reader of the last file finds the others.
-/// Files that exist are replaced only if `overwrite`.
+/// Writes files into a folder, all or none: each is written to a temporary file first, and they get their
+/// [names](in_folder) in the end, in this order. So that a failure, such as a full disk, leaves everything as
+/// it was, and a reader of the last file finds the others. Files that exist are replaced only if `overwrite`.
 ///
 /// # Errors
-/// As [`in_folder`] and [`write`](fn@crate::write); when two names are one on some systems; when a file exists and must not be replaced; and the
-/// first error among the parts.
+/// As [`in_folder`] and [`write`](fn@crate::write); when two names are one on some systems; when a file
+/// exists and must not be replaced; and the first error among the parts.
 pub fn write_all<B: AsRef<[u8]>, E: From<Error>>(
     folder: &Path,
     files: impl IntoIterator<Item = (String, impl IntoIterator<Item = Result<B, E>>)>,
@@ -247,7 +249,8 @@ mod tests {
             assert_eq!(write_all(dir.path(), bad, true).unwrap_err().message(), "the disk is full");
             assert_eq!(content(dir.path()), before);
         }
-        // What exists is not replaced unasked; names that are one on some systems, and bad names, come to nothing.
+        // What exists is not replaced unasked; names that are one on some systems, and bad names, come to
+        // nothing.
         for (bad, overwrite, why) in [
             (
                 files([("d", vec![Ok("9")]), ("e", vec![Ok("9")]), ("b", vec![Ok("9")])]),
@@ -271,7 +274,8 @@ mod tests {
         assert_eq!(content(dir.path()).len(), before.len() + 1);
     }
 
-    /// A name that is taken by a folder after all was checked: the files that had their names already are as before.
+    /// A name that is taken by a folder after all was checked: the files that had their names already are as
+    /// before.
     #[test]
     fn a_name_that_cannot_be_given_undoes_the_others() {
         let dir = tempfile::tempdir().unwrap();

@@ -1,18 +1,21 @@
-//! Temporary files in the folder of the file that they become, and sweeping up those that a killed process left.
+//! Temporary files in the folder of the file that they become, and sweeping up those that a killed process
+//! left.
 
 use std::fs::{File, OpenOptions};
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The names of temporary files: this, sixteen random hexadecimal digits, [`ENDING`]. Names are not used twice.
+/// The names of temporary files: this, sixteen random hexadecimal digits, [`ENDING`]. Names are not used
+/// twice.
 const BEGINNING: &str = ".mp-";
 const ENDING: &str = ".tmp";
 
 /// The most entries of a folder that are looked at for left-over files.
 const LISTED: usize = 10_000;
 
-/// A temporary file. It is locked as long as it is open, which says that it is in use, and removed when it is dropped.
+/// A temporary file. It is locked as long as it is open, which says that it is in use, and removed when it is
+/// dropped.
 #[derive(Debug)]
 pub(crate) struct Temporary {
     pub(crate) file: File,

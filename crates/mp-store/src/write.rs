@@ -45,21 +45,23 @@ pub fn make_folder(folder: &Path) -> Result<(), Error> {
     }
 }
 
-/// Writes `bytes` to `path` in one step: to a temporary file in the same folder, which is then renamed. A reader sees the
-/// old file or the whole new one, also after the process was killed or the machine lost its power. A failure leaves the
-/// old file as it was.
+/// Writes `bytes` to `path` in one step: to a temporary file in the same folder, which is then renamed. A
+/// reader sees the old file or the whole new one, also after the process was killed or the machine lost its
+/// power. A failure leaves the old file as it was.
 ///
-/// A link stays a link: the file that it leads to is replaced. The new file has the permissions and, as far as the system
-/// allows it, the owner of the old one. Temporary files that a killed process left in the folder are removed.
+/// A link stays a link: the file that it leads to is replaced. The new file has the permissions and, as far
+/// as the system allows it, the owner of the old one. Temporary files that a killed process left in the
+/// folder are removed.
 ///
 /// # Errors
-/// When the folder is missing or not writable, the file is write-protected or not a regular file, or the disk is full.
+/// When the folder is missing or not writable, the file is write-protected or not a regular file, or the disk
+/// is full.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     write_parts(path, [Ok::<_, Error>(bytes)])
 }
 
-/// As [`write`](fn@write), of a file that is made part by part, as it may be too large for memory. An error among the parts is returned,
-/// and leaves the old file as it was.
+/// As [`write`](fn@write), of a file that is made part by part, as it may be too large for memory. An error
+/// among the parts is returned, and leaves the old file as it was.
 ///
 /// # Errors
 /// As [`write`](fn@write), and the first among the parts.
@@ -76,7 +78,8 @@ pub fn write_parts<B: AsRef<[u8]>, E: From<Error>>(
     Ok(())
 }
 
-/// A temporary file in `folder` with these parts, which is on the disk: what `path` will be, in place of the file `old`.
+/// A temporary file in `folder` with these parts, which is on the disk: what `path` will be, in place of the
+/// file `old`.
 pub(crate) fn filled<B: AsRef<[u8]>, E: From<Error>>(
     path: &Path,
     folder: &Path,
@@ -102,8 +105,8 @@ pub(crate) fn filled<B: AsRef<[u8]>, E: From<Error>>(
     Ok(new)
 }
 
-/// Refuses a path that [`write`](fn@write) would not be able to write: for programs that work for long before they write. The
-/// folder may be missing, if it could be made.
+/// Refuses a path that [`write`](fn@write) would not be able to write: for programs that work for long before
+/// they write. The folder may be missing, if it could be made.
 ///
 /// # Errors
 /// As [`write`](fn@write).

@@ -1,12 +1,13 @@
-//! The rapidly-exploring random tree family: one engine, and the algorithms on it. [`algo`] has the table of them.
+//! The rapidly-exploring random tree family: one engine, and the algorithms on it. [`algo`] has the table of
+//! them.
 //!
-//! [`SharedTree`] ([`algo::shared_tree`]) is RRT on several threads, which grow one tree together; [`SharedBiRrt`]
-//! ([`algo::shared_bi_rrt`]) is Bi-RRT so.
-//! Two meta-planners run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
-//! ([`algo::restarts`]) one after the other. [`build_from`] makes them by name.
+//! [`SharedTree`] ([`algo::shared_tree`]) is RRT on several threads, which grow one tree together;
+//! [`SharedBiRrt`] ([`algo::shared_bi_rrt`]) is Bi-RRT so. Two meta-planners run other planners:
+//! [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`] ([`algo::restarts`]) one after the
+//! other. [`build_from`] makes them by name.
 //!
-//! A planner is made from a checked [`Problem`] and is run through the trait [`Planner`](mp_cspace::Planner): one step
-//! at a time, or until a stop ends it. [`build`] makes one by name.
+//! A planner is made from a checked [`Problem`] and is run through the trait [`Planner`](mp_cspace::Planner):
+//! one step at a time, or until a stop ends it. [`build`] makes one by name.
 //!
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Length, Rn, Rng, Straight};
@@ -29,8 +30,8 @@
 //! ```
 //!
 //! # The engine
-//! A [`SearchTree`] is a [`Tree`] with its policies. Every iteration of every variant samples a target, selects nodes,
-//! extends them toward the target and inserts the motions. Each of these verbs is a slot:
+//! A [`SearchTree`] is a [`Tree`] with its policies. Every iteration of every variant samples a target,
+//! selects nodes, extends them toward the target and inserts the motions. Each of these verbs is a slot:
 //!
 //! | slot | trait | here |
 //! |---|---|---|
@@ -40,12 +41,12 @@
 //! | how a motion joins the tree | [`Inserter`] | [`Append`], [`AppendDistinct`], [`AppendApart`], [`Rewire`] |
 //! | how one state is connected to another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
 //!
-//! A variant is a set of [`TreePlannerParts`] for one of three loops: [`SingleTree`], [`TwoTrees`], and [`Improving`],
-//! the loop of anytime planners.
+//! A variant is a set of [`TreePlannerParts`] for one of three loops: [`SingleTree`], [`TwoTrees`], and
+//! [`Improving`], the loop of anytime planners.
 //!
 //! # Writing your own planner
-//! A variant of the family fills the slots with policies, those here or your own. RRT whose tree is as greedy as those
-//! of [`RrtConCon`]:
+//! A variant of the family fills the slots with policies, those here or your own. RRT whose tree is as greedy
+//! as those of [`RrtConCon`]:
 //! ```
 //! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Length, Rn, Rng, Straight};
 //! # use mp_tree::Problem;
@@ -67,11 +68,12 @@
 //! assert!(matches!(outcome, Outcome::Solved(_)));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! The loops try the straight motion to the goal first, unless the extender [declines](Extender::allows_direct).
+//! The loops try the straight motion to the goal first, unless the extender
+//! [declines](Extender::allows_direct).
 //!
-//! A planner with a loop of its own takes from the engine what it needs: [`Core`] has the ends of the problem and traces
-//! and verifies paths; [`SearchTree`] is a tree that grows, and that prunes the subtree below an edge the verifier
-//! rejects. A tree that grows from random nodes:
+//! A planner with a loop of its own takes from the engine what it needs: [`Core`] has the ends of the problem
+//! and traces and verifies paths; [`SearchTree`] is a tree that grows, and that prunes the subtree below an
+//! edge the verifier rejects. A tree that grows from random nodes:
 //! ```
 //! use mp_cspace::{Direction, Linear, LocalPlanner, NodeId, Observer, Path, Planner, Progress, Rng, Space};
 //! use mp_tree::{AppendDistinct, SearchTree, Core, Extend, Grown, NearestSelector};
@@ -128,14 +130,14 @@
 //! ```
 //!
 //! # Guarantees
-//! - A path is returned only after a [verifier](Verify) has passed each of its edges. An edge that fails is removed from
-//!   the tree with the subtree below it, and planning goes on.
+//! - A path is returned only after a [verifier](Verify) has passed each of its edges. An edge that fails is
+//!   removed from the tree with the subtree below it, and planning goes on.
 //! - Bad input is a [`BuildError`] before planning begins.
-//! - The same problem, parameters and random numbers give the same path, bit for bit. Stopping and continuing changes
-//!   nothing.
+//! - The same problem, parameters and random numbers give the same path, bit for bit. Stopping and continuing
+//!   changes nothing.
 //! - No tree has two nodes with the same state.
-//! - A panic in a local planner, verifier, goal or observer loses only the step it interrupts: a caller that catches it
-//!   may inspect the trees and continue.
+//! - A panic in a local planner, verifier, goal or observer loses only the step it interrupts: a caller that
+//!   catches it may inspect the trees and continue.
 
 pub mod algo;
 mod by_name;

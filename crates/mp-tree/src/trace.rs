@@ -1,5 +1,5 @@
-//! The `tracing` events of the crate: at debug level, from functions that are compiled once, and of what is rare. The end of a run is
-//! an event of `mp-cspace`.
+//! The `tracing` events of the crate: at debug level, from functions that are compiled once, and of what is
+//! rare. The end of a run is an event of `mp-cspace`.
 
 use std::fmt::Display;
 
@@ -8,7 +8,8 @@ pub(crate) fn made(planner: &dyn Display) {
     tracing::debug!(%planner, "made");
 }
 
-/// A path to a node did not pass verification: how many nodes its tree had, and has without what hung on the edge that failed.
+/// A path to a node did not pass verification: how many nodes its tree had, and has without what hung on the
+/// edge that failed.
 pub(crate) fn pruned(tree: usize, from: usize, to: usize) {
     tracing::debug!(tree, from, to, "pruned");
 }

@@ -1,4 +1,5 @@
-//! Trees whose edges bend, by name, of a point and of a rod: what they find is free, and what cannot be found is not.
+//! Trees whose edges bend, by name, of a point and of a rod: what they find is free, and what cannot be found
+//! is not.
 
 mod common;
 use common::*;
@@ -153,8 +154,8 @@ fn rescued_samples_save_iterations() {
     }
 }
 
-/// Edges of the tree are curves, verified piece by piece; a verifier that finds one of the pieces in collision
-/// rejects the path.
+/// Edges of the tree are curves, verified piece by piece; a verifier that finds one of the pieces in
+/// collision rejects the path.
 #[test]
 fn edges_of_the_tree_are_curves() {
     let (space, boxes) = (square(), orchard());
@@ -222,7 +223,8 @@ fn bad_settings_are_refused() {
     assert!(planner("rss").unwrap_err().to_string().contains("`rrs`"));
 }
 
-/// Observers learn how edges bend: every piece of every edge is free, in forward time, in the trees from the start and from the goal.
+/// Observers learn how edges bend: every piece of every edge is free, in forward time, in the trees from the
+/// start and from the goal.
 #[test]
 fn events_tell_how_edges_bend() {
     let (space, boxes) = (square(), orchard());

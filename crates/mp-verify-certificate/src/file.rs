@@ -260,7 +260,8 @@ impl Certificate {
             let right = right && finite(&[body.radius]) && body.radius >= 0.0;
             sound(right, &format!("the body {} is odd", body.name))?;
         }
-        // The robot hangs from one frame, which moves as a whole if any does, and no obstacle is carried by it.
+        // The robot hangs from one frame, which moves as a whole if any does, and no obstacle is carried by
+        // it.
         let root = |frame: usize| {
             std::iter::successors(Some(frame), |i| model.frames[*i].parent()).last().unwrap_or(frame)
         };

@@ -1,8 +1,8 @@
 //! Replays certificates: files that prove a path free of collision, written by `mp plan --certificate`.
 //!
-//! It shares no code with the planner. It has its own reading, kinematics, bounds on motions and trees, and plain arithmetic decides:
-//! two convex pieces are as far apart as the gap between their corners along an axis. The format, and what a certificate proves, is
-//! described in docs/formats/certificate.md.
+//! It shares no code with the planner. It has its own reading, kinematics, bounds on motions and trees, and
+//! plain arithmetic decides: two convex pieces are as far apart as the gap between their corners along an
+//! axis. The format, and what a certificate proves, is described in docs/formats/certificate.md.
 //!
 //! ```
 //! let refused = mp_verify_certificate::verify("{}").unwrap_err();
@@ -81,8 +81,8 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
     }
 }
 
-/// Whether bodies of a certificate are the meshes of files: pairs of the name of a body and the content of a file (OFF, OBJ, STL, GEMPA
-/// text). Returns the names of the bodies that were not compared.
+/// Whether bodies of a certificate are the meshes of files: pairs of the name of a body and the content of a
+/// file (OFF, OBJ, STL, GEMPA text). Returns the names of the bodies that were not compared.
 ///
 /// # Errors
 /// Which body is another, in a sentence.

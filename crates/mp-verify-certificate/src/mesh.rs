@@ -5,7 +5,8 @@ use crate::file::Body;
 /// The corners of a polygon, in their order.
 type Face = Vec<[f64; 3]>;
 
-/// Whether the pieces of a body are the faces of a mesh, one after the other, however they are cut into triangles.
+/// Whether the pieces of a body are the faces of a mesh, one after the other, however they are cut into
+/// triangles.
 pub(crate) fn is_of(body: &Body, mesh: &[u8]) -> Result<(), String> {
     let faces = read(mesh).ok_or(
         "this program cannot read it: OFF, OBJ, STL and GEMPA text, each vertex and each face of OFF and OBJ on a line of its own",
@@ -13,7 +14,8 @@ pub(crate) fn is_of(body: &Body, mesh: &[u8]) -> Result<(), String> {
     let differs = |i: usize| Err(format!("face {} of the file is not one of the body", i + 1));
     let mut pieces = body.pieces.iter();
     for (i, face) in faces.iter().enumerate().filter(|(_, face)| face.len() > 2) {
-        // The boundary of the triangles is that of the face: an edge inside is one of two triangles, and once in each direction.
+        // The boundary of the triangles is that of the face: an edge inside is one of two triangles, and once
+        // in each direction.
         let mut open: Vec<_> = (0..face.len()).map(|k| [face[k], face[(k + 1) % face.len()]]).collect();
         for piece in pieces.by_ref().take(face.len() - 2) {
             let corners: Face = piece.iter().map(|v| body.vertices[*v]).collect();

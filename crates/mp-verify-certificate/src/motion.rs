@@ -87,7 +87,8 @@ impl<'c> Edge<'c> {
         Ok(rate * self.duration)
     }
 
-    /// The configuration at the part `t` of the edge, from 0 to 1: the numbers, and the poses that stand for six of them.
+    /// The configuration at the part `t` of the edge, from 0 to 1: the numbers, and the poses that stand for
+    /// six of them.
     fn moment(&self, t: f64) -> (Vec<f64>, Vec<(usize, Pose)>) {
         let (model, from, to) = (self.model, self.from, self.to);
         let (mut row, mut poses) = (from.to_vec(), Vec::new());
@@ -170,8 +171,8 @@ impl<'c> Edge<'c> {
         poses
     }
 
-    /// How much nearer (m) two bodies in balls come at most than they are in the middle of the part from `begin` to `end` of the edge,
-    /// where the frames are at `frames`.
+    /// How much nearer (m) two bodies in balls come at most than they are in the middle of the part from
+    /// `begin` to `end` of the edge, where the frames are at `frames`.
     pub(crate) fn nearing(&self, a: &Ball, b: &Ball, frames: &[Pose], [begin, end]: [f64; 2]) -> f64 {
         let chain = |ball: &Ball| -> Vec<usize> {
             std::iter::successors(Some(ball.frame), |i| self.model.frames[*i].parent()).collect()
@@ -185,8 +186,9 @@ impl<'c> Edge<'c> {
         self.strays(a, &up_a, frames, [begin, end]) + self.strays(b, &up_b, frames, [begin, end])
     }
 
-    /// How far `frames_above` move a point of a body away from where it is in the middle, at most. Let them move one after the other,
-    /// the nearest to the body first: each finds the point where the ones before have brought it.
+    /// How far `frames_above` move a point of a body away from where it is in the middle, at most. Let them
+    /// move one after the other, the nearest to the body first: each finds the point where the ones before
+    /// have brought it.
     fn strays(&self, ball: &Ball, frames_above: &[usize], frames: &[Pose], [begin, end]: [f64; 2]) -> f64 {
         let half = 0.5 * (end - begin);
         let center = frames[ball.frame].transform_point(ball.center);
@@ -212,7 +214,8 @@ impl<'c> Edge<'c> {
         strayed
     }
 
-    /// How far the row that follows is from where the edge leads: metres, of any point of the robot; and the velocities and the time.
+    /// How far the row that follows is from where the edge leads: metres, of any point of the robot; and the
+    /// velocities and the time.
     pub(crate) fn jump(&self) -> f64 {
         let (arrived, mut start) = (self.frames(1.0), self.to.to_vec());
         if let Some(drive) = &self.model.drive {

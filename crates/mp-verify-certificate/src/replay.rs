@@ -13,7 +13,7 @@ pub struct Proved {
     pub scene: String,
     /// How many configurations the path has.
     pub configurations: usize,
-    /// How many edges.
+    /// How many motions between two configurations were proved.
     pub edges: usize,
     /// Of how many parts the proof consists.
     pub parts: usize,
@@ -118,7 +118,8 @@ fn covers(model: &Model) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether nothing of a body is inside of another where the path begins. Nothing can get there later: it would have to cross a boundary.
+/// Whether nothing of a body is inside of another where the path begins. Nothing can get there later: it
+/// would have to cross a boundary.
 fn begins_outside(model: &Model, solids: &[Vec<Solid>], edge: &Edge<'_>) -> Result<(), String> {
     let frames = edge.frames(0.0);
     let corners: Vec<Vec<Vec3>> = model.bodies.iter().map(witnesses).collect();

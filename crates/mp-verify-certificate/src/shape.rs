@@ -1,6 +1,6 @@
-//! Whether bodies are apart. All rests on this: two convex sets are apart by the gap between them along any axis. Boxes of the tree
-//! are compared along their axes, pieces along the one that parry finds, or along all that can matter. The gap is arithmetic on corners;
-//! where the axis comes from is of no account.
+//! Whether bodies are apart. All rests on this: two convex sets are apart by the gap between them along any
+//! axis. Boxes of the tree are compared along their axes, pieces along the one that parry finds, or along all
+//! that can matter. The gap is arithmetic on corners; where the axis comes from is of no account.
 
 use crate::file::Body;
 use parry3d_f64::math::{Pose3 as Pose, Vec3};
@@ -112,7 +112,8 @@ impl Shape {
     }
 }
 
-/// Whether two boxes are apart by at least `enough`: along the axes of one, or along `axes`, those of the other.
+/// Whether two boxes are apart by at least `enough`: along the axes of one, or along `axes`, those of the
+/// other.
 fn boxes_apart(a: &Node, b: &Node, pose: &Pose, axes: &[Vec3; 3], enough: f64) -> bool {
     let between = pose.transform_point(b.center) - a.center;
     let far = axes[0].abs() * b.half.x + axes[1].abs() * b.half.y + axes[2].abs() * b.half.z;
@@ -153,7 +154,8 @@ fn gap(a: &Piece, b: &Piece, axis: Vec3) -> f64 {
     (b.0 - a.1).max(a.0 - b.1)
 }
 
-/// The axes along which two pieces can be nearest: between corners, from a corner across an edge, across two edges of one or of both.
+/// The axes along which two pieces can be nearest: between corners, from a corner across an edge, across two
+/// edges of one or of both.
 fn axes<'p>(a: &'p Piece, b: &'p Piece) -> impl Iterator<Item = Vec3> + 'p {
     let edges = |piece: &Piece| -> Vec<Vec3> {
         let n = piece.0.len();

@@ -1,4 +1,5 @@
-//! What is inside of what. Only what is closed has an inside: edges in the plane z = 0, or triangles that face outward.
+//! What is inside of what. Only what is closed has an inside: edges in the plane z = 0, or triangles that
+//! face outward.
 
 use crate::file::{Body, Part};
 use parry3d_f64::math::Vec3;
@@ -20,8 +21,8 @@ fn place(body: &Body, vertex: usize) -> Place {
     body.vertices[vertex].map(|x| (x + 0.0).to_bits())
 }
 
-/// Whether pieces have no end: a place ends an even number of edges, and the side of a triangle is the side of another one, where it
-/// runs the other way.
+/// Whether pieces have no end: a place ends an even number of edges, and the side of a triangle is the side
+/// of another one, where it runs the other way.
 fn is_closed(body: &Body, pieces: &[Vec<usize>]) -> bool {
     let (mut ends, mut sides) = (HashMap::new(), HashMap::new());
     for piece in pieces {
@@ -96,8 +97,8 @@ pub(crate) fn witnesses(body: &Body) -> Vec<Vec3> {
 }
 
 impl Solid {
-    /// Whether a point is inside: edges are crossed an odd number of times on the way to it, triangles fill more than half of what is
-    /// seen from it. Not for points within rounding of a piece.
+    /// Whether a point is inside: edges are crossed an odd number of times on the way to it, triangles fill
+    /// more than half of what is seen from it. Not for points within rounding of a piece.
     pub(crate) fn holds(&self, p: Vec3) -> bool {
         if p.min(self.low) != self.low || p.max(self.high) != self.high {
             return false;

@@ -1,4 +1,5 @@
-//! The corpora of the fuzzer for certificates and what they are compared with, and damaged copies of them: docs/fuzzing.md.
+//! The corpora of the fuzzer for certificates and what they are compared with, and damaged copies of them:
+//! docs/fuzzing.md.
 
 #[path = "../../../fuzz/src/certificate.rs"]
 mod certificate;

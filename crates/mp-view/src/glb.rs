@@ -263,7 +263,6 @@ impl<'s> Glb<'s> {
         Some(json!({ "attributes": { "POSITION": points }, "indices": triangles, "mode": TRIANGLES }))
     }
 
-    /// A node at a pose.
     fn node(&mut self, name: &str, mesh: Option<usize>, pose: Option<[f64; 7]>) -> usize {
         let mut node = json!({ "name": name });
         if let Some(pose) = pose {

@@ -108,7 +108,6 @@ impl Growth {
         &mut self.trees[tree]
     }
 
-    /// A roadmap as it is drawn.
     fn drawn(&self, map: GrownRoadmap) -> Roadmap {
         Roadmap {
             nodes: map.rows.iter().flat_map(|row| self.place(row)).collect(),
@@ -232,7 +231,6 @@ impl GrowingTree {
     }
 }
 
-/// The name of a tree.
 fn name_of(tree: usize) -> &'static str {
     if tree == 0 { "from the start" } else { "from the goal" }
 }

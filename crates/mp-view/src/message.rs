@@ -60,7 +60,6 @@ impl Message {
     }
 }
 
-/// A value as JSON.
 pub(crate) fn json(value: &impl serde::Serialize) -> Value {
     // What is written here has only text as names of members.
     serde_json::to_value(value).unwrap_or_default()

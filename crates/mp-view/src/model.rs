@@ -26,15 +26,15 @@ pub struct SceneFile {
     pub lines: Vec<Polyline>,
     /// The bodies of the robot first, then the obstacles.
     pub bodies: Vec<Body>,
-    /// The start.
+    /// Where paths begin, drawn green.
     pub start: Configuration,
-    /// The goals.
+    /// Where paths may end, drawn red; one configuration for each goal that leaves numbers free.
     pub goals: Vec<Configuration>,
     /// Paths, to be drawn and animated.
     pub paths: Vec<PathTrack>,
     /// Search trees.
     pub trees: Vec<Tree>,
-    /// A roadmap.
+    /// The roadmap of a run, if its planner builds one.
     pub roadmap: Option<Roadmap>,
     /// The report of a run, as `mp plan --json` prints it.
     pub report: Option<serde_json::Value>,
@@ -56,7 +56,7 @@ pub struct Area {
     pub rings: Vec<Vec<f32>>,
 }
 
-/// A polyline.
+/// Points joined in order by straight lines.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polyline {
     /// x y z (m) of each point.
@@ -77,15 +77,15 @@ pub enum Role {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Shape {
-    /// One of the meshes.
+    /// An index of [`SceneFile::meshes`].
     Mesh(usize),
-    /// One of the areas.
+    /// An index of [`SceneFile::areas`].
     Area(usize),
     /// Some of the polylines.
     Lines(Vec<usize>),
 }
 
-/// A body.
+/// What is drawn at a pose: a part of the robot, or an obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// Its name in messages.
@@ -113,7 +113,7 @@ pub struct Configuration {
 /// A path, sampled finely enough that poses between neighbours may be interpolated linearly.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathTrack {
-    /// Its name.
+    /// What lists and the legend call it.
     pub name: String,
     /// Whether the path passed the verifier.
     pub verified: bool,
@@ -134,7 +134,7 @@ pub struct PathTrack {
 /// A search tree, drawn by one point of the robot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tree {
-    /// Its name.
+    /// What lists and the legend call it.
     pub name: String,
     /// x y z (m) of each node.
     pub nodes: Vec<f32>,

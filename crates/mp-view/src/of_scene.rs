@@ -175,7 +175,6 @@ impl PathTrack {
     }
 }
 
-/// The path of a report.
 fn path_of(scene: &Scene, report: &Report) -> Option<PathRows> {
     let rows = report.path.clone()?;
     Some(PathRows { format: scene.path_format(), columns: report.columns.clone(), rows })

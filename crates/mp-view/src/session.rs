@@ -61,7 +61,6 @@ impl RunRequest {
     }
 }
 
-/// The first order of a run.
 pub(crate) fn first_order(paused: bool) -> run::Order {
     if paused { run::Order::Pause } else { run::Order::Go }
 }

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 /// The folders that each folder imports.
 type Imports = BTreeMap<String, BTreeSet<String>>;
 
-/// A circle between the folders of the crate whose `sources`, with their text, are below `src`, if there is one.
+/// A circle between the folders of the crate whose `sources`, with their text, are below `src`, if there is
+/// one.
 pub(super) fn of(src: &Path, sources: &[(PathBuf, String)]) -> Option<Vec<String>> {
     let inside: Vec<(&Path, &str)> = sources
         .iter()

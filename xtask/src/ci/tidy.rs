@@ -1,6 +1,7 @@
-//! Checks beyond those of the compiler: that the crates depend on each other as `ARCHITECTURE.md` says, that the
-//! paths it names exist, that no folders of a crate import each other in a circle, that every file is named after
-//! what it holds, that every algorithm has an example and a test, and that no link of the documentation is dead.
+//! Checks beyond those of the compiler: that the crates depend on each other as `ARCHITECTURE.md` says, that
+//! the paths it names exist, that no folders of a crate import each other in a circle, that every file is
+//! named after what it holds, that every algorithm has an example and a test, and that no link of the
+//! documentation is dead.
 
 use super::{circles, links};
 use std::collections::BTreeSet;
@@ -274,8 +275,9 @@ fn oracle_uses(path: &Path, text: &str) -> Vec<String> {
         .collect()
 }
 
-/// What an algorithm's file (`…/algo/NAME.rs`) lacks: an example called so, or a test (in the file, in one called
-/// so, in one that names it or its type, or, when it can be made by name, in one that runs all that can).
+/// What an algorithm's file (`…/algo/NAME.rs`) lacks: an example called so, or a test (in the file, in one
+/// called so, in one that names it or its type, or, when it can be made by name, in one that runs all that
+/// can).
 fn algorithm(sources: &[(PathBuf, String)], path: &Path) -> Option<&'static str> {
     if !path.parent().is_some_and(|p| p.ends_with("src/algo")) || path.ends_with("mod.rs") {
         return None;

@@ -10,10 +10,11 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-/// The results in a file of `mp many` or `mp merge`, item by item: each is checked as it is read, and memory does not grow with their number.
+/// The results in a file of `mp many` or `mp merge`, item by item: each is checked as it is read, and memory
+/// does not grow with their number.
 ///
-/// A file that was cut off, or whose run still goes on, ends with an error, unless results [may be missing](Self::partial). After an
-/// error there is nothing more.
+/// A file that was cut off, or whose run still goes on, ends with an error, unless results
+/// [may be missing](Self::partial). After an error there is nothing more.
 ///
 /// ```no_run
 /// let results = mp_batch::ListResults::open("results.jsonl".as_ref())?;
@@ -48,7 +49,7 @@ impl ListResults {
         Self { partial: true, ..self }
     }
 
-    /// What the results are of.
+    /// The first line of the file: which list, which part of it, and of which scenes.
     #[must_use]
     pub fn header(&self) -> &ResultsHeader {
         &self.reader.header

@@ -11,11 +11,13 @@ use std::io::BufRead;
 use std::path::Path;
 use xxhash_rust::xxh3::Xxh3;
 
-/// Merges the results of all shards of a list, given in any order, into the file `out`: it has the bytes of a run of all items.
+/// Merges the results of all shards of a list, given in any order, into the file `out`: it has the bytes of a
+/// run of all items.
 ///
 /// # Errors
-/// When a shard is missing, is there twice, is not complete or damaged, or is of another list, version, scene or options than the
-/// others: with its name, and the command that makes it again. When a file cannot be read, or `out` cannot be written; it is then as before.
+/// When a shard is missing, is there twice, is not complete or damaged, or is of another list, version, scene
+/// or options than the others: with its name, and the command that makes it again. When a file cannot be
+/// read, or `out` cannot be written; it is then as before.
 pub fn merge_results<P: AsRef<Path>>(out: &Path, shards: &[P]) -> Result<Tally, Error> {
     let readers = shards.iter().map(|file| open(file.as_ref())).collect::<Result<_, _>>()?;
     mp_store::make_folder(mp_store::folder_of(out))?;
@@ -28,7 +30,8 @@ pub fn merge_results<P: AsRef<Path>>(out: &Path, shards: &[P]) -> Result<Tally, 
 /// Merges results.
 ///
 /// # Errors
-/// When they are not all shards of one list, each once. What is wrong further down is an error among the lines.
+/// When they are not all shards of one list, each once. What is wrong further down is an error among the
+/// lines.
 pub(crate) fn merged<R: BufRead>(mut shards: Vec<ResultsReader<R>>) -> Result<Merged<R>, Error> {
     let Some(first) = shards.first() else {
         return Err(Error::new("there is no shard to merge").help("name the files of all shards"));

@@ -6,16 +6,19 @@ use std::collections::{BinaryHeap, HashMap};
 
 /// The cost of an item of whose kind none was handed out.
 const UNTRIED: f64 = f64::INFINITY;
-/// The cost of an item of whose kind some are worked on and none is done. They take longer than those that are done.
+/// The cost of an item of whose kind some are worked on and none is done. They take longer than those that
+/// are done.
 const UNKNOWN: f64 = f64::MAX;
 
 /// Hands out the items of a shard, the dearest first.
 ///
-/// An item is expected to take as long as those of its line that are done, on the average; if none is, as those with its scene, planner and
-/// budget; if none of these is, it counts as dearest, so that it soon is.
+/// The time of an item is estimated by the mean of the finished items of its line; if there are none, by
+/// those with the same scene, planner and budget. An item without any such estimate counts as the most
+/// expensive one, so that an estimate exists soon.
 ///
-/// Results are written in the order of the items, so those of dear items wait for cheap ones before them. To bound how many,
-/// items come in blocks, each of which begins when everything before the last one is written.
+/// Results are written in the order of the items, so the result of an expensive item waits for the cheap ones
+/// before it. To bound how many, items come in blocks, each of which begins when everything before the last
+/// one is written.
 pub(super) struct Order<'l> {
     list: &'l ProblemList,
     shard: Shard,
@@ -115,8 +118,8 @@ impl<'l> Order<'l> {
         self.left
     }
 
-    /// The place of the next item; those that are `known` are left out. `written` results are written. `None` when there is no item, at
-    /// least until more are.
+    /// The place of the next item; those that are `known` are left out. `written` results are written. `None`
+    /// when there is no item, at least until more are.
     pub(super) fn next(&mut self, written: u64, known: impl Fn(u64) -> bool) -> Option<u64> {
         loop {
             match self.pop() {

@@ -115,8 +115,9 @@ fn same(file: &Path, here: &str, fingerprint: &str) -> Result<(), Error> {
     Err(Error::new(message).help("start the same program on all nodes"))
 }
 
-/// A scene and a request on all ranks: each of them calls this. Only the master needs the disk: it calls `load`, and sends the request and
-/// all files of the scene to the others, once. `None` on the others when the master cannot load it.
+/// A scene and a request on all ranks: each of them calls this. Only the master needs the disk: it calls
+/// `load`, and sends the request and all files of the scene to the others, once. `None` on the others when
+/// the master cannot load it.
 ///
 /// ```
 /// use mp_plan::{Request, Scene};
@@ -128,8 +129,8 @@ fn same(file: &Path, here: &str, fingerprint: &str) -> Result<(), Error> {
 /// ```
 ///
 /// # Errors
-/// On the master, when `load` fails or the scene is from no file; elsewhere, when a rank has another version of the program. Where a rank
-/// cannot be reached.
+/// On the master, when `load` fails or the scene is from no file; elsewhere, when a rank has another version
+/// of the program. Where a rank cannot be reached.
 pub fn scene_on_ranks(
     link: &dyn Link,
     load: impl FnOnce() -> Result<(Scene, Request), Error>,

@@ -24,20 +24,21 @@ pub struct RanksOutcome {
 }
 
 impl ListedProblems {
-    /// As [`run`](Self::run), on all ranks: each of them calls this, with the same options. Only the master needs the disk: it calls `problems`
-    /// for the list, sends all files of its scenes to the others, once, and writes the results, the same bytes as `run`. It hands out
-    /// items one after the other, first those of which the like took longest. `progress` is called on the master, and the others get
-    /// `None`.
+    /// As [`run`](Self::run), on all ranks: each of them calls this, with the same options. Only the master
+    /// needs the disk: it calls `problems` for the list, sends all files of its scenes to the others, once,
+    /// and writes the results, the same bytes as `run`. It hands out items one by one, beginning with those
+    /// whose kind has taken longest so far. `progress` is called on the master, and the others get `None`.
     ///
-    /// Results that come before their place in the file are kept beside it, in a file with the ending `.ahead`, until their turn. So a
-    /// job that is killed has lost only the items at work, whatever ended it: the same call goes on, also on another number of ranks, as does
-    /// `run`.
+    /// Results that come before their place in the file are kept beside it, in a file with the ending
+    /// `.ahead`, until their turn. So a job that is killed loses only the items at work. The same call
+    /// resumes it, on any number of ranks; so does `run`.
     ///
-    /// When `cancel` is raised, on whichever rank, no further item begins, and those that are not finished leave no result.
+    /// When `cancel` is raised, on whichever rank, no further item begins, and those that are not finished
+    /// leave no result.
     ///
     /// # Errors
-    /// As [`run`](Self::run), those of `problems`, and when `out` is a file of the list; on the master. Where a rank cannot be reached, or
-    /// has another version of the program or other scenes than the master.
+    /// As [`run`](Self::run), those of `problems`, and when `out` is a file of the list; on the master. Where
+    /// a rank cannot be reached, or has another version of the program or other scenes than the master.
     pub fn run_on(
         link: &dyn Link,
         out: &Path,
@@ -87,7 +88,6 @@ impl ListedProblems {
     }
 }
 
-/// Results that are open.
 struct OpenResults {
     log: Log,
     ahead: EarlyResults,

@@ -55,9 +55,9 @@ pub struct SceneFingerprint {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ItemResult {
-    /// The number of the item.
+    /// Its place in the list, from 0.
     pub item: u64,
-    /// Its report.
+    /// What came of it; `None` where there is an error in place of a report.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub report: Option<Report>,
     /// Why it could not be planned.
@@ -124,7 +124,7 @@ impl ResultsHeader {
         }
     }
 
-    /// What is different in `other`, but for the shard: a sentence about this one.
+    /// The first difference to `other` apart from the shard, as a sentence about this header.
     pub(super) fn difference(&self, other: &Self) -> Option<String> {
         let short = |text: &str| one_line(text, 60);
         let seconds = |time: Option<f64>| time.map_or("no --time".to_owned(), |s| format!("--time {s}"));

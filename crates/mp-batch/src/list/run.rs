@@ -25,7 +25,8 @@ pub struct ManyOptions {
     pub threads: usize,
     /// Whether reports have times, which differ from run to run.
     pub times: bool,
-    /// The budget of problems whose requests name none, seconds. `None` is that of [`Budget::default`](mp_plan::Budget).
+    /// The budget of problems whose requests name none, seconds. `None` is that of
+    /// [`Budget::default`](mp_plan::Budget).
     pub time_s: Option<f64>,
 }
 
@@ -43,7 +44,7 @@ pub struct ManyOutcome {
     pub items: u64,
     /// How many results were in the file before.
     pub before: u64,
-    /// Those that are in the file now; while it is written by several ranks, also those that are kept until their place in it comes.
+    /// Results in the file now. While several ranks write it, results that wait for their place count too.
     pub tally: Tally,
 }
 
@@ -56,9 +57,10 @@ impl ManyOutcome {
 }
 
 impl ListedProblems {
-    /// Plans the items of a shard, and appends a line for each to the file `out`, in order: its report, or the error for which there is
-    /// none. If the file exists, the results of a run that ended early, it goes on after the last whole line; the file in the
-    /// end has the same bytes as one of a run that did not end. `progress` is called first, and after each item, in the calling thread.
+    /// Plans the items of a shard, and appends a line for each to the file `out`, in order: its report, or
+    /// the error for which there is none. If the file holds the results of a run that ended early, planning
+    /// resumes after its last whole line, and the finished file has the same bytes as that of an
+    /// uninterrupted run. `progress` is called first, and after each item, in the calling thread.
     ///
     /// When `cancel` is raised, no further item begins, and items that are not finished then leave no line.
     ///
@@ -73,8 +75,9 @@ impl ListedProblems {
     /// ```
     ///
     /// # Errors
-    /// When the file cannot be written, is locked by another process, is damaged, or holds results of anything else: another list or
-    /// version, other scenes, options or shards. Items that cannot be planned are no errors here.
+    /// When the file cannot be written, is locked by another process, is damaged, or holds results of
+    /// anything else: another list or version, other scenes, options or shards. Items that cannot be planned
+    /// are no errors here.
     ///
     /// # Panics
     /// When planning or `progress` panics.
@@ -119,7 +122,8 @@ impl ListedProblems {
         Ok(outcome)
     }
 
-    /// The header of the results.
+    /// The first line of the file of results: it says which list, scenes and part these are of, so that
+    /// another run can go on.
     #[must_use]
     pub fn header(&self, options: &ManyOptions) -> ResultsHeader {
         let name = self.list.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -231,7 +235,6 @@ impl Log {
     }
 }
 
-/// Opens a file of results.
 pub(super) fn open(file: &Path) -> Result<ResultsReader<BufReader<File>>, Error> {
     let source = mp_store::open(file, MAX_RESULTS_BYTES)?;
     ResultsReader::new(file.display().to_string(), BufReader::with_capacity(1 << 16, source))

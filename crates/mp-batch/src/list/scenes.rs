@@ -1,4 +1,5 @@
-//! The scenes of a list: what each is made of is known from the beginning, and it is loaded when its first item comes.
+//! The scenes of a list: what each is made of is known from the beginning, and it is loaded when its first
+//! item comes.
 
 use super::{ProblemList, SceneFingerprint};
 use mp_io::{Disk, ErrorKind, Files};
@@ -9,9 +10,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-/// A list of problems, with the names and hashes of all files that its scenes are made of: all that is needed to plan its items. A
-/// scene is loaded when its first item comes, and let go after its last one; a robot that the next scene has too is kept. Clones share
-/// what is loaded.
+/// A list of problems, with the names and hashes of all files that its scenes are made of: all that is needed
+/// to plan its items. A scene is loaded when its first item comes, and let go after its last one; a robot
+/// that the next scene has too is kept. Clones share what is loaded.
 #[derive(Clone, Debug)]
 pub struct ListedProblems {
     pub(super) list: ProblemList,
@@ -40,11 +41,12 @@ pub(super) enum Source {
 pub(super) type Known = HashMap<PathBuf, Result<u64, String>>;
 
 impl ProblemList {
-    /// Finds the scenes, which are files relative to the folder of the list, with or without their endings, or shipped scenes, and reads
-    /// the files that they are made of, to know them again. No scene is made.
+    /// Finds the scenes, which are files relative to the folder of the list, with or without their endings,
+    /// or shipped scenes, and reads the files that they are made of, to know them again. No scene is made.
     ///
     /// # Errors
-    /// When there is no such scene, or `interrupt` says to end. What is wrong with a scene is an error of its items.
+    /// When there is no such scene, or `interrupt` says to end. What is wrong with a scene is an error of its
+    /// items.
     pub fn with_scenes(self, interrupt: &Interrupt) -> Result<ListedProblems, Error> {
         let places = self.scenes.iter().zip(&self.lines).map(|(name, line)| {
             SceneFiles::find(self.folder(), name.as_ref())
@@ -106,13 +108,14 @@ impl ListedProblems {
         ProblemList::load(file)?.with_scenes(&Interrupt::new(cancel.clone()))
     }
 
-    /// The list.
+    /// The list as it was read, without its scenes.
     #[must_use]
     pub fn list(&self) -> &ProblemList {
         &self.list
     }
 
-    /// The files that were read: the list itself, and those of scenes that are on the disk. An output must be none of them.
+    /// The files that were read: the list itself, and those of scenes that are on the disk. An output must be
+    /// none of them.
     #[must_use]
     pub fn inputs(&self) -> Vec<PathBuf> {
         let mut files: Vec<_> = self.known.keys().map(|file| self.list.folder().join(file)).collect();
@@ -120,8 +123,9 @@ impl ListedProblems {
         std::iter::once(self.list.file.clone()).chain(files).collect()
     }
 
-    /// The scene and the request of an item. A request that names no planner has the one that suits the scene; one that names no budget of
-    /// time has `time_s` seconds, if they are given. An item has one thread.
+    /// The scene and the request of an item. A request that names no planner has the one that suits the
+    /// scene; one that names no budget of time has `time_s` seconds, if they are given. An item has one
+    /// thread.
     ///
     /// # Errors
     /// When there is no such item, or its scene cannot be loaded or cannot have its start or goals.

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// The part `index` of `of` parts of a list, both from 1: every item whose number, modulo `of`, is `index` − 1. As text, `2/5`.
+/// The part `index` of `of` parts of a list, both from 1: every item whose number, modulo `of`, is `index`
+/// − 1. As text, `2/5`.
 ///
 /// ```
 /// let shard: mp_batch::Shard = "2/3".parse()?;
@@ -46,13 +47,13 @@ impl Shard {
         self.of
     }
 
-    /// Whether an item is in it.
+    /// Whether an item of the list, counted from 0, belongs to this shard.
     #[must_use]
     pub fn has(self, item: u64) -> bool {
         item % u64::from(self.of) == u64::from(self.index - 1)
     }
 
-    /// How many of `items` items are in it.
+    /// How many items of a list of `items` belong to this shard.
     #[must_use]
     pub fn count(self, items: u64) -> u64 {
         (items + u64::from(self.of - self.index)) / u64::from(self.of)

@@ -97,7 +97,7 @@ impl<'a, 'w> Rounds<'a, 'w> {
         Ok(rounds)
     }
 
-    /// The runs that are settled before anything is handed out, but for those of rounds that are over.
+    /// The runs of open rounds that are settled before anything is handed out.
     pub(super) fn known(&self) -> HashSet<u64> {
         self.outcomes.keys().copied().collect()
     }
@@ -117,7 +117,7 @@ impl<'a, 'w> Rounds<'a, 'w> {
         self.allocation.portfolio.round_runs(self.round).filter_map(|run| self.outcomes.get(&run))
     }
 
-    /// Queues the groups of this round. When nothing is open in it, goes on to the next, or ends.
+    /// Queues the groups of this round. Begins the next round, or ends, when no run of this one is open.
     fn begin_round(&mut self) {
         loop {
             self.best = self.of_round().filter_map(RunOutcome::rank).min();
@@ -155,8 +155,8 @@ impl<'a, 'w> Rounds<'a, 'w> {
         self.round += 1;
     }
 
-    /// What was found, the counts, what each rank did, and whether the schedule is what ended it. `cancelled` is why it was cancelled, if it
-    /// was.
+    /// What was found, the counts, what each rank did, and whether the schedule is what ended it. `cancelled`
+    /// is why it was cancelled, if it was.
     pub(super) fn into_found(
         self,
         cancelled: Option<StopReason>,
@@ -193,7 +193,8 @@ impl<'a, 'w> Rounds<'a, 'w> {
             None => {
                 let mut progress = Progress::new(sums.iterations, sums.nodes, sums.motions);
                 progress.rejected = sums.rejected;
-                // Where all runs have tried all they can, that is why; otherwise what ended the first that has not.
+                // Where all runs have tried all they can, that is why; otherwise what ended the first that
+                // has not.
                 let last = ended.iter().copied().find(|reason| *reason != StopReason::Exhausted);
                 let reason = of_machine.or(last);
                 by_schedule = reason.is_none() && capped;

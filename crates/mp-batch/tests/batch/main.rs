@@ -1,4 +1,5 @@
-//! Many problems, lists of them, portfolios and roadmaps by regions: the same bytes on any number of threads, in any number of shards, and after any end.
+//! Many problems, lists of them, portfolios and roadmaps by regions: the same bytes on any number of threads,
+//! in any number of shards, and after any end.
 #![cfg(not(target_family = "wasm"))]
 
 mod fuzz;
@@ -21,7 +22,8 @@ const SCENE: &str = "Robot\nstick.off\n-1 0 0 0 0 0\n1 0 0 0 0 0\nObstacle #1\nw
 const STICK: &str = "OFF\n4 4 6\n0 0 0\n0.3 0 0\n0 0.1 0\n0 0 0.1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 const WALL: &str = "OFF\n4 4 6\n0 -1 -1\n0.1 -1 -1\n0 1 -1\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 
-/// Solved ones, one without a path, one with an end in collision, one with ends of another robot, one without a planner.
+/// Solved ones, one without a path, one with an end in collision, one with ends of another robot, one without
+/// a planner.
 const LIST: &str = r#"{"scene": "easy", "seeds": {"from": 5, "count": 7}}
 {"scene": "wall", "seeds": [3, 1], "request": {"budget": {"iterations": 20000}}}
 

@@ -142,7 +142,8 @@ fn rounds_follow_until_one_has_a_path() {
     }
 }
 
-/// What ends a portfolio whose runs all reach their caps: nothing, unless a budget was given; then it is named.
+/// What ends a portfolio whose runs all reach their caps: nothing, unless a budget was given; then it is
+/// named.
 #[test]
 fn a_schedule_goes_on_unless_a_budget_says_otherwise() {
     let (scene, request) = twisty();

@@ -141,7 +141,8 @@ fn the_dearest_come_first() {
     let written: Vec<u64> = done(&dir.read("r.jsonl"), 1);
     let mut ahead: Vec<u64> = done(&ahead_of(&dir, "r.jsonl").unwrap(), 1);
     ahead.sort_unstable();
-    // One of each kind, to know what they take; at most one more of the cheap ones, which was handed out before that was known.
+    // One of each kind, to know what they take; at most one more of the cheap ones, which was handed out
+    // before that was known.
     assert!((1..=2).contains(&written.len()), "{written:?}");
     assert!(ahead.len() + written.len() == 20 && ahead.iter().all(|item| *item >= 30), "{ahead:?}");
     Job::new(&dir, "r.jsonl").on(3).unwrap();
@@ -149,7 +150,8 @@ fn the_dearest_come_first() {
     assert!(dir.read("r.jsonl") == dir.read("all.jsonl"));
 }
 
-/// The others have all from the master: its files may be gone by then. A robot's mesh is sought in folders by their absolute names.
+/// The others have all from the master: its files may be gone by then. A robot's mesh is sought in folders by
+/// their absolute names.
 #[test]
 fn scenes_are_sent() {
     let dir = Dir::new();

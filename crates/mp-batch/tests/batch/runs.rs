@@ -91,7 +91,8 @@ fn results_are_read_item_by_item() {
     assert!(ListResults::open(&dir.at("bad.jsonl")).unwrap_err().message().contains("is no file of results"));
 }
 
-/// What is wrong with a scene is said at its items, in the same words wherever the list is, and the others are planned.
+/// What is wrong with a scene is said at its items, in the same words wherever the list is, and the others
+/// are planned.
 #[test]
 fn scenes_that_cannot_be_loaded_fail_at_their_items() {
     let list = r#"{"scene": "broken.env"}
@@ -153,8 +154,8 @@ fn a_file_that_changes_meanwhile_ends_the_run() {
     }
 }
 
-/// Scenes come when they are needed, few are there at a time, and each is let go after its last item; robots are shared. What is there
-/// needs its files no longer.
+/// Scenes come when they are needed, few are there at a time, and each is let go after its last item; robots
+/// are shared. What is there needs its files no longer.
 #[test]
 fn few_of_many_scenes_are_there_at_a_time() {
     let dir = Dir::new();

@@ -10,7 +10,8 @@ use mp_plan::{Motion, TypedMotion};
 
 /// The pairs in whose scenes edges are checked.
 pub(crate) const CHECKED: [&str; 2] = ["cubicles", "piano"];
-/// The longest steps of the trees that make the edges, and the resolution of discrete checks, as fractions of the extent.
+/// The longest steps of the trees that make the edges, and the resolution of discrete checks, as fractions of
+/// the extent.
 const LONGEST: [f64; 2] = [0.2, 0.05];
 const RESOLUTION: f64 = 0.01;
 /// The most steps of the greedy tree toward a sample.
@@ -37,8 +38,8 @@ struct Checked {
 type Edge = (Configuration, Configuration);
 
 impl Costs {
-    /// Checks `count` edges that a greedy RRT makes in the scene of a pair with steps of each length, `passes` times in
-    /// turn; empty for a pair without a scene in space.
+    /// Checks `count` edges that a greedy RRT makes in the scene of a pair with steps of each length,
+    /// `passes` times in turn; empty for a pair without a scene in space.
     pub(crate) fn measure(pair: &str, count: usize, passes: usize) -> Result<Vec<Self>> {
         let Some(scene) = scene(pair) else { return Ok(Vec::new()) };
         let Rigid::Space(setting) = Rigid::load(scene)? else {
@@ -86,7 +87,8 @@ impl Checked {
     }
 }
 
-/// Edges of a tree with two roots that grows toward samples, step by step until a step is blocked; blocked ones included.
+/// Edges of a tree with two roots that grows toward samples, step by step until a step is blocked; blocked
+/// ones included.
 fn edges<C: Space<State = Configuration>>(
     space: &C,
     check: &mut impl MotionValidity<Configuration>,

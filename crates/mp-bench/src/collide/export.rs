@@ -1,9 +1,9 @@
 //! Pairs and poses as files, for other programs.
 //!
-//! `DIR/data/PAIR.A.off` and `PAIR.B.off` are the meshes; `PAIR.poses.txt` has a pose on each line, nine numbers
-//! of the rotation, row by row, and three of the translation; first the uniform poses, then those near
-//! contact. `PAIR.edges.txt` has the poses of edges in the same form. All numbers are written so that they read back to the
-//! same bits. `DIR/out` is for the answers of the programs.
+//! `DIR/data/PAIR.A.off` and `PAIR.B.off` are the meshes; `PAIR.poses.txt` has a pose on each line, nine
+//! numbers of the rotation, row by row, and three of the translation; first the uniform poses, then those
+//! near contact. `PAIR.edges.txt` has the poses of edges in the same form. All numbers are written so that
+//! they read back to the same bits. `DIR/out` is for the answers of the programs.
 
 use super::pairs::Pair;
 use super::poses::QueryPoses;

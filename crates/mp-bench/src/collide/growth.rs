@@ -56,8 +56,9 @@ pub(super) fn run(lab: &Lab, common: &Common, seed: u64, programs: &[PathBuf]) -
     Ok(complete)
 }
 
-/// The mean number of pairs of boxes that a distance query of disjoint meshes opens: in a normal query, and when it is given
-/// the distance beforehand, which leaves only the pairs that every search with these boxes must open.
+/// The mean number of pairs of boxes that a distance query of disjoint meshes opens: in a normal query, and
+/// when it is given the distance beforehand, which leaves only the pairs that every search with these boxes
+/// must open.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Opened {
     asked: f64,

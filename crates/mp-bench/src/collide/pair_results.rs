@@ -4,7 +4,6 @@ use super::ours::{OURS, TreeBuild};
 use super::pairs::Pair;
 use super::record::TimedAnswers;
 
-/// The results on one pair.
 #[derive(Clone, Debug)]
 pub(crate) struct PairResults {
     pub(crate) pair: String,
@@ -41,7 +40,8 @@ impl PairResults {
         self.records.iter().find(|r| r.what.lib == lib && r.what.set == set && r.what.query == query)
     }
 
-    /// The number of answers compared with ours, the number that differ, and the largest relative difference of distances.
+    /// The number of answers compared with ours, the number that differ, and the largest relative difference
+    /// of distances.
     pub(crate) fn differences(&self, of: &TimedAnswers) -> Option<(usize, usize, f64)> {
         let ours = self.record(OURS, &of.what.set, &of.what.query)?;
         let both = ours.answers.iter().zip(&of.answers);

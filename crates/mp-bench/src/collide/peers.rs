@@ -1,13 +1,13 @@
 //! Other programs, which get the same meshes and poses.
 //!
 //! A program is called as `PROGRAM PAIR --passes N --ndist M --cap S`, in a folder with `data/` and `out/` as
-//! `--export` writes it. It prints lines of `key=value` words: `lib= pair= build_ms= heap_bytes=`
-//! when it has built its trees, and `lib= pair= set= query= n= cpu_ns= cpu_min=` (nanoseconds per query, median
-//! and least of its N passes) when it has answered the first `n` queries of a set. Answers are in
+//! `--export` writes it. It prints lines of `key=value` words: `lib= pair= build_ms= heap_bytes=` when it has
+//! built its trees, and `lib= pair= set= query= n= cpu_ns= cpu_min=` (nanoseconds per query, median and least
+//! of its N passes) when it has answered the first `n` queries of a set. Answers are in
 //! `out/LIB.PAIR.SET.QUERY.bin`, eight bytes each, `f64`, little end first: 0 or 1 for `collide` and
-//! `tolerance`, metres for `distance` (0 or below when colliding; first M poses of each set), the number of free
-//! poses before the first collision for `motion`. It may leave out queries. S is the limit in seconds for each
-//! kind of query.
+//! `tolerance`, metres for `distance` (0 or below when colliding; first M poses of each set), the number of
+//! free poses before the first collision for `motion`. It may leave out queries. S is the limit in seconds
+//! for each kind of query.
 
 use super::ours::TreeBuild;
 use super::record::{QueryId, TimedAnswers};

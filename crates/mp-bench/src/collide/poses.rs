@@ -11,7 +11,8 @@ use nalgebra::Isometry3;
 pub(crate) const EDGE: usize = 40;
 /// The most that a point of the robot moves from one pose of an edge to the next, in radii of the robot.
 pub(crate) const STEP: f64 = 0.02;
-/// The distances of near poses from the border between free and colliding, in radii of the robot, each for half of them.
+/// The distances of near poses from the border between free and colliding, in radii of the robot, each for
+/// half of them.
 pub(crate) const WIDTHS: [f64; 2] = [1e-2, 1e-4];
 /// The most uniform poses that are drawn to find one that is free or one that collides.
 const DRAWS: usize = 1_000_000;
@@ -102,8 +103,8 @@ impl<'p> Border<'p> {
         Ok(Self { pair, meshes, space, query: Query::default(), rng })
     }
 
-    /// A free and a colliding pose on a random line for each of `widths` (metres, descending): between the two
-    /// no point of the robot moves by more than that width, or they are as near as `f64` allows.
+    /// A free and a colliding pose on a random line for each of `widths` (metres, descending): between the
+    /// two no point of the robot moves by more than that width, or they are as near as `f64` allows.
     pub(crate) fn bisected(&mut self, widths: &[f64]) -> Result<Vec<[Isometry3<f64>; 2]>> {
         let mut ends = [self.draw(false)?, self.draw(true)?];
         let (mut found, mut widths) = (Vec::with_capacity(widths.len()), widths.iter().peekable());
@@ -147,8 +148,8 @@ impl<'p> Border<'p> {
     }
 }
 
-/// The pose at `t` on the straight motion between two poses. The rotation is normalized, as interpolation of nearly
-/// equal rotations may change its norm.
+/// The pose at `t` on the straight motion between two poses. The rotation is normalized, as interpolation of
+/// nearly equal rotations may change its norm.
 fn between(from: &Isometry3<f64>, to: &Isometry3<f64>, t: f64) -> Isometry3<f64> {
     let mut pose = from.lerp_slerp(to, t);
     pose.rotation.renormalize();

@@ -1,8 +1,9 @@
 //! Comparison of all boolean answers with exact arithmetic.
 //!
-//! The contract of [`mp_collide`] is taken literally: the corners of the robot are moved by the rotation matrix and the
-//! translation, with the rounding it specifies, and touching is collision. Triangles whose bounding balls meet are compared one by
-//! one, in integers wherever `f64` is not certain. No code is shared with the engine.
+//! The contract of [`mp_collide`] is taken literally: the corners of the robot are moved by the rotation
+//! matrix and the translation, with the rounding it specifies, and touching is collision. Triangles whose
+//! bounding balls meet are compared one by one, in integers wherever `f64` is not certain. No code is shared
+//! with the engine.
 
 mod hard_poses;
 mod predicate;

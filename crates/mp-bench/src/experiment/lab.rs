@@ -37,7 +37,8 @@ pub(crate) struct Lab {
 }
 
 impl Lab {
-    /// A lab with as many runs at once as the options say: on each rank, if there are several. Ctrl-C cancels them.
+    /// A lab with as many runs at once as the options say: on each rank, if there are several. Ctrl-C cancels
+    /// them.
     pub(crate) fn new(options: &Common) -> Result<Self> {
         let threads = options.threads.map_or_else(|| usize::from(ranks::link().is_some()), usize::from);
         let is_master = ranks::link().is_none_or(|link| link.is_master());
@@ -111,8 +112,8 @@ impl Lab {
         self.options.shard == Shard::WHOLE
     }
 
-    /// Does all jobs; returns their results in the same order. `None` when a job was interrupted or not started:
-    /// `job` returns `None` when it is interrupted.
+    /// Does all jobs; returns their results in the same order. `None` when a job was interrupted or not
+    /// started: `job` returns `None` when it is interrupted.
     pub(crate) fn all<J: Sync, R: Send>(
         &self,
         what: &str,
@@ -140,8 +141,8 @@ impl Lab {
         self.measure_in(log, what, cases, |_, _| false, |_| Ok(()), |(), case| run(case))
     }
 
-    /// As [`measure`](Self::measure), for cases that share a costly setup: cases that are `together` are run in order,
-    /// with one setup.
+    /// As [`measure`](Self::measure), for cases that share a costly setup: cases that are `together` are run
+    /// in order, with one setup.
     pub(crate) fn measure_in<K: CaseKey, R: RunRecord, P>(
         &self,
         log: &mut Log<K, R>,
@@ -182,7 +183,8 @@ impl Lab {
                     threads: self.pool.current_num_threads(),
                     cancel: self.cancel.clone(),
                 };
-                // Few groups are cut, each into no more pieces than there are threads, as each piece has a setup of its own.
+                // Few groups are cut, each into no more pieces than there are threads, as each piece has a
+                // setup of its own.
                 let workers = link.ranks() * options.threads;
                 let pieces = (GROUPS * workers).div_ceil(groups.len().max(1)).min(workers);
                 let cut = |group: &Vec<K>| -> Vec<Vec<K>> {
@@ -289,7 +291,8 @@ pub(crate) fn interrupted() -> bool {
     interrupt().is_raised()
 }
 
-/// A flag that is set by the first Ctrl-C. The second one ends the program at once. Among other ranks, that of who began the measurement.
+/// A flag that is set by the first Ctrl-C. The second one ends the program at once. Among other ranks, that
+/// of who began the measurement.
 fn interrupt() -> Cancel {
     if let Some(cancel) = ranks::cancel() {
         return cancel;

@@ -150,7 +150,8 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
         cases.iter().filter_map(|case| Some((case, self.get(case)?)))
     }
 
-    /// Those `cases` that were run, sorted, a row for each: the members of the case and of its result, numbers with six digits.
+    /// Those `cases` that were run, sorted, a row for each: the members of the case and of its result,
+    /// numbers with six digits.
     pub(crate) fn table(&self, cases: &[K]) -> Result<Table> {
         let members = |value: Value| match value {
             Value::Object(members) => members.into_iter().collect(),

@@ -11,8 +11,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 /// Options whose value says where files are, not what is measured.
 const PLACES: [&str; 6] = ["--out", "--merge", "--peer", "--shard", "--threads", "--dir"];
 
-/// The commit of the checkout in which the program runs, with `-dirty` where files differ from it; `None` without one, and where time is
-/// counted, as such results are the same on every machine.
+/// The commit of the checkout in which the program runs, with `-dirty` where files differ from it; `None`
+/// without one, and where time is counted, as such results are the same on every machine.
 pub(crate) fn commit() -> Option<&'static str> {
     static COMMIT: OnceLock<Option<String>> = OnceLock::new();
     let ask = || {

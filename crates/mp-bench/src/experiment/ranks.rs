@@ -1,4 +1,5 @@
-//! Experiments on several ranks: each comes to the same calls, the master keeps the log, and all learn what was measured.
+//! Experiments on several ranks: each comes to the same calls, the master keeps the log, and all learn what
+//! was measured.
 
 use super::log::{CaseKey, Log, RunRecord};
 use crate::clock;
@@ -48,8 +49,8 @@ pub(crate) fn learned<K: CaseKey, R: RunRecord>(link: &dyn Link) -> Result<Vec<(
     serde_json::from_slice(&broadcast(link, Vec::new()).into_error()?).into_error()
 }
 
-/// Runs groups of cases, each on some rank, and appends them to the log of the master. `took` learns how many runs a group had, on the master.
-/// Returns all runs, on all ranks; none when it was cancelled.
+/// Runs groups of cases, each on some rank, and appends them to the log of the master. `took` learns how many
+/// runs a group had, on the master. Returns all runs, on all ranks; none when it was cancelled.
 pub(crate) fn measured<K: CaseKey, R: RunRecord>(
     link: &dyn Link,
     options: &Options,

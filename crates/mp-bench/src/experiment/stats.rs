@@ -37,9 +37,9 @@ impl Median {
     }
 }
 
-/// The median of the ratios `a / b` of pairs, with its interval by order statistics. `None` stands for a run that was cut
-/// short, so longer than the other: the ratio counts as infinite or as zero. Pairs of two such runs say nothing and are left
-/// out. `None` without other pairs; with it the number of pairs used.
+/// The median of the ratios `a / b` of pairs, with its interval by order statistics. `None` stands for a run
+/// that was cut short, so longer than the other: the ratio counts as infinite or as zero. Pairs of two such
+/// runs say nothing and are left out. `None` without other pairs; with it the number of pairs used.
 pub(crate) fn paired_ratio(
     pairs: impl IntoIterator<Item = (Option<f64>, Option<f64>)>,
 ) -> Option<(Median, usize)> {
@@ -53,8 +53,8 @@ pub(crate) fn paired_ratio(
     Some((Median::of(ratios.iter().copied())?, ratios.len()))
 }
 
-/// The share of runs that are still going on after a time: the Kaplan–Meier estimate, as the corners of its steps. Each run
-/// is the time it took, and whether it ended then or was cut short.
+/// The share of runs that are still going on after a time: the Kaplan–Meier estimate, as the corners of its
+/// steps. Each run is the time it took, and whether it ended then or was cut short.
 pub(crate) fn survival(runs: impl IntoIterator<Item = (f64, bool)>) -> Vec<(f64, f64)> {
     let mut runs: Vec<(f64, bool)> = runs.into_iter().collect();
     // At the same time, runs that ended count before those that were cut short.
@@ -70,8 +70,8 @@ pub(crate) fn survival(runs: impl IntoIterator<Item = (f64, bool)>) -> Vec<(f64,
     steps
 }
 
-/// The mean time of runs, each no longer than `cap`: the area under their [`survival`] up to there. Where some runs were cut
-/// short it is a lower bound of the mean.
+/// The mean time of runs, each no longer than `cap`: the area under their [`survival`] up to there. Where
+/// some runs were cut short it is a lower bound of the mean.
 pub(crate) fn restricted_mean(runs: impl IntoIterator<Item = (f64, bool)>, cap: f64) -> f64 {
     let steps = survival(runs);
     let area = |w: &[(f64, f64)]| (w[1].0.min(cap) - w[0].0.min(cap)) * w[0].1;
@@ -82,8 +82,8 @@ pub(crate) fn restricted_mean(runs: impl IntoIterator<Item = (f64, bool)>, cap: 
 /// Resamplings of a bootstrap interval.
 const RESAMPLINGS: usize = 2_000;
 
-/// The 95% interval of a statistic of `n` items by the percentile bootstrap (Efron 1979, *Bootstrap methods*): `of` takes
-/// the numbers of the items drawn. It draws the same items in every run.
+/// The 95% interval of a statistic of `n` items by the percentile bootstrap (Efron 1979, *Bootstrap
+/// methods*): `of` takes the numbers of the items drawn. It draws the same items in every run.
 pub(crate) fn bootstrap(n: usize, of: impl Fn(&[usize]) -> f64) -> (f64, f64) {
     let mut rng = Rng::seed(1979);
     let mut drawn = vec![0; n];
@@ -109,8 +109,8 @@ pub(crate) fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f6
     mean(values.into_iter().map(mp_math::ln)).map(mp_math::exp)
 }
 
-/// The 95% confidence interval of a probability, after `k` successes in `n` trials (Wilson 1927, *Probable inference,
-/// the law of succession, and statistical inference*).
+/// The 95% confidence interval of a probability, after `k` successes in `n` trials (Wilson 1927, *Probable
+/// inference, the law of succession, and statistical inference*).
 pub(crate) fn wilson(k: usize, n: usize) -> (f64, f64) {
     const Z: f64 = 1.959_964;
     let (n, p) = (n as f64, k as f64 / n as f64);
@@ -152,8 +152,8 @@ fn outside(n: usize) -> usize {
         k += 1;
         term *= (n - k + 1) as f64 / k as f64;
     }
-    // Fewer than k values are below the median with a probability of at most 2.5%: the k-th from each end, counted
-    // from 1, is the limit.
+    // Fewer than k values are below the median with a probability of at most 2.5%: the k-th from each end,
+    // counted from 1, is the limit.
     k.saturating_sub(1)
 }
 
@@ -189,8 +189,9 @@ mod tests {
         assert_eq!(wilson(20, 20).1, 1.0);
     }
 
-    /// Remission times of 6-MP (Freireich 1963), as in Kaplan–Meier tables of textbooks: 0.8571 after 6 weeks, 0.8067
-    /// after 7, 0.7529 after 10, 0.6902 after 13, 0.6275 after 16, 0.5378 after 22, 0.4482 after 23.
+    /// Remission times of 6-MP (Freireich 1963), as in Kaplan–Meier tables of textbooks: 0.8571 after 6
+    /// weeks, 0.8067 after 7, 0.7529 after 10, 0.6902 after 13, 0.6275 after 16, 0.5378 after 22, 0.4482
+    /// after 23.
     #[test]
     fn survival_is_the_tabulated_one() {
         let ended = [6, 6, 6, 7, 10, 13, 16, 22, 23].map(|t| (f64::from(t), true));

@@ -63,8 +63,8 @@ impl Results<'_> {
         table
     }
 
-    /// For each grade and planner: scenes that all runs solve, runs solved, and the mean time, where a run that was cut short counts
-    /// with its time.
+    /// For each grade and planner: scenes that all runs solve, runs solved, and the mean time, where a run
+    /// that was cut short counts with its time.
     fn by_grade(&self) -> Table {
         let mut table =
             Table::new(["grade", "planner", "scenes always solved", "runs solved", "95%", "mean s"]);

@@ -1,7 +1,7 @@
-//! What Benitez et al. 2010, *Key elements for motion planning algorithms*, say of roadmaps, as experiments: how nodes are
-//! made and connected, under which metric; what each part of obstacle-geometry PRM brings; and nodes in contact with
-//! obstacles under motion checks of both kinds. Every run has the same budget of collision and distance queries, and runs
-//! that are compared have the same scene and seed.
+//! What Benitez et al. 2010, *Key elements for motion planning algorithms*, say of roadmaps, as experiments:
+//! how nodes are made and connected, under which metric; what each part of obstacle-geometry PRM brings; and
+//! nodes in contact with obstacles under motion checks of both kinds. Every run has the same budget of
+//! collision and distance queries, and runs that are compared have the same scene and seed.
 
 use super::scenes::CORRIDORS;
 use crate::error::Result;
@@ -25,11 +25,11 @@ pub(super) enum Experiment {
     Ends,
 }
 
-/// All experiments.
 pub(super) const EXPERIMENTS: [Experiment; 4] =
     [Experiment::Factorial, Experiment::Geometry, Experiment::Contact, Experiment::Ends];
 
-/// Scenes in which, at the budget, PRM solves some runs and not others, one in which it solves all, and one in which it solves none.
+/// Scenes in which, at the budget, PRM solves some runs and not others, one in which it solves all, and one
+/// in which it solves none.
 const SCENES: [&str; 8] =
     ["rod 0.0892", "bar 0.3364", "gempa-1", "gempa-2", "gempa-3", "twisty", "bugtrap", "alpha-1.5"];
 
@@ -74,7 +74,8 @@ pub(super) const WITH_TREES: [[&str; 2]; 5] = [
     [GEOMETRY, "obstacle geometry, trees"],
 ];
 
-/// The numbers of those of the factorial experiment, which come first, and of the variants of obstacle-geometry PRM after them.
+/// The numbers of those of the factorial experiment, which come first, and of the variants of
+/// obstacle-geometry PRM after them.
 const FACTORS: usize = 8;
 const PARTS: usize = 8;
 
@@ -101,7 +102,8 @@ pub(super) const FAR: &str = "turns where far";
 pub(super) const METRICS: [&str; 3] = ["max-displacement", "euclidean", "swept-volume"];
 
 pub(super) const CERTIFIED: &str = "certified";
-/// The motion checks that are compared: certified, and tests of configurations 1% and 0.2% of the extent apart.
+/// The motion checks that are compared: certified, and tests of configurations 1% and 0.2% of the extent
+/// apart.
 pub(super) const CHECKS: [&str; 3] = [CERTIFIED, "discrete:1%", "discrete:0.2%"];
 
 /// What is compared: how nodes are made and connected, the metric, and how motions are checked.
@@ -194,7 +196,6 @@ pub(super) fn connections() -> impl Iterator<Item = &'static str> {
     CONNECTIONS.iter().map(|c| c.0).filter(|name| *name != FAR)
 }
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
     pub(super) scene: String,
@@ -260,7 +261,6 @@ pub(super) fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>) -> Resul
     )
 }
 
-/// The request of a case.
 fn request(case: &Case) -> Result<Request> {
     let unknown = |name: &str| Error::new(format!("there is no way `{name}` here"));
     let generation = GENERATIONS.iter().find(|g| g.0 == case.generation);

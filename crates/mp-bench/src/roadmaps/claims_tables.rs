@@ -72,8 +72,8 @@ impl<'a> Results<'a> {
         if run.solved { (run.queries as f64).clamp(1.0, most) } else { most }
     }
 
-    /// What changing each pair's first cell to its second brings: the mean over the pairs of a scene and seed, then over
-    /// scenes and seeds. `None` without runs.
+    /// What changing each pair's first cell to its second brings: the mean over the pairs of a scene and
+    /// seed, then over scenes and seeds. `None` without runs.
     fn change(&self, pairs: &[Pair], scene: Option<&str>) -> Option<Change> {
         let units = self.units().filter(|(name, _)| scene.is_none_or(|scene| scene == *name));
         let unit = |(scene, seed): (&str, u64)| {
@@ -112,8 +112,8 @@ impl<'a> Results<'a> {
         cells.iter().filter_map(pair).collect()
     }
 
-    /// The changes from the first of `levels` of a factor to each other one, in all cells that `among` selects and in which
-    /// both exist, and how many runs each level solves.
+    /// The changes from the first of `levels` of a factor to each other one, in all cells that `among`
+    /// selects and in which both exist, and how many runs each level solves.
     fn factor(
         &self,
         name: &str,
@@ -191,7 +191,8 @@ impl<'a> Results<'a> {
         table
     }
 
-    /// What the metric brings in each scene, over all ways to connect nodes, and those to make them that have no lengths.
+    /// What the metric brings in each scene, over all ways to connect nodes, and those to make them that have
+    /// no lengths.
     fn metric_by_scene(&self) -> Table {
         let mut table = Table::new(["scene"]);
         for metric in METRICS {
@@ -335,8 +336,8 @@ impl<'a> Results<'a> {
     }
 }
 
-/// Whether the nodes of a cell do not depend on the metric: lengths, as the distance of the pairs of Gaussian sampling, are
-/// measured in it.
+/// Whether the nodes of a cell do not depend on the metric: lengths, as the distance of the pairs of Gaussian
+/// sampling, are measured in it.
 fn without_lengths(cell: &Cell) -> bool {
     !["gaussian", "bridge", "obprm free", "obprm shells"].contains(&cell.generation)
 }
@@ -382,7 +383,8 @@ mod tests {
     #[test]
     fn each_factor_is_told_from_the_others() {
         let plan = plan(Experiment::Factorial);
-        // Staged takes half of the queries, the Euclidean metric twice as many; only `gaussian` is cut short in `b`.
+        // Staged takes half of the queries, the Euclidean metric twice as many; only `gaussian` is cut short
+        // in `b`.
         let (_folder, log) = results(&plan, |cell, scene, seed| {
             let factor = if cell.connection == STAGED { 0.5 } else { 1.0 }
                 * if cell.metric == METRICS[1] { 2.0 } else { 1.0 };
@@ -428,7 +430,8 @@ mod tests {
 
         let of = plan(Experiment::Contact);
         let (_folder, log) = results(&of, |cell, scene, seed| {
-            // Discrete: a quarter of the first paths fail, twice each; `b` is not solved with certified checks.
+            // Discrete: a quarter of the first paths fail, twice each; `b` is not solved with certified
+            // checks.
             let discrete = cell.checks != CERTIFIED;
             let rejected = if discrete && seed % 4 == 0 { 2 } else { 0 };
             Run { solved: discrete || scene == "a", rejected, ..RUN }

@@ -22,7 +22,6 @@ const SAMPLES: usize = 500;
 const MOST: usize = 20_000;
 const SEEDS: u64 = 10;
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,
@@ -127,7 +126,8 @@ struct Measured {
     guards: f64,
     estimate: f64,
     seen: Seen,
-    /// The sizes to see as much, and to see as much from the largest component; `None` when no size was enough.
+    /// The sizes to see as much, and to see as much from the largest component; `None` when no size was
+    /// enough.
     many: [Option<Needed>; 2],
 }
 

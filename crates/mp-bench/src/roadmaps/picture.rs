@@ -1,5 +1,5 @@
-//! Pictures of roadmaps, as SVG: the coverage of whole scenes; the roadmap with which each algorithm solved a corridor; and
-//! the configurations around an obstacle that obstacle-geometry PRM and OBPRM propose.
+//! Pictures of roadmaps, as SVG: the coverage of whole scenes; the roadmap with which each algorithm solved a
+//! corridor; and the configurations around an obstacle that obstacle-geometry PRM and OBPRM propose.
 
 use super::queries::{Local, SpaceOf, checker, prm_builder};
 use super::scenes::CORRIDORS;

@@ -22,7 +22,6 @@ const NEIGHBOURS: usize = 10;
 /// Seconds of processor time that RRT-Connect may take for one query.
 const CAP: f64 = 2.0;
 
-/// The space of a scene.
 pub(super) type SpaceOf<M> = <RigidScene<M> as TypedMotion>::Space;
 pub(super) type Local<'c, M> =
     Straight<'c, SpaceOf<M>, Certified<'c, SpaceOf<M>, <RigidScene<M> as TypedMotion>::Checker>>;

@@ -33,7 +33,6 @@ impl Plan {
     }
 }
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
     pub(super) scene: String,
@@ -72,9 +71,9 @@ pub(super) const BESIDE: &str = "rrt-connect";
 /// OBPRM with each of its ways to make nodes.
 const OBPRM: [&str; 4] = ["obprm prototype", "obprm contact", "obprm free", "obprm shells"];
 
-/// The planners, some with their way to make nodes: those that build roadmaps, and one tree planner. PRM* is left out as it
-/// aims at short paths, not at narrow passages, LazyPRM as most of its cost is graph search, not queries, and regional PRM as its
-/// samples are those of PRM: the suite `regions` measures it.
+/// The planners, some with their way to make nodes: those that build roadmaps, and one tree planner. PRM* is
+/// left out as it aims at short paths, not at narrow passages, LazyPRM as most of its cost is graph search,
+/// not queries, and regional PRM as its samples are those of PRM: the suite `regions` measures it.
 pub(super) fn planners() -> Vec<&'static str> {
     let roadmaps = mp_roadmap::planners().iter();
     let other = ["obprm", "prm-star", "lazy-prm", "regional-prm"];
@@ -85,8 +84,9 @@ pub(super) fn planners() -> Vec<&'static str> {
 /// The number of neighbours to which start and goal are connected in one more query.
 const NEIGHBOURS: usize = 10;
 
-/// Runs the cases that are not in the log, on several threads, scene by scene. When the scenes become `harder` in order, a
-/// planner that solves none of the seeds of a scene is not run on later ones. False when it was interrupted.
+/// Runs the cases that are not in the log, on several threads, scene by scene. When the scenes become
+/// `harder` in order, a planner that solves none of the seeds of a scene is not run on later ones. False when
+/// it was interrupted.
 pub(super) fn measure(
     problems: &[(String, Rigid)],
     harder: bool,

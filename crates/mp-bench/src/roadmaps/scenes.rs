@@ -17,7 +17,8 @@ pub(super) const SCENES: [&str; 8] =
 pub(super) struct Corridors {
     pub(super) name: &'static str,
     pub(super) title: &'static str,
-    /// How much wider each is than the robot, metres: halved at first, then in finer steps, where planners fail.
+    /// How much wider each is than the robot, metres: halved at first, then in finer steps, where planners
+    /// fail.
     pub(super) slacks: [f64; 11],
     make: fn(&str, f64) -> Result<RigidProblem>,
 }
@@ -89,8 +90,8 @@ fn problem(
     })
 }
 
-/// A bar of 0.3 by 0.1 by 0.1 m must pass a square corridor 1 m long. The straight way from start to goal hits the
-/// wall beside it.
+/// A bar of 0.3 by 0.1 by 0.1 m must pass a square corridor 1 m long. The straight way from start to goal
+/// hits the wall beside it.
 fn bar(name: &str, slack: f64) -> Result<RigidProblem> {
     let room = [2.0, 1.5, 1.5];
     let half = 0.5 * (0.1 + slack);

@@ -196,7 +196,8 @@ impl SvgDrawing {
     }
 }
 
-/// Appends to `out` parts of a triangle with no edge longer than `most`: small triangles can be sorted by depth.
+/// Appends to `out` parts of a triangle with no edge longer than `most`: small triangles can be sorted by
+/// depth.
 fn parts(corners: [Point3<f64>; 3], most: f64, out: &mut Vec<[Point3<f64>; 3]>) {
     let longest = (0..3).max_by(|&i, &j| {
         let length = |i: usize| (corners[(i + 1) % 3] - corners[i]).norm();

@@ -13,8 +13,8 @@ pub(super) struct Results<'a> {
     pub(super) plan: &'a Plan,
 }
 
-/// The width at which the success rate falls below one half, from the widest on: interpolated in the logarithm of the width.
-/// Infinite if the rate is below half at the widest, zero if it never is.
+/// The width at which the success rate falls below one half, from the widest on: interpolated in the
+/// logarithm of the width. Infinite if the rate is below half at the widest, zero if it never is.
 fn falls(points: &[(f64, f64)]) -> f64 {
     let Some(i) = points.iter().position(|(_, share)| *share < 0.5) else { return 0.0 };
     let Some(before) = i.checked_sub(1) else { return f64::INFINITY };
@@ -39,7 +39,8 @@ impl Results<'_> {
         (runs.iter().filter(|run| run.solved_within(budget)).count(), runs.len())
     }
 
-    /// The whole budget and two smaller ones: a run that needed fewer queries would have been solved with them as well.
+    /// The whole budget and two smaller ones: a run that needed fewer queries would have been solved with
+    /// them as well.
     fn budgets(&self) -> [u64; 3] {
         [self.plan.budget / 10, self.plan.budget * 3 / 10, self.plan.budget]
     }
@@ -92,8 +93,8 @@ impl Results<'_> {
         )
     }
 
-    /// The width at which the success rate of a planner with `budget` queries falls below half, and its interval: the widths
-    /// at which the ends of the confidence intervals of the rates fall below half.
+    /// The width at which the success rate of a planner with `budget` queries falls below half, and its
+    /// interval: the widths at which the ends of the confidence intervals of the rates fall below half.
     fn width(&self, corridors: &Corridors, planner: &str, budget: u64) -> [f64; 3] {
         let seeds = self.plan.seeds as usize;
         let points = |end: fn(usize, usize) -> f64| -> Vec<(f64, f64)> {

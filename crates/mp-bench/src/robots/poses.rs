@@ -1,5 +1,5 @@
-//! Inverse kinematics of robots as other people described them: poses of the link that the most joints move, made from configurations at
-//! random.
+//! Inverse kinematics of robots as other people described them: poses of the link that the most joints move,
+//! made from configurations at random.
 
 use crate::error::{IntoError, Result};
 use mp_cspace::{Configuration, Halton, Rng, Sampler};
@@ -18,7 +18,8 @@ pub(super) struct Poses {
     /// The link, and how many joints move it.
     pub(super) link: String,
     pub(super) joints: usize,
-    /// How many poses were asked for, and for how many a configuration was found that is there by forward kinematics.
+    /// How many poses were asked for, and for how many a configuration was found that is there by forward
+    /// kinematics.
     pub(super) asked: u32,
     pub(super) reached: u32,
     /// Milliseconds to the first solution: the median, and the longest.

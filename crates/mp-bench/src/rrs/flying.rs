@@ -17,7 +17,6 @@ const SEEDS: u32 = 10;
 const QUICK: u32 = 2;
 const ITERATIONS: u64 = 20_000;
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,
@@ -27,7 +26,8 @@ struct Case {
     seed: u64,
 }
 
-/// Plans on each scene with each step, with the same seeds for both planners. True when it was measured completely.
+/// Plans on each scene with each step, with the same seeds for both planners. True when it was measured
+/// completely.
 pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     let seeds = u64::from(common.runs_or(QUICK, SEEDS));
     let most = if common.quick { ITERATIONS / 10 } else { ITERATIONS };

@@ -16,7 +16,6 @@ const TRIALS: u32 = 300;
 const QUICK: u32 = 10;
 const COLOURS: [u32; 6] = [0xb0598a, 0xb0598a, 0xb0598a, 0x1f77b4, 0x1f77b4, 0x1f77b4];
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     path: String,

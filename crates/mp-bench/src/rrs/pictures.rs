@@ -1,4 +1,5 @@
-//! Pictures: the field that pushes snakes in a world, a tree with bent edges, a path relaxed, the landscape of risk.
+//! Pictures: the field that pushes snakes in a world, a tree with bent edges, a path relaxed, the landscape
+//! of risk.
 
 use crate::error::{IntoError, Result};
 use crate::experiment::Lab;
@@ -98,8 +99,8 @@ fn relaxed(prepared: &PreparedWorld) -> Result<Drawing> {
     Ok(drawing)
 }
 
-/// Fig. 1: where a robot passes that follows a path inexactly, where obstacles are that were seen inexactly, and the risk,
-/// the product of both. Each is drawn relative to its greatest value.
+/// Fig. 1: where a robot passes that follows a path inexactly, where obstacles are that were seen inexactly,
+/// and the risk, the product of both. Each is drawn relative to its greatest value.
 fn risk() -> Result<Vec<(String, Drawing)>> {
     let prepared = PreparedWorld::with_margin(tight(), MARGIN).into_error()?;
     let space = Rn::<2>::new([0.0; 2], prepared.scene.size).into_error()?;

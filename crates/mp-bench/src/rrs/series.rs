@@ -10,10 +10,10 @@ use mp_scenes::source::disc_scenes::disc_scene;
 /// The worlds, by name.
 pub(super) const WORLDS: [&str; 4] = ["maze", "low", "high", "random"];
 
-/// The planners. Most take steps of exactly Δq, as the paper's algorithm says; those with `-upto` steps of at most Δq, as is
-/// customary, and RRT-Connect too. `rrs` bends edges by snakes, as the paper does, `rrs-hybrid` and `rrs-bulge` in
-/// ways of ours, `rrs-paper` by snakes in the field of eq. 3 alone, and `rrs-risk` in that
-/// of obstacles and risk.
+/// The planners. Most take steps of exactly Δq, as the paper's algorithm says; those with `-upto` steps of at
+/// most Δq, as is customary, and RRT-Connect too. `rrs` bends edges by snakes, as the paper does,
+/// `rrs-hybrid` and `rrs-bulge` in ways of ours, `rrs-paper` by snakes in the field of eq. 3 alone, and
+/// `rrs-risk` in that of obstacles and risk.
 pub(super) const PLANNERS: [&str; 9] =
     ["rrt", "rrs", "rrs-hybrid", "rrs-bulge", "rrs-paper", "rrs-risk", "rrt-upto", "rrs-upto", "rrt-connect"];
 

@@ -70,7 +70,8 @@ impl Measures {
     }
 }
 
-/// Accepted samples: the root is a node that is not a sample. RRT-Connect has two of them, and may add many nodes for one sample.
+/// Accepted samples: the root is a node that is not a sample. RRT-Connect has two of them, and may add many
+/// nodes for one sample.
 fn accepted(planner: &str, run: &Run) -> u64 {
     let roots = if planner == "rrt-connect" { 2 } else { 1 };
     (run.nodes as u64).saturating_sub(roots)
@@ -139,8 +140,8 @@ impl<'a> Results<'a> {
         table
     }
 
-    /// A row for each trial. Lengths and safety are in centimetres, times in milliseconds, with four digits; what is zero or was not
-    /// found is left out.
+    /// A row for each trial. Lengths and safety are in centimetres, times in milliseconds, with four digits;
+    /// what is zero or was not found is left out.
     pub(super) fn each(&self) -> Table {
         let heads = ["world", "planner", "step_cm", "trial", "solved", "iterations", "accepted"];
         let mut table = Table::new(heads.into_iter().chain(["length_cm", "safety_cm", "ms"]).chain(EDGES));
@@ -217,8 +218,8 @@ impl<'a> Results<'a> {
         tables.join("\n\n") + "\n"
     }
 
-    /// What RRS gains over RRT with the same steps: the difference of each measure of a trial, paired by step and seed, with
-    /// its 95% interval. Lengths and safety are those of trials that both solved.
+    /// What RRS gains over RRT with the same steps: the difference of each measure of a trial, paired by step
+    /// and seed, with its 95% interval. Lengths and safety are those of trials that both solved.
     fn differences(&self) -> Table {
         let heads = MEASURES.iter().map(|m| format!("{}, {}", m.1, m.2));
         let mut table = Table::new(["world".into(), "difference".into()].into_iter().chain(heads));
@@ -236,8 +237,8 @@ impl<'a> Results<'a> {
         table
     }
 
-    /// How the edges of trees came about, per thousand samples, and the most and the least at any step that only a snake
-    /// bent.
+    /// How the edges of trees came about, per thousand samples, and the most and the least at any step that
+    /// only a snake bent.
     fn edges(&self) -> Table {
         let heads = ["world", "planner", "straight", "bulge", "bulge, relaxed", "only a snake", "not bent"];
         let mut table = Table::new(heads);
@@ -278,7 +279,8 @@ impl<'a> Results<'a> {
         charts
     }
 
-    /// Figure 9: the averages of safety and time in each world over all steps, with their 95% intervals over the trials.
+    /// Figure 9: the averages of safety and time in each world over all steps, with their 95% intervals over
+    /// the trials.
     fn averages(&self) -> Vec<(String, Result<String>)> {
         let shown = MEASURES.into_iter().filter(|measure| ["safety", "time"].contains(&measure.0));
         let average = |(file, title, y, of): Measure| {
@@ -296,8 +298,9 @@ impl<'a> Results<'a> {
         shown.map(average).collect()
     }
 
-    /// For each trial the mean over all steps of a value of two planners' runs, where both have one. Runs of a trial have the same seed, and in
-    /// random worlds the same world, so they are not independent: intervals are over trials.
+    /// For each trial the mean over all steps of a value of two planners' runs, where both have one. Runs of
+    /// a trial have the same seed, and in random worlds the same world, so they are not independent:
+    /// intervals are over trials.
     fn by_trial(
         &self,
         world: &str,

@@ -1,5 +1,5 @@
-//! Natural expansion (Jouandeau et al. 2008, §2.4, Figures 1–4): the Delaunay triangles of the nodes of an RRT
-//! that grows in a free square, and of its corners.
+//! Natural expansion (Jouandeau et al. 2008, §2.4, Figures 1–4): the Delaunay triangles of the nodes of an
+//! RRT that grows in a free square, and of its corners.
 //!
 //! With the root alone there are four triangles of a quarter of the square each; n nodes make 2n + 2
 //! triangles, so the mean area is known; the measurement is how far the largest, the smallest and the
@@ -20,7 +20,8 @@ use spade::{DelaunayTriangulation, Point2, Triangulation};
 enum Moves {
     /// Straight toward the sample, at most this far.
     Straight(f64),
-    /// By one of four inputs (ALG. 4): this part of the side along an axis. The nodes are on a lattice, which fills up.
+    /// By one of four inputs (ALG. 4): this part of the side along an axis. The nodes are on a lattice, which
+    /// fills up.
     Axes(u32),
 }
 
@@ -155,7 +156,8 @@ fn square() -> Result<Triangles> {
     Ok(triangles)
 }
 
-/// Triangulates the new nodes that each `step` returns, with their parents; `step` takes the number of nodes so far.
+/// Triangulates the new nodes that each `step` returns, with their parents; `step` takes the number of nodes
+/// so far.
 fn follow(
     nodes: usize,
     seed: u64,

@@ -1,11 +1,12 @@
-//! The factorial experiment: what sorting the successors brings, and what accepting any of them brings, at each number
-//! of inputs.
+//! The factorial experiment: what sorting the successors brings, and what accepting any of them brings, at
+//! each number of inputs.
 //!
-//! ALG. 4 and RSRT differ in two things. ALG. 4 tests all successors for collision, and takes the nearest free one only if it
-//! is nearer to the sample than the node it came from. RSRT sorts the successors first, and takes the first free one in any
-//! case. The four combinations are run with sets of 12 to 768 inputs, each set containing the smaller ones
-//! ([`InputSet::directions`](mp_control::InputSet::directions)): the axes first, as in the paper, then directions of a
-//! low-discrepancy sequence on the sphere, scaled to the limits of each degree of freedom, each with its opposite.
+//! ALG. 4 and RSRT differ in two things. ALG. 4 tests all successors for collision, and takes the nearest
+//! free one only if it is nearer to the sample than the node it came from. RSRT sorts the successors first,
+//! and takes the first free one in any case. The four combinations are run with sets of 12 to 768 inputs,
+//! each set containing the smaller ones ([`InputSet::directions`](mp_control::InputSet::directions)): the
+//! axes first, as in the paper, then directions of a low-discrepancy sequence on the sphere, scaled to the
+//! limits of each degree of freedom, each with its opposite.
 
 use super::in_scene::in_scene;
 use crate::clock::processor_clock;
@@ -57,7 +58,6 @@ const fn shipped(name: &'static str) -> FactorialProblem {
     FactorialProblem { name, place: Place::Scene(name), empty: false }
 }
 
-/// All problems.
 pub(super) const PROBLEMS: [FactorialProblem; 11] = [
     boxes("free-flyer, positions, empty", "free-flyer", "positions", 0),
     boxes("free-flyer, positions, 256", "free-flyer", "positions", 256),
@@ -81,7 +81,6 @@ pub(super) struct Plan {
     pub(super) cap: f64,
 }
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
     pub(super) problem: String,

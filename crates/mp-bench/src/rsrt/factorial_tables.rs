@@ -100,8 +100,8 @@ impl<'a> Results<'a> {
         table
     }
 
-    /// Which of the two changes brings what, at each number of inputs: over all problems with obstacles, a table for each
-    /// measure.
+    /// Which of the two changes brings what, at each number of inputs: over all problems with obstacles, a
+    /// table for each measure.
     pub(super) fn headline(&self) -> Vec<(String, Table)> {
         let problems: Vec<_> = self.problems().collect();
         let rows = || {

@@ -6,8 +6,8 @@ use mp_cspace::Cancel;
 use mp_experiments::clutter::Run;
 use mp_plan::{Control, Request, Scene, StoppedBy};
 
-/// Plans in a shipped scene, by name. `None` when it was cancelled. The time is that of the planner, which verifies its
-/// candidates; the path is neither shortened nor timed beyond that.
+/// Plans in a shipped scene, by name. `None` when it was cancelled. The time is that of the planner, which
+/// verifies its candidates; the path is neither shortened nor timed beyond that.
 pub(super) fn in_scene(scene: &Scene, request: &Request, cancel: &Cancel) -> Result<Option<Run>> {
     let mut control = Control { cancel: cancel.clone(), clock: processor_clock(), ..Control::default() };
     let report = scene.plan_with(request, &mut control)?;

@@ -1,5 +1,5 @@
-//! Restarts: Las Vegas algorithms with heavy tails, started again by schedules that do not know the distribution of their
-//! run lengths.
+//! Restarts: Las Vegas algorithms with heavy tails, started again by schedules that do not know the
+//! distribution of their run lengths.
 
 use super::in_scene::in_scene;
 use crate::error::Result;
@@ -23,7 +23,6 @@ pub(super) struct HeavyProblem {
     pub(super) settings: &'static [(&'static str, &'static str)],
 }
 
-/// All problems.
 pub(super) const PROBLEMS: [HeavyProblem; 4] = [
     HeavyProblem {
         name: "gempa-3, RSRT, 12 inputs",
@@ -46,7 +45,6 @@ pub(super) const PROBLEMS: [HeavyProblem; 4] = [
     },
 ];
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
     pub(super) problem: String,

@@ -28,7 +28,8 @@ impl<'a> Results<'a> {
         restricted_mean(drawn.iter().map(|&i| times[i]), self.plan.cap)
     }
 
-    /// For each problem and schedule: expected times, and how many times shorter than without restarts they are.
+    /// For each problem and schedule: expected times, and how many times shorter than without restarts they
+    /// are.
     pub(super) fn summary(&self) -> Table {
         let head =
             ["problem", "restarts", "solved", "median s", "mean s", "none : this", "slowest of 20 runs, s"];

@@ -25,7 +25,6 @@ impl Plan {
     }
 }
 
-/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
     pub(super) mover: String,
@@ -71,7 +70,6 @@ impl Series {
         Case { mover, model, metric, planner, obstacles, instance }
     }
 
-    /// The cases of one level.
     pub(super) fn cases(&self, plan: &Plan, level: usize) -> Vec<Case> {
         (0..u64::from(plan.instances)).map(|instance| self.case(level, instance)).collect()
     }
@@ -114,7 +112,6 @@ impl Worlds {
         Ok(Self { name, instances: instances.into_error()?, mover })
     }
 
-    /// One run.
     fn run(&self, case: &Case, cap: f64, cancel: &Cancel) -> Result<Option<Run>> {
         let planner = match case.planner.as_str() {
             "rrt" => ComparedPlanner::RRT,

@@ -221,8 +221,8 @@ impl<'a> Results<'a> {
         }
     }
 
-    /// Figure 5 for each robot and model of which there are runs: time against the number of obstacles; and the share of runs that go on at
-    /// the most obstacles, as runs are cut short there.
+    /// Figure 5 for each robot and model of which there are runs: time against the number of obstacles; and
+    /// the share of runs that go on at the most obstacles, as runs are cut short there.
     pub(super) fn charts(&self) -> Vec<(String, Result<String>)> {
         let mut charts = Vec::new();
         for mover in MOVERS {
@@ -262,7 +262,8 @@ impl<'a> Results<'a> {
         charts
     }
 
-    /// The share of runs that still go on, against time, at the most obstacles at which RSRT was run, if it was.
+    /// The share of runs that still go on, against time, at the most obstacles at which RSRT was run, if it
+    /// was.
     fn survival_chart(&self, mover: &'static str, model: &'static str) -> Option<Result<String>> {
         let has_runs = |level: &&usize| {
             let series = |metric| Series { mover, model, metric, planner: PLANNERS[1] };

@@ -178,7 +178,8 @@ struct Replay {
 }
 
 impl Replay {
-    /// One run of each rank races, or some of each rank in rounds with caps; a run that cannot win makes a sixteenth too much.
+    /// One run of each rank races, or some of each rank in rounds with caps; a run that cannot win makes a
+    /// sixteenth too much.
     fn of(runs: &[(u64, f64)], ranks: usize, luby: bool, rng: &mut Rng) -> Result<Self> {
         let mut replay = Self::default();
         let mut caps =
@@ -224,7 +225,8 @@ mod tests {
             let race = Replay::of(&runs, ranks, false, &mut Rng::seed(1)).unwrap();
             assert_eq!((race.needed, race.most, race.rounds), (1000.0 * ranks as f64, 1000.0, 1.0));
         }
-        // With one rank, rounds of four: the caps 250, 250, 500, 250; 250, 500, 1000 and 250 have a run that is long enough.
+        // With one rank, rounds of four: the caps 250, 250, 500, 250; 250, 500, 1000 and 250 have a run that
+        // is long enough.
         let luby = Replay::of(&runs, 1, true, &mut Rng::seed(1)).unwrap();
         assert_eq!((luby.needed, luby.most, luby.rounds), (1250.0 + 2000.0, 1250.0 + 2000.0, 2.0));
         assert!(Replay::of(&[], 1, false, &mut Rng::seed(1)).is_err());

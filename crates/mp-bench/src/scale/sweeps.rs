@@ -47,7 +47,8 @@ fn column_of(table: &str, column: &str) -> Option<Vec<f64>> {
     Table::parse(table).column(column)?.map(|cell| cell.parse().ok()).collect()
 }
 
-/// The costs of `items` items, drawn from measured ones with a seed, in the order of the measured: what is alike lies together, as in a sweep.
+/// The costs of `items` items, drawn from measured ones with a seed, in the order of the measured: what is
+/// alike lies together, as in a sweep.
 fn drawn(costs: &[f64], items: usize, stream: u64) -> Vec<f64> {
     let mut rng = Rng::stream(1, stream);
     let mut rows: Vec<usize> = (0..items).map(|_| (rng.unit() * costs.len() as f64) as usize).collect();
@@ -79,7 +80,8 @@ pub(super) fn text(costs: &[SweepCosts], items: usize) -> String {
     parts.join("\n\n")
 }
 
-/// A row for each number of ranks: of each policy its efficiency, and makespan and load of the master of the last.
+/// A row for each number of ranks: of each policy its efficiency, and makespan and load of the master of the
+/// last.
 fn table(costs: &[f64]) -> Table {
     let policies = POLICIES.iter().map(|(_, name)| (*name).to_owned());
     let rest = ["makespan, s", "of the ideal", "master load"].map(str::to_owned);

@@ -151,8 +151,8 @@ impl<'c, C: DefaultNn, L: LocalPlanner<C::State>> BareLoop<'c, C, L> {
     }
 }
 
-/// Runs `step`, which returns the number of nodes, until the last size or the cap (s); returns the processor time at
-/// which each size was reached.
+/// Runs `step`, which returns the number of nodes, until the last size or the cap (s); returns the processor
+/// time at which each size was reached.
 fn clocked(sizes: &[usize], cap: f64, mut step: impl FnMut() -> usize) -> Vec<f64> {
     let (begun, began) = (Instant::now(), nanoseconds());
     let mut times = Vec::new();

@@ -146,7 +146,7 @@ fn shells_and_man_are_served() {
     }
     let man = mp(&dir, &["man"]);
     assert!(man.code == 0 && man.stdout.contains(".TH"), "{man:?}");
-    for words in ["plan", "\\-\\-planner", "certified free"] {
+    for words in ["plan", "\\-\\-planner", "certified free", ".SH EXAMPLES"] {
         assert!(man.stdout.contains(words), "{words}");
     }
 }

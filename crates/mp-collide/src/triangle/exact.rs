@@ -211,7 +211,6 @@ fn exact_volume(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, d: &Point3<f6
     sign(orient3d(coord(a), coord(b), coord(c), coord(d)))
 }
 
-/// The point without coordinate `drop`.
 fn projected(p: &Point3<f64>, drop: usize) -> Coord<f64> {
     let (x, y) = [(1, 2), (0, 2), (0, 1)][drop];
     Coord { x: p[x], y: p[y] }

@@ -51,8 +51,8 @@ where
     }
 }
 
-/// Any index of an [erased space](AnySpace). It keeps the space it was made for: the search runs on that space itself,
-/// and answers are the same, to the bit. Use it only with the erasure of that space.
+/// Any index of an [erased space](AnySpace). It keeps the space it was made for: the search runs on that
+/// space itself, and answers are the same, to the bit. Use it only with the erasure of that space.
 pub struct AnyIndex<S>(Box<dyn ErasedIndex<S>>);
 
 impl<S> AnyIndex<S> {
@@ -73,8 +73,8 @@ impl<S> AnyIndex<S> {
 
 /// For configurations the indexes of erased spaces are compiled in this crate.
 impl AnyIndex<Configuration> {
-    /// A [`KdTree`] for a copy of `space`, empty and erased. All spaces share its code: a little slower than [`of`](Self::of), but
-    /// compiled once.
+    /// A [`KdTree`] for a copy of `space`, empty and erased. All spaces share its code: a little slower than
+    /// [`of`](Self::of), but compiled once.
     pub fn by_coordinates<C: Embed<State = Configuration> + Clone + Send + 'static>(space: &C) -> Self {
         Self::embedded(Embedded(Arc::new(space.clone())))
     }
@@ -83,8 +83,8 @@ impl AnyIndex<Configuration> {
         Self(Box::new(IndexWithSpace { space: Arc::new(space), index: <KdTree>::default() }))
     }
 
-    /// A [`MetricTree`] for a copy of `space`, empty and erased. All spaces share its code: for metrics whose distances cost more than
-    /// a call through a pointer.
+    /// A [`MetricTree`] for a copy of `space`, empty and erased. All spaces share its code: for metrics whose
+    /// distances cost more than a call through a pointer.
     pub fn by_metric<C: Space<State = Configuration> + TrueMetric + Clone + Send + 'static>(
         space: &C,
     ) -> Self {

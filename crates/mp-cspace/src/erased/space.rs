@@ -4,7 +4,8 @@ use crate::{Rng, Space, TrueMetric, space::as_inside};
 use std::fmt::{self, Debug};
 use std::sync::Arc;
 
-/// Any space whose states are `S`, behind a pointer: the same distances, samples and interpolations, to the bit.
+/// Any space whose states are `S`, behind a pointer: the same distances, samples and interpolations, to the
+/// bit.
 ///
 /// ```
 /// use mp_cspace::{Manhattan, Rn, Space, WithMetric, erased::AnySpace};
@@ -58,6 +59,6 @@ impl<S: Clone + Debug + PartialEq + Send + Sync> Space for AnySpace<'_, S> {
     as_inside!(space);
 }
 
-/// Marks every erased space, whatever the space inside: only the [index](crate::erased::AnyIndex) relies on the mark,
-/// and it keeps the space it was made for.
+/// Marks every erased space, whatever the space inside: only the [index](crate::erased::AnyIndex) relies on
+/// the mark, and it keeps the space it was made for.
 impl<S> TrueMetric for AnySpace<'_, S> {}

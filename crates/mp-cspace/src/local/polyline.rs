@@ -3,8 +3,8 @@
 use crate::{MotionCheck, MotionValidity, Path, Reversible};
 use std::sync::Arc;
 
-/// An edge through vertices: states in forward time, between which the space interpolates. Without vertices it is the
-/// straight motion. Clones share the vertices.
+/// An edge through vertices: states in forward time, between which the space interpolates. Without vertices
+/// it is the straight motion. Clones share the vertices.
 ///
 /// Every [`MotionValidity`] verifies such edges, motion by motion.
 ///
@@ -44,8 +44,8 @@ impl<S> PolylineEdge<S> {
         self.0.as_deref().unwrap_or_default()
     }
 
-    /// Checks each straight part of the edge from `from` to `to`. In the fraction reported every part counts alike,
-    /// whatever its length.
+    /// Checks each straight part of the edge from `from` to `to`. In the fraction reported every part counts
+    /// alike, whatever its length.
     pub fn check(&self, from: &S, to: &S, check: &mut (impl MotionValidity<S> + ?Sized)) -> MotionCheck {
         let parts = (self.vertices().len() + 1) as f64;
         let (mut last, mut least) = (from, f64::INFINITY);

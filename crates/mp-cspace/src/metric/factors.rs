@@ -56,7 +56,7 @@ impl ScaledEuclidean {
         Ok(Self { weights })
     }
 
-    /// The weights.
+    /// One weight for each factor, in the order of the factors.
     #[must_use]
     pub fn weights(&self) -> &[f64] {
         &self.weights

@@ -4,17 +4,18 @@ use super::Metric;
 use crate::{Linear, Se2, Se2State, Se3, Space, SpaceError};
 use nalgebra::{Isometry3, Point3, Vector3};
 
-/// The approximate volume (m³) that a rigid body sweeps, beyond its own, on the straight motion from one pose to another:
-/// the distance that best reflects how likely a local planner fails (Benitez et al. 2010, *Key Elements for Motion
-/// Planning Algorithms*, §3.1), "rough but inexpensive".
+/// The approximate volume (m³) that a rigid body sweeps, beyond its own, on the straight motion from one pose
+/// to another: the distance that best reflects how likely a local planner fails (Benitez et al. 2010, *Key
+/// Elements for Motion Planning Algorithms*, §3.1), "rough but inexpensive".
 ///
-/// Each triangle of the surface sweeps its area times the travel of its centre along its normal (the mean over the
-/// normals at both ends); half of the triangles sweep outward: `½ Σ Aᵢ·|nᵢ·Δxᵢ|`. Exact for a convex body that does not
-/// turn. Where it turns, parts of the surface that slide along themselves sweep nothing, and chords replace arcs. The cost
-/// grows with the number of triangles, so give a coarse mesh.
+/// Each triangle of the surface sweeps its area times the travel of its centre along its normal (the mean
+/// over the normals at both ends); half of the triangles sweep outward: `½ Σ Aᵢ·|nᵢ·Δxᵢ|`. Exact for a convex
+/// body that does not turn. Where it turns, parts of the surface that slide along themselves sweep nothing,
+/// and chords replace arcs. The cost grows with the number of triangles, so give a coarse mesh.
 ///
-/// Not a [`TrueMetric`](crate::TrueMetric): the triangle inequality does not hold, and different states may be at distance
-/// zero (a ball that turns). Its nearest neighbours are found by [`Linear`](crate::Linear) search.
+/// Not a [`TrueMetric`](crate::TrueMetric): the triangle inequality does not hold, and different states may
+/// be at distance zero (a ball that turns). Its nearest neighbours are found by [`Linear`](crate::Linear)
+/// search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweptVolume {
     /// Centre of each triangle, and its normal times its area.
@@ -126,8 +127,8 @@ mod tests {
         }
     }
 
-    /// A rod turned about its middle sweeps two sectors whose radius is half its length. At a small angle chords are
-    /// nearly arcs.
+    /// A rod turned about its middle sweeps two sectors whose radius is half its length. At a small angle
+    /// chords are nearly arcs.
     #[test]
     fn a_rod_that_turns_sweeps_sectors() {
         let swept = SweptVolume::new(sides(Vector3::new(2.0, 1e-3, 0.5), 40)).unwrap();

@@ -18,14 +18,15 @@ use std::collections::VecDeque;
 /// With `margin = tolerance / 2`:
 /// - a motion found free has clearance at least `margin` **all along it**, so an independent
 ///   verifier that requires less always agrees;
-/// - a motion whose clearance (as [`Clearance`](crate::Clearance) bounds it) is at least `tolerance` all along is
-///   found free;
+/// - a motion whose clearance (as [`Clearance`](crate::Clearance) bounds it) is at least `tolerance` all
+///   along is found free;
 /// - a motion whose least clearance is between the two may be [`Unproven`](MotionCheck::Unproven), which
 ///   planners treat as a collision.
 ///
-/// Contact is tested first: at the end, and at some states between where [that is
-/// cheap](MotionClearance::contact_first). At most `4·L / tolerance + 2` intervals are queried. The farther a distance
-/// query reaches the more it costs, so no interval is longer than twice the [stride](Certified::with_stride).
+/// Contact is tested first: at the end, and at some states between where
+/// [that is cheap](MotionClearance::contact_first). At most `4·L / tolerance + 2` intervals are queried. The
+/// farther a distance query reaches the more it costs, so no interval is longer than twice the
+/// [stride](Certified::with_stride).
 ///
 /// The idea is conservative advancement (Mirtich 1996), bisected as in Schwarzer, Saha and
 /// Latombe 2005, *Adaptive dynamic collision checking for single and multiple articulated robots*.
@@ -82,8 +83,8 @@ where
         self.tolerance * 0.5
     }
 
-    /// The first fraction with contact among states two strides apart, between the ends of a motion in which no point
-    /// travels farther than `travel`: the middle first, then the quarters, …
+    /// The first fraction with contact among states two strides apart, between the ends of a motion in which
+    /// no point travels farther than `travel`: the middle first, then the quarters, …
     fn contact(&mut self, from: &C::State, to: &C::State, travel: f64) -> Option<f64> {
         let parts = (0.5 * travel / self.stride.max(self.margin())).ceil() as u64;
         let mut q = from.clone();
@@ -328,8 +329,8 @@ mod tests {
         assert!(free > 2000 && refused > 2000);
     }
 
-    /// Answers beyond `enough`, as bounds on boxes give, cover far beyond the interval: the clearance reported is that
-    /// at the ends of the covered part.
+    /// Answers beyond `enough`, as bounds on boxes give, cover far beyond the interval: the clearance
+    /// reported is that at the ends of the covered part.
     #[test]
     fn reports_no_more_clearance_than_there_is() {
         struct Generous(Discs);

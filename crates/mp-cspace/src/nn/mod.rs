@@ -33,7 +33,7 @@ pub type NodeId = u32;
 /// A neighbour and its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Which node.
+    /// The neighbour, as an index in insertion order.
     pub id: NodeId,
     /// Its distance to the query in the metric of the space.
     pub distance: f64,

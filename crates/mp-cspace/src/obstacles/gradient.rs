@@ -2,8 +2,8 @@
 
 /// The clearance of a state, and the direction of the space in which it grows.
 ///
-/// Answers only guide: no motion is accepted by them, so they may be rough (an image, a blurred map, a formula
-/// of the user). Closures implement it.
+/// Answers only guide: no motion is accepted by them, so they may be rough (an image, a blurred map, a
+/// formula of the user). Closures implement it.
 ///
 /// ```
 /// use mp_cspace::obstacles::ClearanceGradient;
@@ -26,9 +26,10 @@ pub trait ClearanceGradient<S> {
     /// - In collision: zero or less, minus the depth where depth is known. The gradient then should point
     ///   out of the obstacle; zeros where that direction is not known.
     /// - `gradient` has one number per degree of freedom, in the order of the velocities of
-    ///   [`Space::moved`](crate::Space::moved): translations (m/m) before rotations (m/rad), about world axes.
-    ///   So the clearance after moving at velocity `v` for a short time `t` is `clearance + t·gradient·v`. Every
-    ///   entry is written, and is finite; where the clearance has a kink, any of the adjacent gradients will do.
+    ///   [`Space::moved`](crate::Space::moved): translations (m/m) before rotations (m/rad), about world
+    ///   axes. So the clearance after moving at velocity `v` for a short time `t` is
+    ///   `clearance + t·gradient·v`. Every entry is written, and is finite; where the clearance has a kink,
+    ///   any of the adjacent gradients will do.
     fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64;
 }
 

@@ -65,10 +65,11 @@ pub enum PointOf {
 
 /// The geometry of obstacles, for planners that place the robot at them.
 ///
-/// Here an obstacle is a connected *part*, however many bodies the scene is made of. As with hints, the states
-/// returned need be neither free nor within the space.
+/// Here an obstacle is a connected *part*, however many bodies the scene is made of. As with hints, the
+/// states returned need be neither free nor within the space.
 pub trait ObstacleGeometry<S>: ObstacleHints<S> {
-    /// Computes what the other methods need, where that takes long. Returns `false` when `interrupt` said to end before that was done.
+    /// Computes what the other methods need, where that takes long. Returns `false` when `interrupt` said to
+    /// end before that was done.
     fn prepare(&self, _interrupt: &Interrupt) -> bool {
         true
     }
@@ -91,13 +92,13 @@ pub trait ObstacleGeometry<S>: ObstacleHints<S> {
     /// The place in the world (m) of a `point` of the robot's own frame, the robot at `q`.
     fn world_point(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64>;
 
-    /// `q` moved, without turning, so that a `point` of the robot's frame comes to `place` in the world, as near
-    /// as the robot's degrees of freedom allow.
+    /// `q` moved, without turning, so that a `point` of the robot's frame comes to `place` in the world, as
+    /// near as the robot's degrees of freedom allow.
     fn moved_to(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S;
 
-    /// The state with the robot's centre at `place` and its [axis](BodyFeatures::axis) along `direction`, turned about
-    /// that by `angle` (rad). In the plane it is turned about Z, the only axis there. A robot that cannot turn is
-    /// only moved.
+    /// The state with the robot's centre at `place` and its [axis](BodyFeatures::axis) along `direction`,
+    /// turned about that by `angle` (rad). In the plane it is turned about Z, the only axis there. A robot
+    /// that cannot turn is only moved.
     fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> S;
 
     /// Whether the sphere around the robot at `q` is apart from those around all obstacles. The robot is then

@@ -18,8 +18,8 @@ pub struct Tightest {
     pub at: f64,
 }
 
-/// A part of a motion: its ends `a` and `b`, each a fraction of it with a lower bound on the clearance there, and a lower
-/// bound on the clearance between.
+/// A part of a motion: its ends `a` and `b`, each a fraction of it with a lower bound on the clearance there,
+/// and a lower bound on the clearance between.
 struct Part {
     bound: f64,
     a: (f64, f64),
@@ -59,9 +59,9 @@ const MAX_STATES: usize = 1_000_000;
 /// The least clearance along `path`, its bounds at most `accuracy` metres apart; `None` for the
 /// empty path.
 ///
-/// First the states of the path, then edge by edge, by [`MotionClearance::least_along`]. A path in contact gives zero. With an
-/// accuracy that is not positive, or takes over a million states, the bounds known by then are returned: still
-/// valid.
+/// First the states of the path, then edge by edge, by [`MotionClearance::least_along`]. A path in contact
+/// gives zero. With an accuracy that is not positive, or takes over a million states, the bounds known by
+/// then are returned: still valid.
 pub fn least_clearance<C, V>(
     space: &C,
     valid: &mut V,
@@ -103,7 +103,8 @@ where
     Some(tightest)
 }
 
-/// Branch and bound on the motion bound (Piyavskii 1972, Shubert 1972): the part of least bound is halved first.
+/// Branch and bound on the motion bound (Piyavskii 1972, Shubert 1972): the part of least bound is halved
+/// first.
 pub(crate) fn by_motion_bound<S, V>(valid: &mut V, search: &ClearanceSearch<'_, S>) -> LeastClearance
 where
     V: MotionClearance<S> + ?Sized,

@@ -44,7 +44,7 @@ impl fmt::Display for PathFault {
 /// What the verification of a path found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathReport {
-    /// Number of edges.
+    /// Edges that the path has, whether or not they were reached before a fault.
     pub edges: usize,
     /// Length in the metric of the space.
     pub length: f64,

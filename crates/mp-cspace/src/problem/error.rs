@@ -66,7 +66,7 @@ pub enum BuildError {
         "{planner} also grows from the goal: a region alone is not enough, give goal states or a sampler"
     )]
     NoGoalState {
-        /// Which planner.
+        /// The planner that was asked for, by name.
         planner: &'static str,
     },
     /// The planner grows along obstacles and the problem has no hints of them.
@@ -74,7 +74,7 @@ pub enum BuildError {
         "{planner} follows obstacles: give the problem hints of them; robots that have none need another planner"
     )]
     NoHints {
-        /// Which planner.
+        /// The planner that was asked for, by name.
         planner: &'static str,
     },
     /// The planner needs a clearance gradient and the problem has none.
@@ -82,7 +82,7 @@ pub enum BuildError {
         "{planner} needs the distance to obstacles and the direction in which it grows: give the problem a clearance gradient; robots that have none need another planner"
     )]
     NoGradient {
-        /// Which planner.
+        /// The planner that was asked for, by name.
         planner: &'static str,
     },
     /// The planner needs the geometry of obstacles and the problem has none.
@@ -90,7 +90,7 @@ pub enum BuildError {
         "{planner} needs the geometry of obstacles: give it to the problem; robots that have none need another planner"
     )]
     NoGeometry {
-        /// Which planner.
+        /// The planner that was asked for, by name.
         planner: &'static str,
     },
     /// A parameter is out of its range.
@@ -98,7 +98,7 @@ pub enum BuildError {
     OutOfRange {
         /// Which parameter.
         name: &'static str,
-        /// The value given.
+        /// The value that was given.
         value: f64,
         /// The values allowed.
         range: String,
@@ -121,7 +121,7 @@ pub enum BuildError {
     /// A setting is not of the form `key=value`, or its value cannot be read.
     #[error("cannot read the setting `{setting}`: expected {expected}")]
     Malformed {
-        /// The setting.
+        /// The text that was given.
         setting: String,
         /// The form expected.
         expected: &'static str,
@@ -129,9 +129,9 @@ pub enum BuildError {
     /// The planner has no such parameter.
     #[error("{planner} has no parameter `{name}`{}; it has: {}", hint(suggestion), known.join(", "))]
     UnknownParameter {
-        /// Which planner.
+        /// The planner that was asked for, by name.
         planner: &'static str,
-        /// The name given.
+        /// The parameter that was set.
         name: String,
         /// The names there are.
         known: Vec<&'static str>,
@@ -141,7 +141,7 @@ pub enum BuildError {
     /// There is no such planner.
     #[error("there is no planner `{name}`{}; there are: {}", hint(suggestion), known.join(", "))]
     UnknownPlanner {
-        /// The name given.
+        /// The name that was asked for.
         name: String,
         /// The names there are.
         known: Vec<&'static str>,

@@ -31,13 +31,14 @@ pub struct Problem<'c, C: Space, L: LocalPlanner<C::State>> {
 /// How an input, applied for a while (s), moves a state, behind a pointer: for planners by name.
 pub type AnyFlow<'c, S> = Arc<dyn Fn(&S, &[f64], f64) -> S + Send + Sync + 'c>;
 
-/// How a robot moves by inputs, for planners by name that do so. The local planner of the problem checks the motion from a
-/// state to the state that an input leads to.
+/// How a robot moves by inputs, for planners by name that do so. The local planner of the problem checks the
+/// motion from a state to the state that an input leads to.
 #[derive(Clone)]
 pub struct InputSystem<'c, S> {
     /// How an input moves a state.
     pub flow: AnyFlow<'c, S>,
-    /// The inputs. The first number is that of directions, 0 for the robot's own choice; the second that of magnitudes.
+    /// The inputs. The first number is that of directions, 0 for the robot's own choice; the second that of
+    /// magnitudes.
     pub inputs: Arc<dyn Fn(usize, u32) -> Vec<Vec<f64>> + Send + Sync + 'c>,
     /// How long an input is held, seconds.
     pub duration: f64,
@@ -52,8 +53,8 @@ impl<S> fmt::Debug for InputSystem<'_, S> {
 /// A problem of an erased space, with straight edges.
 pub type AnyProblem<'c, S> = Problem<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 
-/// What planners by name may query about obstacles, beside whether a motion is free. Each field is optional; a planner
-/// that needs a missing one returns an error.
+/// What planners by name may query about obstacles, beside whether a motion is free. Each field is optional;
+/// a planner that needs a missing one returns an error.
 pub struct ObstacleKnowledge<'c, S> {
     /// States along obstacles: for planners that grow along them.
     pub hints: Option<BoxedHints<'c, S>>,
@@ -107,7 +108,7 @@ pub type BoxedVerify<'c, C, L> =
 /// What a [`Problem`] consists of, for planners: [`Problem::into_parts`].
 #[allow(missing_debug_implementations)] // verifiers need not implement `Debug`
 pub struct ProblemParts<'c, C: Space, L: LocalPlanner<C::State>> {
-    /// The space.
+    /// Where configurations live, and how far apart they are.
     pub space: &'c C,
     /// How to move in it.
     pub local: L,
@@ -187,7 +188,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
-    /// The space.
+    /// The space in which start, goals and paths are.
     #[must_use]
     pub fn space(&self) -> &'c C {
         self.space
@@ -237,9 +238,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
 
     /// The same problem, whose planner asks `interrupt` whether to end also within an iteration.
     ///
-    /// A planner that was interrupted has done part of an iteration. So the iteration counts for nothing, and the planner is of no
-    /// further use: a path found before is what there is. [`Planner::solve`](crate::Planner::solve) keeps to this when its stop
-    /// contains a clone of `interrupt`.
+    /// A planner that was interrupted has done part of an iteration. So the iteration counts for nothing, and
+    /// the planner is of no further use: a path found before is what there is.
+    /// [`Planner::solve`](crate::Planner::solve) keeps to this when its stop contains a clone of `interrupt`.
     #[must_use]
     pub fn with_interrupt(self, interrupt: Interrupt) -> Self {
         Self { interrupt, ..self }

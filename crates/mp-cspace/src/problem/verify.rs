@@ -4,10 +4,10 @@ use crate::{MotionCheck, MotionValidity, PolylineEdge};
 
 /// Verifies states and edges of a candidate path, sharing nothing with the local planner.
 ///
-/// Every [`MotionValidity`] verifies edges that are the space's own interpolation (`E = ()`), also through vertices
-/// ([`PolylineEdge`]). Local planners with other edges need a verifier that replays them.
+/// Every [`MotionValidity`] verifies edges that are the space's own interpolation (`E = ()`), also through
+/// vertices ([`PolylineEdge`]). Local planners with other edges need a verifier that replays them.
 pub trait Verify<S, E> {
-    /// Checks one state.
+    /// Checks the motion from `q` to itself: whether the state is free.
     fn verify_state(&mut self, q: &S) -> MotionCheck;
     /// Checks the motion along `edge` from `from` to `to`, in forward time, both ends included.
     fn verify_edge(&mut self, from: &S, edge: &E, to: &S) -> MotionCheck;

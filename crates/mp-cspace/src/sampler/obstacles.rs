@@ -15,8 +15,8 @@ fn normal_neighbor<C: Space>(space: &C, q: &C::State, sigma: f64, rng: &mut Rng)
 macro_rules! obstacle_sampler {
     ($name:ident) => {
         impl<'c, C: Space, V: Validity<C::State>> $name<'c, C, V> {
-            /// Samples of `space`, where `valid` tells which states are free; `sigma` is the standard deviation of the
-            /// distance, in the metric of the space.
+            /// Samples of `space`, where `valid` tells which states are free; `sigma` is the standard
+            /// deviation of the distance, in the metric of the space.
             ///
             /// # Errors
             /// When `sigma` is not positive and finite.
@@ -47,12 +47,12 @@ macro_rules! obstacle_sampler {
     };
 }
 
-/// The Gaussian sampling strategy (Boor, Overmars and van der Stappen 1999, *The Gaussian sampling strategy for
-/// probabilistic roadmap planners*): free states near obstacles. Their density is that of the obstacles
+/// The Gaussian sampling strategy (Boor, Overmars and van der Stappen 1999, *The Gaussian sampling strategy
+/// for probabilistic roadmap planners*): free states near obstacles. Their density is that of the obstacles
 /// blurred by a Gaussian.
 ///
-/// Of two states, one uniform and the other at a normally distributed distance from it, the free one is taken if exactly
-/// one is free.
+/// Draws two states, one uniform and one at a normally distributed distance from it. If exactly one of them
+/// is free, that is the sample.
 #[derive(Clone, Debug)]
 pub struct Gaussian<'c, C, V> {
     space: &'c C,
@@ -76,11 +76,12 @@ impl<C: Space, V: Validity<C::State>> Gaussian<'_, C, V> {
     }
 }
 
-/// The bridge test (Hsu, Jiang, Reif and Sun 2003, *The bridge test for sampling narrow passages with probabilistic
-/// roadmap planners*): free states between obstacles, in narrow passages.
+/// The bridge test (Hsu, Jiang, Reif and Sun 2003, *The bridge test for sampling narrow passages with
+/// probabilistic roadmap planners*): free states between obstacles, in narrow passages.
 ///
-/// Of two states, one uniform and the other at a normally distributed distance from it, the one in their middle is taken
-/// if it is free and both are not. Few tries succeed: mix it with uniform samples.
+/// Draws two states, one uniform and one at a normally distributed distance from it. If neither is free but
+/// the state in the middle between them is, that is the sample. Few tries succeed: mix it with uniform
+/// samples.
 #[derive(Clone, Debug)]
 pub struct Bridge<'c, C, V> {
     space: &'c C,

@@ -19,7 +19,6 @@ struct Piece<S> {
     to: S,
 }
 
-/// The arc length of each state from the start.
 fn arc_lengths<C: Space>(space: &C, states: &[C::State]) -> Vec<f64> {
     let mut s = vec![0.0];
     for w in states.windows(2) {

@@ -6,12 +6,12 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 /// SE(3) × joints: the pose of a base that moves freely, and the joints of a body on it.
 ///
-/// It is the product of [`Se3`] and [`Joints`], with their states in one list, so that planners that are compiled for arms
-/// serve it too. The first seven numbers are the pose of the base: x, y, z (m), then the unit quaternion as i, j, k and w.
-/// The values of the joints follow.
+/// It is the product of [`Se3`] and [`Joints`], with their states in one list, so that planners that are
+/// compiled for arms serve it too. The first seven numbers are the pose of the base: x, y, z (m), then the
+/// unit quaternion as i, j, k and w. The values of the joints follow.
 ///
-/// Distance: `√((‖Δp‖ + w·θ)² + ‖Δq‖²)`, the first term the distance of [`Se3`], the second that of [`Joints`].
-/// Interpolation is that of the two spaces.
+/// Distance: `√((‖Δp‖ + w·θ)² + ‖Δq‖²)`, the first term the distance of [`Se3`], the second that of
+/// [`Joints`]. Interpolation is that of the two spaces.
 ///
 /// ```
 /// use mp_cspace::{FloatingJoints, JointRange, Joints, Se3, Space};
@@ -64,15 +64,16 @@ impl FloatingJoints {
         &self.joints
     }
 
-    /// The state with this pose of the base and these values of the joints. Joints without limits are wrapped to (-π, π].
+    /// The state with this pose of the base and these values of the joints. Joints without limits are wrapped
+    /// to (-π, π].
     #[must_use]
     pub fn state(&self, base: &Isometry3<f64>, joints: &[f64]) -> Configuration {
         let joints = self.joints.wrapped(&Configuration::from(joints));
         joined(base, joints.as_slice())
     }
 
-    /// The pose of the base and the values of the joints of a state; `None` for a list of fewer than seven numbers. The
-    /// quaternion is taken as it is.
+    /// The pose of the base and the values of the joints of a state; `None` for a list of fewer than seven
+    /// numbers. The quaternion is taken as it is.
     #[inline]
     #[must_use]
     pub fn split(q: &[f64]) -> Option<(Isometry3<f64>, &[f64])> {

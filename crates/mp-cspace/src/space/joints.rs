@@ -8,7 +8,8 @@ use rand::RngExt;
 use std::f64::consts::PI;
 use std::fmt::Debug;
 
-/// A list of coordinates: `SVector<f64, N>` where their number is known when compiling, else [`Configuration`](crate::Configuration).
+/// A list of coordinates: `SVector<f64, N>` where their number is known when compiling, else
+/// [`Configuration`](crate::Configuration).
 pub trait Coordinates: Clone + Debug + PartialEq + Send + Sync {
     /// The number of coordinates; `None` when it is known only at run time.
     const COUNT: Option<usize>;
@@ -36,7 +37,7 @@ impl<const N: usize> Coordinates for SVector<f64, N> {
     }
 }
 
-/// The range of one joint.
+/// The values that a joint may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointRange {
     /// From `low` to `high`: radians or metres.
@@ -77,8 +78,9 @@ impl JointRange {
 /// circles that of the shorter arc. Radians and metres count alike; a
 /// [`ScaledEuclidean`](crate::ScaledEuclidean) weighs them.
 ///
-/// With [`Configuration`](crate::Configuration) as states the number of joints is known at run time. Where all joints are intervals and their
-/// number is known when compiling, [`Rn`](crate::Rn) is the same space, and faster.
+/// With [`Configuration`](crate::Configuration) as states the number of joints is known at run time. Where
+/// all joints are intervals and their number is known when compiling, [`Rn`](crate::Rn) is the same space,
+/// and faster.
 ///
 /// ```
 /// use mp_cspace::{JointRange, Joints, Space};
@@ -102,8 +104,8 @@ impl<Q: Coordinates> Joints<Q> {
     /// The space of joints with these ranges.
     ///
     /// # Errors
-    /// When there is no range, or not as many as `Q` has coordinates; when a bound is not finite, or some `low`
-    /// is not below its `high`.
+    /// When there is no range, or not as many as `Q` has coordinates; when a bound is not finite, or some
+    /// `low` is not below its `high`.
     pub fn new(ranges: impl Into<Vec<JointRange>>) -> Result<Self, SpaceError> {
         let ranges = ranges.into();
         if let Some(expected) = Q::COUNT
@@ -148,7 +150,7 @@ impl<Q: Coordinates> Joints<Q> {
         Self::new(vec![JointRange::Circle; count])
     }
 
-    /// The range of each joint.
+    /// The values that each joint may take, in the order of a state's numbers.
     #[must_use]
     pub fn ranges(&self) -> &[JointRange] {
         &self.ranges

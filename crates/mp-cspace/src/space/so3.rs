@@ -21,7 +21,8 @@ pub(crate) fn turned(q: &UnitQuaternion<f64>, turn: Vector3<f64>) -> UnitQuatern
     UnitQuaternion::new_unchecked(q * (1.5 - 0.5 * q.norm_squared()))
 }
 
-/// The turn about a world axis that leads from `a` to `b` along the shorter arc, as the axis times the angle (rad).
+/// The turn about a world axis that leads from `a` to `b` along the shorter arc, as the axis times the angle
+/// (rad).
 #[inline]
 pub(crate) fn turn(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> Vector3<f64> {
     let (va, vb) = (&a.as_ref().coords, &b.as_ref().coords);
@@ -34,7 +35,8 @@ pub(crate) fn turn(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> Vector3<
     axis * (rotation_angle(a, b) / sine)
 }
 
-/// The rotation at `u` of the unit cube, uniform (Shoemake 1992, *Uniform random rotations*, Graphics Gems III).
+/// The rotation at `u` of the unit cube, uniform (Shoemake 1992, *Uniform random rotations*, Graphics Gems
+/// III).
 #[inline]
 pub(crate) fn rotation_at(u: [f64; 3]) -> UnitQuaternion<f64> {
     let (r1, r2) = ((1.0 - u[0]).sqrt(), u[0].sqrt());

@@ -11,8 +11,9 @@ use std::cell::Cell;
 use std::fmt::{self, Debug};
 use std::marker::PhantomData;
 
-/// Another space with its states written as rows of numbers: the same distances, samples and motions, to the bit. Planners made by
-/// name, which are compiled for [`Configuration`], then plan in it. [`OnVectors`] does the same for checks.
+/// Another space with its states written as rows of numbers: the same distances, samples and motions, to the
+/// bit. Planners made by name, which are compiled for [`Configuration`], then plan in it. [`OnVectors`] does
+/// the same for checks.
 ///
 /// A row that is not a state is out of bounds, at an infinite distance from all others.
 ///
@@ -127,7 +128,8 @@ impl<C: Factored<State: StateVector>> Factored for AsVectors<C> {
     }
 }
 
-/// A check of states `S`, for the rows of their numbers: see [`AsVectors`]. A row that is not a state is in collision.
+/// A check of states `S`, for the rows of their numbers: see [`AsVectors`]. A row that is not a state is in
+/// collision.
 pub struct OnVectors<A, S> {
     check: A,
     state: PhantomData<fn(&S)>,

@@ -4,9 +4,10 @@ use crate::{Rng, Space, obstacles::ClearanceGradient};
 use rand::RngExt;
 
 /// Checks a [`ClearanceGradient`] on `samples` random states, queried with `reach` (m): answers are
-/// reproducible and finite, and at free states gradients are the derivatives of the clearance, by central differences
-/// over `step` (time at random velocities of up to 1 per degree of freedom). Kinks (where another obstacle becomes the
-/// nearest) are allowed at one in twenty of the states, and differences of up to `tolerance` (m/s) everywhere.
+/// reproducible and finite, and at free states gradients are the derivatives of the clearance, by central
+/// differences over `step` (time at random velocities of up to 1 per degree of freedom). Kinks (where another
+/// obstacle becomes the nearest) are allowed at one in twenty of the states, and differences of up to
+/// `tolerance` (m/s) everywhere.
 ///
 /// # Panics
 /// When an axiom is violated, naming it and the state; when the space has no velocities

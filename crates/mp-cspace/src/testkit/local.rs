@@ -3,10 +3,10 @@
 use crate::{Direction, Extension, LocalPlanner, Reach, Rng, Space};
 use std::fmt::Debug;
 
-/// Checks a [`LocalPlanner`] on random pairs of states: a full reach is all or nothing; a motion that
-/// reaches the target ends at it exactly; an advance stays within the step and moves; costs are finite
-/// and not negative; the same question gets the same answer. For planners that step by time rather than
-/// distance give `step` as infinite.
+/// Checks a [`LocalPlanner`] on random pairs of states. A full reach is all or nothing, and a motion that
+/// reaches the target ends at it exactly. An advance moves, by at most a step. Costs are finite and not
+/// negative. The same question gets the same answer. For planners that step by time rather than distance give
+/// `step` as infinite.
 ///
 /// # Panics
 /// When an axiom is violated, naming it and the states.

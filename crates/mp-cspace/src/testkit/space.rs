@@ -7,12 +7,11 @@ use std::fmt::Debug;
 
 /// Checks the axioms of a [`Space`].
 ///
-/// These are: dimension and extent are positive; samples, and images of the unit cube with its
-/// faces, are contained; uniform sampling is deterministic and agrees with the map from the unit
-/// cube; distances satisfy [`check_metric`] and do not exceed the extent; interpolation is exact at both
-/// ends, stays inside, does not depend on what the output held, and has constant speed; a part of a
-/// motion is the motion between the ends of the part; constant velocities, where the space has them,
-/// lead along the interpolation.
+/// Dimension and extent are positive. The space contains its samples, and the images of the unit cube with
+/// its faces. Uniform sampling is deterministic and agrees with the map from the unit cube. Distances satisfy
+/// [`check_metric`] and do not exceed the extent. Interpolation is exact at both ends, stays inside, has
+/// constant speed, and does not depend on what the output held. A part of a motion is the motion between the
+/// ends of the part. Constant velocities, where the space has them, lead along the interpolation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpaceKit {
     samples: usize,

@@ -22,8 +22,8 @@ pub(super) struct Region {
     pub(super) sides: (f64, f64),
 }
 
-/// `count` boxes, each of uniform rotation, position and sides; those that `allowed` refuses, such as boxes at
-/// the start, are drawn again.
+/// `count` boxes, each of uniform rotation, position and sides; those that `allowed` refuses, such as boxes
+/// at the start, are drawn again.
 pub(super) fn boxes(
     region: &Region,
     count: usize,

@@ -11,7 +11,8 @@ use nalgebra::{Isometry3, SVector, UnitQuaternion, Vector3};
 /// A number for each degree of freedom, of which both robots have six.
 pub(super) type Six = SVector<f64, 6>;
 
-/// What is planned for with a robot: its problem without obstacles, where obstacles are, and its inputs.
+/// A robot with all that planning needs: its problem without obstacles, where obstacles are put, and its
+/// inputs.
 #[derive(Clone, Debug)]
 pub(super) struct Setup<Sp: Space> {
     pub(super) space: Sp,
@@ -21,8 +22,9 @@ pub(super) struct Setup<Sp: Space> {
     pub(super) region: Region,
     /// The velocity of each degree of freedom that makes one step in a second.
     pub(super) speeds: Six,
-    /// The greatest velocities, per second, of the model with velocities. With the accelerations such that the problem without
-    /// obstacles is solved with every set of inputs, so that obstacles are what is measured.
+    /// The greatest velocities, per second, of the model with velocities. With the accelerations such that
+    /// the problem without obstacles is solved with every set of inputs, so that obstacles are what is
+    /// measured.
     pub(super) velocities: Six,
     /// The accelerations of that model, per second².
     pub(super) accelerations: Six,
@@ -41,8 +43,8 @@ pub(super) trait TestRobot: Sync {
 
     /// Its problem and inputs.
     fn setup(&self) -> &Setup<Self::Space>;
-    /// Whether a configuration counts as the goal; the same for all metrics. With velocities the region is larger: in a small one
-    /// a tree moved by accelerations stops only by luck, even without obstacles.
+    /// Whether a configuration counts as the goal; the same for all metrics. With velocities the region is
+    /// larger: in a small one a tree moved by accelerations stops only by luck, even without obstacles.
     fn arrived(&self, q: &<Self::Space as Space>::State, has_velocity: bool) -> bool;
     fn among(&self, obstacles: &[Obstacle]) -> Result<Self::Robot>;
     /// A verifier of motions, with other code than the robot's check.
@@ -52,7 +54,8 @@ pub(super) trait TestRobot: Sync {
     ) -> Result<impl MotionValidity<<Self::Space as Space>::State> + Send + use<'a, Self>>;
     /// The configuration of a row of a path file.
     fn configuration(&self, row: [f64; 6]) -> <Self::Space as Space>::State;
-    /// The tables `[robot]` and `[motion]` of a scene file, with the goal that is the middle of the goal region here.
+    /// The tables `[robot]` and `[motion]` of a scene file, with the goal that is the middle of the goal
+    /// region here.
     fn tables(&self) -> String;
     /// Whether an obstacle keeps some clearance from start and goal.
     fn spares(&self, obstacle: &Obstacle) -> Result<bool>;
@@ -146,7 +149,8 @@ pub(super) struct SixAxes {
 pub(super) const ARM_FILE: &str = "robots/rsrt-arm.urdf";
 /// The limit of each joint in both directions, radians.
 const TURN: f64 = 2.6;
-/// Distances from the axis of each joint to the tip of the straight arm, metres; rough values for the roll joints.
+/// Distances from the axis of each joint to the tip of the straight arm, metres; rough values for the roll
+/// joints.
 const ARMS: [f64; 6] = [1.5, 1.5, 1.0, 0.3, 0.5, 0.15];
 
 impl SixAxes {

@@ -39,7 +39,7 @@ pub struct Run {
     pub edges: usize,
 }
 
-/// The planners compared.
+/// A planner of the comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ComparedPlanner {
     /// A tree that moves by inputs: ALG. 4, RSRT, or what is between them.
@@ -55,10 +55,10 @@ impl ComparedPlanner {
     pub const RSRT: Self = Self::Inputs(Order::SortFirst, Accept::Any);
 }
 
-/// The settings of a run.
+/// What a run of the comparison depends on, beside the problem.
 #[derive(Clone, Debug)]
 pub struct RunSettings {
-    /// The planner.
+    /// Who plans.
     pub planner: ComparedPlanner,
     /// The number of inputs: [`InputSet::directions`].
     pub inputs: usize,
@@ -135,8 +135,8 @@ fn run<S, E: Clone>(
     }))
 }
 
-/// Plans among obstacles, with states of one of [`MODELS`](super::MODELS), under one of [`METRICS`](super::METRICS). `None` when it
-/// was cancelled.
+/// Plans among obstacles, with states of one of [`MODELS`](super::MODELS), under one of
+/// [`METRICS`](super::METRICS). `None` when it was cancelled.
 pub(super) fn among<M: TestRobot>(
     test_robot: &M,
     obstacles: &[Obstacle],
@@ -206,7 +206,8 @@ where
     Ok(done.map(|run| Run { checks: count.load(Ordering::Relaxed), ..run }))
 }
 
-/// The longest step is a fifth of the extent: for connections of inputs to a goal, and for RRT-Connect's edges.
+/// The longest step is a fifth of the extent: for connections of inputs to a goal, and for RRT-Connect's
+/// edges.
 fn tuning() -> Tuning {
     Tuning { step: Length::Fraction(0.2), ..Tuning::default() }
 }

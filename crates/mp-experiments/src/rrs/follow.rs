@@ -1,8 +1,9 @@
 //! §6: a differential-drive robot with noisy wheels and a noisy laser follows paths of RRT and of RRS.
 //!
-//! The robot is a Khepera in a world of 5 × 2 m. It drives by pure pursuit toward a point of the path ahead of its
-//! estimated position, which comes from a particle filter with odometry and laser ranges (Thrun, Burgard and
-//! Fox 2005, *Probabilistic robotics*, tables 5.3, 6.1 and 8.2). Safety is measured at its true position.
+//! The robot is a Khepera in a world of 5 × 2 m. It drives by pure pursuit toward a point of the path ahead
+//! of its estimated position, which comes from a particle filter with odometry and laser ranges (Thrun,
+//! Burgard and Fox 2005, *Probabilistic robotics*, tables 5.3, 6.1 and 8.2). Safety is measured at its true
+//! position.
 
 use super::noisy_robot::{ParticleFilter, Pose, TICK};
 use super::trial::{Case, Point, PreparedWorld, RANGE, planned};
@@ -116,8 +117,8 @@ pub fn follow(robot: &DiscRobot, space: &Rn<2>, path: &Path<Vector2<f64>>, seed:
     Some(Followed { path, driven, run })
 }
 
-/// The kinds of path that are followed: of RRT and of RRS, as they are found, made shorter, and then relaxed on the
-/// landscape of risk.
+/// The kinds of path that are followed: of RRT and of RRS, as they are found, made shorter, and then relaxed
+/// on the landscape of risk.
 pub const KINDS: [&str; 6] = ["rrt", "rrt shortened", "rrt relaxed", "rrs", "rrs shortened", "rrs relaxed"];
 
 /// All paths are planned, shortened and relaxed for a robot larger by this, metres.
@@ -150,16 +151,17 @@ pub fn planned_and_followed(scene: &DiscScene, kind: &str, trial: u64) -> Result
 /// The size of a cell of the landscape, and the length of the steps of the path in it, metres.
 const CELL: f64 = 0.02;
 const STRIDE: f64 = 0.25;
-/// The greatest energy of the risk, beside that of repulsion, which is ½ where the robot touches an obstacle; and how much
-/// longer a path may become.
+/// The greatest energy of the risk, beside that of repulsion, which is ½ where the robot touches an obstacle;
+/// and how much longer a path may become.
 const WEIGHT: f64 = 1.0;
 const STRETCH: f64 = 1.15;
-/// The length of an implicit step (m²), and the most steps. The risk changes over two or three cells: steps as long as the
-/// range of repulsion overshoot.
+/// The length of an implicit step (m²), and the most steps. The risk changes over two or three cells: steps
+/// as long as the range of repulsion overshoot.
 const PACE: f64 = 1e-3;
 const STEPS: u32 = 400;
 
-/// The landscape of risk of a path (Fig. 1): the probability of passing each place, times that of hitting an obstacle there.
+/// The landscape of risk of a path (Fig. 1): the probability of passing each place, times that of hitting an
+/// obstacle there.
 ///
 /// # Errors
 /// When the world is too large for its maps.

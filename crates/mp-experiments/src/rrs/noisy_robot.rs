@@ -1,4 +1,5 @@
-//! A differential-drive robot with noisy wheels and a noisy laser, and the particle filter that estimates its pose.
+//! A differential-drive robot with noisy wheels and a noisy laser, and the particle filter that estimates its
+//! pose.
 
 use mp_cspace::Rng;
 use mp_geom::planar::PlanarWorld;
@@ -8,7 +9,8 @@ use std::f64::consts::TAU;
 
 /// Seconds between two commands.
 pub const TICK: f64 = 0.1;
-/// Standard deviations of the wheel noise: of the speed per speed and turn rate, of the turn rate per speed and turn rate.
+/// Standard deviations of the wheel noise: of the speed per speed and turn rate, of the turn rate per speed
+/// and turn rate.
 const WHEELS: [f64; 4] = [0.08, 0.01, 0.4, 0.08];
 /// The laser: beams over 240°, its range (m), and its standard deviation, constant (m) and per distance.
 const BEAMS: usize = 24;
@@ -103,7 +105,8 @@ impl ParticleFilter {
         Pose { at, angle: mp_math::atan2(toward.y, toward.x) }
     }
 
-    /// The uncertainty of the position: the root of the mean squared distance of the particles from their mean, metres.
+    /// The uncertainty of the position: the root of the mean squared distance of the particles from their
+    /// mean, metres.
     pub fn uncertainty(&self) -> f64 {
         let mean = self.mean().at;
         let squares: f64 = self.poses.iter().map(|p| (p.at - mean).norm_squared()).sum();

@@ -68,9 +68,9 @@ pub struct Run {
     pub not_bent: u64,
 }
 
-/// Steps of Δq, as in NEW_CONF of the paper: exactly that long, whether the sample is nearer or farther, except
-/// those toward the goal, which end at it; or at most that long, as is customary. No step is longer: if a planner tried
-/// the whole motion from start to goal first, a single snake would solve the problem.
+/// Steps of Δq, as in NEW_CONF of the paper: exactly that long, whether the sample is nearer or farther,
+/// except those toward the goal, which end at it; or at most that long, as is customary. No step is longer:
+/// if a planner tried the whole motion from start to goal first, a single snake would solve the problem.
 #[derive(Clone, Debug)]
 pub struct Steps<'c, L> {
     space: &'c Rn<2>,
@@ -141,7 +141,7 @@ type Snakes<'a, F> = SnakePlanner<'a, Rn<2>, DiscRobot, F>;
 /// A world prepared for all its cases: the scene, the robot and the maps that guide snakes.
 #[derive(Clone, Debug)]
 pub struct PreparedWorld {
-    /// The scene.
+    /// The world: obstacles, the radius of the disc, start and goal.
     pub scene: DiscScene,
     /// The robot among its obstacles.
     pub robot: DiscRobot,

@@ -53,8 +53,8 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// A grid over the box from `low` to `high`, in which all edges are; the first `solid` of them bound obstacles,
-    /// the rest the outside. Not to be used when `interrupt` has said to end.
+    /// A grid over the box from `low` to `high`, in which all edges are; the first `solid` of them bound
+    /// obstacles, the rest the outside. Not to be used when `interrupt` has said to end.
     pub(super) fn new(
         [low, high]: [Point2<f64>; 2],
         edges: &[Edge],
@@ -169,7 +169,8 @@ impl Cells {
         (cell, &self.candidates[cell.first as usize..next.first as usize])
     }
 
-    /// The fraction of the segment from `a` at which it leaves a cell; `inverse` holds the reciprocals of its components.
+    /// The fraction of the segment from `a` at which it leaves a cell; `inverse` holds the reciprocals of its
+    /// components.
     #[inline]
     pub(super) fn leaves(
         &self,

@@ -22,7 +22,6 @@ impl Edge {
         Self { a, b, along, inverse: if inverse.is_finite() { inverse } else { 0.0 }, polygon }
     }
 
-    /// The point nearest to `p`.
     #[inline]
     pub(super) fn nearest(&self, p: &Point2<f64>) -> Point2<f64> {
         let t = ((p - self.a).dot(&self.along) * self.inverse).clamp(0.0, 1.0);
@@ -40,7 +39,8 @@ impl Edge {
         [self.a.inf(&self.b), self.a.sup(&self.b)]
     }
 
-    /// Whether it is wholly on one side of the line through the other edge, and farther than `far` from it: a quick rejection.
+    /// Whether it is wholly on one side of the line through the other edge, and farther than `far` from it: a
+    /// quick rejection.
     #[inline]
     pub(super) fn is_beside(&self, other: &Edge, far: f64) -> bool {
         let (a, b) = (other.along.perp(&(self.a - other.a)), other.along.perp(&(self.b - other.a)));

@@ -4,11 +4,11 @@ use super::{Polygon, PolygonError};
 use mp_stop::Interrupt;
 use nalgebra::Point2;
 
-/// The polygon of the occupied squares of a map of `width` × `height` squares with sides of `size` metres, whose
-/// lower left corner is at `origin`: `occupied(column, row)`, rows counted upward. `None` when none is.
+/// The polygon of the occupied squares of a map of `width` × `height` squares with sides of `size` metres,
+/// whose lower left corner is at `origin`: `occupied(column, row)`, rows counted upward. `None` when none is.
 ///
-/// Rings run along the sides of squares, with one edge for each straight stretch; where two squares touch at a corner
-/// only, rings touch. O(width · height).
+/// Rings run along the sides of squares, with one edge for each straight stretch; where two squares touch at
+/// a corner only, rings touch. O(width · height).
 ///
 /// # Errors
 /// When a coordinate is not finite or beyond 10⁶⁰, or `interrupt` says to end.
@@ -20,8 +20,8 @@ pub fn outline(
     interrupt: &Interrupt,
 ) -> Result<Option<Polygon>, PolygonError> {
     let mut interrupt = interrupt.clone();
-    // Lines between squares: east[y·(width+1) + x] is the side from corner (x, y) to (x+1, y), when the squares below
-    // and above it differ; `north` likewise for sides from (x, y) to (x, y+1).
+    // Lines between squares: east[y·(width+1) + x] is the side from corner (x, y) to (x+1, y), when the
+    // squares below and above it differ; `north` likewise for sides from (x, y) to (x, y+1).
     let at = |x: usize, y: usize| y * (width + 1) + x;
     let inside = |x: usize, y: usize| x < width && y < height && occupied(x, y);
     let mut east = vec![false; (width + 1) * (height + 1)];
@@ -54,7 +54,8 @@ pub fn outline(
     if rings.is_empty() { Ok(None) } else { Polygon::new(rings).map(Some) }
 }
 
-/// The corners of a ring that begins with the side east of `start`; its sides are removed from `east` and `north`.
+/// The corners of a ring that begins with the side east of `start`; its sides are removed from `east` and
+/// `north`.
 fn follow(
     start: (usize, usize),
     (width, height): (usize, usize),
@@ -67,8 +68,8 @@ fn follow(
     // 0 east, 1 north, 2 west, 3 south.
     let mut heading = 4;
     loop {
-        // Every corner has an even number of sides, so the ring continues until it is closed. By the even-odd rule
-        // either turn is right where four sides meet.
+        // Every corner has an even number of sides, so the ring continues until it is closed. By the even-odd
+        // rule either turn is right where four sides meet.
         let next = [0, 1, 2, 3].into_iter().find(|&way| {
             let side = match way {
                 0 => (x < width).then(|| &mut east[at(x, y)]),

@@ -12,21 +12,21 @@ pub enum PolygonError {
     /// A ring of fewer than three points, or no ring at all.
     #[error("ring {ring} has {points} points: at least three are needed")]
     TooFewPoints {
-        /// Which ring.
+        /// The index of the ring, from 0; 0 too where there is no ring.
         ring: usize,
-        /// How many points it has.
+        /// The points found, fewer than three.
         points: usize,
     },
     /// A coordinate that is NaN, infinite or beyond 10⁶⁰.
     #[error("point {point} of ring {ring} is ({x}, {y}): coordinates must be finite, below 1e60")]
     NotFinite {
-        /// Which ring.
+        /// The index of the ring, from 0.
         ring: usize,
-        /// Which of its points.
+        /// The index of the point in the ring, from 0.
         point: usize,
-        /// Its x.
+        /// Its first coordinate, as it was given.
         x: f64,
-        /// Its y.
+        /// Its second coordinate.
         y: f64,
     },
     /// The work was interrupted.
@@ -37,7 +37,7 @@ pub enum PolygonError {
     Size {
         /// What size.
         what: &'static str,
-        /// Its value.
+        /// The size found, metres.
         value: f64,
     },
 }
@@ -99,8 +99,8 @@ impl Polygon {
         Self::outlined([low, [high[0], low[1]], high, [low[0], high[1]]])
     }
 
-    /// The regular polygon of `corners` corners *around* the circle of `radius` (m) about `center`: it contains
-    /// the disc.
+    /// The regular polygon of `corners` corners *around* the circle of `radius` (m) about `center`: it
+    /// contains the disc.
     ///
     /// # Errors
     /// When there are fewer than three corners, or the radius is not positive and finite.
@@ -115,7 +115,7 @@ impl Polygon {
         Self::outlined((0..corners).map(corner))
     }
 
-    /// The rings.
+    /// The rings, closed without a repeated point. A point that an odd number of them surrounds is inside.
     #[must_use]
     pub fn rings(&self) -> &[Vec<Point2<f64>>] {
         &self.rings
@@ -161,7 +161,8 @@ impl Polygon {
         self.rings.iter().enumerate().map(|(i, ring)| sign(i) * area(ring)).sum()
     }
 
-    /// Triangles that cover it, counter-clockwise, without overlaps; right for rings that cross neither themselves nor each other.
+    /// Triangles that cover it, counter-clockwise, without overlaps; right for rings that cross neither
+    /// themselves nor each other.
     #[must_use]
     pub fn triangles(&self) -> Vec<[Point2<f64>; 3]> {
         let around = |i: usize| {
@@ -219,7 +220,8 @@ fn odd(edges: impl Iterator<Item = [Point2<f64>; 2]>, p: &Point2<f64>) -> bool {
     edges.fold(false, |odd, [a, b]| odd ^ crosses_ray(&a, &b, p))
 }
 
-/// Whether the edge from `a` to `b` crosses the ray from `p` along -x; an edge owns its lower end, not its upper.
+/// Whether the edge from `a` to `b` crosses the ray from `p` along -x; an edge owns its lower end, not its
+/// upper.
 #[inline]
 pub(super) fn crosses_ray(a: &Point2<f64>, b: &Point2<f64>, p: &Point2<f64>) -> bool {
     if (a.y > p.y) == (b.y > p.y) {
@@ -255,7 +257,8 @@ mod tests {
         assert!(moved.contains(&Point2::new(6.5, 0.0)) && !moved.contains(&Point2::new(5.0, 0.0)));
     }
 
-    /// Triangles have the area of the polygon and lie in it: nested rings, several outer ones, and holes side by side.
+    /// Triangles have the area of the polygon and lie in it: nested rings, several outer ones, and holes side
+    /// by side.
     #[test]
     fn triangles_cover_what_is_inside() {
         let square = |x: f64, y: f64, r: f64| {

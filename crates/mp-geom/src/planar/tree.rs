@@ -12,7 +12,8 @@ const LEAF: usize = 4;
 struct Node {
     low: Point2<f64>,
     high: Point2<f64>,
-    /// Of a leaf the position of its first edge; otherwise the index of the second child (the first child comes next).
+    /// Of a leaf the position of its first edge; otherwise the index of the second child (the first child
+    /// comes next).
     from: u32,
     /// Zero for inner nodes.
     count: u32,
@@ -63,7 +64,8 @@ pub(super) struct EdgeTree {
 }
 
 impl EdgeTree {
-    /// Halves the longer side of each box at the median: O(n log² n). Not to be used when `interrupt` has said to end.
+    /// Halves the longer side of each box at the median: O(n log² n). Not to be used when `interrupt` has
+    /// said to end.
     pub(super) fn new(edges: &[Edge], interrupt: &mut Interrupt) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: (0..edges.len() as u32).collect() };
         if !edges.is_empty() {
@@ -97,8 +99,8 @@ impl EdgeTree {
         self.split(edges, half, to, interrupt);
     }
 
-    /// Calls `visit` with edges that may be less than the square root of `within` from `p`, nearer boxes first;
-    /// it returns the new `within`, at most the old.
+    /// Calls `visit` with edges that may be less than the square root of `within` from `p`, nearer boxes
+    /// first; it returns the new `within`, at most the old.
     pub(super) fn near(&self, p: &Point2<f64>, mut within: f64, mut visit: impl FnMut(u32, f64) -> f64) {
         // Split at medians, the tree is no deeper than log₂ of the number of edges.
         let mut open = [(0_u32, 0.0_f64); 64];

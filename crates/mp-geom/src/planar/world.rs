@@ -70,11 +70,12 @@ pub struct NearestToSegment {
     pub obstacle: Option<usize>,
 }
 
-/// Polygons, which may overlap, with or without walls around them; everything outside of the walls is obstacle.
+/// Polygons, which may overlap, with or without walls around them; everything outside of the walls is
+/// obstacle.
 ///
-/// Distances are to boundaries, exact up to rounding. They are found by a grid whose cells list all edges that can be
-/// nearest to one of their points, made once in O((n + cells) log n). A point takes some tens of nanoseconds, a segment
-/// that many for each cell near obstacles along it.
+/// Distances are to boundaries, exact up to rounding. They are found by a grid whose cells list all edges
+/// that can be nearest to one of their points, made once in O((n + cells) log n). A point takes some tens of
+/// nanoseconds, a segment that many for each cell near obstacles along it.
 #[derive(Clone, Debug)]
 pub struct PlanarWorld {
     polygons: Vec<Polygon>,
@@ -142,7 +143,7 @@ impl PlanarWorld {
         Ok(Self { polygons, walls, edges, tree, cells, corners, low, high })
     }
 
-    /// The polygons.
+    /// The obstacles, in the order of the indices that queries answer with.
     #[must_use]
     pub fn polygons(&self) -> &[Polygon] {
         &self.polygons
@@ -166,8 +167,8 @@ impl PlanarWorld {
         self.edges.len()
     }
 
-    /// Whether `p` is in an obstacle, by exact predicates; on a boundary the answer may be either, and the distance
-    /// is zero.
+    /// Whether `p` is in an obstacle, by exact predicates; on a boundary the answer may be either, and the
+    /// distance is zero.
     #[must_use]
     pub fn contains(&self, p: &Point2<f64>) -> bool {
         if self.walls.is_some_and(|[l, h]| p.x <= l.x || p.y <= l.y || p.x >= h.x || p.y >= h.y) {
@@ -210,15 +211,16 @@ impl PlanarWorld {
         })
     }
 
-    /// The distance from `p` to the nearest obstacle; in an obstacle, minus the distance to the nearest boundary, which where
-    /// obstacles overlap is less than the depth. Infinite in an empty world.
+    /// The distance from `p` to the nearest obstacle; in an obstacle, minus the distance to the nearest
+    /// boundary, which where obstacles overlap is less than the depth. Infinite in an empty world.
     #[must_use]
     pub fn signed_distance(&self, p: &Point2<f64>) -> f64 {
         let distance = self.nearest(p).map_or(f64::INFINITY, |n| n.distance);
         if self.contains(p) { -distance } else { distance }
     }
 
-    /// Whether `p` is in no obstacle and farther than `distance` (m) from every one. Often decided by one cell of the grid.
+    /// Whether `p` is in no obstacle and farther than `distance` (m) from every one. Often decided by one
+    /// cell of the grid.
     #[must_use]
     pub fn is_clear(&self, p: &Point2<f64>, distance: f64) -> bool {
         let found = self.cells.as_ref().and_then(|cells| Some((cells, cells.locate(p)?)));
@@ -235,8 +237,8 @@ impl PlanarWorld {
         (far || !candidates.iter().any(near)) && !self.contains(p)
     }
 
-    /// Where the segment from `a` to `b` and the boundary of an obstacle are nearest to each other, if that is less
-    /// than `below` metres; the segment may be on either side of the boundary.
+    /// Where the segment from `a` to `b` and the boundary of an obstacle are nearest to each other, if that
+    /// is less than `below` metres; the segment may be on either side of the boundary.
     #[must_use]
     pub fn nearest_to_segment(
         &self,
@@ -274,8 +276,8 @@ impl PlanarWorld {
         Some(NearestToSegment { on_segment, point, distance: best.0, obstacle })
     }
 
-    /// Calls `look` with edges, among them the one nearest to the segment if that is nearer than `below`; `look`
-    /// returns the new `below`.
+    /// Calls `look` with edges, among them the one nearest to the segment if that is nearer than `below`;
+    /// `look` returns the new `below`.
     fn along(&self, a: &Point2<f64>, b: &Point2<f64>, below: f64, look: &mut impl FnMut(u32, f64) -> f64) {
         let (u, mut below) = (b - a, below);
         let length = u.norm();
@@ -298,8 +300,8 @@ impl PlanarWorld {
             let p = a + u * t;
             let Some(at) = cells.locate(&p) else { return };
             let (cell, candidates) = cells.cell(at);
-            // No edge is within `from_center` of the centre, so none is within `below` of any point of the cell, or at
-            // least of points around `p`.
+            // No edge is within `from_center` of the centre, so none is within `below` of any point of the
+            // cell, or at least of points around `p`.
             let clear = cell.from_center - below - cells.slack;
             if clear <= cells.half_diagonal {
                 for &i in candidates {
@@ -319,8 +321,8 @@ impl PlanarWorld {
         }
     }
 
-    /// A corner of an obstacle for which `inside` is true, among those between `low` and `high`. One corner of each ring is
-    /// tested, so a ring that lies wholly inside of a shape is found.
+    /// A corner of an obstacle for which `inside` is true, among those between `low` and `high`. One corner
+    /// of each ring is tested, so a ring that lies wholly inside of a shape is found.
     #[must_use]
     pub fn ring_in(
         &self,

@@ -5,14 +5,17 @@ use crate::primitives::positive;
 use crate::{MeshError, PrimitiveError, TriMesh};
 use nalgebra::Point3;
 
-/// Heights over the corners of a grid in the plane, which is centred on the origin, and the ground below them.
+/// Heights over the corners of a grid in the plane, which is centred on the origin, and the ground below
+/// them.
 ///
-/// A cell is two triangles, along the diagonal from its corner with the least x and y to that with the largest.
+/// A cell is two triangles, along the diagonal from its corner with the least x and y to that with the
+/// largest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightField {
     /// The lengths (m) of a cell in x and y.
     pub cell: [f64; 2],
-    /// The heights (m): a row for each y, from the least, with a height for each x, from the least. Rows are equally long.
+    /// The heights (m): a row for each y, from the least, with a height for each x, from the least. Rows are
+    /// equally long.
     pub heights: Vec<Vec<f64>>,
     /// How far down (m) the ground reaches: below all heights.
     pub bottom: f64,
@@ -22,7 +25,8 @@ pub struct HeightField {
 const MAX_HEIGHTS: usize = 1 << 28;
 
 impl HeightField {
-    /// How far down ground reaches that does not say it: as far below the lowest of `heights` as a cell is long.
+    /// How far down ground reaches that does not say it: as far below the lowest of `heights` as a cell is
+    /// long.
     #[must_use]
     pub fn default_bottom([x, y]: [f64; 2], heights: &[Vec<f64>]) -> f64 {
         heights.iter().flatten().fold(f64::INFINITY, |low, height| low.min(*height)) - x.max(y)

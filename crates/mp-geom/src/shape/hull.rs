@@ -9,10 +9,12 @@ use std::collections::{HashMap, HashSet};
 /// The most points: seconds.
 const MAX_POINTS: u32 = 10_000;
 
-/// The convex hull of points, with triangles that face outward. Signs of volumes are exact, so that every point is inside or on it.
+/// The convex hull of points, with triangles that face outward. Signs of volumes are exact, so that every
+/// point is inside or on it.
 ///
-/// The incremental algorithm (Preparata and Shamos 1985, section 3.4.2; de Berg et al. 2008, chapter 11): each point that sees faces
-/// from outside replaces them by faces to the edges around them. O(n·f) for n points and f faces of the hull.
+/// The incremental algorithm (Preparata and Shamos 1985, section 3.4.2; de Berg et al. 2008, chapter 11):
+/// each point that sees faces from outside replaces them by faces to the edges around them. O(n·f) for n
+/// points and f faces of the hull.
 ///
 /// # Errors
 /// When a coordinate is not finite, all points are in one plane, or there are more than 10,000.
@@ -60,8 +62,8 @@ fn above(points: &[Point3<f64>], face: &[u32; 3], p: &Point3<f64>) -> bool {
     volume(a, b, c, p) < 0.0
 }
 
-/// Of the sign of the volume of a tetrahedron, exactly: positive when `p` is below the triangle, which is seen counterclockwise from
-/// above.
+/// Of the sign of the volume of a tetrahedron, exactly: positive when `p` is below the triangle, which is
+/// seen counterclockwise from above.
 fn volume(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, p: &Point3<f64>) -> f64 {
     let [a, b, c, p] = [a, b, c, p].map(|p| Coord3D { x: p.x, y: p.y, z: p.z });
     orient3d(a, b, c, p)

@@ -48,7 +48,6 @@ pub(super) struct PartTable {
     goals: Option<Spanned<Vec<Spanned<GoalText>>>>,
 }
 
-/// The part of a table.
 pub(super) fn part_of(source: &TomlText<'_>, table: Spanned<PartTable>) -> Result<PartEntry, Error> {
     let place = table.span();
     let PartTable { attach, to, may_touch, detach, goal, goals } = table.into_inner();

@@ -96,7 +96,6 @@ enum Stage<'s> {
 }
 
 impl Stage<'_> {
-    /// Frame `i`.
     fn frame(&self, film: &Film, track: &Track, i: usize) -> Result<Picture, Error> {
         let progress = film.progress(i);
         let (poses, point) = track.at(progress).unwrap_or((Vec::new(), Point3::origin()));

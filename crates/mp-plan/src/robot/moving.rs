@@ -137,17 +137,14 @@ impl<K: WithMoving> MovingScene<K> {
     }
 }
 
-/// The time of a configuration.
 fn time(q: &Configuration) -> f64 {
     q.last().copied().unwrap_or(0.0)
 }
 
-/// A configuration at a time.
 fn timed(q: &Configuration, time: f64) -> Configuration {
     q.iter().copied().chain([time]).collect()
 }
 
-/// Goals at a time.
 fn with_time(mut goals: Vec<Vec<GoalPart>>, time: GoalPart) -> Vec<Vec<GoalPart>> {
     goals.iter_mut().for_each(|goal| goal.push(time));
     goals

@@ -386,7 +386,6 @@ impl<B: PlanarBody> PlanarScene<B> {
     }
 }
 
-/// The configuration of a row.
 fn at<B: PlanarBody>(row: &[f64]) -> Configuration {
     Configuration::of(&B::state(row))
 }

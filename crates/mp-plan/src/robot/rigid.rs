@@ -257,12 +257,10 @@ fn placed<M: RigidSpace>(q: &Configuration) -> M::State {
     q.to().unwrap_or_else(|| M::configuration(&Isometry3::identity()))
 }
 
-/// The pose of a configuration.
 fn pose<M: RigidSpace>(q: &Configuration) -> Isometry3<f64> {
     M::pose(&placed::<M>(q))
 }
 
-/// The configuration of a pose.
 fn at<M: RigidSpace>(pose: &Isometry3<f64>) -> Configuration {
     Configuration::of(&M::configuration(pose))
 }

@@ -186,7 +186,6 @@ fn regional<'s>(kind: &'s dyn Robot, request: &'s Request) -> Result<RobotRegion
     Ok(RobotRegional { prepared, regions, seed })
 }
 
-/// The piece in a result, of so many members.
 fn piece(result: &[u8], members: Vec<NodeId>) -> Result<Piece<Configuration, ()>, Error> {
     let bytes = result.get(TALLY..).unwrap_or_default();
     Piece::from_bytes(bytes, members).map_err(|e| {
@@ -195,7 +194,6 @@ fn piece(result: &[u8], members: Vec<NodeId>) -> Result<Piece<Configuration, ()>
     })
 }
 
-/// Adds the roadmap of a region.
 fn add_region(map: &mut Roadmap<Configuration>, result: &[u8]) -> Result<Range<NodeId>, Error> {
     let before = map.len() as NodeId;
     piece(result, Vec::new())?.insert(map, |_, _, _| true);

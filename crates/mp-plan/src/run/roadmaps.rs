@@ -229,7 +229,6 @@ impl<'p> RoadmapPlanner<'p> {
         self.planner.build(rng, stop, observer)
     }
 
-    /// The number of nodes.
     pub(crate) fn nodes(&self) -> usize {
         self.planner.map().len()
     }
@@ -256,7 +255,6 @@ impl<'p> RoadmapPlanner<'p> {
         Ok((map, wanted.then(|| self.planner.map().clone())))
     }
 
-    /// The roadmap with its configurations as rows.
     pub(crate) fn grown(&mut self, row: &dyn Fn(&Configuration) -> Vec<f64>) -> GrownRoadmap {
         let map = self.planner.map_mut();
         let mut numbers = HashMap::new();

@@ -8,15 +8,15 @@ use serde::{Deserialize, Serialize};
 pub struct Medians {
     /// The name of the scene.
     pub scene: String,
-    /// The number of runs.
+    /// Runs made, solved or not.
     pub runs: usize,
     /// How many found a path.
     pub solved: usize,
     /// The time of planning alone, seconds.
     pub time_s: Option<f64>,
-    /// Iterations.
+    /// Iterations of the planner, by its own measure.
     pub iterations: Option<f64>,
-    /// Nodes.
+    /// Nodes of all trees, or of the roadmap.
     pub nodes: Option<f64>,
     /// The number of collision and clearance queries.
     pub collision_checks: Option<f64>,
@@ -35,7 +35,7 @@ pub struct Runs {
     pub solved: usize,
     /// One for each scene, in order of appearance.
     pub medians: Vec<Medians>,
-    /// The reports.
+    /// The report of each run, in the order of the runs.
     pub runs: Vec<Report>,
 }
 

@@ -107,7 +107,6 @@ impl SceneRoadmap {
     }
 }
 
-/// A roadmap of a robot.
 pub(crate) struct RobotRoadmap {
     kind: Arc<dyn Robot>,
     request: Request,

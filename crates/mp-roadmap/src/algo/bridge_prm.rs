@@ -1,20 +1,20 @@
 //! PRM by the bridge test: nodes in narrow passages.
 //!
-//! D. Hsu, T. Jiang, J. Reif and Z. Sun, *The bridge test for sampling narrow passages with probabilistic roadmap
-//! planners*, ICRA 2003.
+//! D. Hsu, T. Jiang, J. Reif and Z. Sun, *The bridge test for sampling narrow passages with probabilistic
+//! roadmap planners*, ICRA 2003.
 //!
 //! Repeat:
 //! 1. draw a sample, uniform in the space; continue if it is not free;
-//! 2. draw another at a distance from it that is normally distributed about zero with standard deviation `sigma`: here
-//!    toward a third sample, and no farther than that;
+//! 2. draw another at a distance from it that is normally distributed about zero with standard deviation
+//!    `sigma`: here toward a third sample, and no farther than that;
 //! 3. if that is not free either, but the state in the middle between them is, take that state;
 //! 4. connect it to the nearest nodes, as [PRM](super::prm) does;
 //! 5. a part `uniform` of the attempts are uniform samples, as of PRM, instead.
 //!
 //! The path found is verified; an edge that fails is blocked.
 //!
-//! **When to use it.** For narrow passages: most attempts fail, at the cost of one or two tests each, and the samples found
-//! are in passages. Half of the attempts are uniform, for the rest of the space.
+//! **When to use it.** For narrow passages: most attempts fail, at the cost of one or two tests each, and the
+//! samples found are in passages. Half of the attempts are uniform, for the rest of the space.
 //!
 //! | parameter | range | default |
 //! |---|---|---|

@@ -1,20 +1,20 @@
 //! PRM by the Gaussian sampling strategy: nodes near obstacles.
 //!
-//! V. Boor, M. H. Overmars and A. F. van der Stappen, *The Gaussian sampling strategy for probabilistic roadmap
-//! planners*, ICRA 1999.
+//! V. Boor, M. H. Overmars and A. F. van der Stappen, *The Gaussian sampling strategy for probabilistic
+//! roadmap planners*, ICRA 1999.
 //!
 //! Repeat:
 //! 1. draw a sample, uniform in the space;
-//! 2. draw another at a distance from it that is normally distributed about zero with standard deviation `sigma`: here
-//!    toward a third sample, and no farther than that;
+//! 2. draw another at a distance from it that is normally distributed about zero with standard deviation
+//!    `sigma`: here toward a third sample, and no farther than that;
 //! 3. if exactly one of the two is free, take that one;
 //! 4. connect it to the nearest nodes, as [PRM](super::prm) does;
 //! 5. a part `uniform` of the attempts are uniform samples, as of PRM, instead.
 //!
 //! The path found is verified; an edge that fails is blocked.
 //!
-//! **When to use it.** For narrow passages between large obstacles, in scenes with much open space, which gets few nodes.
-//! `sigma` should be about the size of the robot.
+//! **When to use it.** For narrow passages between large obstacles, in scenes with much open space, which
+//! gets few nodes. `sigma` should be about the size of the robot.
 //!
 //! | parameter | range | default |
 //! |---|---|---|

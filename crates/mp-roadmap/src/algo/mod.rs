@@ -25,8 +25,8 @@ pub mod visibility_prm;
 use crate::by_name::{BuildFn, Types};
 use mp_cspace::registry::PlannerInfo;
 
-/// Lists the planners that can be made by name, each with the types of its file that the crate exports. Each file has an
-/// `INFO` and a `make`.
+/// Lists the planners that can be made by name, each with the types of its file that the crate exports. Each
+/// file has an `INFO` and a `make`.
 macro_rules! planners {
     ($($module:ident: $($kind:ident),*;)+) => {
         /// All planners that can be made by name.

@@ -1,15 +1,17 @@
 //! OBPRM: nodes on and near the surfaces of obstacles.
 //!
-//! N. M. Amato and Y. Wu, *A randomized roadmap method for path and manipulation planning*, ICRA 1996; N. M. Amato,
-//! O. B. Bayazit, L. K. Dale, C. Jones and D. Vallejo, *OBPRM: an obstacle-based PRM for 3D workspaces*, WAFR 1998. As in §3.2 of
-//! A. Benitez et al., *Key elements for motion planning algorithms*, 2010.
+//! N. M. Amato and Y. Wu, *A randomized roadmap method for path and manipulation planning*, ICRA 1996; N. M.
+//! Amato, O. B. Bayazit, L. K. Dale, C. Jones and D. Vallejo, *OBPRM: an obstacle-based PRM for 3D
+//! workspaces*, WAFR 1998. As in §3.2 of A. Benitez et al., *Key elements for motion planning
+//! algorithms*, 2010.
 //!
 //! For one obstacle after the other, by `nodes`:
 //!
 //! `prototype` (PROTOTYPE NODE GENERATION)
 //! 1. C_in: the robot with its centre in that of the obstacle, rotated at random until it collides;
 //! 2. D: `directions` random directions from there: toward uniform samples;
-//! 3. for each, look for a free C_out, in equal steps as far as the surrounding spheres of robot and obstacle overlap;
+//! 3. for each, look for a free C_out, in equal steps as far as the surrounding spheres of robot and obstacle
+//!    overlap;
 //! 4. find where contact ends between C_in and C_out by binary search: a *contact* configuration.
 //!
 //! `contact` (GENERATE CONTACT CONFIGURATION)
@@ -17,22 +19,26 @@
 //! 2. C_in: the robot with p_rob in p_obs, rotated at random until it collides;
 //! 3. d: one random direction; C_out and contact as above.
 //!
-//! `free`: from a contact configuration as in `contact`, a random length of at most `gap` farther in the same direction.
+//! `free`: from a contact configuration as in `contact`, a random length of at most `gap` farther in the same
+//! direction.
 //!
 //! `shells`: a contact configuration, and `shells` more behind it, `gap` apart.
 //!
-//! A part `uniform` of the attempts are uniform samples; the papers have none, and so no nodes in scenes without
-//! obstacles. Each node is connected, by `connect`, to its nearest nodes (`nearest`), or to the `per-obstacle` nearest of
-//! each obstacle (`obstacles`); in stages: first by the local planner, then, to nodes still in other components, by
-//! rotate-at-s at `turns` fractions of the motion: 1/2, 0 and 1, in this order (see [`StagedConnector`]).
+//! A part `uniform` of the attempts are uniform samples; the papers have none, and so no nodes in scenes
+//! without obstacles. Each node is connected, by `connect`, to its nearest nodes (`nearest`), or to the
+//! `per-obstacle` nearest of each obstacle (`obstacles`); in stages: first by the local planner, then, to
+//! nodes still in other components, by rotate-at-s at `turns` fractions of the motion: 1/2, 0 and 1, in this
+//! order (see [`StagedConnector`]).
 //!
-//! The path found is verified; an edge that fails is blocked. An obstacle here is a connected part of the scene
-//! ([`ObstacleGeometry`]); where its centre is outside of the space, or does not collide, points of its surface are used.
+//! The path found is verified; an edge that fails is blocked. An obstacle here is a connected part of the
+//! scene ([`ObstacleGeometry`]); where its centre is outside of the space, or does not collide, points of its
+//! surface are used.
 //!
-//! **When to use it.** For narrow passages between obstacles of moderate size. It needs [`ObstacleGeometry`], which rigid
-//! bodies among meshes have. Of the four ways to make nodes `free` is the best: with 50,000 collision queries and certified
-//! motions it solved 98 of 140 runs in seven scenes, `shells` 88, `prototype` 74, `contact` 73, uniform samples 80. With
-//! discrete motion checks, nearly all first paths by way of nodes in contact fail the verification (docs/results/roadmaps.md).
+//! **When to use it.** For narrow passages between obstacles of moderate size. It needs [`ObstacleGeometry`],
+//! which rigid bodies among meshes have. Of the four ways to make nodes `free` is the best: with 50,000
+//! collision queries and certified motions it solved 98 of 140 runs in seven scenes, `shells` 88, `prototype`
+//! 74, `contact` 73, uniform samples 80. With discrete motion checks, nearly all first paths by way of nodes
+//! in contact fail the verification (docs/results/roadmaps.md).
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -275,8 +281,8 @@ impl<H> OnObstacles<H> {
         })
     }
 
-    /// The fraction of the motion from `inside` to `toward` at which contact ends, if it ends before the robot is past the
-    /// obstacle.
+    /// The fraction of the motion from `inside` to `toward` at which contact ends, if it ends before the
+    /// robot is past the obstacle.
     fn contact<C, L>(
         &self,
         obstacle: usize,

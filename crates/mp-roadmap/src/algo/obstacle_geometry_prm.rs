@@ -1,40 +1,45 @@
 //! PRM by the geometry of obstacles: *far* configurations by spheres alone, *near* ones by an elastic band.
 //!
-//! A. Benitez and D. Vallejo, *New technique to improve probabilistic roadmap methods*, IBERAMIA 2004; A. Benitez, D. Vallejo and
-//! M. A. Medina, *PRMs based on obstacle's geometry*, IAS-8, 2004. As in §3.5 of A. Benitez et al., *Key elements for motion
-//! planning algorithms*, 2010.
+//! A. Benitez and D. Vallejo, *New technique to improve probabilistic roadmap methods*, IBERAMIA 2004; A.
+//! Benitez, D. Vallejo and M. A. Medina, *PRMs based on obstacle's geometry*, IAS-8, 2004. As in §3.5 of A.
+//! Benitez et al., *Key elements for motion planning algorithms*, 2010.
 //!
 //! First approximation, for `far` attempts:
 //! 1. draw a sample, uniform in the space;
-//! 2. where the bounding sphere of the robot touches that of no obstacle, take the sample as a *far* configuration. Nothing
-//!    else is tested: the robot is free there in every rotation.
+//! 2. where the bounding sphere of the robot touches that of no obstacle, take the sample as a *far*
+//!    configuration. Nothing else is tested: the robot is free there in every rotation.
 //!
 //! Expansion, by two kinds of attempts in turn:
-//! - around one obstacle B after the other, from a uniform sample q: an elastic band, for *near* configurations;
-//! - a uniform sample: taken where it is free; *salvaged* where it is not, by an elastic band around the obstacle B it touches.
+//! - around one obstacle B after the other, from a uniform sample q: an elastic band, for *near*
+//!   configurations;
+//! - a uniform sample: taken where it is free; *salvaged* where it is not, by an elastic band around the
+//!   obstacle B it touches.
 //!
 //! Elastic band around B, once for each of two kinds of configuration, from q:
 //! 1. d: the direction from the centre of B to that of the robot at q;
-//! 2. MIN and MAX, from the *volume*: the sum of the radii of balls of the same volume as robot and obstacle, and the sum
-//!    of the radii of their bounding spheres;
-//! 3. a *parallel* configuration has the long axis (*straightness*) of the robot along that of B, a *perpendicular* one in
-//!    any direction across it;
-//! 4. for k = 0, …, `bands` (CTE): put the robot at the distance MIN + (MAX − MIN)·k / `bands` from B along d, rotated
-//!    about its own long axis by one golden angle more each time; take the first configuration that is free.
+//! 2. MIN and MAX, from the *volume*: the sum of the radii of balls of the same volume as robot and obstacle,
+//!    and the sum of the radii of their bounding spheres;
+//! 3. a *parallel* configuration has the long axis (*straightness*) of the robot along that of B, a
+//!    *perpendicular* one in any direction across it;
+//! 4. for k = 0, …, `bands` (CTE): put the robot at the distance MIN + (MAX − MIN)·k / `bands` from B along
+//!    d, rotated about its own long axis by one golden angle more each time; take the first configuration
+//!    that is free.
 //!
-//! Each node is connected to its nearest nodes by the local planner; where that fails and one of the two is far, by turning
-//! in place there (see [`StagedConnector`]).
+//! Each node is connected to its nearest nodes by the local planner; where that fails and one of the two is
+//! far, by turning in place there (see [`StagedConnector`]).
 //!
-//! The paper leaves open, and this implementation decides: how MIN and MAX depend on the volume, in which steps the vector
-//! is scaled (the listing sets `scalar` to MIN and never changes it), and by which angle the robot is rotated each time.
-//! The path found is verified; an edge that fails is blocked.
+//! The paper leaves open, and this implementation decides: how MIN and MAX depend on the volume, in which
+//! steps the vector is scaled (the listing sets `scalar` to MIN and never changes it), and by which angle the
+//! robot is rotated each time. The path found is verified; an edge that fails is blocked.
 //!
-//! **When to use it.** For scenes of separate, compact obstacles, with long robots. Where one obstacle encloses the scene,
-//! as the walls of a room in one piece do, no configuration is far, and the bands lead away from the passages. It needs
-//! [`ObstacleGeometry`], which rigid bodies among meshes have. With 50,000 collision queries it solved 16 of 20 runs of the
-//! scene `gempa-3`, where uniform samples solved one, and none of `twisty`, where they solved 4. The band of the paper, which takes
-//! the free configuration nearest to the obstacle, is not its strength, nor is the volume: it solved 88 of 140 runs in seven scenes,
-//! with `bands=0` 90, with `volume=no` 116 (docs/results/roadmaps.md). In the plane `straightness` changes nothing: the only axis to turn about is Z.
+//! **When to use it.** For scenes of separate, compact obstacles, with long robots. Where one obstacle
+//! encloses the scene, as the walls of a room in one piece do, no configuration is far, and the bands lead
+//! away from the passages. It needs [`ObstacleGeometry`], which rigid bodies among meshes have. With 50,000
+//! collision queries it solved 16 of 20 runs of the scene `gempa-3`, where uniform samples solved one, and
+//! none of `twisty`, where they solved 4. The band of the paper, which takes the free configuration nearest
+//! to the obstacle, is not its strength, nor is the volume: it solved 88 of 140 runs in seven scenes, with
+//! `bands=0` 90, with `volume=no` 116 (docs/results/roadmaps.md). In the plane `straightness` changes
+//! nothing: the only axis to turn about is Z.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -102,13 +107,16 @@ const GOLDEN: f64 = 2.399_963_229_728_653;
 pub struct ByGeometry {
     /// Attempts of the first approximation.
     pub far: u64,
-    /// Steps of the elastic band; without steps it tries one configuration, at a random distance between MIN and MAX.
+    /// Steps of the elastic band; without steps it tries one configuration, at a random distance between MIN
+    /// and MAX.
     pub bands: u64,
-    /// Whether the robot is put along and across the axis of the obstacle; if not, each configuration has a random rotation.
+    /// Whether the robot is put along and across the axis of the obstacle; if not, each configuration has a
+    /// random rotation.
     pub straightness: bool,
     /// Whether MIN comes from the volumes of robot and obstacle; if not, it is 0.
     pub volume: bool,
-    /// Whether every other attempt is around an obstacle; if not, all attempts after the first approximation are uniform.
+    /// Whether every other attempt is around an obstacle; if not, all attempts after the first approximation
+    /// are uniform.
     pub near: bool,
     /// Whether samples that collide are salvaged; if not, they are dropped.
     pub salvage: bool,
@@ -276,7 +284,8 @@ impl<H> AroundObstacles<H> {
                 let place = body.center + away * (min + (max - min) * part);
                 let (direction, angle) = match self.with.straightness {
                     true => (direction, first + GOLDEN * k as f64),
-                    // Any direction of the long axis, and any angle about it: each rotation is equally likely.
+                    // Any direction of the long axis, and any angle about it: each rotation is equally
+                    // likely.
                     false => (random_unit(None, rng), TAU * rng.random::<f64>()),
                 };
                 let q = self.hints.aligned(&place, &direction, angle);

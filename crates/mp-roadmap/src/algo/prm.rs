@@ -13,11 +13,11 @@
 //!    component by now; where there is one, it becomes an edge.
 //!
 //! Expansion, until there are `expand` times as many nodes more:
-//! 1. at the beginning, weight each node c by its failure ratio f(c) / (n(c) + 1), where f(c) of n(c) attempts to connect
-//!    it to others failed;
+//! 1. at the beginning, weight each node c by its failure ratio f(c) / (n(c) + 1), where f(c) of n(c)
+//!    attempts to connect it to others failed;
 //! 2. draw a node by these weights;
-//! 3. make a random-bounce walk from there: `bounces` times, move toward a uniform sample by a random length of at most
-//!    `walk`, halved up to four times where the motion is blocked;
+//! 3. make a random-bounce walk from there: `bounces` times, move toward a uniform sample by a random length
+//!    of at most `walk`, halved up to four times where the motion is blocked;
 //! 4. add the end of each of its motions as a node, with that motion as an edge, and connect it as above.
 //!
 //! (The paper keeps only the end of the walk, and the walk as its edge. Here its corners are nodes, so that
@@ -40,8 +40,8 @@
 //! | `straight`: tries straight motions first; `no` leaves rotate-at-s alone | yes, no | yes |
 //! | `ends`, `ends-step`: trees that grow from start and goal beside the samples ([`EndGrowth`](crate::EndGrowth)): their part of the attempts, their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
-//! `turns` and `straight`, by name only, connect in stages ([`StagedConnector`]).
-//! The paper chooses K and MAXDIST for each problem. As in the paper, construction adds twice as many nodes as expansion.
+//! `turns` and `straight`, by name only, connect in stages ([`StagedConnector`]). The paper chooses K and
+//! MAXDIST for each problem. As in the paper, construction adds twice as many nodes as expansion.
 //!
 //! A point goes around a disc in the unit square:
 //! ```

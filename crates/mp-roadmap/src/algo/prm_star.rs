@@ -10,10 +10,10 @@
 //!    k₀ = `factor` · e (1 + 1/d) in d dimensions; each motion becomes an edge, whether it closes a
 //!    cycle or not.
 //!
-//! (The paper draws all n samples first and then connects each to k(n) neighbours; here the n-th is
-//! connected when it is added, so that the roadmap can keep growing. In the limit as many neighbours are tried.)
-//! With `factor` above 1 the length of the shortest path converges to the optimum as n grows. A path is
-//! searched for whenever there are a tenth more nodes; stepping on returns shorter paths only.
+//! (The paper draws all n samples first and then connects each to k(n) neighbours; here the n-th is connected
+//! when it is added, so that the roadmap can keep growing. In the limit as many neighbours are tried.) With
+//! `factor` above 1 the length of the shortest path converges to the optimum as n grows. A path is searched
+//! for whenever there are a tenth more nodes; stepping on returns shorter paths only.
 //!
 //! **When to use it.** For short paths for many queries in one scene. For one query
 //! RRT* or AORRTC spend less time on regions that do not matter to it.

@@ -1,38 +1,44 @@
 //! Regional PRM: roadmaps of regions, built independently and connected at their borders.
 //!
-//! S. A. Jacobs, K. Manavi, J. Burgos, J. Denny, S. Thomas and N. M. Amato, *A scalable method for parallelizing sampling-based motion
-//! planning algorithms*, ICRA 2012.
+//! S. A. Jacobs, K. Manavi, J. Burgos, J. Denny, S. Thomas and N. M. Amato, *A scalable method for
+//! parallelizing sampling-based motion planning algorithms*, ICRA 2012.
 //!
 //! Once:
-//! 1. cut the space into `regions`, a grid of boxes of equal measure. Only numbers that run straight from a lower to an upper bound are
-//!    cut: positions, joints with limits. Rotations, and joints that turn without end, are whole in each region;
+//! 1. cut the space into `regions`, a grid of boxes of equal measure. Only numbers that run straight from a
+//!    lower to an upper bound are cut: positions, joints with limits. Rotations, and joints that turn without
+//!    end, are whole in each region;
 //! 2. regions that share a face are adjacent.
 //!
 //! A round, in iterations that are independent of each other within each of the two steps:
-//! 1. for each region: make `samples` attempts of [PRM](super::prm) without expansion. Draw a sample, uniform in the region and
-//!    somewhat beyond its faces (`overlap`); if it is free, it becomes a node, and is connected to the nearest nodes of this region;
-//! 2. for each pair of adjacent regions: pair each node of one with its nearest nodes of the other. In order of distance, ask the local
-//!    planner for a motion between the two of each pair, unless they are in the same component of these two regions by now, at most
-//!    `connections` times. From the second round on at least one of the two is new.
+//! 1. for each region: make `samples` attempts of [PRM](super::prm) without expansion. Draw a sample, uniform
+//!    in the region and somewhat beyond its faces (`overlap`); if it is free, it becomes a node, and is
+//!    connected to the nearest nodes of this region;
+//! 2. for each pair of adjacent regions: pair each node of one with its nearest nodes of the other. In order
+//!    of distance, ask the local planner for a motion between the two of each pair, unless they are in the
+//!    same component of these two regions by now, at most `connections` times. From the second round on at
+//!    least one of the two is new.
 //!
-//! Rounds follow each other until there is a path. The path found is verified; an edge that fails is blocked. Start and goal are nodes of
-//! their regions. Nodes of a roadmap that is gone on with belong to the regions where they are.
+//! Rounds follow each other until there is a path. The path found is verified; an edge that fails is blocked.
+//! Start and goal are nodes of their regions. Nodes of a roadmap that is gone on with belong to the regions
+//! where they are.
 //!
-//! The region with number r draws from stream (seed, r) in the first round. So the work may be done in any order, by threads, or by the
-//! ranks of a cluster with [`InRegions::piece_of`]: the roadmap is the same to the bit.
+//! The region with number r draws from stream (seed, r) in the first round. So the work may be done in any
+//! order, by threads, or by the ranks of a cluster with [`InRegions::piece_of`]: the roadmap is the same to
+//! the bit.
 //!
 //! Three things differ from the paper:
-//! - Each region makes as many attempts, so that the roadmap is as dense everywhere as one of uniform samples. How many nodes come of
-//!   them, and so how long they take, differs: A. Fidel, S. A. Jacobs, S. Sharma, N. M. Amato and L. Rauchwerger (*Using load balancing to
-//!   scalably parallelize sampling-based motion planning algorithms*, IPDPS 2014) estimate it by the free volume of the region and
-//!   move regions between processors. Here regions are handed out one by one, the dearest first by that estimate
+//! - Each region makes as many attempts, so that the roadmap is as dense everywhere as one of uniform
+//!   samples. How many nodes come of them, and so how long they take, differs: A. Fidel, S. A. Jacobs, S.
+//!   Sharma, N. M. Amato and L. Rauchwerger (*Using load balancing to scalably parallelize sampling-based
+//!   motion planning algorithms*, IPDPS 2014) estimate it by the free volume of the region and move regions
+//!   between processors. Here regions are handed out one by one, the dearest first by that estimate
 //!   ([`Subdivision::sample`]).
-//! - The paper connects the nearest nodes, or the largest components, of adjacent regions. Here the nearest pairs of different
-//!   components are connected, large or small.
+//! - The paper connects the nearest nodes, or the largest components, of adjacent regions. Here the nearest
+//!   pairs of different components are connected, large or small.
 //! - The paper has one round.
 //!
-//! **When to use it.** For roadmaps too large for one machine, on the ranks of a cluster. On one machine, for single paths,
-//! [PRM](super::prm) does as well.
+//! **When to use it.** For roadmaps too large for one machine, on the ranks of a cluster. On one machine, for
+//! single paths, [PRM](super::prm) does as well.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -171,8 +177,8 @@ pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<
     args.build(RoadmapPlannerParts::new(generator, connector))
 }
 
-/// Roadmaps of regions, and the edges between them, as [pieces](Piece). An item of a round is a region, or behind all regions a pair of
-/// adjacent ones.
+/// Roadmaps of regions, and the edges between them, as [pieces](Piece). An item of a round is a region, or
+/// behind all regions a pair of adjacent ones.
 #[derive(Clone, Debug)]
 pub struct InRegions<S, N> {
     subdivision: Arc<Subdivision<S>>,
@@ -185,8 +191,8 @@ pub struct InRegions<S, N> {
     next: u64,
     /// How many nodes there were when the round began.
     old: NodeId,
-    /// The roadmap when regions began to grow, or to be connected. What came later, such as edges that a query has blocked, would make
-    /// pieces depend on each other.
+    /// The roadmap when regions began to grow, or to be connected. What came later, such as edges that a
+    /// query has blocked, would make pieces depend on each other.
     moment: Moment,
     /// The nodes of each region that has any, in order, and how many there are in all, at that moment.
     members: Arc<BTreeMap<u32, Vec<NodeId>>>,
@@ -246,9 +252,9 @@ impl<S: Clone, N: Clone> InRegions<S, N> {
         self.subdivision.pairs().get(pair as usize).copied()
     }
 
-    /// What item number `item` of the first round adds to the roadmap. The roadmap of a region is made from an empty `map`, and edges
-    /// between two regions from a `map` that has just those two pieces, the lower region first. In a [`Builder`](crate::Builder) the seed
-    /// is the first number drawn.
+    /// What item number `item` of the first round adds to the roadmap. The roadmap of a region is made from
+    /// an empty `map`, and edges between two regions from a `map` that has just those two pieces, the lower
+    /// region first. In a [`Builder`](crate::Builder) the seed is the first number drawn.
     pub fn piece_of<C, L>(
         &self,
         item: u64,

@@ -15,15 +15,15 @@
 //! 4. when none saw q, it is a guard: add it to Guard, and set ntry to 0;
 //! 5. otherwise add 1 to ntry, whether q is a connection or of no use.
 //!
-//! (The paper does not say in which order the nodes of a component are tried: here by distance.) After M samples in
-//! a row that are no guards, the guards see an estimated part 1 − 1/M of the free space:
+//! (The paper does not say in which order the nodes of a component are tried: here by distance.) After M
+//! samples in a row that are no guards, the guards see an estimated part 1 − 1/M of the free space:
 //! [`Visibility::coverage`]. The planner then stops as exhausted.
 //!
 //! Start and goal must be nodes: each is a guard if no guard sees it; otherwise it gets an edge to a guard
 //! of each component that sees it.
 //!
-//! **When to use it.** For a small roadmap: it has far fewer nodes than that of PRM and an estimate of its coverage. It
-//! tries many motions to get there. A narrow passage needs a sample that sees both sides.
+//! **When to use it.** For a small roadmap: it has far fewer nodes than that of PRM and an estimate of its
+//! coverage. It tries many motions to get there. A narrow passage needs a sample that sees both sides.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -109,8 +109,8 @@ impl Visibility {
         Ok(Self { most, failures: 0, components: Vec::new(), blocked: Some(0) })
     }
 
-    /// An estimate of the part of the free space that the guards see: 1 − 1/ntry, where the last ntry samples were no
-    /// guards; 0 before there is such a sample.
+    /// An estimate of the part of the free space that the guards see: 1 − 1/ntry, where the last ntry samples
+    /// were no guards; 0 before there is such a sample.
     #[must_use]
     pub fn coverage(&self) -> f64 {
         1.0 - 1.0 / self.failures.max(1) as f64

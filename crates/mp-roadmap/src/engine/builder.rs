@@ -67,9 +67,9 @@ where
         Ok(())
     }
 
-    /// Adds another roadmap of the same space and scene: its nodes and edges as they are, and then an edge from each of
-    /// its nodes to the nearest node that is in another component and can be connected, among its `neighbours` nearest.
-    /// Edges that were verified before are verified again when a path uses them.
+    /// Adds another roadmap of the same space and scene: its nodes and edges as they are, and then an edge
+    /// from each of its nodes to the nearest node that is in another component and can be connected, among
+    /// its `neighbours` nearest. Edges that were verified before are verified again when a path uses them.
     ///
     /// # Errors
     /// When a state of it is outside the space.
@@ -113,7 +113,7 @@ where
         self
     }
 
-    /// The roadmap.
+    /// The roadmap as it has grown so far.
     #[must_use]
     pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
         &self.map
@@ -124,7 +124,7 @@ where
         &mut self.map
     }
 
-    /// The connector.
+    /// The connector, which chooses the neighbours that a new node is connected to.
     #[must_use]
     pub fn connector(&self) -> &K {
         &self.connector
@@ -170,7 +170,8 @@ where
         before..self.map.len() as NodeId
     }
 
-    /// Lets the threads prefetch the next attempts, where there are threads and no attempt is prefetched already.
+    /// Lets the threads prefetch the next attempts, where there are threads and no attempt is prefetched
+    /// already.
     fn prefetch(&mut self, seed: u64) {
         let Some(work) = &mut self.prefetcher.work else { return };
         let independent = self.generator.independent(&self.map);
@@ -212,7 +213,8 @@ where
         connector.connect(candidate, &mut growing)
     }
 
-    /// Adds a piece of the roadmap. Its motions count now; where the local planner is not trusted any more, its edges are verified.
+    /// Adds a piece of the roadmap. Its motions count now; where the local planner is not trusted any more,
+    /// its edges are verified.
     fn insert(&mut self, piece: Option<Piece<C::State, L::Edge>>, observer: &mut dyn Observer<C::State>) {
         let Some(piece) = piece else { return };
         let Self { map, index, checker, .. } = self;
@@ -256,8 +258,8 @@ where
         connector.adopt(candidate, &mut growing)
     }
 
-    /// Builds until stopped. Call again to go on. An attempt that was [cut short](Stop::cut_short) leaves the roadmap as it was
-    /// before.
+    /// Builds until stopped. Call again to go on. An attempt that was [cut short](Stop::cut_short) leaves the
+    /// roadmap as it was before.
     pub fn build(
         &mut self,
         rng: &mut Rng,

@@ -17,7 +17,8 @@ pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     /// Motions to the candidate that were prefetched.
     pub(crate) answers: Prefetched<C::State, L::Edge>,
     pub(crate) meter: Option<QueryMeter<'c>>,
-    /// Whether motions are taken from the local planner without being counted or verified: those of a [piece](super::Piece).
+    /// Whether motions are taken from the local planner without being counted or verified: those of a
+    /// [piece](super::Piece).
     pub(crate) uncounted: bool,
 }
 
@@ -37,13 +38,13 @@ where
         Growing { map, index, checker, observer, answers: Vec::new(), meter: None, uncounted: true }
     }
 
-    /// The space.
+    /// The space in which nodes are.
     #[must_use]
     pub fn space(&self) -> &'c C {
         self.checker.space()
     }
 
-    /// The roadmap.
+    /// The roadmap that grows.
     pub fn map(&mut self) -> &mut Roadmap<C::State, L::Edge> {
         self.map
     }
@@ -116,8 +117,8 @@ where
         self.observer.on(Event::Linked { from, to });
     }
 
-    /// Tries to connect each of `near`, in order, to a node, unless the two are in one component by then. With `cycles` also
-    /// then, unless there is an edge already.
+    /// Tries to connect each of `near`, in order, to a node, unless the two are in one component by then.
+    /// With `cycles` also then, unless there is an edge already.
     pub(crate) fn link_near(&mut self, near: &[Hit], to: NodeId, cycles: bool) {
         for hit in near {
             if self.checker.is_interrupted() {
@@ -129,7 +130,8 @@ where
         }
     }
 
-    /// Tries to connect a node to another; counts as an attempt of both. Returns whether there is an edge now.
+    /// Tries to connect a node to another; counts as an attempt of both. Returns whether there is an edge
+    /// now.
     pub fn try_link(&mut self, from: NodeId, to: NodeId) -> bool {
         let q = self.map.state(to).clone();
         let motion = self.ask(from, &q);
@@ -162,8 +164,8 @@ pub trait Connector<C: Space, L: LocalPlanner<C::State>> {
         growing: &mut Growing<'_, '_, C, L, N>,
     ) -> NodeId;
 
-    /// Prefetches the motions that connecting a candidate will probably need. Motions that are not prefetched are made
-    /// later, so only the time depends on this.
+    /// Prefetches the motions that connecting a candidate will probably need. Motions that are not prefetched
+    /// are made later, so only the time depends on this.
     fn prefetch<N: NearestNeighbors<C>>(&self, _prefetching: &mut Prefetching<'_, '_, C, L, N>) {}
 
     /// Continues with a roadmap that this connector did not make, or not all of it.

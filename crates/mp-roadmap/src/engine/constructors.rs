@@ -1,7 +1,8 @@
 //! The constructors that every variant has.
 
-/// Writes `new`, with the nearest neighbours that suit the space, and `with_index`, with any. Takes a name for people, the
-/// type, the bounds on its parameters beyond the usual ones, and a closure from the space and the arguments to the parts.
+/// Writes `new`, with the nearest neighbours that suit the space, and `with_index`, with any. Takes a name
+/// for people, the type, the bounds on its parameters beyond the usual ones, and a closure from the space and
+/// the arguments to the parts.
 macro_rules! constructors {
     (
         $what:literal $variant:ident<C, L, N $(, $param:ident)*> $(where [$($bounds:tt)+])?,

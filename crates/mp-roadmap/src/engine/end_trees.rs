@@ -1,10 +1,11 @@
 //! Trees that grow from start and goal, beside the nodes of the generator.
 //!
-//! A roadmap of samples does not get out of a narrow place around the start or goal: few samples are in there. L. E. Kavraki,
-//! P. Švestka, J.-C. Latombe and M. H. Overmars (*Probabilistic roadmaps for path planning in high-dimensional configuration spaces*,
-//! 1996) leave it by random-bounce walks when they answer a query. Here trees leave it, as an RRT does (S. M. LaValle,
-//! *Rapidly-exploring random trees*, 1998). A uniform sample is drawn. The nearest to it, of up to 64 random nodes of the tree, takes a
-//! step toward it. The end of the step becomes a node of the roadmap, and is connected as others are.
+//! A roadmap of samples does not get out of a narrow place around the start or goal: few samples are in
+//! there. L. E. Kavraki, P. Švestka, J.-C. Latombe and M. H. Overmars (*Probabilistic roadmaps for path
+//! planning in high-dimensional configuration spaces*, 1996) leave it by random-bounce walks when they answer
+//! a query. Here trees leave it, as an RRT does (S. M. LaValle, *Rapidly-exploring random trees*, 1998). A
+//! uniform sample is drawn. The nearest to it, of up to 64 random nodes of the tree, takes a step toward it.
+//! The end of the step becomes a node of the roadmap, and is connected as others are.
 
 use super::settings::length;
 use super::{Builder, Candidate, Connector, MilestoneKind, NodeGenerator, ParentMotion};
@@ -32,7 +33,8 @@ pub const ENDS_STEP: Parameter = Parameter {
     doc: "longest step of the trees from start and goal",
 };
 
-/// The most random nodes of a tree that are compared with a sample. Trees are local: an index for each would be of little use.
+/// The most random nodes of a tree that are compared with a sample. Trees are local: an index for each would
+/// be of little use.
 const LOOKS: usize = 64;
 
 /// How trees grow from start and goals. By default they do not.

@@ -20,8 +20,8 @@ const MAX_NUMBER: f64 = 1e75;
 /// The largest file of a roadmap that is read, bytes (16 GiB).
 pub const MAX_ROADMAP_BYTES: u64 = 16 << 30;
 
-/// A hash of all numbers of a scene and a robot, the same on any machine: XXH3-64 of them as little-endian doubles. It
-/// detects changes, but does not resist forgery.
+/// A hash of all numbers of a scene and a robot, the same on any machine: XXH3-64 of them as little-endian
+/// doubles. It detects changes, but does not resist forgery.
 pub fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
     let mut hash = Xxh3::new();
     numbers.into_iter().for_each(|x| hash.update(&x.to_le_bytes()));
@@ -85,7 +85,8 @@ pub struct RoadmapFileError {
 
 /// Roadmaps in files.
 impl<S: StateVector, E: StateVector> Roadmap<S, E> {
-    /// The roadmap as bytes, with the fingerprint of its scene and robot. The same roadmap gives the same bytes.
+    /// The roadmap as bytes, with the fingerprint of its scene and robot. The same roadmap gives the same
+    /// bytes.
     #[must_use]
     pub fn to_bytes(&self, fingerprint: u64) -> Vec<u8> {
         let mut numbers = Vec::new();
@@ -108,11 +109,12 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
         bytes
     }
 
-    /// The roadmap from the bytes of [`Roadmap::to_bytes`], for the same scene and robot. Which edges were verified is not
-    /// stored: they are verified again when a path leads along them.
+    /// The roadmap from the bytes of [`Roadmap::to_bytes`], for the same scene and robot. Which edges were
+    /// verified is not stored: they are verified again when a path leads along them.
     ///
     /// # Errors
-    /// When it was made for another fingerprint, or the bytes are cut off, damaged or not a roadmap of such states.
+    /// When it was made for another fingerprint, or the bytes are cut off, damaged or not a roadmap of such
+    /// states.
     pub fn from_bytes(bytes: &[u8], fingerprint: u64) -> Result<Self, RoadmapError> {
         check_beginning(bytes)?;
         let mut reader = Reader { bytes, at: MAGIC.len() + size_of::<u32>() };
@@ -153,12 +155,12 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
         written.map_err(|error| RoadmapFileError { path: path.to_owned(), error: error.into() })
     }
 
-    /// Reads a file that [`Roadmap::save`] wrote for the same fingerprint. Memory is taken only for a file with the right
-    /// beginning and checksum.
+    /// Reads a file that [`Roadmap::save`] wrote for the same fingerprint. Memory is taken only for a file
+    /// with the right beginning and checksum.
     ///
     /// # Errors
-    /// As [`Roadmap::from_bytes`]; [`RoadmapError::File`] when it is not a regular file of at most [`MAX_ROADMAP_BYTES`], or
-    /// cannot be read.
+    /// As [`Roadmap::from_bytes`]; [`RoadmapError::File`] when it is not a regular file of at most
+    /// [`MAX_ROADMAP_BYTES`], or cannot be read.
     pub fn load(path: impl AsRef<Path>, fingerprint: u64) -> Result<Self, RoadmapFileError> {
         let path = path.as_ref();
         let loaded = checked_bytes(path).and_then(|bytes| Self::from_bytes(&bytes, fingerprint));

@@ -3,8 +3,9 @@
 use super::{EdgeId, GraphPath, Roadmap};
 use mp_cspace::NodeId;
 
-/// The parents of the nodes in the trees of a roadmap without cycles, by which the path between two nodes is found in
-/// time linear in their depth. A* would visit much of the tree, as distances say little about the only path.
+/// The parents of the nodes in the trees of a roadmap without cycles, by which the path between two nodes is
+/// found in time linear in their depth. A* would visit much of the tree, as distances say little about the
+/// only path.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Forest {
     /// How many nodes, edges and blocked edges the roadmap had when this was computed.
@@ -52,8 +53,8 @@ impl Forest {
         }
     }
 
-    /// The path from one node to another of a roadmap that this [holds](Self::holds); `None` when they are in different
-    /// trees. Linear in the depth of the nodes.
+    /// The path from one node to another of a roadmap that this [holds](Self::holds); `None` when they are in
+    /// different trees. Linear in the depth of the nodes.
     pub(crate) fn path<S, E>(&self, map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<GraphPath> {
         let (mut a, mut b) = (from, to);
         let (mut head, mut tail) = (Vec::new(), Vec::new());

@@ -8,7 +8,7 @@ use mp_cspace::{LocalPlanner, Motion, NodeId, Reversible, Rng, Sampler, Space, U
 pub struct Candidate<S, E> {
     /// The configuration: free, by [`EdgeChecker::admits`].
     pub state: S,
-    /// Its kind.
+    /// What it will be in the roadmap.
     pub kind: MilestoneKind,
     /// The obstacle or region it belongs to, if any.
     pub obstacle: Option<u32>,
@@ -40,8 +40,8 @@ impl<S, E> Candidate<S, E> {
 
 /// Slot: which configurations are tried as nodes.
 pub trait NodeGenerator<C: Space, L: LocalPlanner<C::State>> {
-    /// Writes the candidates of attempt number `attempt`, in order, to `out`, which is empty: none when the attempt
-    /// fails, and by default. Each must be [admitted](EdgeChecker::admits).
+    /// Writes the candidates of attempt number `attempt`, in order, to `out`, which is empty: none when the
+    /// attempt fails, and by default. Each must be [admitted](EdgeChecker::admits).
     ///
     /// `rng` is the stream of this attempt.
     fn generate(
@@ -54,11 +54,12 @@ pub trait NodeGenerator<C: Space, L: LocalPlanner<C::State>> {
     ) {
     }
 
-    /// Called before attempt number `attempt` is made, with the roadmap as it is; on one thread, also where others make attempts.
+    /// Called before attempt number `attempt` is made, with the roadmap as it is; on one thread, also where
+    /// others make attempts.
     fn begin(&mut self, _attempt: u64, _map: &Roadmap<C::State, L::Edge>, _space: &C) {}
 
-    /// A whole piece of the roadmap that attempt number `attempt` makes, beside its candidates. `checker` need not be the one that
-    /// counts motions: those of the piece count when it joins the roadmap.
+    /// A whole piece of the roadmap that attempt number `attempt` makes, beside its candidates. `checker`
+    /// need not be the one that counts motions: those of the piece count when it joins the roadmap.
     fn piece(
         &mut self,
         _attempt: u64,
@@ -69,9 +70,10 @@ pub trait NodeGenerator<C: Space, L: LocalPlanner<C::State>> {
         None
     }
 
-    /// How many of the next attempts neither depend on what the others add to the roadmap nor change the generator, so that clones
-    /// of it may make them beforehand and at the same time. It is asked again before each of them is used: those that were made for an
-    /// attempt that is not independent any more, as other nodes were added meanwhile, are dropped.
+    /// How many of the next attempts neither depend on what the others add to the roadmap nor change the
+    /// generator, so that clones of it may make them beforehand and at the same time. It is asked again
+    /// before each of them is used: those that were made for an attempt that is not independent any more, as
+    /// other nodes were added meanwhile, are dropped.
     fn independent(&self, _map: &Roadmap<C::State, L::Edge>) -> u64 {
         0
     }
@@ -92,8 +94,8 @@ impl<'c, C: Space> Free<Uniform<'c, C>> {
 }
 
 impl<T> Free<T> {
-    /// Samples of any sampler, one after the other. State that the sampler keeps from one to the next, as low-discrepancy
-    /// sequences do, is kept.
+    /// Samples of any sampler, one after the other. State that the sampler keeps from one to the next, as
+    /// low-discrepancy sequences do, is kept.
     pub fn of(sampler: T) -> Self {
         Self { sampler, memory: true }
     }

@@ -1,5 +1,5 @@
-//! The engine: the roadmap, the loops that grow it, and a slot for each policy in which variants differ. It does not
-//! depend on any variant.
+//! The engine: the roadmap, the loops that grow it, and a slot for each policy in which variants differ. It
+//! does not depend on any variant.
 
 mod builder;
 mod connect;

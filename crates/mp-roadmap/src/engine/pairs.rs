@@ -19,7 +19,8 @@ use std::marker::PhantomData;
 pub struct Mixing {
     /// Standard deviation of the distance, in (0, extent of the space].
     pub sigma: Length,
-    /// Part of the attempts that are uniform samples instead, in \[0, 1\]; without obstacles only these find states.
+    /// Part of the attempts that are uniform samples instead, in \[0, 1\]; without obstacles only these find
+    /// states.
     pub uniform: f64,
 }
 
@@ -67,8 +68,8 @@ pub(crate) fn part(name: &'static str, value: f64) -> Result<f64, BuildError> {
 
 /// Which pairs of states are drawn, and which state of a pair is taken.
 pub trait PairRule: Copy + Debug + Send {
-    /// One attempt: a free state, or none. `sigma` is the standard deviation of the distance of the pair, positive and
-    /// in the metric of the space.
+    /// One attempt: a free state, or none. `sigma` is the standard deviation of the distance of the pair,
+    /// positive and in the metric of the space.
     fn attempt<C: Space>(
         space: &C,
         free: impl FnMut(&C::State) -> bool,
@@ -151,7 +152,8 @@ constructors! {
     |space, reach: Reachable, mixing: Mixing| Pairs::parts(space, reach, mixing)
 }
 
-/// Decides whether this attempt is a uniform sample; if so, writes it to `out` if it is free. Returns the decision.
+/// Decides whether this attempt is a uniform sample; if so, writes it to `out` if it is free. Returns the
+/// decision.
 pub(crate) fn drew_uniform<C, L>(
     probability: f64,
     checker: &mut EdgeChecker<'_, C, L>,

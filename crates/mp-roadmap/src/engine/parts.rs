@@ -35,8 +35,8 @@ impl<G, K, Q> RoadmapPlannerParts<G, K, Q> {
     }
 }
 
-/// When a planner looks for a path, once start and goal are in the same component. It always looks for one in the first
-/// step.
+/// When a planner looks for a path, once start and goal are in the same component. It always looks for one in
+/// the first step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pace {
     /// Not before there are this many nodes.

@@ -1,7 +1,8 @@
 //! Pieces of roadmaps: what one attempt made from some nodes of a roadmap, apart from the roadmap itself.
 //!
-//! A piece depends only on the nodes that it was made from and on its random numbers. So pieces of different nodes can be made at the same
-//! time, on threads or on the ranks of a cluster, and they are added to the roadmap one after the other.
+//! A piece depends only on the nodes that it was made from and on its random numbers. So pieces of different
+//! nodes can be made at the same time, on threads or on the ranks of a cluster, and they are added to the
+//! roadmap one after the other.
 
 use super::file::{Reader, put_link, put_node};
 use super::{EdgeId, Link, LinkState, Roadmap, RoadmapError, Tag};
@@ -34,7 +35,8 @@ pub(crate) struct Part<S, E> {
 }
 
 impl<S: Clone, E: Clone> Part<S, E> {
-    /// These nodes of a roadmap, numbered in this order, with the edges between them that were there at some moment and not blocked.
+    /// These nodes of a roadmap, numbered in this order, with the edges between them that were there at some
+    /// moment and not blocked.
     pub(crate) fn of(map: &Roadmap<S, E>, members: Vec<NodeId>, at: Moment) -> Self {
         debug_assert!(members.iter().all(|&id| (id as usize) < at.nodes));
         let mut part = Roadmap::new();
@@ -79,9 +81,11 @@ impl<S: Clone, E: Clone> Part<S, E> {
     }
 }
 
-/// What an attempt made from some nodes of a roadmap, its members: nodes, edges between all of them, and attempts to connect members.
+/// What an attempt made from some nodes of a roadmap, its members: nodes, edges between all of them, and
+/// attempts to connect members.
 ///
-/// A generator [makes](crate::NodeGenerator::piece) it. As bytes it goes from one rank of a cluster to another.
+/// A generator [makes](crate::NodeGenerator::piece) it. As bytes it goes from one rank of a cluster to
+/// another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece<S, E> {
     /// The members in the roadmap. In the piece they come before the new nodes.
@@ -113,7 +117,8 @@ impl<S, E> Piece<S, E> {
         self.motions
     }
 
-    /// Adds it to the roadmap that has its members, without the edges that `keeps` refuses, given the states of their ends.
+    /// Adds it to the roadmap that has its members, without the edges that `keeps` refuses, given the states
+    /// of their ends.
     pub fn insert(self, map: &mut Roadmap<S, E>, mut keeps: impl FnMut(&S, &Link<E>, &S) -> bool) {
         let mut ids = self.members;
         for (&id, [tried, failed]) in ids.iter().zip(self.tries).filter(|(_, [tried, _])| *tried > 0) {

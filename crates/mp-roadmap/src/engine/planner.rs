@@ -18,8 +18,8 @@ const GOAL_EVERY: u64 = 16;
 
 /// A planner that grows a roadmap until it connects start and goal.
 ///
-/// The first step adds the start and the listed goals as nodes. Each step makes one attempt of the generator; where start
-/// and a goal are in the same component it searches for a path and verifies it.
+/// The first step adds the start and the listed goals as nodes. Each step makes one attempt of the generator;
+/// where start and a goal are in the same component it searches for a path and verifies it.
 #[derive(Debug)]
 pub struct RoadmapPlanner<'c, C: Space, L: LocalPlanner<C::State>, G, K, Q, N> {
     builder: Builder<'c, C, L, G, K, N>,
@@ -46,7 +46,7 @@ where
     Q: Query<C, L>,
     N: NearestNeighbors<C>,
 {
-    /// A planner for a problem, with an empty index.
+    /// A planner of these parts. The index must be empty: it gets every node of the roadmap.
     pub fn assemble(problem: Problem<'c, C, L>, index: N, parts: RoadmapPlannerParts<G, K, Q>) -> Self {
         let (checker, start, goals) = EdgeChecker::of(problem, PATIENCE);
         Self {
@@ -143,7 +143,8 @@ where
         }
     }
 
-    /// A verified path from the start to a goal, if the roadmap has one. Tells of edges that turn out to be blocked.
+    /// A verified path from the start to a goal, if the roadmap has one. Tells of edges that turn out to be
+    /// blocked.
     fn answer(&mut self, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         let before = self.builder.map.blocked();
         let path = self.find_path(observer);
@@ -204,7 +205,8 @@ where
         if self.due() { self.answer(observer) } else { None }
     }
 
-    /// Whether it is time to search for a path. A better path is searched for whenever there are a tenth more nodes.
+    /// Whether it is time to search for a path. A better path is searched for whenever there are a tenth more
+    /// nodes.
     fn due(&self) -> bool {
         let nodes = self.builder.map.len();
         let better = if self.best.is_finite() && self.improves { self.looked / 10 } else { 0 };
@@ -212,8 +214,8 @@ where
     }
 }
 
-/// Verifies the edges of a path that have not passed yet, in the direction of the path. Blocks the first that fails, unless
-/// the checker was interrupted. Returns whether none did.
+/// Verifies the edges of a path that have not passed yet, in the direction of the path. Blocks the first that
+/// fails, unless the checker was interrupted. Returns whether none did.
 pub(crate) fn verify<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,
@@ -253,7 +255,8 @@ where
     fn map(&self) -> &Roadmap<S, E>;
     /// The roadmap, mutable to compute its components.
     fn map_mut(&mut self) -> &mut Roadmap<S, E>;
-    /// Continues with a roadmap made by a planner of the same kind, instead of its own. To be called before the first step.
+    /// Continues with a roadmap made by a planner of the same kind, instead of its own. To be called before
+    /// the first step.
     ///
     /// # Errors
     /// When a state of it is outside the space.

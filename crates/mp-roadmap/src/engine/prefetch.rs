@@ -1,8 +1,8 @@
 //! Prefetching: several threads make attempts beforehand, without changing the result.
 //!
-//! Most time goes into motions of the local planner, and its answers do not depend on when they are made. So threads make
-//! the motions that the next attempts will probably need, given the roadmap as it is, and keep them. The attempts are
-//! then made one after the other as usual, and use the motions that were prefetched.
+//! Most time goes into motions of the local planner, and its answers do not depend on when they are made. So
+//! threads make the motions that the next attempts will probably need, given the roadmap as it is, and keep
+//! them. The attempts are then made one after the other as usual, and use the motions that were prefetched.
 
 use super::{Builder, Candidate, Connector, EdgeChecker, NodeGenerator, Piece, Reachable, Roadmap};
 use mp_cspace::{
@@ -13,8 +13,8 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Counts queries so that the count does not depend on the number of threads: a prefetched answer counts when it is used, and
-/// not at all if it never is.
+/// Counts queries so that the count does not depend on the number of threads: a prefetched answer counts when
+/// it is used, and not at all if it never is.
 #[derive(Clone, Copy, Debug)]
 pub struct QueryMeter<'c> {
     /// How many queries the present thread has made so far, counted from any beginning.
@@ -105,7 +105,8 @@ where
         self.map.len()
     }
 
-    /// Prefetches the motions from the nearest nodes, one for each component that can be joined; with cycles all of them.
+    /// Prefetches the motions from the nearest nodes, one for each component that can be joined; with cycles
+    /// all of them.
     pub(crate) fn reach_nearest(&mut self, within: &Reachable) {
         let mut joined = Vec::new();
         for hit in self.near(within.neighbours, within.radius) {
@@ -129,7 +130,8 @@ where
     }
 }
 
-/// What the threads prefetch from: the roadmap and its index, the policies, the seed, and the range of attempts.
+/// What the threads prefetch from: the roadmap and its index, the policies, the seed, and the range of
+/// attempts.
 pub(crate) struct PrefetchJob<'a, 'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
     pub(crate) map: &'a Roadmap<C::State, L::Edge>,
     pub(crate) index: &'a N,
@@ -192,9 +194,10 @@ where
     K: Connector<C, L> + Sync,
     N: NearestNeighbors<C> + Sync,
 {
-    /// Builds on several threads, where the generator has [independent](NodeGenerator::independent) attempts. Each of
-    /// `checkers`, which must equal the checker of the builder, prefetches some attempts at a time; give at least as many as
-    /// there are threads. The roadmap is the same to the bit for any number of checkers and threads.
+    /// Builds on several threads, where the generator has [independent](NodeGenerator::independent) attempts.
+    /// Each of `checkers`, which must equal the checker of the builder, prefetches some attempts at a time;
+    /// give at least as many as there are threads. The roadmap is the same to the bit for any number of
+    /// checkers and threads.
     #[must_use]
     pub fn on(mut self, workers: Workers, checkers: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self {
         let none = 0..0;

@@ -30,18 +30,18 @@ pub enum Unanswered {
 
 /// A roadmap that answers queries; it does not grow by them.
 ///
-/// A query first tries a direct motion from start to goal. Then start and goal are each connected to one of their nearest
-/// nodes, in order of distance, such that both are in one component, and a shortest path between these nodes is searched
-/// for. The path is verified; edges that passed once are not verified again, and an edge that fails is blocked
-/// permanently.
+/// A query first tries a direct motion from start to goal. Then start and goal are each connected to one of
+/// their nearest nodes, in order of distance, such that both are in one component, and a shortest path
+/// between these nodes is searched for. The path is verified; edges that passed once are not verified again,
+/// and an edge that fails is blocked permanently.
 #[derive(Debug)]
 pub struct RoadmapQueries<'c, C: Space, L: LocalPlanner<C::State>, N> {
     checker: EdgeChecker<'c, C, L>,
     indexed: IndexedRoadmap<C::State, L::Edge, N>,
 }
 
-/// A roadmap, an index of its nodes and the memory of searches: [`RoadmapQueries`] without the edge checker, which each
-/// query brings along, always for the same space and scene.
+/// A roadmap, an index of its nodes and the memory of searches: [`RoadmapQueries`] without the edge checker,
+/// which each query brings along, always for the same space and scene.
 #[derive(Clone, Debug)]
 pub struct IndexedRoadmap<S, E, N> {
     map: Roadmap<S, E>,
@@ -57,7 +57,8 @@ where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    /// The roadmap that was built, to answer queries; each end is connected to one of its `neighbours` nearest nodes.
+    /// The roadmap that was built, to answer queries; each end is connected to one of its `neighbours`
+    /// nearest nodes.
     #[must_use]
     pub fn into_answers(self, neighbours: usize) -> RoadmapQueries<'c, C, L, N> {
         let Self { checker, map, index, .. } = self;
@@ -84,8 +85,8 @@ where
     L: LocalPlanner<C::State, Edge: Reversible>,
     N: NearestNeighbors<C>,
 {
-    /// A roadmap built before, with an empty index. Each end of a query is connected to one of its `neighbours` nearest
-    /// nodes.
+    /// A roadmap built before, with an empty index. Each end of a query is connected to one of its
+    /// `neighbours` nearest nodes.
     ///
     /// # Errors
     /// When a node is outside the space, as of a roadmap for another one.
@@ -104,7 +105,7 @@ where
         self.indexed.verify(&mut self.checker)
     }
 
-    /// The roadmap.
+    /// The roadmap that answers; its edges are marked as they are verified.
     #[must_use]
     pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
         &self.indexed.map
@@ -151,7 +152,7 @@ impl<S, E, N> IndexedRoadmap<S, E, N> {
         Self { map, index, star, forest, neighbours, near: Default::default() }
     }
 
-    /// The roadmap.
+    /// The roadmap that answers.
     #[must_use]
     pub fn map(&self) -> &Roadmap<S, E> {
         &self.map
@@ -174,8 +175,8 @@ where
     S: Clone + PartialEq + std::fmt::Debug + Send + Sync,
     E: Clone + Reversible,
 {
-    /// A roadmap built before, with an empty index. Each end of a query is connected to one of its `neighbours` nearest
-    /// nodes.
+    /// A roadmap built before, with an empty index. Each end of a query is connected to one of its
+    /// `neighbours` nearest nodes.
     ///
     /// # Errors
     /// When a node is outside the space, as of a roadmap for another one.
@@ -192,11 +193,12 @@ where
         Ok(Self::filled(map, index, neighbours))
     }
 
-    /// Verifies all edges now, in both directions, so that no query waits for it. Edges that were only guessed are
-    /// checked first; edges that fail are blocked. Returns how many were blocked. Ends early when the checker is told to.
+    /// Verifies all edges now, in both directions, so that no query waits for it. Edges that were only
+    /// guessed are checked first; edges that fail are blocked. Returns how many were blocked. Ends early when
+    /// the checker is told to.
     ///
-    /// Pays off for thousands of queries, where each edge is on many paths; for a single path verify only that path.
-    /// Takes time by the number of edges not verified yet.
+    /// Pays off for thousands of queries, where each edge is on many paths; for a single path verify only
+    /// that path. Takes time by the number of edges not verified yet.
     pub fn verify<C, L>(&mut self, checker: &mut EdgeChecker<'_, C, L>) -> usize
     where
         C: Space<State = S>,
@@ -240,8 +242,8 @@ where
         RunningQuery { roadmap: self, checker, ends: [start, goal] }.answer()
     }
 
-    /// At most `k` verified paths from `start` to `goal` with their lengths, the shortest first. They begin and
-    /// end with the same motions, and visit no node twice (Yen 1971). A roadmap without cycles has only
+    /// At most `k` verified paths from `start` to `goal` with their lengths, the shortest first. They begin
+    /// and end with the same motions, and visit no node twice (Yen 1971). A roadmap without cycles has only
     /// one.
     ///
     /// Takes time by the size of the roadmap, and a search for each node of each path.
@@ -263,11 +265,12 @@ where
         RunningQuery { roadmap: self, checker, ends: [start, goal] }.alternatives(k)
     }
 
-    /// At most `k` verified paths from `start` to `goal` that are far apart, with their lengths. The first is the shortest.
-    /// Each other one is the shortest through a node that is farther than `apart`, in the metric of the space, from all
-    /// paths before, with shortest paths to and from that node, and without a detour there: within a length of `apart` before and
-    /// behind that node no path is shorter (Abraham, Delling, Goldberg and Werneck 2013). They begin and end with the same
-    /// motions. A roadmap without cycles has only one.
+    /// At most `k` verified paths from `start` to `goal` that are far apart, with their lengths. The first is
+    /// the shortest. Each further one is the shortest path through a node that is farther than `apart`, in
+    /// the metric of the space, from all paths before it. The parts to and from that node are shortest paths.
+    /// There is no detour at the node: within a length of `apart` before and behind it no path is shorter
+    /// (Abraham, Delling, Goldberg and Werneck 2013). They begin and end with the same motions. A roadmap
+    /// without cycles has only one.
     ///
     /// # Errors
     /// When the roadmap has no path, with the reason.
@@ -326,8 +329,8 @@ where
         self.listed(|query, nodes| query.shortest_paths(nodes, k))
     }
 
-    /// The paths that `choose` finds between two nodes, with the motions from the start and to the goal. It is called again
-    /// when it returns `None`, as an edge had to be blocked.
+    /// The paths that `choose` finds between two nodes, with the motions from the start and to the goal. It
+    /// is called again when it returns `None`, as an edge had to be blocked.
     fn listed(
         mut self,
         choose: impl Fn(&mut Self, [NodeId; 2]) -> Option<Vec<GraphPath>>,
@@ -359,7 +362,8 @@ where
         Ok(())
     }
 
-    /// Connects both ends to the same component. Neighbours to which this fails are dropped for the rest of the query.
+    /// Connects both ends to the same component. Neighbours to which this fails are dropped for the rest of
+    /// the query.
     fn connect_ends(&mut self) -> Result<ConnectedEnds<C::State, L::Edge>, Unanswered> {
         let mut reached = [false; 2];
         loop {
@@ -426,7 +430,8 @@ where
         check(map, self.checker, &path).then_some(path)
     }
 
-    /// The shortest paths between two nodes, all of whose edges are verified; `None` when an edge had to be blocked.
+    /// The shortest paths between two nodes, all of whose edges are verified; `None` when an edge had to be
+    /// blocked.
     fn shortest_paths(&mut self, [from, to]: [NodeId; 2], k: usize) -> Option<Vec<GraphPath>> {
         let arcs = self.arcs(from);
         let found = shortest_paths(&arcs, from, to, k, self.checker.interrupt());
@@ -459,7 +464,8 @@ where
         free.then_some(path)
     }
 
-    /// Paths between two nodes that are far apart, all of whose edges are verified; `None` when an edge had to be blocked.
+    /// Paths between two nodes that are far apart, all of whose edges are verified; `None` when an edge had
+    /// to be blocked.
     fn far_apart(&mut self, [from, to]: [NodeId; 2], k: usize, apart: f64) -> Option<Vec<GraphPath>> {
         let arcs = self.arcs(from);
         let mut open: Vec<NodeId> =

@@ -44,7 +44,7 @@ impl MilestoneKind {
         Self::Salvaged,
     ];
 
-    /// Its name.
+    /// The word for it in files, events and pictures.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -64,9 +64,10 @@ impl MilestoneKind {
 /// What a node has beside its state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tag {
-    /// Its kind.
+    /// What it is in the roadmap: planners of guards tell them from connections.
     pub kind: MilestoneKind,
-    /// The obstacle it belongs to, or of a [roadmap by regions](crate::algo::regional_prm) the region, if any.
+    /// The obstacle it belongs to, or of a [roadmap by regions](crate::algo::regional_prm) the region, if
+    /// any.
     pub obstacle: Option<u32>,
     /// How often a connection to another node was tried.
     pub tried: u32,
@@ -85,7 +86,8 @@ pub enum LinkState {
     Blocked,
 }
 
-/// The number of an edge: edges are numbered from 0 in the order in which they were added, and never renumbered.
+/// The number of an edge: edges are numbered from 0 in the order in which they were added, and never
+/// renumbered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct EdgeId(pub u32);
 
@@ -114,8 +116,9 @@ pub struct Link<E> {
 
 /// A roadmap: configurations as nodes and motions as edges, which can be run in both directions.
 ///
-/// Nodes are numbered in the order in which they were added, and never renumbered; edges are blocked rather than removed.
-/// Components are kept up to date; after an edge was blocked, the next query of components visits all edges.
+/// Nodes are numbered in the order in which they were added, and never renumbered; edges are blocked rather
+/// than removed. Components are kept up to date; after an edge was blocked, the next query of components
+/// visits all edges.
 #[derive(Clone, Debug)]
 pub struct Roadmap<S, E = ()> {
     states: Vec<S>,
@@ -129,7 +132,8 @@ pub struct Roadmap<S, E = ()> {
     mark: Option<Mark>,
 }
 
-/// A roadmap at some moment: how many nodes, edges and blocked edges it had, and what else changed since, in order.
+/// A roadmap at some moment: how many nodes, edges and blocked edges it had, and what else changed since, in
+/// order.
 #[derive(Clone, Debug)]
 struct Mark {
     nodes: usize,
@@ -141,7 +145,6 @@ struct Mark {
 /// A change of a node or an edge, with what it was before.
 #[derive(Clone, Copy, Debug)]
 enum Change {
-    /// The tag of a node.
     Tag(NodeId, Tag),
     /// An edge was blocked.
     Blocked(EdgeId, LinkState),
@@ -481,9 +484,9 @@ impl<S, E> Roadmap<S, E> {
 pub struct GraphPath {
     /// The nodes, one more than edges.
     pub nodes: Vec<NodeId>,
-    /// The edges.
+    /// The edges from the first node to the last.
     pub edges: Vec<EdgeId>,
-    /// Its length.
+    /// The sum of the lengths of its edges, in the metric of the space.
     pub length: f64,
 }
 

@@ -10,8 +10,8 @@ pub type Entry = (NodeId, f64);
 
 /// Slot: how a path in the roadmap is searched for.
 pub trait Query<C: Space, L: LocalPlanner<C::State>> {
-    /// A shortest path from one of `from` to one of `to`, all of whose edges have motions of the local planner. May block
-    /// edges that turn out to have none.
+    /// A shortest path from one of `from` to one of `to`, all of whose edges have motions of the local
+    /// planner. May block edges that turn out to have none.
     fn search(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
@@ -53,12 +53,11 @@ struct Mark {
 const UNSEEN: Mark = Mark { search: 0, length: f64::INFINITY, rest: 0.0, via: None };
 
 /// A* (Hart, Nilsson and Raphael 1968, *A formal basis for the heuristic determination of minimum cost
-/// paths*), with the distance to the ends as heuristic. Memory is reused from search to search, so that the cost of a
-/// search depends only on the nodes it visits.
+/// paths*), with the distance to the ends as heuristic. Memory is reused from search to search, so that the
+/// cost of a search depends only on the nodes it visits.
 ///
-/// Paths are shortest where no edge is shorter than the
-/// distance between its ends. Under a distance that violates the triangle inequality, nodes are visited again when a
-/// shorter path to them is found.
+/// Paths are shortest where no edge is shorter than the distance between its ends. Under a distance that
+/// violates the triangle inequality, nodes are visited again when a shorter path to them is found.
 #[derive(Clone, Debug, Default)]
 pub struct AStar {
     marks: Vec<Mark>,
@@ -77,8 +76,8 @@ impl AStar {
         Self::default()
     }
 
-    /// A shortest path from one of `from` to one of `to`, each with the length that is added there; `None` when there is
-    /// none. Ties by node.
+    /// A shortest path from one of `from` to one of `to`, each with the length that is added there; `None`
+    /// when there is none. Ties by node.
     pub fn shortest<C: Space, E>(
         &mut self,
         map: &Roadmap<C::State, E>,
@@ -183,7 +182,8 @@ fn inward(n: usize) -> impl Iterator<Item = usize> {
     (0..n).map(move |i| if i % 2 == 0 { i / 2 } else { n - 1 - i / 2 })
 }
 
-/// Checks the unchecked edges of a path. Blocks those that fail, unless the checker was interrupted. Returns whether none did.
+/// Checks the unchecked edges of a path. Blocks those that fail, unless the checker was interrupted. Returns
+/// whether none did.
 pub(crate) fn check<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,

@@ -8,10 +8,10 @@ use std::collections::BTreeMap;
 /// To which nodes a candidate is connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NeighborSet {
-    /// The nearest.
+    /// The nearest nodes, whatever obstacle they belong to.
     Nearest,
-    /// The nearest of all that are among this many nearest nodes of each obstacle, or of no obstacle. Costs a distance to
-    /// every node.
+    /// The nearest of all that are among this many nearest nodes of each obstacle, or of no obstacle. Costs a
+    /// distance to every node.
     EachObstacle(usize),
 }
 
@@ -116,13 +116,13 @@ impl ConnectionStages {
     }
 }
 
-/// Every candidate becomes a node and is connected to others in stages (Amato, Bayazit, Dale, Jones and Vallejo
-/// 1998, *OBPRM: an obstacle-based PRM for 3D workspaces*): first by the local planner; then, to
-/// those that are still in other components, by rotate-at-s. Where the robot turns there are two more nodes, so that
-/// each edge is one motion of the local planner.
+/// Every candidate becomes a node and is connected to others in stages (Amato, Bayazit, Dale, Jones and
+/// Vallejo 1998, *OBPRM: an obstacle-based PRM for 3D workspaces*): first by the local planner; then, to
+/// those that are still in other components, by rotate-at-s. Where the robot turns there are two more nodes,
+/// so that each edge is one motion of the local planner.
 ///
-/// Each node goes through both stages when it is added; in the paper all nodes go through the first stage before the
-/// second.
+/// Each node goes through both stages when it is added; in the paper all nodes go through the first stage
+/// before the second.
 #[derive(Clone, Debug)]
 pub struct StagedConnector {
     within: Reachable,
@@ -136,7 +136,8 @@ pub struct StagedConnector {
 
 impl StagedConnector {
     /// # Errors
-    /// When there are no neighbours, the radius is not positive, a fraction is not in \[0, 1\], or there is no stage.
+    /// When there are no neighbours, the radius is not positive, a fraction is not in \[0, 1\], or there is
+    /// no stage.
     pub fn new(within: Reachable, stages: ConnectionStages) -> Result<Self, BuildError> {
         if let NeighborSet::EachObstacle(most) = stages.among {
             BuildError::count_within(PER_OBSTACLE.name, most as u64, 1, 1_000_000)?;

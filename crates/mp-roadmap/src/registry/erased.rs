@@ -12,7 +12,8 @@ pub type AnyRoadmap = IndexedRoadmap<Configuration, (), AnyIndex<Configuration>>
 /// The regions of an erased space.
 pub type AnyRegions = InRegions<Configuration, AnyIndex<Configuration>>;
 
-/// The planner called `name`, as [`build_with`] makes it, for [configurations](Configuration). Calling it compiles no planner.
+/// The planner called `name`, as [`build_with`] makes it, for [configurations](Configuration). Calling it
+/// compiles no planner.
 ///
 /// # Errors
 /// As [`build`](crate::build).

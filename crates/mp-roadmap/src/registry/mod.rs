@@ -26,12 +26,12 @@ pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
     found.ok_or_else(|| BuildError::unknown_planner(name, planners()))
 }
 
-/// Makes the planner called `name`, with the nearest neighbours that suit the space. The geometry of obstacles comes from
-/// the [problem](Problem::with_obstacles).
+/// Makes the planner called `name`, with the nearest neighbours that suit the space. The geometry of
+/// obstacles comes from the [problem](Problem::with_obstacles).
 ///
 /// # Errors
-/// When there is no such planner, it has no such parameters, or refuses their values; when the problem lacks the
-/// knowledge of obstacles that the planner needs.
+/// When there is no such planner, it has no such parameters, or refuses their values; when the problem lacks
+/// the knowledge of obstacles that the planner needs.
 pub fn build<'c, C, L>(
     name: &str,
     problem: Problem<'c, C, L>,

@@ -409,7 +409,8 @@ fn what_cannot_be_made_says_why() {
     assert_eq!(ByGeometry::read(&defaults(obstacle_geometry_prm::INFO)).unwrap(), ByGeometry::default());
 }
 
-/// Erased problems of rows are planned as generic ones of states, to the bit: every planner, alone and by a team.
+/// Erased problems of rows are planned as generic ones of states, to the bit: every planner, alone and by a
+/// team.
 #[test]
 fn erased_problems_are_planned_the_same() {
     let (space, robot) = (plane(), corridor(0.3));

@@ -15,8 +15,8 @@ const HOPELESS: u64 = 2_000;
 
 type Check<'c, S> = Box<dyn MotionValidity<S> + Send + 'c>;
 
-/// A problem: a space, a robot in it, where from and where to. Planners of erased problems are compiled in the library
-/// already, and are the same as those compiled for the space, to the bit: see `around`.
+/// A problem: a space, a robot in it, where from and where to. Planners of erased problems are compiled in
+/// the library already, and are the same as those compiled for the space, to the bit: see `around`.
 struct World<C: Space, V> {
     space: AsVectors<C>,
     erased: AnySpace<'static, Configuration>,

@@ -12,8 +12,9 @@ use std::f64::consts::PI;
 type Point = Vector2<f64>;
 type Local<'c> = Straight<'c, Rn<2>, AnyCheck<'c, Point>>;
 
-/// Each state is in one region, as large as the others; two regions that a motion passes one after the other are adjacent, and all
-/// adjacent ones are passed so. Samples of a region are in it, or beyond its faces by no more than the overlap.
+/// Each state is in one region, as large as the others; two regions that a motion passes one after the other
+/// are adjacent, and all adjacent ones are passed so. Samples of a region are in it, or beyond its faces by
+/// no more than the overlap.
 fn tiles<C: Space>(space: &C, regions: usize, cut: u32) {
     let whole = Subdivision::new(space, regions, 0.0).unwrap();
     let what = format!("{regions} regions of {} numbers", space.dim());
@@ -54,7 +55,8 @@ fn tiles<C: Space>(space: &C, regions: usize, cut: u32) {
                 assert!(space.contains(&q));
                 within += u32::from(whole.region_of(space, &q) == region);
             }
-            // With an overlap of all of its width, one of 81 samples is in a region that is cut along four numbers.
+            // With an overlap of all of its width, one of 81 samples is in a region that is cut along four
+            // numbers.
             let least = if overlap == 0.0 { 50 } else { u32::from(overlap < 1.0) };
             assert!(within >= least, "{what}, {overlap}: {within}");
         }
@@ -167,7 +169,8 @@ fn pieces_made_alone_give_the_roadmap_of_the_planner() {
     }
     assert!(map.to_bytes(1) == whole);
     assert_eq!(motions, builder.progress().motions);
-    // All edges are free, and regions are connected where they can be: the two sides of the wall by its passage alone.
+    // All edges are free, and regions are connected where they can be: the two sides of the wall by its
+    // passage alone.
     assert!(map.all_edges().all(|(_, [a, b], _)| !boxes.hit(map.state(a), map.state(b))));
     assert!(map.component_sizes()[0] * 10 > map.len() * 4, "{:?}", map.component_sizes());
     // Damaged bytes are refused, or are another piece; none is a fault.
@@ -194,8 +197,8 @@ fn pieces_made_alone_give_the_roadmap_of_the_planner() {
     }
 }
 
-/// The same bytes, counts and path on any number of threads; also where the verifier refuses what the local planner believes, until each
-/// new edge is verified.
+/// The same bytes, counts and path on any number of threads; also where the verifier refuses what the local
+/// planner believes, until each new edge is verified.
 #[test]
 fn threads_change_nothing() {
     let (space, boxes) = (square(), slit(0.2, 0.8, 0.05));
@@ -220,7 +223,8 @@ fn threads_change_nothing() {
     }
 }
 
-/// Later rounds make each region denser, and nodes stay with the region that made them; a roadmap that is gone on with too.
+/// Later rounds make each region denser, and nodes stay with the region that made them; a roadmap that is
+/// gone on with too.
 #[test]
 fn rounds_make_it_denser_everywhere() {
     let (space, boxes) = (square(), Boxes::<2>::default());

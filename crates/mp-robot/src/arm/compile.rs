@@ -298,7 +298,6 @@ fn narrow(joint: &Joint, source: Source, coordinate: &mut Coordinate) -> Result<
     }
 }
 
-/// The motion of a joint from its origin at the value `value`.
 fn motion(joint: &Joint, value: f64) -> Isometry3<f64> {
     let axis = Unit::new_normalize(joint.axis);
     match joint.kind {

@@ -88,12 +88,10 @@ impl EdgeList {
     }
 }
 
-/// The sides of a ring.
 pub(super) fn sides(ring: &[Point2<f64>]) -> impl Iterator<Item = Segment> {
     ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| [*a, *b])
 }
 
-/// The box around points.
 fn box_around<'a>(points: impl IntoIterator<Item = &'a Point2<f64>>) -> Box2 {
     let none = [Point2::from([f64::INFINITY; 2]), Point2::from([f64::NEG_INFINITY; 2])];
     points.into_iter().fold(none, |[low, high], p| [low.inf(p), high.sup(p)])
@@ -119,7 +117,6 @@ pub(super) fn inside_rings(rings: &[Vec<Point2<f64>>], p: &Point2<f64>) -> bool 
     crossings % 2 == 1
 }
 
-/// The rings of a polygon.
 pub(super) fn rings(polygon: &Polygon) -> Vec<Vec<Point2<f64>>> {
     polygon.rings().to_vec()
 }

@@ -123,7 +123,6 @@ impl<'c, C: Space<State = Se2State>> PolygonVerifier<'c, C> {
         self.body.iter().map(|ring| ring.iter().map(|p| q.transform_point(p)).collect()).collect()
     }
 
-    /// The distance at `q` from `edges`.
     fn distance(&self, q: &Se2State, edges: &[[Point2<f64>; 2]]) -> f64 {
         let mut least = f64::INFINITY;
         let mut interrupt = self.interrupt.clone();

@@ -321,7 +321,6 @@ pub(super) fn counter() -> TriMesh {
     union(parts)
 }
 
-/// A refrigerator.
 pub(super) fn refrigerator() -> TriMesh {
     let handle: Vec<_> = [(-0.31, 1.0), (-0.36, 1.02), (-0.37, 1.2), (-0.36, 1.38), (-0.31, 1.4)]
         .iter()

@@ -1,4 +1,5 @@
-//! A server that runs in a thread, with sessions that do what their requests say, and a client of plain connections.
+//! A server that runs in a thread, with sessions that do what their requests say, and a client of plain
+//! connections.
 
 #![allow(dead_code, reason = "each test file uses a part of this")]
 

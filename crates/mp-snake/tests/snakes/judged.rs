@@ -1,4 +1,5 @@
-//! Nothing that a snake or a relaxation returns is in collision, by a judge that shares no code with the check.
+//! Nothing that a snake or a relaxation returns is in collision, by a judge that shares no code with the
+//! check.
 
 use crate::worlds::{Judge, Point, World, square};
 use mp_cspace::testkit::check_local_planner;
@@ -12,8 +13,9 @@ use mp_snake::{
 use nalgebra::Vector2;
 use rand::RngExt;
 
-/// Both ways round, steps and all the way, bent in each way, in ten thousand worlds. Snakes bend motions that no bulge
-/// bends, and hybrid bends more than either alone; where it relaxes what a bulge has bent, it keeps farther away.
+/// Both ways round, steps and all the way, bent in each way, in ten thousand worlds. Snakes bend motions that
+/// no bulge bends, and hybrid bends more than either alone; where it relaxes what a bulge has bent, it keeps
+/// farther away.
 #[test]
 fn bent_edges_are_free() {
     let space = square();
@@ -64,7 +66,8 @@ fn bent_edges_are_free() {
     assert!(farther > 1.05 * nearer, "{nearer} {farther}");
 }
 
-/// From few nodes to many: a contour keeps its ends, what it calls free is free, and has less energy than the straight motion.
+/// From few nodes to many: a contour keeps its ends, what it calls free is free, and has less energy than the
+/// straight motion.
 #[test]
 fn contours_keep_their_ends_and_lower_the_energy() {
     let space = square();
@@ -150,8 +153,8 @@ fn ways_to_bend_have_names() {
     assert_eq!(error, "`Snake` is no way to bend a motion: expected snake, bulge or hybrid");
 }
 
-/// Each piece of a bulge that fits was asked about, told an end that was known to be free; also where corners were
-/// added on the way.
+/// Each piece of a bulge that fits was asked about, told an end that was known to be free; also where corners
+/// were added on the way.
 #[test]
 fn bulges_ask_about_every_piece() {
     let space = square();
@@ -188,7 +191,8 @@ fn bulges_ask_about_every_piece() {
     assert!(plain > 500 && mended > 100, "{plain} as they were laid, {mended} with more corners");
 }
 
-/// A path through random free states, relaxed: free, of the same ends, no longer, of less energy or the same path.
+/// A path through random free states, relaxed: free, of the same ends, no longer, of less energy or the same
+/// path.
 #[test]
 fn relaxed_paths_are_free_and_no_worse() {
     let space = square();
@@ -237,7 +241,8 @@ fn the_local_planner_keeps_the_contract() {
     assert!(done.bent() > 0 && done.straight > 0 && done.not_tried > 0 && done.iterations > 0, "{done:?}");
 }
 
-/// A narrow valley, in which steps as long as the range of repulsion overshoot: the pace becomes as short as the field needs.
+/// A narrow valley, in which steps as long as the range of repulsion overshoot: the pace becomes as short as
+/// the field needs.
 #[test]
 fn the_pace_follows_the_field() {
     let space = Rn::<2>::new([-1.0; 2], [1.0; 2]).unwrap();

@@ -75,8 +75,8 @@ impl MotionClearance<Point> for World {
     }
 }
 
-/// Judges segments by algebra, with nothing of the above: nearest point of a segment to a disc, clipping of a segment
-/// by a box.
+/// Judges segments by algebra, with nothing of the above: nearest point of a segment to a disc, clipping of a
+/// segment by a box.
 pub(crate) struct Judge<'w>(pub(crate) &'w World);
 
 impl MotionValidity<Point> for Judge<'_> {

@@ -1,7 +1,8 @@
 //! Distances in space between triangles, balls, capsules and cylinders.
 //!
-//! Triangles are compared by their own formulas here, since those of parry3d compare fourth powers of lengths with a fixed
-//! number. Cylinders are compared by parry3d (the algorithm of Gilbert, Johnson and Keerthi), at a size near one.
+//! Triangles are compared by their own formulas here, since those of parry3d compare fourth powers of lengths
+//! with a fixed number. Cylinders are compared by parry3d (the algorithm of Gilbert, Johnson and Keerthi), at
+//! a size near one.
 
 use nalgebra::{Isometry3, Point3, Vector3};
 use parry3d_f64::math::{Pose, Rotation, Vector};
@@ -90,7 +91,8 @@ pub(super) fn between(a: &Piece, b: &Piece) -> f64 {
     }
 }
 
-/// The distance of a cylinder from another piece, by parry3d, in the frame of the cylinder and in units of its size.
+/// The distance of a cylinder from another piece, by parry3d, in the frame of the cylinder and in units of
+/// its size.
 fn by_parry(pose: &Isometry3<f64>, radius: f64, half: f64, other: &Piece) -> f64 {
     let other = other.moved(&pose.inverse());
     let unit = radius.max(half).max(other.ball().1);
@@ -192,7 +194,8 @@ fn segments(p: &Point3<f64>, q: &Point3<f64>, r: &Point3<f64>, s: &Point3<f64>) 
     least
 }
 
-/// The distance of a point from a triangle's inside; infinite where it is not above the inside. Edges are left to others.
+/// The distance of a point from a triangle's inside; infinite where it is not above the inside. Edges are
+/// left to others.
 fn point_triangle(p: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> f64 {
     let normal = (b - a).cross(&(c - a));
     let square = normal.norm_squared();

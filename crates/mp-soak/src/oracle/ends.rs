@@ -5,8 +5,8 @@ use super::{Ask, Case, Fault, Moves};
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// How far, as a part of the extent or in radians, a number of a path may be from where it has to be: the text of a path has
-/// angles, and near β = π/2 these lose half of their digits.
+/// How far, as a part of the extent or in radians, a number of a path may be from where it has to be: the
+/// text of a path has angles, and near β = π/2 these lose half of their digits.
 const NEAR: f64 = 1e-6;
 /// The same for limits.
 const ROUNDING: f64 = 1e-8;
@@ -122,7 +122,6 @@ impl Case {
         }
     }
 
-    /// Whether a row is at a goal.
     fn check_goal(&self, goal: &[Ask], row: &Row<'_>) -> Result<(), String> {
         let turns = match &self.moves {
             Moves::Space => true,
@@ -195,7 +194,8 @@ impl Case {
         Ok(())
     }
 
-    /// Whether the robot can go along an edge. On curved ones it looks at `places` places whether the robot is within its limits.
+    /// Whether the robot can go along an edge. On curved ones it looks at `places` places whether the robot
+    /// is within its limits.
     pub(super) fn check_edge(
         &self,
         edge: &Edge<'_>,
@@ -225,7 +225,8 @@ impl Case {
 }
 
 impl Case {
-    /// A configuration that a goal asks for, if it asks for one only: with the time if obstacles move, and at rest.
+    /// A configuration that a goal asks for, if it asks for one only: with the time if obstacles move, and at
+    /// rest.
     #[must_use]
     pub fn example(&self, goal: &[Ask]) -> Option<Vec<f64>> {
         let exact = |ask: &Ask| if let Ask::Exactly(x) = ask { Some(*x) } else { None };

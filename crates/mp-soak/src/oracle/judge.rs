@@ -6,7 +6,8 @@ use super::moment::{Edge, Moment, Row};
 use super::{Body, Case, Piece, Shape};
 use nalgebra::{Isometry3, Point3, Vector3};
 
-/// Parts of an edge that move no body farther than this part of the extent are decided by whether bodies touch in their middle.
+/// Parts of an edge that move no body farther than this part of the extent are decided by whether bodies
+/// touch in their middle.
 const SMALLEST: f64 = 1e-9;
 /// Distances below this part of the greatest coordinate are contact: rounding.
 const TOUCHING: f64 = 1e-13;
@@ -20,7 +21,7 @@ const PLACES: usize = 16;
 pub enum Fault {
     /// Two bodies touch, or are nearer than what is to be kept.
     Contact {
-        /// The edge, from 0.
+        /// The index of the edge, from 0.
         edge: usize,
         /// Which part of the edge, 0 to 1.
         at: f64,
@@ -278,13 +279,15 @@ impl Case {
         !tree.floats
     }
 
-    /// Judges a path: whether it is free all along, leads from the start to a goal, and goes as the robot can.
+    /// Judges a path: whether it is free all along, leads from the start to a goal, and goes as the robot
+    /// can.
     #[must_use]
     pub fn judge(&self, rows: &[Vec<f64>]) -> Judged {
         self.judge_keeping(rows, 0.0)
     }
 
-    /// As [`judge`](Self::judge), where what comes nearer to an obstacle than `kept` (m) counts as touching it.
+    /// As [`judge`](Self::judge), where what comes nearer to an obstacle than `kept` (m) counts as touching
+    /// it.
     #[must_use]
     pub fn judge_keeping(&self, rows: &[Vec<f64>], kept: f64) -> Judged {
         let mut judged =
@@ -324,8 +327,9 @@ impl Case {
         judged
     }
 
-    /// The least distance (m) of two bodies that must not touch, at a row of a configuration, with the time if obstacles move and
-    /// velocities if there are any. What is wholly inside of something else counts as touching it.
+    /// The least distance (m) of two bodies that must not touch, at a row of a configuration, with the time
+    /// if obstacles move and velocities if there are any. What is wholly inside of something else counts as
+    /// touching it.
     ///
     /// # Errors
     /// When the row has another length, or is beyond the limits: what is wrong.

@@ -1,10 +1,11 @@
-//! An oracle for paths, which shares no code with the planners: its own description of the problem, kinematics, interpolation
-//! and distances. It uses the standard library, nalgebra, and parry3d for distances of cylinders.
+//! An oracle for paths, which shares no code with the planners: its own description of the problem,
+//! kinematics, interpolation and distances. It uses the standard library, nalgebra, and parry3d for distances
+//! of cylinders.
 //!
-//! From the crates of the project it takes only the text of a path. Each edge is halved until the distance of each pair of bodies
-//! exceeds how far they can come nearer within the part; parts that move a body by less than a billionth of the size of the
-//! problem are decided by whether the bodies touch there. So a path passes only if it is free all along, but for contacts smaller
-//! than that.
+//! From the crates of the project it takes only the text of a path. Each edge is halved until the distance of
+//! each pair of bodies exceeds the length by which they can approach each other within the part. A part that
+//! moves no body by more than a billionth of the size of the problem is decided by whether the bodies touch
+//! there. So a path passes only if it is free all along, but for contacts smaller than that.
 
 #![expect(
     clippy::disallowed_methods,
@@ -51,17 +52,17 @@ pub enum Shape {
 pub struct Body {
     /// Its name in messages.
     pub name: String,
-    /// Its shape.
+    /// Its geometry, in the frame it belongs to.
     pub shape: Shape,
-    /// Which frame it belongs to. Of a robot: 0 is the root, `i + 1` the frame behind joint `i`. Obstacles that stand still are in
-    /// the frame of the world.
+    /// Which frame it belongs to. Of a robot: 0 is the root, `i + 1` the frame behind joint `i`. Obstacles
+    /// that stand still are in the frame of the world.
     pub frame: usize,
     /// The radius (m) of a ball about the origin of its frame that holds it.
     pub reach: f64,
 }
 
 impl Body {
-    /// A body of this shape in the frame `frame`.
+    /// A body in a [frame](Self::frame), with its [reach](Self::reach).
     #[must_use]
     pub fn new(name: impl Into<String>, shape: Shape, frame: usize) -> Self {
         let reach = match &shape {
@@ -90,7 +91,7 @@ pub fn box_pieces(sides: [f64; 3], pose: &Isometry3<f64>) -> Vec<Piece> {
 /// An obstacle that moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mover {
-    /// Its body.
+    /// What moves, in the frame that its rows move.
     pub body: Body,
     /// Rows of time (s) and pose. Between two rows it goes straight and turns the shorter way, evenly.
     pub rows: Vec<(f64, Isometry3<f64>)>,
@@ -124,7 +125,8 @@ pub struct Case {
     pub timing: Option<Timing>,
     /// The inputs; `None` for robots that move straight.
     pub drive: Option<Drive>,
-    /// The least and the greatest value of each number of a configuration; `None` for an angle without limits.
+    /// The least and the greatest value of each number of a configuration; `None` for an angle without
+    /// limits.
     pub limits: Vec<Option<[f64; 2]>>,
     /// The start: a configuration, then velocities if they are part of the state.
     pub start: Vec<f64>,
@@ -137,7 +139,8 @@ pub struct Case {
 }
 
 impl Case {
-    /// A robot of these bodies and limits in a place of the size `extent` (m), without obstacles, start and goals.
+    /// A robot of these bodies and limits in a place of the size `extent` (m), without obstacles, start and
+    /// goals.
     #[must_use]
     pub fn new(moves: Moves, robot: Vec<Body>, limits: Vec<Option<[f64; 2]>>, extent: f64) -> Self {
         Self {

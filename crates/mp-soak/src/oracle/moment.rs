@@ -52,7 +52,7 @@ pub struct Joint {
     pub origin: Isometry3<f64>,
     /// The unit vector that it turns about or slides along, in its own frame.
     pub axis: Vector3<f64>,
-    /// Whether it slides.
+    /// Whether its value is a length along the axis (m), not an angle about it (rad).
     pub slides: bool,
     /// Which number gives its value, and the factor and offset of its value; `None` for a fixed joint.
     pub number: Option<(usize, f64, f64)>,
@@ -295,7 +295,8 @@ const HALF_TURN: f64 = 1e-6;
 const STEP: f64 = 0.01;
 
 impl<'e> Edge<'e> {
-    /// The way from `from` to `to` that path files mean; `other_way` for the other one where there are two shortest ways.
+    /// The way from `from` to `to` that path files mean; `other_way` for the other one where there are two
+    /// shortest ways.
     pub(super) fn new(case: &'e Case, from: &'e Moment, to: &Row<'_>, other_way: bool) -> Self {
         match &case.drive {
             None => Self::even(case, from, &to.moment, other_way),

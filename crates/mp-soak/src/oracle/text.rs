@@ -1,6 +1,7 @@
 //! Reading the text of a path.
 
-/// The rows of a path as it is written: a line with the number of rows, and perhaps of numbers in a row, then the rows.
+/// The rows of a path as it is written: a line with the number of rows, and perhaps of numbers in a row, then
+/// the rows.
 ///
 /// # Errors
 /// When the text is not such a path.

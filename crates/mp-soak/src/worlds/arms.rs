@@ -95,7 +95,8 @@ pub(super) struct Made {
     pub(super) reach: f64,
 }
 
-/// Writes links about as long as `lengths`. Returns the bodies of the robot and the link of each; link i is behind joint i - 1.
+/// Writes links about as long as `lengths`. Returns the bodies of the robot and the link of each; link i is
+/// behind joint i - 1.
 fn links(
     draw: &mut Draw,
     floats: bool,
@@ -131,7 +132,8 @@ fn made(draw: &mut Draw, floats: bool, scale: f64) -> Made {
     made
 }
 
-/// A random robot, of whose links it is not yet known which are compared. Names of its files have `name` in them.
+/// A random robot, of whose links it is not yet known which are compared. Names of its files have `name` in
+/// them.
 pub(super) fn without_pairs(draw: &mut Draw, floats: bool, scale: f64, name: &str) -> Made {
     let count = if floats { draw.count(1, 3) } else { draw.count(1, 7) };
     let mut files = BTreeMap::new();
@@ -213,8 +215,8 @@ impl Made {
     /// Finds out which links are compared, and writes down those that may touch.
     pub(super) fn pair_links(&mut self, draw: &mut Draw) {
         let of_link = &self.of_link;
-        // A joint connects the links that move with its child to those that move with its parent; of the root that stands still, to
-        // its parent alone.
+        // A joint connects the links that move with its child to those that move with its parent; of the root
+        // that stands still, to its parent alone.
         let joined = |a: usize, b: usize| {
             let child_of = |child: usize, parent: usize| {
                 let moved = self.moving_frame(child);
@@ -263,7 +265,8 @@ impl Made {
         }
         all.retain(|pair| !may_touch.contains(&pair.map(|i| of_link[i])));
         self.pairs = all;
-        // Without this file, links that always touch are found by the program. That cannot be if none touch at the neutral one.
+        // Without this file, links that always touch are found by the program. That cannot be if none touch
+        // at the neutral one.
         if neutral_touches || !may_touch.is_empty() || draw.chance(0.5) {
             let lines = may_touch.iter().map(|pair| {
                 let [a, b] = pair.map(|link| link - self.first);

@@ -1,4 +1,5 @@
-//! What people ask of arms: held joints, bases that move in the plane, things that links carry, and two robots at once.
+//! What people ask of arms: held joints, bases that move in the plane, things that links carry, and two
+//! robots at once.
 
 use super::arms::{HALF, Made, SAMPLES, obstacles, placed, without_pairs};
 use super::bodies::{Form, form, pose};
@@ -194,7 +195,8 @@ fn together(mut a: Made, b: Made) -> Made {
     a
 }
 
-/// Adds a cloud of points, each a ball. Returns its table. No two points share a cell, so that none is left out.
+/// Adds a cloud of points, each a ball. Returns its table. No two points share a cell, so that none is left
+/// out.
 fn cloud(draw: &mut Draw, scale: f64, case: &mut Case) -> String {
     let (count, radius) = (draw.count(1, 60), scale * draw.within(0.005, 0.1));
     let (middle, half) = ([0; 3].map(|_| draw.within(-HALF, HALF)), draw.within(0.1, 2.0));
@@ -214,7 +216,8 @@ fn cloud(draw: &mut Draw, scale: f64, case: &mut Case) -> String {
     )
 }
 
-/// Attaches a figure to a link that has a shape. Links that it touches in most configurations may touch it. Returns its table.
+/// Attaches a figure to a link that has a shape. Links that it touches in most configurations may touch it.
+/// Returns its table.
 fn attached(draw: &mut Draw, scale: f64, made: &mut Made, files: &mut BTreeMap<String, Vec<u8>>) -> String {
     let on = draw.below(made.bodies.len());
     let (link, frame) = (made.bodies[on].name.clone(), made.of_link[on]);

@@ -21,8 +21,8 @@ pub struct World {
     pub files: BTreeMap<String, Vec<u8>>,
     /// The problem as the oracle knows it.
     pub case: Case,
-    /// A start or goal with more clearance (m) must be accepted: round bodies are meshes a little larger than they are, and checks
-    /// have tolerances.
+    /// A start or goal with more clearance (m) must be accepted: round bodies are meshes a little larger than
+    /// they are, and checks have tolerances.
     pub margin: f64,
 }
 
@@ -38,7 +38,7 @@ impl World {
 /// A kind of world.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
-    /// Its name.
+    /// The word for it on the command line and in tallies.
     pub name: &'static str,
     /// What it is.
     pub summary: &'static str,
@@ -194,7 +194,8 @@ fn wide_goal(draw: &mut Draw, names: &[String], row: &[f64], widths: &[f64]) -> 
     (goal, format!("goal = {{ {} }}", parts.join(", ")))
 }
 
-/// How a robot moves by velocities, or by accelerations if there are any: as the oracle has it, and as TOML writes it.
+/// How a robot moves by velocities, or by accelerations if there are any: as the oracle has it, and as TOML
+/// writes it.
 fn by_rates(longest: f64, speeds: Vec<f64>, accelerations: Option<Vec<f64>>) -> (Drive, Vec<String>) {
     let mut lines = vec![format!("speeds = {}", list(&speeds)), format!("duration = {longest:?}")];
     let limits = |most: &[f64]| most.iter().map(|x| [-x, *x]).collect();

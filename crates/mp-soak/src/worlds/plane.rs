@@ -233,12 +233,10 @@ fn still(draw: &mut Draw, turning: bool) -> World {
     room.world(case, &[], &motion)
 }
 
-/// A disc.
 pub(super) fn disc(draw: &mut Draw) -> World {
     still(draw, false)
 }
 
-/// A polygon.
 pub(super) fn polygon(draw: &mut Draw) -> World {
     still(draw, true)
 }

@@ -12,7 +12,8 @@ use std::f64::consts::PI;
 const ENVIRONMENTS: [&str; 9] =
     ["easy", "twisty", "maze", "planar-bugtrap", "cubicles", "gempa-1", "gempa-2", "gempa-3", "gempa-4"];
 
-/// This many triangles of an obstacle are one body of the oracle, which compares bodies by balls around them first.
+/// This many triangles of an obstacle are one body of the oracle, which compares bodies by balls around them
+/// first.
 const CHUNK: usize = 16;
 
 /// The bytes of a shipped file.

@@ -12,20 +12,22 @@
 //!    b between ĝ(x) and c − ĥ(x);
 //! 2. of the nodes v with g(v) + d(v, x) ≤ b find that nearest to (x, b) in states and costs, the one with
 //!    the least d(v, x)² + (b − g(v))²; move from there one step toward x;
-//! 3. draw a smaller cost for the new state, between ĝ and its present cost, and find its nearest node likewise: where
-//!    that node is cheaper and the motion free it becomes the parent; repeat until it does not;
+//! 3. draw a smaller cost for the new state, between ĝ and its present cost, and find its nearest node
+//!    likewise: where that node is cheaper and the motion free it becomes the parent; repeat until it does
+//!    not;
 //! 4. connect the other tree to the new state, from the node nearest to it in states and costs by which
 //!    the path would cost less than c;
 //! 5. where the trees have met, verify the path, replace parts of it by single motions where these are
 //!    free and cheaper, return it, and begin the next search with its cost;
-//! 6. the other tree has the next turn. A search without success ends after 10 000 iterations, and each search after it
-//!    may take 10 000 iterations more.
+//! 6. the other tree has the next turn. A search without success ends after 10 000 iterations, and each
+//!    search after it may take 10 000 iterations more.
 //!
 //! The paper also smooths paths by B-splines. That is possible for straight motions only, and left out here.
 //!
-//! **When to use it.** Try it first when the length of the path matters: it has a path as soon as RRT-Connect has one, and
-//! improves it from then on. Both ends must be known states (or the goal a sampler), motions must run backward as well as
-//! forward, the metric should satisfy the triangle inequality, and no motion should cost less than its distance.
+//! **When to use it.** Try it first when the length of the path matters: it has a path as soon as RRT-Connect
+//! has one, and improves it from then on. Both ends must be known states (or the goal a sampler), motions
+//! must run backward as well as forward, the metric should satisfy the triangle inequality, and no motion
+//! should cost less than its distance.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -89,7 +91,7 @@ const RESAMPLED: usize = 100;
 /// The least part of its cost by which a path must be better.
 const GAIN: f64 = 1e-9;
 
-/// Of the nodes through which `q` costs at most `bound`, the one nearest to it in states and costs.
+/// The node nearest to `q` in states and costs, of those through which `q` costs at most `bound`.
 fn nearest_within<C: Space, E, Se: Selector<C>>(
     space: &C,
     tree: &Tree<C::State, E>,
@@ -257,8 +259,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         hits.first().map(|hit| hit.id)
     }
 
-    /// The path through two nodes with the same state, shortened, if it is better than the last and passes verification;
-    /// the part from a failed edge on is pruned.
+    /// The path through two nodes with the same state, shortened, if it is better than the last and passes
+    /// verification; the part from a failed edge on is pruned.
     fn candidate(
         &mut self,
         meeting: [NodeId; 2],

@@ -4,8 +4,8 @@
 //!
 //! With `m` inputs, from a tree that holds the start, repeat:
 //! 1. draw a sample, uniform in the space, or with a small probability a goal state;
-//! 2. go through the nodes in the order of their distance to it, and accept a node with violation frequency `σ` with
-//!    probability `1 − σ`; take the first that is accepted;
+//! 2. go through the nodes in the order of their distance to it, and accept a node with violation frequency
+//!    `σ` with probability `1 − σ`; take the first that is accepted;
 //! 3. of the inputs never tried at that node, apply the one whose successor is nearest to the sample
 //!    (exploration information: no input is tried twice);
 //! 4. where the motion is free, add its end as a child;
@@ -13,8 +13,8 @@
 //!    on: the part of the inputs known to violate the constraints, here and further down;
 //! 6. where the child is in the goal, verify the path: return it, or prune from the edge that failed.
 //!
-//! A node at which all inputs fail has `σ = 1` and is never taken again. At a node whose inputs have all been used, every
-//! further attempt counts as a violation, so that its `σ` rises to 1 too.
+//! A node at which all inputs fail has `σ = 1` and is never taken again. At a node whose inputs have all been
+//! used, every further attempt counts as a violation, so that its `σ` rises to 1 too.
 //!
 //! **When to use it.** For systems with inputs where the metric misleads, so that plain RRT keeps choosing
 //! nodes from which nothing free can be reached: obstacles across the way, narrow limits of velocity.
@@ -90,7 +90,8 @@ constructors! {
     }
 }
 
-/// Selects the nearest node that is accepted with a probability that falls as motions from it and below it fail.
+/// Selects the nearest node that is accepted with a probability that falls as motions from it and below it
+/// fail.
 #[derive(Clone, Debug)]
 pub struct LeastViolated<Se> {
     nearest: Se,

@@ -21,17 +21,17 @@
 //! [`routes`](CyclicRrt::routes) paths that are far apart (I. Abraham, D. Delling, A. V. Goldberg and
 //! R. F. Werneck, *Alternative routes in road networks*, ACM J. of Experimental Algorithmics 18, 2013).
 //!
-//! **When to use it.** To get a choice of paths, or to see which routes around the obstacles exist. For one path RRT is
-//! better: edges that close cycles do not explore (§2.3).
+//! **When to use it.** To get a choice of paths, or to see which routes around the obstacles exist. For one
+//! path RRT is better: edges that close cycles do not explore (§2.3).
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `tolerance`: how far apart similar states are, in steps | \[0, 1\] | none; by name 0.5 |
 //!
-//! and those of [RRT](super::rrt). A small tolerance makes few cycles; a large one makes many, and many
-//! paths that differ little. A passage may need nodes closer together than the tolerance: they are
-//! added as soon as the nodes similar to them are joined. Made [by name](crate::build) it finds a path as RRT does, a
-//! little slower; [`Planner::routes`] lists routes.
+//! and those of [RRT](super::rrt). A small tolerance makes few cycles; a large one makes many, and many paths
+//! that differ little. A passage may need nodes closer together than the tolerance: they are added as soon as
+//! the nodes similar to them are joined. Made [by name](crate::build) it finds a path as RRT does, a little
+//! slower; [`Planner::routes`] lists routes.
 //!
 //! Two routes around a block:
 //! ```
@@ -100,7 +100,8 @@ pub type Listed<S, E> = Vec<(Path<S, E>, f64)>;
 /// The two nodes of an edge, in forward time.
 type Ends = (NodeId, NodeId);
 
-/// Extends by one step, or adds an edge to a similar node: the extender of [`CyclicRrt`], which stores these edges.
+/// Extends by one step, or adds an edge to a similar node: the extender of [`CyclicRrt`], which stores these
+/// edges.
 #[derive(Clone, Debug)]
 pub struct Cyclic<S, E> {
     tolerance: f64,
@@ -126,8 +127,9 @@ impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
         hanging.chain(self.edges.iter().map(|(&ends, &(_, cost))| (ends, cost))).collect()
     }
 
-    /// The arcs that leave each node, without dead ends. From goals only the arc to an extra last node, where all paths
-    /// end. An edge that was not verified yet is assumed to be free, and to cost the same either way.
+    /// The arcs that leave each node, without dead ends. From goals only the arc to an extra last node, where
+    /// all paths end. An edge that was not verified yet is assumed to be free, and to cost the same either
+    /// way.
     fn arcs(&self, tree: &Tree<S, E>, goals: &[NodeId]) -> Vec<Vec<(u32, f64)>> {
         let edges = self.all_edges(tree);
         let mut around = vec![Vec::new(); tree.len()];
@@ -279,21 +281,21 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
         self.inner.extender().edges.keys().copied()
     }
 
-    /// The `k` cheapest paths, each with its cost, that visit no node twice, from the start to the goal states of the
-    /// paths returned so far; the cheapest first, ties by node. No paths before the first path is returned. The cheapest
-    /// often differ little: [`routes`](Self::routes) are far apart.
+    /// The `k` cheapest paths, each with its cost, that visit no node twice, from the start to the goal
+    /// states of the paths returned so far; the cheapest first, ties by node. No paths before the first path
+    /// is returned. The cheapest often differ little: [`routes`](Self::routes) are far apart.
     ///
-    /// Each edge has passed the verifier; edges that fail are left out from then on. The local planner makes the motions
-    /// back. Both answers are cached. Costs a search of the graph for each node of each path.
+    /// Each edge has passed the verifier; edges that fail are left out from then on. The local planner makes
+    /// the motions back. Both answers are cached. Costs a search of the graph for each node of each path.
     pub fn alternatives(&mut self, k: usize) -> Listed<C::State, L::Edge> {
         self.list(|_, tree, arcs, interrupt| shortest_paths(arcs, 0, tree.len() as u32, k, interrupt))
     }
 
-    /// At most `k` paths that are far apart. The first is the cheapest path. Each other one is the cheapest path via a
-    /// node that is farther than `apart`, in the metric of the space, from all paths before (from points on them half a
-    /// step apart), with shortest paths to and from that node, and without a detour there: within a cost of `apart` before
-    /// and behind that node no path is cheaper. Otherwise as [`alternatives`](Self::alternatives); costs a search of the
-    /// graph for each node tried.
+    /// At most `k` paths that are far apart. The first is the cheapest path. Each further one is the cheapest
+    /// path through a node that is far from all paths before it: farther than `apart`, in the metric of the
+    /// space, from points on them half a step apart. The parts to and from that node are shortest paths.
+    /// There is no detour at the node: within a cost of `apart` before and behind it no path is cheaper.
+    /// Otherwise as [`alternatives`](Self::alternatives); costs a search of the graph for each node tried.
     ///
     /// # Errors
     /// When `apart` is negative or not a number.

@@ -1,9 +1,9 @@
 //! Dynamic-domain RRT: nodes that failed once are only grown toward samples nearby.
 //!
-//! A. Yershova, L. Jaillet, T. Siméon and S. M. LaValle, *Dynamic-domain RRTs: efficient exploration
-//! by controlling the sampling domain*, ICRA 2005, on the two trees of
-//! [RRT-Connect](super::rrt_connect). With `adapt` above 0, and as [`adaptive`] by name, the radii are not fixed: L. Jaillet,
-//! A. Yershova, S. M. LaValle and T. Siméon, *Adaptive tuning of the sampling domain for dynamic-domain RRTs*, IROS 2005.
+//! A. Yershova, L. Jaillet, T. Siméon and S. M. LaValle, *Dynamic-domain RRTs: efficient exploration by
+//! controlling the sampling domain*, ICRA 2005, on the two trees of [RRT-Connect](super::rrt_connect). With
+//! `adapt` above 0, and as [`adaptive`] by name, the radii are not fixed: L. Jaillet, A. Yershova, S. M.
+//! LaValle and T. Siméon, *Adaptive tuning of the sampling domain for dynamic-domain RRTs*, IROS 2005.
 //!
 //! Each node has a radius, infinite at first. From one tree that holds the start and one that
 //! holds the goal, repeat:
@@ -16,12 +16,12 @@
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
-//! **When to use it.** Where the tree is enclosed, as in a bug trap: then most of the space is nearest to nodes at a wall,
-//! and plain RRT runs into the walls again and again. Pays off where checking a motion costs more than finding a nearest
-//! neighbour. The adaptive variant needs no good radius.
+//! **When to use it.** Where the tree is enclosed, as in a bug trap: then most of the space is nearest to
+//! nodes at a wall, and plain RRT runs into the walls again and again. Pays off where checking a motion costs
+//! more than finding a nearest neighbour. The adaptive variant needs no good radius.
 //!
-//! The paper's radius is ten steps, of much shorter steps than here. `tries` is not in the paper: in spaces of many
-//! dimensions nearly every sample may be refused.
+//! The paper's radius is ten steps, of much shorter steps than here. `tries` is not in the paper: in spaces
+//! of many dimensions nearly every sample may be refused.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -141,7 +141,8 @@ pub struct Domain {
     pub adapt: f64,
     /// The smallest radius, in steps; positive, at most `radius`.
     pub least: f64,
-    /// After this many refusals in a row the next sample is taken regardless, so that planning does not stall.
+    /// After this many refusals in a row the next sample is taken regardless, so that planning does not
+    /// stall.
     pub tries: u64,
 }
 
@@ -170,8 +171,8 @@ impl Domain {
     }
 }
 
-/// Selects the nearest node, unless it has failed and the target is beyond its radius. For joining always the nearest
-/// node.
+/// Selects the nearest node, unless it has failed and the target is beyond its radius. For joining always the
+/// nearest node.
 #[derive(Clone, Debug)]
 pub struct DynamicDomain<S, N> {
     nearest: NearestSelector<N>,

@@ -11,13 +11,13 @@
 //! 3. turn the first axis toward the goal, and move the centre to the middle;
 //! 4. where that is outside the bounds of the space, draw again.
 //!
-//! In other spaces, and for several goals, uniform samples are drawn until one obeys, at most
-//! [`TRIES`] times; then the last one is taken. For a goal that is a region or a sampler there is no such bound, and all
-//! samples are uniform.
+//! In other spaces, and for several goals, uniform samples are drawn until one obeys, at most [`TRIES`]
+//! times; then the last one is taken. For a goal that is a region or a sampler there is no such bound, and
+//! all samples are uniform.
 //!
-//! **When to use it.** Instead of RRT* whenever goals are listed states, the metric is symmetric and satisfies the
-//! triangle inequality, and no motion costs less than its distance. Where one of these does not hold, paths are as safe,
-//! but the best may be missed.
+//! **When to use it.** Instead of RRT* whenever goals are listed states, the metric is symmetric and
+//! satisfies the triangle inequality, and no motion costs less than its distance. Where one of these does not
+//! hold, paths are as safe, but the best may be missed.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -103,8 +103,8 @@ impl<'c, C: Space> Informed<'c, C> {
         self.best = cost;
     }
 
-    /// A lower bound of the cost between a state and the root of the tree that grows in `direction`; zero where the goals
-    /// are not listed.
+    /// A lower bound of the cost between a state and the root of the tree that grows in `direction`; zero
+    /// where the goals are not listed.
     pub(crate) fn least(&self, direction: Direction, q: &C::State) -> f64 {
         match direction {
             Direction::Forward => self.space.distance(&self.start, q),

@@ -1,4 +1,5 @@
-//! The algorithms and the list of those that can be made by name: one file each, but for those that differ in one slot.
+//! The algorithms and the list of those that can be made by name: one file each, but for those that differ in
+//! one slot.
 //!
 //! | algorithm | | trees | per iteration |
 //! |---|---|---|---|
@@ -26,8 +27,8 @@
 //! | [`Rrs`](crate::Rrs) | [`rrs`] | from the start, of edges that bend | one step toward a sample, around obstacles by a snake |
 //! | [`RrsConnect`](crate::RrsConnect) | [`rrs`] | from start and goal, of edges that bend | as RRT-Connect, around obstacles by snakes |
 //!
-//! [`SharedTree`](crate::SharedTree) ([`shared_tree`]) is RRT, and [`SharedBiRrt`](crate::SharedBiRrt) ([`shared_bi_rrt`]) is Bi-RRT, with
-//! trees that all threads grow.
+//! [`SharedTree`](crate::SharedTree) ([`shared_tree`]) is RRT, and [`SharedBiRrt`](crate::SharedBiRrt)
+//! ([`shared_bi_rrt`]) is Bi-RRT, with trees that all threads grow.
 
 pub mod aorrtc;
 pub mod cvp_rrt;
@@ -54,8 +55,8 @@ pub mod utility_rrt;
 use crate::by_name::{BuildFn, Types};
 use mp_cspace::registry::PlannerInfo;
 
-/// Lists the planners that can be made by name: the module of each, with an `INFO` and a `make`, and the types beside these that
-/// the crate exports.
+/// Lists the planners that can be made by name: the module of each, with an `INFO` and a `make`, and the
+/// types beside these that the crate exports.
 macro_rules! planners {
     ($($file:ident $(::$module:ident)?: $($kind:ident),*;)+) => {
         /// All planners that can be made by name.

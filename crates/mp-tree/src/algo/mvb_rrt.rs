@@ -17,9 +17,10 @@
 //! regions are convex, so the mean lies in the region of the node that collected the samples; in
 //! other spaces the node nearest to the mean is extended, almost always the same.
 //!
-//! **When to use it.** To cover open spaces evenly with few nodes, where motions are so expensive to check that a few more
-//! searches for neighbours do not matter. In a bug trap the large regions belong to nodes at walls: use
-//! [dynamic domains](super::dd_rrt) there. A tree of many more nodes than samples grows as that of RRT-Connect.
+//! **When to use it.** To cover open spaces evenly with few nodes, where motions are so expensive to check
+//! that a few more searches for neighbours do not matter. In a bug trap the large regions belong to nodes at
+//! walls: use [dynamic domains](super::dd_rrt) there. A tree of many more nodes than samples grows as that of
+//! RRT-Connect.
 //!
 //! | parameter | range | default |
 //! |---|---|---|

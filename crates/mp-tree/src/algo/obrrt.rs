@@ -20,25 +20,26 @@
 //! | G6 | toward the sample; where that fails, along the obstacle hit, with the rotation of the node |
 //! | G7 | toward the sample; where that fails, and a ray beside it fails too, by the vector between the two hits, in either direction: along the C-obstacle |
 //!
-//! [`ObstacleHints`] give the directions of obstacles. Rigid bodies among meshes implement it, and you may implement it
-//! for your own robots. Without a hint, all methods but G1 and G4 extend toward the sample.
-//! Directions that lead out of the space are followed as far as they are within it, down to an eighth of a step.
+//! [`ObstacleHints`] give the directions of obstacles. Rigid bodies among meshes implement it, and you may
+//! implement it for your own robots. Without a hint, all methods but G1 and G4 extend toward the sample.
+//! Directions that lead out of the space are followed as far as they are within it, down to an eighth of a
+//! step.
 //!
-//! Differences from the paper: its push to the medial axis is left out; along an obstacle the distance is that of the
-//! sample in position; rays of G7 are no longer than a step, and the second leads toward a state a tenth of the way from
-//! the sample to another.
+//! Differences from the paper: its push to the medial axis is left out; along an obstacle the distance is
+//! that of the sample in position; rays of G7 are no longer than a step, and the second leads toward a state
+//! a tenth of the way from the sample to another.
 //!
-//! Iterations against RRT, means of 100 seeds, steps of 20% of the extent, in the tests' worlds: 290 instead of 740
-//! through a narrow passage in the plane, 1400 instead of 2200 in space, 1500 instead of 1800 for a rod that must turn in
-//! a gap; 610 instead of 680 and 1070 instead of 1240 out of bug traps. An iteration costs a fifth to a third more
-//! motions, and the search for hits.
+//! Iterations against RRT, means of 100 seeds, steps of 20% of the extent, in the tests' worlds: 290 instead
+//! of 740 through a narrow passage in the plane, 1400 instead of 2200 in space, 1500 instead of 1800 for a
+//! rod that must turn in a gap; 610 instead of 680 and 1070 instead of 1240 out of bug traps. An iteration
+//! costs a fifth to a third more motions, and the search for hits.
 //!
-//! **When to use it.** For one-way motions and goal regions beyond narrow passages, where the walls lead through the
-//! passage and a robot that turns as it goes gets stuck. Where there are goal states and motions can be reversed,
-//! try [RRT-Connect](super::rrt_connect) first, and then [`ObrrtConnect`]: it grows two trees as RRT-Connect does, and each step
-//! toward a sample is made by one of these methods. With `balance=1` and steps of 0.3% to 1% it solves tubes, keys and assemblies that
-//! the one tree solves late or not at all. Made [by name](crate::build) both
-//! take the hints [of the problem](crate::Problem::with_obstacles).
+//! **When to use it.** For one-way motions and goal regions beyond narrow passages, where the walls lead
+//! through the passage and a robot that turns as it goes gets stuck. Where there are goal states and motions
+//! can be reversed, try [RRT-Connect](super::rrt_connect) first, and then [`ObrrtConnect`]: it grows two
+//! trees as RRT-Connect does, and each step toward a sample is made by one of these methods. With `balance=1`
+//! and steps of 0.3% to 1% it solves tubes, keys and assemblies that the one tree solves late or not at all.
+//! Made [by name](crate::build) both take the hints [of the problem](crate::Problem::with_obstacles).
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -132,9 +133,9 @@ const LOOKS: u32 = 10;
 /// Most doublings of a C-obstacle vector to make it as long as a step.
 const DOUBLINGS: u32 = 8;
 
-/// The relative frequencies of the growth methods G0 to G7, in this order. Each is zero or more
-/// and finite, and at least one is positive. The default, 0.3, 0.05, 0.025, 0.025, 0.1, 0.1, 0.1 and 0.3, was chosen
-/// by measurement: methods that follow the obstacle that was hit gain most, above all G7.
+/// The relative frequencies of the growth methods G0 to G7, in this order. Each is zero or more and finite,
+/// and at least one is positive. The default, 0.3, 0.05, 0.025, 0.025, 0.1, 0.1, 0.1 and 0.3, was chosen by
+/// measurement: methods that follow the obstacle that was hit gain most, above all G7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrowthWeights(pub [f64; 8]);
 
@@ -187,12 +188,13 @@ impl<H> ObstacleGuided<H> {
         Ok(Self { hints, weights: weights.checked()? })
     }
 
-    /// The hints.
+    /// The hints that say which obstacle stops a motion, and how it lies.
     pub fn hints(&self) -> &H {
         &self.hints
     }
 
-    /// The first of the tested states on the step from `from` toward `target` in which the robot touches an obstacle.
+    /// The first of the tested states on the step from `from` toward `target` in which the robot touches an
+    /// obstacle.
     fn hit<C: Space>(&mut self, space: &C, step: f64, from: &C::State, target: &C::State) -> Option<C::State>
     where
         H: ObstacleHints<C::State>,

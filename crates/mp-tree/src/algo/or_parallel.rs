@@ -8,12 +8,13 @@
 //! 1. a round: each run makes `slice` iterations, or fewer if it finds a path; the runs are shared
 //!    out to the threads;
 //! 2. when runs have found a path, the one with the fewest iterations wins, of those the lowest i;
-//! 3. otherwise the next round. So no run goes more than one slice beyond the winner, as it could not win any more.
+//! 3. otherwise the next round. So no run goes more than one slice beyond the winner, as it could not win any
+//!    more.
 //!
 //! The seed is the first number drawn from the generator of the first step. One step is one round.
 //!
-//! **When to use it.** On several cores, for problems where the time of a run varies much: then the shortest of n runs is
-//! far shorter than the mean. It helps on a single core too where the times have a heavy tail;
+//! **When to use it.** On several cores, for problems where the time of a run varies much: then the shortest
+//! of n runs is far shorter than the mean. It helps on a single core too where the times have a heavy tail;
 //! [restarts](super::restarts) do that with one tree in memory at a time.
 //!
 //! | parameter | range | default |
@@ -24,9 +25,9 @@
 //! and those of the planner that is run. By name it is `or-` and the name of that, as in
 //! `or-rrt-connect`; [`build_from`](crate::build_from) makes it.
 //!
-//! Observers see only the events of [`solve`](Planner::solve), not those of the runs. A run in which the user's code
-//! panics loses that iteration, which is [counted](OrParallel::panics), and goes on. When all runs panic in one round,
-//! the step panics in the calling thread, with the message of the first.
+//! Observers see only the events of [`solve`](Planner::solve), not those of the runs. A run in which the
+//! user's code panics loses that iteration, which is [counted](OrParallel::panics), and goes on. When all
+//! runs panic in one round, the step panics in the calling thread, with the message of the first.
 //!
 //! Eight runs on two threads:
 //! ```
@@ -59,7 +60,7 @@ use rand::RngExt;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-/// How many runs.
+/// The setting `runs`: the result depends on it, not on the number of threads.
 pub const RUNS: Parameter = Parameter {
     name: "runs",
     range: "a whole number from 1 to 1024",
@@ -75,7 +76,7 @@ pub const SLICE: Parameter = Parameter {
     doc: "iterations of each run per round",
 };
 
-/// One of the runs.
+/// A planner with random numbers of its own.
 #[derive(Debug)]
 struct Run<P, F> {
     planner: P,
@@ -142,7 +143,7 @@ impl<S, P: Planner<S>> OrParallel<S, P> {
         self.panics
     }
 
-    /// The planners.
+    /// The planner of each run, in the order of the runs.
     pub fn planners(&self) -> impl Iterator<Item = &P> {
         self.runs.iter().map(|run| &run.planner)
     }

@@ -9,15 +9,15 @@
 //!    until one leads, free of collision, to a state that is not within `apart` of another node;
 //! 4. add that as a child; a node at which all inputs have failed or been used is exhausted;
 //! 5. where the child is in the goal, verify the path: return it, or prune from the edge that failed;
-//! 6. when all nodes are exhausted, stop: [`Exhausted`](mp_cspace::StopReason::Exhausted) says that there is no
-//!    path by these inputs and this duration, states within `apart` counting as one.
+//! 6. when all nodes are exhausted, stop: [`Exhausted`](mp_cspace::StopReason::Exhausted) says that there is
+//!    no path by these inputs and this duration, states within `apart` counting as one.
 //!
-//! Nodes are at least `apart` from each other, so there are finitely many and planning always ends; with `apart` no larger
-//! than rounding that may take long. (The paper derives the distance from a Lipschitz bound of the system; here it is
-//! given.)
+//! Nodes are at least `apart` from each other, so there are finitely many and planning always ends; with
+//! `apart` no larger than rounding that may take long. (The paper derives the distance from a Lipschitz bound
+//! of the system; here it is given.)
 //!
-//! **When to use it.** To find out that there is no solution at a resolution; and where the metric misleads, so that plain
-//! RRT tries the same inputs that collide again and again.
+//! **When to use it.** To find out that there is no solution at a resolution; and where the metric misleads,
+//! so that plain RRT tries the same inputs that collide again and again.
 //!
 //! | parameter | range | default |
 //! |---|---|---|

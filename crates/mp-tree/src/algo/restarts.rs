@@ -1,22 +1,24 @@
 //! Restarts: a planner that takes too long is started again, with other random numbers.
 //!
-//! The time to a path varies with the random numbers, and its distribution often has a heavy tail: a tree that
-//! begins badly continues badly. A restart after a fixed number of iterations cuts the tail, but the best number is not
-//! known. Without knowing the distribution, these schedules come within a logarithmic factor of the best:
+//! The time to a path varies with the random numbers, and its distribution often has a heavy tail: a tree
+//! that begins badly continues badly. A restart after a fixed number of iterations cuts the tail, but the
+//! best number is not known. Without knowing the distribution, these schedules come within a logarithmic
+//! factor of the best:
 //!
 //! - `luby`: M. Luby, A. Sinclair and D. Zuckerman, *Optimal speedup of Las Vegas algorithms*,
 //!   Information Processing Letters 47, 1993. Run lengths 1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8, …:
 //!   whenever two runs of one length have been made, one of twice that follows.
-//! - `counter`: in the manner of the counter search of N. Amato, S. Ashur and S. Har-Peled, *Faster
-//!   motion planning via restarts*, 2025, and S. Ashur and S. Har-Peled, *Quickly avoiding a random
-//!   catastrophe*, 2025. A counter goes up 1, 2, 3, …; at each count n there is a run of every length
-//!   t for which t² divides n. So all lengths are swept at once, length t in one of t² counts: the same shares as
+//! - `counter`: in the manner of the counter search of N. Amato, S. Ashur and S. Har-Peled, *Faster motion
+//!   planning via restarts*, 2025, and S. Ashur and S. Har-Peled, *Quickly avoiding a random
+//!   catastrophe*, 2025. A counter goes up 1, 2, 3, …; at each count n there is a run of every length t for
+//!   which t² divides n. So all lengths are swept at once, length t in one of t² counts: the same shares as
 //!   `zeta`, but deterministic.
 //! - `zeta`: the ζ(2) search of the same two papers. Each run length t is drawn with probability
 //!   6/(π·t)².
-//! - `wide`: in the manner of the wide search of the second paper. No run is ever dropped: all are paused and continued,
-//!   the k-th run at 1/k of the speed of the first. At each count n = 1, 2, 3, … every run k that divides n makes one unit more, and
-//!   run n begins. It keeps the trees of all its runs, n of them after about n·ln n units.
+//! - `wide`: in the manner of the wide search of the second paper. No run is ever dropped: all are paused and
+//!   continued, the k-th run at 1/k of the speed of the first. At each count n = 1, 2, 3, … every run k that
+//!   divides n makes one unit more, and run n begins. It keeps the trees of all its runs, n of them after
+//!   about n·ln n units.
 //!
 //! Repeat:
 //! 1. make a planner for attempt k = 1, 2, …, which draws from stream (seed, k);
@@ -37,8 +39,9 @@
 //! | 10% | 1.40 | 14 793, 65 904 | 2077, 12 131 | 3213, 14 197 | 5154, 28 602 |
 //! | 20% | 1.15 | 46 443, 129 811 | | 58 000, 285 000 | 71 000, 367 000 |
 //!
-//! With steps of 20% no unit is better than no restarts, as resampling those 100 runs shows. All four schedules on three
-//! problems with heavy tails are measured in `docs/results/rsrt.md`: `counter` and `luby` are the best on each.
+//! With steps of 20% no unit is better than no restarts, as resampling those 100 runs shows. All four
+//! schedules on three problems with heavy tails are measured in `docs/results/rsrt.md`: `counter` and `luby`
+//! are the best on each.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -73,7 +76,7 @@ use mp_cspace::{Event, Observer, Path, Planner, Progress, Rng};
 use rand::RngExt;
 use std::fmt;
 
-/// Which schedule.
+/// The setting `schedule`: a [`Schedule`] by name.
 pub const SCHEDULE: Parameter = Parameter {
     name: "schedule",
     range: "luby, counter, zeta or wide",
@@ -119,8 +122,8 @@ impl Schedule {
         Ok(settings.choice(SCHEDULE.name, SCHEDULE.range, named)?.unwrap_or_default())
     }
 
-    /// The run lengths, in units; `rng` is used by [`Zeta`](Self::Zeta) alone. For [`Wide`](Self::Wide) these are the
-    /// turns, one unit each; [`Lengths::run`] says whose turn it is.
+    /// The run lengths, in units; `rng` is used by [`Zeta`](Self::Zeta) alone. For [`Wide`](Self::Wide) these
+    /// are the turns, one unit each; [`Lengths::run`] says whose turn it is.
     ///
     /// ```
     /// use mp_cspace::Rng;
@@ -145,8 +148,8 @@ pub struct Lengths {
 }
 
 impl Lengths {
-    /// Which run, counted from 1, the last length belongs to, where runs take turns ([`Schedule::Wide`]). `None` where each
-    /// length is that of a new run.
+    /// Which run, counted from 1, the last length belongs to, where runs take turns ([`Schedule::Wide`]).
+    /// `None` where each length is that of a new run.
     #[must_use]
     pub fn run(&self) -> Option<u64> {
         (self.schedule == Schedule::Wide).then_some(self.length)
@@ -223,12 +226,12 @@ pub struct Restarts<'c, P> {
 }
 
 impl<'c, P> Restarts<'c, P> {
-    /// Restarts of the planner that `make` makes, given the number of the attempt from 1 on; run lengths are in units of
-    /// `unit` iterations.
+    /// Restarts of the planner that `make` makes, given the number of the attempt from 1 on; run lengths are
+    /// in units of `unit` iterations.
     ///
     /// # Errors
-    /// When the unit is out of range, or the first planner cannot be made. Where a later planner cannot be made, the
-    /// attempt before continues.
+    /// When the unit is out of range, or the first planner cannot be made. Where a later planner cannot be
+    /// made, the attempt before continues.
     pub fn new(
         schedule: Schedule,
         unit: u64,

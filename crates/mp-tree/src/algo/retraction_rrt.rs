@@ -4,21 +4,23 @@
 //! [RRT-Connect](super::rrt_connect).
 //!
 //! From one tree that holds the start and one that holds the goal, repeat:
-//! 1. draw a sample, uniform in the space, and extend the tree whose turn it is from the node nearest to it, one step at most;
-//! 2. where that is blocked, retract the sample to the contact space: from the node, or a free step a quarter as long, move
-//!    toward the sample without the part that leads into the obstacle, as the gradient of the clearance says, and a little away
-//!    from it; again and again, as long as the sample comes nearer, at most `slides` times. Each move becomes a node;
+//! 1. draw a sample, uniform in the space, and extend the tree whose turn it is from the node nearest to it,
+//!    one step at most;
+//! 2. where that is blocked, retract the sample to the contact space: from the node, or a free step a quarter
+//!    as long, move toward the sample without the part that leads into the obstacle, as the gradient of the
+//!    clearance says, and a little away from it; again and again, as long as the sample comes nearer, at most
+//!    `slides` times. Each move becomes a node;
 //! 3. connect the other tree to the last node that was added;
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
-//! The paper finds the nearest state in contact by optimising over the contact space that penetration queries describe; here
-//! the clearance and its gradient on the free side lead along it, so that all that is added is certified as any edge is. Where
-//! turning and moving both lead out of an obstacle, the paper takes what is nearest in its metric; here each blocked step draws the weights
-//! of the degrees of freedom anew.
+//! The paper finds the nearest state in contact by optimising over the contact space that penetration queries
+//! describe; here the clearance and its gradient on the free side lead along it, so that all that is added is
+//! certified as any edge is. Where turning and moving both lead out of an obstacle, the paper takes what is
+//! nearest in its metric; here each blocked step draws the weights of the degrees of freedom anew.
 //!
-//! **When to use it.** Narrow passages with long walls: tubes that interlock, keys and nuts, twisted corridors. Each slide
-//! costs a clearance with its gradient.
+//! **When to use it.** Narrow passages with long walls: tubes that interlock, keys and nuts, twisted
+//! corridors. Each slide costs a clearance with its gradient.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -109,13 +111,15 @@ pub struct Retract<G> {
 }
 
 impl<G> Retract<G> {
-    /// The extender with this gradient of the clearance, which slides at most this often after a blocked step.
+    /// The extender with this gradient of the clearance, which slides at most this often after a blocked
+    /// step.
     #[must_use]
     pub fn new(gradient: G, slides: u64) -> Self {
         Self { gradient, slides, numbers: Default::default() }
     }
 
-    /// A state on the way from `from` toward `target` along the obstacle that is nearest, if there is one in the way.
+    /// A state on the way from `from` toward `target` along the obstacle that is nearest, if there is one in
+    /// the way.
     fn along<C: Space>(
         &mut self,
         space: &C,

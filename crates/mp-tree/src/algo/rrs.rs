@@ -1,43 +1,47 @@
-//! RRS, the rapidly-exploring random snakes: an RRT whose blocked edges are bent around obstacles; and RRS-Connect, an
-//! RRT-Connect of that kind.
+//! RRS, the rapidly-exploring random snakes: an RRT whose blocked edges are bent around obstacles; and
+//! RRS-Connect, an RRT-Connect of that kind.
 //!
-//! K. Baizid, R. Chellali, R. Luza, B. Vitezslav and F. Arrichiello, *RRS: rapidly-exploring random snakes, a new
-//! method for mobile robot path planning*, §3.3, steps 1 to 8. Snakes: M. Kass, A. Witkin and D. Terzopoulos, *Snakes:
-//! active contour models*, IJCV 1, 1988.
+//! K. Baizid, R. Chellali, R. Luza, B. Vitezslav and F. Arrichiello, *RRS: rapidly-exploring random snakes, a
+//! new method for mobile robot path planning*, §3.3, steps 1 to 8. Snakes: M. Kass, A. Witkin and D.
+//! Terzopoulos, *Snakes: active contour models*, IJCV 1, 1988.
 //!
 //! 1. Begin with the start.
 //! 2. Up to the number of samples allowed:
 //! 3. draw a sample, uniform in the space, or with a small probability a goal state;
 //! 4. find the node nearest to it;
-//! 5. go from that node toward the sample, one step at most: where the straight curve is free, add its end and the
-//!    curve;
+//! 5. go from that node toward the sample, one step at most: where the straight curve is free, add its end
+//!    and the curve;
 //! 6. where it is not, bend a [snake](mp_snake::Snake) from node to end around what blocks it;
 //! 7. where every piece of the snake is free, add its end and the snake: the sample is rescued;
-//! 8. return the tree; here, the path as soon as a node is in the goal and the path is verified piece by piece.
+//! 8. return the tree; here, the path as soon as a node is in the goal and the path is verified piece by
+//!    piece.
 //!
 //! So RRS is [RRT](super::rrt) with the local planner [`SnakePlanner`], and RRS-Connect is
-//! [RRT-Connect](super::rrt_connect) with it: in the tree from the goal edges are bent in forward time. A sample whose end is itself in collision is not
-//! rescued. How a blocked edge bends is a strategy, [`Bending`]:
-//! - `snake`, the default and the paper's step 6: the contour starts on the straight edge and relaxes, from few nodes to many;
+//! [RRT-Connect](super::rrt_connect) with it: in the tree from the goal edges are bent in forward time. A
+//! sample whose end is itself in collision is not rescued. How a blocked edge bends is a strategy,
+//! [`Bending`]:
+//! - `snake`, the default and the paper's step 6: the contour starts on the straight edge and relaxes, from
+//!   few nodes to many;
 //! - `bulge`, ours: all of the edge moves to the side to which the obstacle pushes it, in closed form
 //!   ([`Snake::bulge`](mp_snake::Snake::bulge)), with one more corner where it grazes; nothing relaxes;
-//! - `hybrid`, ours: the bulge is the initial contour, and relaxes; where no bulge is free, the straight edge does.
+//! - `hybrid`, ours: the bulge is the initial contour, and relaxes; where no bulge is free, the straight edge
+//!   does.
 //!
-//! In the paper's four worlds `snake` accepts as many samples as `hybrid`, solves as many problems and keeps as much clearance. It
-//! takes longer, above all among long walls, around which no contour bends; `bulge` bends an edge the fastest and keeps the least
-//! clearance (`docs/results/rrs.md`). A snake stops as soon as it is free, or hopeless; then a free one relaxes until it keeps half
-//! the range as clearance. The energies are those of [`Snake`](mp_snake::Snake),
-//! with its remarks on the formulas.
+//! In the paper's four worlds `snake` accepts as many samples as `hybrid`, solves as many problems and keeps
+//! as much clearance. It takes longer, above all among long walls, around which no contour bends; `bulge`
+//! bends an edge the fastest and keeps the least clearance (`docs/results/rrs.md`). A snake stops as soon as
+//! it is free, or hopeless; then a free one relaxes until it keeps half the range as clearance. The energies
+//! are those of [`Snake`](mp_snake::Snake), with its remarks on the formulas.
 //!
-//! What pushes snakes is the repulsion of obstacles by their clearance, or with `field` a field of choice. By name it is the one
-//! that the [problem](mp_cspace::ObstacleKnowledge::field) has: `mp` and `mp-plan` make `paper` (eq. 3), `risk`, `risk:FACTOR` and
-//! `image:FILE` for robots of the plane, as images of the world, once for each run. By type any field pushes
-//! ([`SnakePlanner::with_bend`]).
+//! What pushes snakes is the repulsion of obstacles by their clearance, or with `field` a field of choice. By
+//! name it is the one that the [problem](mp_cspace::ObstacleKnowledge::field) has: `mp` and `mp-plan` make
+//! `paper` (eq. 3), `risk`, `risk:FACTOR` and `image:FILE` for robots of the plane, as images of the world,
+//! once for each run. By type any field pushes ([`SnakePlanner::with_bend`]).
 //!
-//! **When to use it.** Where the clearance and its gradient are cheap to compute (in the plane, by a distance map, some
-//! nanoseconds) and obstacles are many and small: then steps can be much longer, and far fewer iterations are needed. It
-//! does not help with long walls, around which no edge can bend within a step. RRS-Connect, where both ends are known, takes
-//! even fewer iterations.
+//! **When to use it.** Where the clearance and its gradient are cheap to compute (in the plane, by a distance
+//! map, some nanoseconds) and obstacles are many and small: then steps can be much longer, and far fewer
+//! iterations are needed. It does not help with long walls, around which no edge can bend within a step.
+//! RRS-Connect, where both ends are known, takes even fewer iterations.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -49,9 +53,9 @@
 //! | `field`: what pushes snakes | `clearance`, or in the plane `paper`, `risk`, `risk:FACTOR`, `image:FILE` | `clearance` |
 //! | `snake-steps`: most steps of a snake, with each number of nodes | 1 to 1,000,000 | 40 |
 //!
-//! Stiffness and spacing follow from the range ([`Params::for_edges`](mp_snake::Params::for_edges)). By name it takes the
-//! gradient from the [problem](crate::Problem::with_obstacles), and its paths have straight edges between the nodes of the
-//! snakes, verified piece by piece.
+//! Stiffness and spacing follow from the range ([`Params::for_edges`](mp_snake::Params::for_edges)). By name
+//! it takes the gradient from the [problem](crate::Problem::with_obstacles), and its paths have straight
+//! edges between the nodes of the snakes, verified piece by piece.
 //!
 //! A point goes around a disc in the unit square, in one bend:
 //! ```
@@ -268,7 +272,8 @@ impl<S> Field<S> for NamedField<'_, S> {
     }
 }
 
-/// `problem`, for the planner called `planner`, with a local planner that bends blocked edges in the field that `settings` name.
+/// `problem`, for the planner called `planner`, with a local planner that bends blocked edges in the field
+/// that `settings` name.
 pub(crate) fn with_bending_edges<'c, C, M>(
     planner: &'static str,
     mut problem: Problem<'c, C, Straight<'c, C, M>>,

@@ -4,17 +4,19 @@
 //! planning*, ICRA 2000. As ALG. 2 and 3 of N. Jouandeau, Y. Touati and A. Ali Cherif,
 //! *Incremental motion planning with Las Vegas algorithms*, 2008.
 //!
-//! EXTEND takes one step at most from the node nearest to its target. CONNECT takes step after step, each a new node,
-//! until the target is reached or a step fails. From one tree that holds the start and one that holds the goal, repeat:
+//! EXTEND takes one step at most from the node nearest to its target. CONNECT takes step after step, each a
+//! new node, until the target is reached or a step fails. From one tree that holds the start and one that
+//! holds the goal, repeat:
 //! 1. draw a sample, uniform in the space;
 //! 2. explore: grow the tree whose turn it is toward it;
 //! 3. join: if that added a node, grow the other tree toward the last one added;
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
-//! Which of the two explores and which joins makes four planners (S. M. LaValle and J. J. Kuffner, *Rapidly-exploring
-//! random trees: progress and prospects*, 2001; [`BiRrt`] also in the same, *Randomized kinodynamic planning*, ICRA 1999).
-//! Both ends must be known states (or the goal a sampler), and motions must run backward as well as forward.
+//! Which of the two explores and which joins makes four planners (S. M. LaValle and J. J. Kuffner,
+//! *Rapidly-exploring random trees: progress and prospects*, 2001; [`BiRrt`] also in the same, *Randomized
+//! kinodynamic planning*, ICRA 1999). Both ends must be known states (or the goal a sampler), and motions
+//! must run backward as well as forward.
 //!
 //! | planner | explores by | joins by | when to use it |
 //! |---|---|---|---|
@@ -65,8 +67,8 @@ use crate::{
 };
 use mp_cspace::Uniform;
 
-/// Writes one of the four planners, with its entry in a module of its own: how it explores and joins; its names, when to use
-/// it, and its paper.
+/// Writes one of the four planners, with its entry in a module of its own: how it explores and joins; its
+/// names, when to use it, and its paper.
 macro_rules! two_trees {
     ($what:literal $variant:ident: $explore:ident, $join:ident;
      $module:ident { name: $name:literal, aliases: $aliases:expr, summary: $summary:literal, citation: $citation:literal }

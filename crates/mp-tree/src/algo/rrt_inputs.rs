@@ -16,12 +16,13 @@
 //! The listing in the paper does not lower `dmin` in step 5, and would keep the last of the nearer
 //! successors; its text asks for the closest, which is what is done here.
 //!
-//! [RSRT](super::rsrt) changes two things: it sorts the successors before it tests any (`order`), and takes any of them,
-//! nearer or not (`accept`). Each can be set here alone: with `order=sort-first` the tree is the same, bit for bit, for fewer
-//! tests; with `accept=any` it is another tree. With both this planner is RSRT. Types set them by
-//! [`InputPlanner::ordered`](mp_control::InputPlanner::ordered) and
-//! [`accepting`](mp_control::InputPlanner::accepting); with [`Accept::Any`] use the type [`Rsrt`](crate::Rsrt), which refuses
-//! states that a node of the tree resembles: an input and its opposite lead back, but for rounding.
+//! [RSRT](super::rsrt) changes two things: it sorts the successors before it tests any (`order`), and takes
+//! any of them, nearer or not (`accept`). Each can be set here alone: with `order=sort-first` the tree is the
+//! same, bit for bit, for fewer tests; with `accept=any` it is another tree. With both this planner is RSRT.
+//! Types set them by [`InputPlanner::ordered`](mp_control::InputPlanner::ordered) and
+//! [`accepting`](mp_control::InputPlanner::accepting); with [`Accept::Any`] use the type
+//! [`Rsrt`](crate::Rsrt), which refuses states that a node of the tree resembles: an input and its opposite
+//! lead back, but for rounding.
 //!
 //! **When to use it.** For comparison: [RSRT](super::rsrt) needs fewer collision tests.
 //!

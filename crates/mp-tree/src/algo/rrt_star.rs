@@ -11,12 +11,13 @@
 //! 3. where the motion is free, find the nodes near its end: the k nearest, or those in a ball that
 //!    shrinks as the tree grows;
 //! 4. add the end under the near node through which it costs least to reach;
-//! 5. make it the parent of those near nodes that are cheaper to reach through it, and update the costs below;
+//! 5. make it the parent of those near nodes that are cheaper to reach through it, and update the costs
+//!    below;
 //! 6. where the cheapest path to the goal has become cheaper, verify it: return it, or prune from the
 //!    edge that failed. Stepping on returns better paths, each cheaper than the one before.
 //!
-//! **When to use it.** When the length of the path matters more than the time to find it, and one
-//! tree can find a path. The cost is that of the local planner: for straight motions the length of the path. Local
+//! **When to use it.** When the length of the path matters more than the time to find it, and one tree can
+//! find a path. The cost is that of the local planner: for straight motions the length of the path. Local
 //! planners that cannot reach a state exactly (sets of inputs) gain nothing.
 //! [Informed RRT*](super::informed_rrt_star) converges faster on problems with one goal.
 //!

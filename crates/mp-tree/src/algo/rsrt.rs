@@ -14,19 +14,19 @@
 //! 6. where that is in the goal, verify the path: return it, or prune from the edge that failed.
 //!
 //! These are two changes to ALG. 4, which the paper makes at once and calls one inversion:
-//! - The tests are subordinate to the metric (`order`). The paper says that this reduces "the number of calls to the
-//!   collision detector proportionally to the nature and the dimension of U". It changes the number of tests and
-//!   nothing else: under the same condition both orders grow the same tree.
-//! - The listing has no `dmin` any more (`accept`): the child need not be nearer to the sample than `q_prox` is. From this
-//!   comes the paper's "equiprobability expansion of each node independently of their relationship with obstacles". It
-//!   changes the tree.
+//! - The tests are subordinate to the metric (`order`). The paper says that this reduces "the number of calls
+//!   to the collision detector proportionally to the nature and the dimension of U". It changes the number of
+//!   tests and nothing else: under the same condition both orders grow the same tree.
+//! - The listing has no `dmin` any more (`accept`): the child need not be nearer to the sample than `q_prox`
+//!   is. From this comes the paper's "equiprobability expansion of each node independently of their
+//!   relationship with obstacles". It changes the tree.
 //!
 //! [`InputPlanner::ordered`](mp_control::InputPlanner::ordered) and
 //! [`accepting`](mp_control::InputPlanner::accepting) set each of them.
 //!
-//! **When to use it.** For systems that move by a set of inputs: velocities, accelerations, wheels. Under the same
-//! condition it takes the same successors as ALG. 4, with fewer collision tests. For bodies that can move in any direction
-//! [RRT-Connect](super::rrt_connect) is faster.
+//! **When to use it.** For systems that move by a set of inputs: velocities, accelerations, wheels. Under the
+//! same condition it takes the same successors as ALG. 4, with fewer collision tests. For bodies that can
+//! move in any direction [RRT-Connect](super::rrt_connect) is faster.
 //!
 //! | parameter | range | default |
 //! |---|---|---|

@@ -1,35 +1,39 @@
 //! Two trees grown by all threads: the *embarrassingly parallel* Bi-RRT.
 //!
-//! S. Carpin and E. Pagello, *On parallel RRTs for multi-robot systems*, Proc. 8th Conf. of the
-//! Italian Association for Artificial Intelligence, 2002; named in N. Jouandeau, Y. Touati and
-//! A. Ali Cherif, *Incremental motion planning with Las Vegas algorithms*, 2008, §3, as the way to share the graph "with a
-//! parallel q_new sampling". The trees are those of [Bi-RRT](super::rrt_connect); they grow in batches, as the tree of
-//! [`shared_tree`](super::shared_tree) does, so that the result does not depend on the machine.
+//! S. Carpin and E. Pagello, *On parallel RRTs for multi-robot systems*, Proc. 8th Conf. of the Italian
+//! Association for Artificial Intelligence, 2002; named in N. Jouandeau, Y. Touati and A. Ali Cherif,
+//! *Incremental motion planning with Las Vegas algorithms*, 2008, §3, as the way to share the graph "with a
+//! parallel q_new sampling". The trees are those of [Bi-RRT](super::rrt_connect); they grow in batches, as
+//! the tree of [`shared_tree`](super::shared_tree) does, so that the result does not depend on the machine.
 //!
 //! From one tree that holds the start and one that holds the goal, repeat:
 //! 1. draw `batch` samples, uniform in the space, number i of the planner from stream (seed, i);
-//! 2. explore, in parallel: for each of them, find the node nearest to it in the tree whose turn it is, as it was before the
-//!    batch, and move from there toward the sample, one step at most;
+//! 2. explore, in parallel: for each of them, find the node nearest to it in the tree whose turn it is, as it
+//!    was before the batch, and move from there toward the sample, one step at most;
 //! 3. add the ends of the motions found free, in the order of the samples, but none that is there already;
-//! 4. join, in parallel: for each of these ends, find the node nearest to it in the other tree, and move from there toward
-//!    it, one step at most; add what is free, in the same order;
-//! 5. wherever the trees have met, in that order, verify the path: return it, or prune from the edge that failed;
+//! 4. join, in parallel: for each of these ends, find the node nearest to it in the other tree, and move from
+//!    there toward it, one step at most; add what is free, in the same order;
+//! 5. wherever the trees have met, in that order, verify the path: return it, or prune from the edge that
+//!    failed;
 //! 6. the other tree has the next turn.
 //!
 //! The seed is the first number drawn from the generator of the first step. One step is one batch.
 //!
-//! **When to use it.** Where Bi-RRT is the right planner, its motions are slow to check (a millisecond and more) and there are
-//! several cores. Both halves of a batch are parallel. The nodes of a batch do not see each other, so more motions are needed than
-//! by Bi-RRT: on average over 200 seeds of the scene `rrs-high`, whose trees have 65 nodes, 10% more with batches of 4, 21%
-//! with 8 and 4.4 times as many with 64; of `easy`, whose trees have 180, 8%, 7% and 72% more. Use batches of at least the number of
-//! threads, and small ones for easy problems. Where the time of a run varies much, [independent runs](super::or_parallel) gain more.
+//! **When to use it.** Where Bi-RRT is the right planner, its motions are slow to check (a millisecond and
+//! more) and there are several cores. Both halves of a batch are parallel. The nodes of a batch do not see
+//! each other, so more motions are needed than by Bi-RRT: on average over 200 seeds of the scene `rrs-high`,
+//! whose trees have 65 nodes, 10% more with batches of 4, 21% with 8 and 4.4 times as many with 64; of
+//! `easy`, whose trees have 180, 8%, 7% and 72% more. Use batches of at least the number of threads, and
+//! small ones for easy problems. Where the time of a run varies much, [independent runs](super::or_parallel)
+//! gain more.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `batch`: samples per iteration, for any number of threads | 1, 2, … 1024 | 8 |
 //!
-//! and those of [Bi-RRT](super::rrt_connect). By name it is `shared-bi-rrt`; [`build_from`](crate::build_from) makes it. Panics of the
-//! local planner lose samples as in [`shared_tree`](super::shared_tree).
+//! and those of [Bi-RRT](super::rrt_connect). By name it is `shared-bi-rrt`;
+//! [`build_from`](crate::build_from) makes it. Panics of the local planner lose samples as in
+//! [`shared_tree`](super::shared_tree).
 //!
 //! Two threads give the same path as one:
 //! ```

@@ -1,10 +1,10 @@
 //! One RRT grown by all threads: the *embarrassingly parallel* RRT.
 //!
-//! S. Carpin and E. Pagello, *On parallel RRTs for multi-robot systems*, Proc. 8th Conf. of the
-//! Italian Association for Artificial Intelligence, 2002; described in N. Jouandeau, Y. Touati and
-//! A. Ali Cherif, *Incremental motion planning with Las Vegas algorithms*, 2008, §3: processors share
-//! the tree and sample in parallel. There each adds its node at once; here nodes are added in batches, so that the result
-//! does not depend on the machine.
+//! S. Carpin and E. Pagello, *On parallel RRTs for multi-robot systems*, Proc. 8th Conf. of the Italian
+//! Association for Artificial Intelligence, 2002; described in N. Jouandeau, Y. Touati and A. Ali Cherif,
+//! *Incremental motion planning with Las Vegas algorithms*, 2008, §3: processors share the tree and sample in
+//! parallel. There each adds its node at once; here nodes are added in batches, so that the result does not
+//! depend on the machine.
 //!
 //! From a tree that holds the start, repeat:
 //! 1. draw `batch` samples, number i of the planner from stream (seed, i): uniform in the space, or with
@@ -17,12 +17,12 @@
 //!
 //! The seed is the first number drawn from the generator of the first step. One step is one batch.
 //!
-//! **When to use it.** Where [RRT](super::rrt) is the right planner, its motions are slow to check (a millisecond
-//! and more) and there are several cores. The samples of a batch do not see each other's nodes, so more motions are
-//! needed, especially while the tree is small: on average over 200 seeds of the example
-//! `shared_tree`, whose tree has some 200 nodes, 14% more with batches of 4, 18% with 8, 60% with 16,
-//! and 3.3 times as many with 64. Use batches of at least the number of threads, and small ones for easy
-//! problems. Where the time of a run varies much, [independent runs](super::or_parallel) gain more.
+//! **When to use it.** Where [RRT](super::rrt) is the right planner, its motions are slow to check (a
+//! millisecond and more) and there are several cores. The samples of a batch do not see each other's nodes,
+//! so more motions are needed, especially while the tree is small. In the example `shared_tree`, whose tree
+//! has some 200 nodes, batches of 4 need 14% more motions, batches of 8 18%, of 16 60%, and batches of 64
+//! need 3.3 times as many (means of 200 seeds). Use batches of at least the number of threads, and small ones
+//! for easy problems. Where the time of a run varies much, [independent runs](super::or_parallel) gain more.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -30,10 +30,11 @@
 //!
 //! and those of [RRT](super::rrt). By name it is `shared-rrt`; [`build_from`](crate::build_from) makes it.
 //!
-//! Each sample of a batch has its own local planner, so there are `batch` of them, and one more for the straight
-//! motion to the goal. If one panics, its sample is lost and [counted](SharedTree::panics); if all of a batch panic, the
-//! step panics in the calling thread, with the message of the first. The tree stays valid. Only the calling thread
-//! verifies, so nothing is gained with a slow verifier and a local planner that is no longer trusted (`patience`).
+//! Each sample of a batch has its own local planner, so there are `batch` of them, and one more for the
+//! straight motion to the goal. If one panics, its sample is lost and [counted](SharedTree::panics); if all
+//! of a batch panic, the step panics in the calling thread, with the message of the first. The tree stays
+//! valid. Only the calling thread verifies, so nothing is gained with a slow verifier and a local planner
+//! that is no longer trusted (`patience`).
 //!
 //! Two threads give the same path as one:
 //! ```
@@ -172,7 +173,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         }
     }
 
-    /// The first path to a node in the goal that passes verification. Nodes that are pruned meanwhile are dropped.
+    /// The first path to a node in the goal that passes verification. Nodes that are pruned meanwhile are
+    /// dropped.
     fn arrive(&mut self, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         while !self.arrived.is_empty() {
             let id = self.arrived.remove(0);

@@ -5,32 +5,35 @@
 //!
 //! From a tree that holds the start, repeat:
 //! 1. draw a sample, uniform in the space, or with a small probability a goal state;
-//! 2. find the node nearest to it; where the sample is within a step, so that the tree would be refined and not
-//!    expanded, and more than a part ρ of the nodes were added so, go on with probability ρ only (minimum expansion
-//!    control);
+//! 2. find the node nearest to it; where the sample is within a step, so that the tree would be refined and
+//!    not expanded, and more than a part ρ of the nodes were added so, go on with probability ρ only (minimum
+//!    expansion control);
 //! 3. move from that node toward the sample, one step at most;
-//! 4. where the motion is free, put its end to the transition test: a state that costs no more than the node passes;
-//!    one that costs Δ more with probability exp(−Δ / (K·T)), K being the range of the costs seen so far;
-//! 5. adapt the temperature T: after a step up that passed divide it by α^(Δ/K), after every nFailMax + 1 that did
-//!    not multiply it by α;
-//! 6. add what passed as a child of the node; where that is in the goal, verify the path: return it, or prune from
-//!    the edge that failed.
+//! 4. where the motion is free, put its end to the transition test: a state that costs no more than the node
+//!    passes; one that costs Δ more with probability exp(−Δ / (K·T)), K being the range of the costs seen so
+//!    far;
+//! 5. adapt the temperature T: after a step up that passed divide it by α^(Δ/K), after every nFailMax + 1
+//!    that did not multiply it by α;
+//! 6. add what passed as a child of the node; where that is in the goal, verify the path: return it, or prune
+//!    from the edge that failed.
 //!
-//! Differences from the paper: the temperature falls with the height of a step, K is the range of costs, and failures are
-//! counted even if a step up passes between them, as in D. Devaurs, T. Siméon and J. Cortés, *Enhancing the
-//! transition-based RRT to deal with complex cost spaces*, ICRA 2013: otherwise steps that hardly climb, which always
-//! pass, keep the tree too cold for others. And in the paper a tree with its full part of refinement nodes is not refined
-//! at all until it expands: in front of a passage narrower than a step it never would.
+//! Differences from the paper: the temperature falls with the height of a step, K is the range of costs, and
+//! failures are counted even if a step up passes between them, as in D. Devaurs, T. Siméon and J. Cortés,
+//! *Enhancing the transition-based RRT to deal with complex cost spaces*, ICRA 2013: otherwise steps that
+//! hardly climb, which always pass, keep the tree too cold for others. And in the paper a tree with its full
+//! part of refinement nodes is not refined at all until it expands: in front of a passage narrower than a
+//! step it never would.
 //!
-//! The tree follows valleys and saddles of the cost, and climbs no higher than necessary. A state whose cost is infinite
-//! or not a number is never entered. The straight motion to the goal is not tried, as its cost is not bounded. Motions
-//! toward goals do not count as refinement and are never refused for it.
+//! The tree follows valleys and saddles of the cost, and climbs no higher than necessary. A state whose cost
+//! is infinite or not a number is never entered. The straight motion to the goal is not tried, as its cost is
+//! not bounded. Motions toward goals do not count as refinement and are never refused for it.
 //!
-//! **When to use it.** When the cost along a path matters more than its length: away from obstacles, over level ground.
-//! It is not optimal, and only the cost of the ends of motions counts. Narrow passages are entered by refinement:
-//! use ρ = 1 there, or shorter steps. [By name](crate::build) the cost is that of being near obstacles, and the problem
-//! must [know](crate::Problem::with_obstacles) the gradient of the clearance: with the clearance d and the range r the
-//! cost is (1 − d/r)² where d < r, and 0 elsewhere; 1 in contact.
+//! **When to use it.** When the cost along a path matters more than its length: away from obstacles, over
+//! level ground. It is not optimal, and only the cost of the ends of motions counts. Narrow passages are
+//! entered by refinement: use ρ = 1 there, or shorter steps. [By name](crate::build) the cost is that of
+//! being near obstacles, and the problem must [know](crate::Problem::with_obstacles) the gradient of the
+//! clearance: with the clearance d and the range r the cost is (1 − d/r)² where d < r, and 0 elsewhere; 1 in
+//! contact.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -147,12 +150,13 @@ pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<
 pub struct Temperature {
     /// The initial temperature T; positive and finite.
     pub initial: f64,
-    /// The factor α by which the temperature rises after failures, and falls after a step over the whole range of costs;
-    /// in (1, 1000].
+    /// The factor α by which the temperature rises after failures, and falls after a step over the whole
+    /// range of costs; in (1, 1000].
     pub alpha: f64,
     /// Steps up refused before the temperature rises: nFailMax.
     pub fails: u64,
-    /// The part ρ of the nodes that may refine the tree, and the probability with which more nodes do, in \[0, 1\].
+    /// The part ρ of the nodes that may refine the tree, and the probability with which more nodes do, in
+    /// \[0, 1\].
     pub refine: f64,
 }
 
@@ -210,7 +214,6 @@ impl<F> Transition<F> {
         self.temperature
     }
 
-    /// The cost of node `id`.
     fn cost_of<S>(&mut self, id: NodeId, q: &S) -> f64
     where
         F: FnMut(&S) -> f64,

@@ -5,20 +5,22 @@
 //! the probability that it is free times its gain; it decides on node, direction and distance.
 //!
 //! From one tree that holds the start and one that holds the goal, repeat:
-//! 1. draw a sample, uniform in the space: the first candidate is the expansion toward it from its nearest node in the
-//!    tree whose turn it is. Draw further candidates, a node of the tree and a sample each, both uniform, until there are
-//!    `candidates`;
-//! 2. estimate for each the probability that a step is free: the part of expansions of that node that were free (with one
-//!    success and one failure added), reduced the nearer the step ends to where others failed;
-//! 3. multiply by the gain: the length of the step, as a part of the longest; for nodes that were drawn, divided by one
-//!    more than the expansions tried from there, as there is little left to explore around them;
+//! 1. draw a sample, uniform in the space: the first candidate is the expansion toward it from its nearest
+//!    node in the tree whose turn it is. Draw further candidates, a node of the tree and a sample each, both
+//!    uniform, until there are `candidates`;
+//! 2. estimate for each the probability that a step is free: the part of expansions of that node that were
+//!    free (with one success and one failure added), reduced the nearer the step ends to where others failed;
+//! 3. multiply by the gain: the length of the step, as a part of the longest; for nodes that were drawn,
+//!    divided by one more than the expansions tried from there, as there is little left to explore around
+//!    them;
 //! 4. make the most promising step (the first of several), and go on toward its sample while steps are free;
 //! 5. if that added a node, connect the other tree to the last;
 //! 6. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 7. the other tree has the next turn.
 //!
-//! Simpler than the paper: there a model of the space is fitted to all configurations tested; here each node remembers its
-//! own expansions, with the ends of the last eight failures, and the gain is estimated without a search for neighbours.
+//! Simpler than the paper: there a model of the space is fitted to all configurations tested; here each node
+//! remembers its own expansions, with the ends of the last eight failures, and the gain is estimated without
+//! a search for neighbours.
 //!
 //! **When to use it.** Where checking a motion is expensive and many motions fail: around narrow passages.
 //!

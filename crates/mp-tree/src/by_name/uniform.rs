@@ -52,8 +52,9 @@ pub(crate) fn order_and_accept(settings: &Settings) -> Result<(Option<Order>, Op
     Ok((order, accept))
 }
 
-/// Makes RRT by inputs or RSRT, with the order and the condition that are set, or these. The condition decides which of
-/// the two types it is: where any successor may be taken, those that a node of the tree resembles must be refused.
+/// Makes RRT by inputs or RSRT, with the order and the condition that are set, or these. The condition
+/// decides which of the two types it is: where any successor may be taken, those that a node of the tree
+/// resembles must be refused.
 pub(crate) fn make_by_inputs<'c, T: Types<'c>>(
     args: BuildArgs<'c, '_, T>,
     (order, accept): (Order, Accept),
@@ -71,7 +72,6 @@ pub(crate) fn make_by_inputs<'c, T: Types<'c>>(
 
 /// How planners made by name move by inputs.
 pub(crate) enum NamedFlow<'c, C: Space> {
-    /// By velocities.
     Velocities(Kinematic<'c, C>),
     /// As the robot does.
     Own(AnyFlow<'c, C::State>),
@@ -95,9 +95,10 @@ impl<C: Space> Flow<C::State, Vec<f64>> for NamedFlow<'_, C> {
 /// A local planner that moves by inputs; its motions and edges are those of `L`.
 pub(crate) type ByInputs<'c, C, L> = InputPlanner<'c, C, NamedFlow<'c, C>, Vec<f64>, LocalFlowCheck<L>>;
 
-/// The problem with a local planner that moves by the inputs of the robot, or, for a robot that can make any motion, by
-/// velocities for one second each: [`InputSet::uniform`], one step long. Then, from within a step, listed goals
-/// are connected to exactly; where goals are sampled, and so not known beforehand, every target is.
+/// The problem with a local planner that moves by the inputs of the robot, or, for a robot that can make any
+/// motion, by velocities for one second each: [`InputSet::uniform`], one step long. Then, from within a step,
+/// listed goals are connected to exactly; where goals are sampled, and so not known beforehand, every target
+/// is.
 pub(crate) fn moved_by_inputs<'c, C: Space, L: LocalPlanner<C::State>>(
     problem: Problem<'c, C, L>,
     tuning: &Tuning,

@@ -1,4 +1,5 @@
-//! A batch of samples toward which a tree grows: their motions are found by several threads, and joined to the tree in order.
+//! A batch of samples toward which a tree grows: their motions are found by several threads, and joined to
+//! the tree in order.
 
 use super::{Extender, Growing, Grown, Inserter, NearestSelector, SearchTree, Selector};
 use mp_cspace::{
@@ -65,8 +66,8 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for FoundExtension<C::S
     }
 }
 
-/// The samples of a batch, and the threads that work on them. Sample number i of the planner is drawn from stream (seed, i); the
-/// seed is the first number of the generator that is given first.
+/// The samples of a batch, and the threads that work on them. Sample number i of the planner is drawn from
+/// stream (seed, i); the seed is the first number of the generator that is given first.
 #[derive(Debug)]
 pub(crate) struct Batch<C: Space, L: LocalPlanner<C::State>> {
     samples: Vec<BatchSample<C::State, L>>,
@@ -78,7 +79,8 @@ pub(crate) struct Batch<C: Space, L: LocalPlanner<C::State>> {
 }
 
 impl<C: Space, L: LocalPlanner<C::State>> Batch<C, L> {
-    /// A batch of `size` samples. `make(i)`, with i from 1, makes the problem of which a sample takes the local planner.
+    /// A batch of `size` samples. `make(i)`, with i from 1, makes the problem of which a sample takes the
+    /// local planner.
     ///
     /// # Errors
     /// When the size is out of range, or `make` fails.

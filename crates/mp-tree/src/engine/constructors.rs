@@ -1,8 +1,8 @@
 //! The constructors that nearly every variant has.
 
-/// Writes `new`, with the nearest neighbours that suit the space, and `with_index`, with any. Takes a name for people, the
-/// type, the bounds on its parameters beyond the usual ones, and the body of `with_index` with its arguments. `new` does
-/// not take an argument behind a semicolon, but uses its default.
+/// Writes `new`, with the nearest neighbours that suit the space, and `with_index`, with any. Takes a name
+/// for people, the type, the bounds on its parameters beyond the usual ones, and the body of `with_index`
+/// with its arguments. `new` does not take an argument behind a semicolon, but uses its default.
 macro_rules! constructors {
     (
         $what:literal $variant:ident<C, L, N $(, $param:ident)*> $(where [$($bounds:tt)+])?,

@@ -7,8 +7,8 @@ use mp_cspace::{
 };
 use rand::RngExt;
 
-/// What a planner of the family has beside its trees: the ends of the problem, the edge checker, and counters. The loops
-/// of this crate use it, and yours may.
+/// What a planner of the family has beside its trees: the ends of the problem, the edge checker, and
+/// counters. The loops of this crate use it, and yours may.
 #[derive(Debug)]
 pub struct Core<'c, C: Space, L: LocalPlanner<C::State>> {
     /// Where paths begin.
@@ -44,7 +44,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         })
     }
 
-    /// Adds the start as the root of the first tree, if the tree is empty. Returns the root if it is in the goal.
+    /// Adds the start as the root of the first tree, if the tree is empty. Returns the root if it is in the
+    /// goal.
     pub fn add_start<Se: Selector<C>, A: Inserter<C, L>>(
         &self,
         tree: &mut SearchTree<C, L, Se, A>,
@@ -58,8 +59,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         arrived.then_some(root)
     }
 
-    /// Tries one motion of any length from the start to the next listed goal state; `None` when all have been tried. A
-    /// motion that a panic of the user's code interrupts is not tried again.
+    /// Tries one motion of any length from the start to the next listed goal state; `None` when all have been
+    /// tried. A motion that a panic of the user's code interrupts is not tried again.
     pub fn connect_directly<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         tree: &mut SearchTree<C, L, Se, A>,
@@ -76,8 +77,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         if self.goal_bias > 0.0 && rng.random_bool(self.goal_bias) { self.goals.aim(rng) } else { None }
     }
 
-    /// Adds a new sample of the goal as a root of the tree from the goal: with probability `goal_bias`, and always where
-    /// the tree is empty.
+    /// Adds a new sample of the goal as a root of the tree from the goal: with probability `goal_bias`, and
+    /// always where the tree is empty.
     pub fn sample_goal<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         tree: &mut SearchTree<C, L, Se, A>,
@@ -95,8 +96,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         }
     }
 
-    /// The path from the root to `id`, if it passes verification. Otherwise the part from the failed edge on is pruned,
-    /// and `pruned` is called as by [`SearchTree::verify`].
+    /// The path from the root to `id`, if it passes verification. Otherwise the part from the failed edge on
+    /// is pruned, and `pruned` is called as by [`SearchTree::verify`].
     pub fn path<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         tree: &mut SearchTree<C, L, Se, A>,
@@ -117,7 +118,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     }
 }
 
-/// The path through two nodes with the same state, one of a tree from the start and one of a tree from the goal.
+/// The path through two nodes with the same state, one of a tree from the start and one of a tree from the
+/// goal.
 pub(crate) fn joined<S, E>([mut path, rest]: [Path<S, E>; 2]) -> Path<S, E> {
     path.states.extend(rest.states.into_iter().skip(1));
     path.edges.extend(rest.edges);

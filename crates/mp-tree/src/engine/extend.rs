@@ -24,8 +24,8 @@ impl Grown {
     }
 }
 
-/// Slot: grows a tree from a selected node toward the target. An extender decides which steps are made; [`Growing`]
-/// makes them.
+/// Slot: grows a tree from a selected node toward the target. An extender decides which steps are made;
+/// [`Growing`] makes them.
 pub trait Extender<C: Space, L: LocalPlanner<C::State>> {
     /// Grows from `from`.
     fn extend<Se: Selector<C>, A: Inserter<C, L>>(
@@ -33,13 +33,15 @@ pub trait Extender<C: Space, L: LocalPlanner<C::State>> {
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown;
-    /// Whether a planner may try the straight motion from the start to a goal, of any length, before it calls this
-    /// extender for the first time. Variants that must see every motion decline: those that refuse motions free of
-    /// collision, and those that make none longer than a step. With two extenders both must agree.
+    /// Whether a planner may try the straight motion from the start to a goal, of any length, before it calls
+    /// this extender for the first time. Variants that must see every motion decline: those that refuse
+    /// motions free of collision, and those that make none longer than a step. With two extenders both must
+    /// agree.
     fn allows_direct(&self) -> bool {
         true
     }
-    /// Nodes of the tree that grows in `direction` were removed: what is now node `i` was node `survivors[i]`.
+    /// Nodes of the tree that grows in `direction` were removed: what is now node `i` was node
+    /// `survivors[i]`.
     fn pruned(&mut self, _direction: Direction, _survivors: &[NodeId]) {}
 }
 
@@ -61,8 +63,8 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Extend {
 /// Step after step until the target is reached or a step fails (CONNECT of Kuffner and LaValle
 /// 2000). Each step becomes a node.
 ///
-/// Also ends where a step comes no nearer to the target, and after `limit` steps: local planners whose steps need not
-/// come nearer would otherwise never end.
+/// Also ends where a step comes no nearer to the target, and after `limit` steps: local planners whose steps
+/// need not come nearer would otherwise never end.
 #[derive(Clone, Copy, Debug)]
 pub struct Connect {
     /// Most steps per call, so that a planner with tiny steps still reaches its stop.

@@ -14,9 +14,9 @@ const GAIN: f64 = 1e-9;
 
 /// A planner that grows one tree from the start and returns ever cheaper verified paths.
 ///
-/// As [`SingleTree`](crate::SingleTree), but it remembers which nodes are in the goal. Whenever the cheapest path to
-/// any of them costs less than the path returned last, because of a new node or because the tree was rewired, it is
-/// verified and returned. Listed goal states that are reached are no longer aimed at.
+/// As [`SingleTree`](crate::SingleTree), but it remembers which nodes are in the goal. Whenever the cheapest
+/// path to any of them costs less than the path returned last, because of a new node or because the tree was
+/// rewired, it is verified and returned. Listed goal states that are reached are no longer aimed at.
 #[derive(Debug)]
 pub struct Improving<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
     core: Core<'c, C, L>,
@@ -177,8 +177,9 @@ where
     }
 }
 
-/// Runs a planner until it is stopped; returns the last path it found, and the reason. Calls `found` with each path and
-/// the progress so far. A planner that does not [improve](Planner::improves) ends with its first path.
+/// Runs a planner until it is stopped; returns the last path it found, and the reason. Calls `found` with
+/// each path and the progress so far. A planner that does not [improve](Planner::improves) ends with its
+/// first path.
 ///
 /// ```
 /// # use mp_cspace::{Discrete, FineDiscrete, Iterations, Length, Rn, Rng, Straight};

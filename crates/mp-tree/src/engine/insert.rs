@@ -33,8 +33,9 @@ pub trait Inserter<C: Space, L: LocalPlanner<C::State>> {
 
 /// Adds the end under the node the motion came from. A motion of no length adds nothing.
 ///
-/// There are no duplicates where the node nearest to the target is chosen and motions come nearer to it, as straight
-/// ones do: if the end were in the tree already, it would have been chosen. Otherwise use [`AppendDistinct`].
+/// There are no duplicates where the node nearest to the target is chosen and motions come nearer to it, as
+/// straight ones do: if the end were in the tree already, it would have been chosen. Otherwise use
+/// [`AppendDistinct`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Append;
 
@@ -55,8 +56,8 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Append {
     }
 }
 
-/// Adds the end under the node the motion came from, unless a node of the tree has that state already: for local planners
-/// with finitely many motions. One index query per motion.
+/// Adds the end under the node the motion came from, unless a node of the tree has that state already: for
+/// local planners with finitely many motions. One index query per motion.
 #[derive(Clone, Debug, Default)]
 pub struct AppendDistinct {
     near: Vec<Hit>,
@@ -79,12 +80,12 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for AppendDistinct {
     }
 }
 
-/// Adds the end under the node the motion came from, unless another node of the tree has a similar state: equal up to
-/// rounding, or within a radius.
+/// Adds the end under the node the motion came from, unless another node of the tree has a similar state:
+/// equal up to rounding, or within a radius.
 ///
-/// For motions by finitely many inputs: an input and its inverse, or two inputs in either order, lead to the same state
-/// but for rounding, and *similar* states must not be stacked on each other (Jouandeau, Touati and Ali Cherif 2008,
-/// §2.3). One index query per motion.
+/// For motions by finitely many inputs: an input and its inverse, or two inputs in either order, lead to the
+/// same state but for rounding, and *similar* states must not be stacked on each other (Jouandeau, Touati and
+/// Ali Cherif 2008, §2.3). One index query per motion.
 #[derive(Clone, Debug, Default)]
 pub struct AppendApart {
     radius: Option<f64>,

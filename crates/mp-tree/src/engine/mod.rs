@@ -1,5 +1,5 @@
-//! The engine: trees, the loops that grow them, and a slot for each policy in which variants differ. It does not depend
-//! on any variant.
+//! The engine: trees, the loops that grow them, and a slot for each policy in which variants differ. It does
+//! not depend on any variant.
 
 mod batch;
 mod constructors;

@@ -6,8 +6,8 @@ use mp_cspace::{BuildError, Direction, EdgeChecker, Hit, LocalPlanner, Motion, N
 /// Which nodes of a tree of n nodes, in a space of dimension d, count as near a new one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Near {
-    /// The k nearest, k = ⌈factor · e · (1 + 1/d) · ln n⌉; with any factor above 1 the best path converges to an optimal
-    /// one (k-nearest RRT*).
+    /// The k nearest, k = ⌈factor · e · (1 + 1/d) · ln n⌉; with any factor above 1 the best path converges to
+    /// an optimal one (k-nearest RRT*).
     KNearest {
         /// In (0, 1000]; usually 1.1.
         factor: f64,
@@ -50,13 +50,13 @@ impl Near {
     }
 }
 
-/// Adds the end of a motion under the near node that gives it the least cost from the root; then makes it the parent of
-/// every near node that costs less through it (Karaman and Frazzoli 2011).
+/// Adds the end of a motion under the near node that gives it the least cost from the root; then makes it the
+/// parent of every near node that costs less through it (Karaman and Frazzoli 2011).
 ///
-/// Candidate parents are tried in order of a lower bound of the cost: that of the near node plus the distance. The first
-/// motion found free is taken, so few are checked. Costs are those of the local planner, which must be able to reach a
-/// state exactly, and whose costs should be no less than the distance; where it cannot reach one, this inserts as
-/// [`Append`](crate::Append).
+/// Candidate parents are tried in order of a lower bound of the cost: that of the near node plus the
+/// distance. The first motion found free is taken, so few are checked. Costs are those of the local planner,
+/// which must be able to reach a state exactly, and whose costs should be no less than the distance; where it
+/// cannot reach one, this inserts as [`Append`](crate::Append).
 #[derive(Clone, Debug, Default)]
 pub struct Rewire {
     near: Near,
@@ -86,7 +86,8 @@ impl Rewire {
     }
 }
 
-/// The distance in forward time between a state nearer to the root (`upper`) and one farther from it (`lower`).
+/// The distance in forward time between a state nearer to the root (`upper`) and one farther from it
+/// (`lower`).
 fn distance<C: Space>(space: &C, direction: Direction, upper: &C::State, lower: &C::State) -> f64 {
     match direction {
         Direction::Forward => space.distance(upper, lower),

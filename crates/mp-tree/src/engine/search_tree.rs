@@ -53,7 +53,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         (self.tree.states(), &mut self.selector)
     }
 
-    /// Adds a root.
+    /// Adds a node without a parent: a start, or of a tree that grows backward a goal.
     pub fn add_root(&mut self, space: &C, state: C::State, observer: &mut dyn Observer<C::State>) -> NodeId {
         let id = self.tree.add_root(state);
         self.selector.inserted(space, self.tree.states(), id, None);
@@ -90,7 +90,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         Grown::Trapped
     }
 
-    /// The selector.
+    /// The selector, which chooses from which nodes the tree grows.
     #[must_use]
     pub fn selector(&self) -> &Se {
         &self.selector
@@ -134,9 +134,9 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         self.growing(target, Purpose::Join, checker, rng, observer).insert(from, extension)
     }
 
-    /// Verifies the path between a root and `id`, edge by edge from the root; each edge is verified once. `false` when an
-    /// edge fails: the subtree below it is pruned (unless the checker was interrupted), and `pruned` is called with
-    /// the former ids of the remaining nodes, before observers are.
+    /// Verifies the path between a root and `id`, edge by edge from the root; each edge is verified once.
+    /// `false` when an edge fails: the subtree below it is pruned (unless the checker was interrupted), and
+    /// `pruned` is called with the former ids of the remaining nodes, before observers are.
     pub fn verify(
         &mut self,
         id: NodeId,
@@ -224,7 +224,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
         self.purpose
     }
 
-    /// The tree.
+    /// The nodes that the tree has so far.
     #[must_use]
     pub fn tree(&self) -> &Tree<C::State, L::Edge> {
         self.tree
@@ -235,7 +235,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
         self.checker
     }
 
-    /// The selector.
+    /// The selector, which chooses from which nodes the tree grows.
     pub fn selector(&self) -> &Se {
         self.selector
     }

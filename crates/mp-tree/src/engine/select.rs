@@ -13,11 +13,11 @@ pub enum Purpose {
 
 /// Slot: chooses the nodes to grow from, and learns from the results.
 ///
-/// `points` are always the states of one tree, by id. The selector is informed of each new node in order; it owns the
-/// index of the tree, and whatever is remembered per node.
+/// `points` are always the states of one tree, by id. The selector is informed of each new node in order; it
+/// owns the index of the tree, and whatever is remembered per node.
 pub trait Selector<C: Space> {
-    /// Writes the candidates in the order to try them to `out` (cleared first), with their distances to `target`. No
-    /// candidate means that this target is refused.
+    /// Writes the candidates in the order to try them to `out` (cleared first), with their distances to
+    /// `target`. No candidate means that this target is refused.
     fn select(
         &mut self,
         space: &C,
@@ -44,7 +44,8 @@ pub trait Selector<C: Space> {
     fn exhausted(&self) -> bool {
         false
     }
-    /// Nodes were removed: what is now node `i` was node `survivors[i]`, and `points` are the remaining states.
+    /// Nodes were removed: what is now node `i` was node `survivors[i]`, and `points` are the remaining
+    /// states.
     fn pruned(&mut self, space: &C, points: &[C::State], survivors: &[NodeId]);
 }
 

@@ -12,8 +12,9 @@ use mp_cspace::{
 ///
 /// The first iteration tries a straight motion from the start to each listed goal state, unless the extender
 /// [declines](Extender::allows_direct). Each iteration then samples a target (with probability
-/// [`goal_bias`](crate::Tuning::goal_bias) a goal), grows the tree toward it, and verifies the path to the first new node
-/// in the goal. Stepping on after a solution continues with the same tree; the same path may be found again.
+/// [`goal_bias`](crate::Tuning::goal_bias) a goal), grows the tree toward it, and verifies the path to the
+/// first new node in the goal. Stepping on after a solution continues with the same tree; the same path may
+/// be found again.
 #[derive(Debug)]
 pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
     core: Core<'c, C, L>,
@@ -60,7 +61,7 @@ where
         self.tree.nodes()
     }
 
-    /// The extender.
+    /// The extender, which makes the motions that join the tree.
     #[must_use]
     pub fn extender(&self) -> &G {
         &self.extender
@@ -71,8 +72,8 @@ where
         (self.tree.nodes(), &mut self.core.checker, &mut self.extender)
     }
 
-    /// Adds the root and tries the straight motions to the goals. After a panic of the user's code the next step
-    /// continues behind the motion that panicked.
+    /// Adds the root and tries the straight motions to the goals. After a panic of the user's code the next
+    /// step continues behind the motion that panicked.
     fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         if let Some(root) = self.core.add_start(&mut self.tree, observer) {
             return self.candidate(root, observer);

@@ -5,7 +5,7 @@ use mp_cspace::{Hit, Interrupt, Rng, Sampler, Space};
 
 /// Slot: samples the next target of exploration, given the tree that is about to grow.
 pub trait TargetSampler<C: Space> {
-    /// The next target.
+    /// Draws the state toward which the tree grows next; `points` are the states of the tree.
     fn next_target<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,
@@ -28,8 +28,9 @@ impl<C: Space, Sa: Sampler<C::State>> TargetSampler<C> for Samples<Sa> {
     }
 }
 
-/// The targets of another target sampler for which the selector has a candidate: for selectors that refuse targets. The
-/// selector decides when to stop refusing; after 10,000 refusals in a row the last target is returned all the same.
+/// The targets of another target sampler for which the selector has a candidate: for selectors that refuse
+/// targets. The selector decides when to stop refusing; after 10,000 refusals in a row the last target is
+/// returned all the same.
 #[derive(Clone, Debug, Default)]
 pub struct Acceptable<P> {
     inner: P,

@@ -4,9 +4,9 @@ use mp_cspace::{Direction, Motion, NodeId, Path};
 
 /// A forest of states and the motions between them.
 ///
-/// Edges are stored in forward time in either direction of growth: in a [`Direction::Forward`] tree an edge leads from
-/// the parent to the child, in a [`Direction::Backward`] tree from the child to the parent. Ids are indices in order of
-/// insertion.
+/// Edges are stored in forward time in either direction of growth: in a [`Direction::Forward`] tree an edge
+/// leads from the parent to the child, in a [`Direction::Backward`] tree from the child to the parent. Ids
+/// are indices in order of insertion.
 ///
 /// ```
 /// use mp_cspace::{Direction, Motion};
@@ -20,7 +20,8 @@ use mp_cspace::{Direction, Motion, NodeId, Path};
 /// assert_eq!(tree.path(b).edges, ["3 to 5", "5 to 9"]);
 /// ```
 ///
-/// With the feature `serde` trees are serialized and deserialized; a deserialized edge does not count as verified.
+/// With the feature `serde` trees are serialized and deserialized; a deserialized edge does not count as
+/// verified.
 #[derive(Clone, Debug)]
 pub struct Tree<S, E> {
     direction: Direction,
@@ -39,7 +40,7 @@ struct Node<E> {
     sibling: NodeId,
 }
 
-/// No node.
+/// In place of an index, where there is no such node.
 const NONE: NodeId = NodeId::MAX;
 
 /// The connection of a node to its parent.
@@ -128,7 +129,7 @@ impl<S, E> Tree<S, E> {
         }
     }
 
-    /// Adds a root.
+    /// Adds a node without a parent, at cost zero.
     pub fn add_root(&mut self, state: S) -> NodeId {
         self.insert(state, Node { cost: 0.0, link: None, child: NONE, sibling: NONE })
     }
@@ -142,11 +143,12 @@ impl<S, E> Tree<S, E> {
         self.insert(motion.end, Node { cost, link: Some(link), child: NONE, sibling })
     }
 
-    /// Gives node `id` another parent, by an edge (in forward time) of the given cost, and updates the costs in the
-    /// subtree of `id`. The new edge is not verified yet; edges below keep their state. Returns `false` and changes
-    /// nothing where that would make a cycle: `parent` is in the subtree of `id`.
+    /// Gives node `id` another parent, by an edge (in forward time) of the given cost, and updates the costs
+    /// in the subtree of `id`. The new edge is not verified yet; edges below keep their state. Returns
+    /// `false` and changes nothing where that would make a cycle: `parent` is in the subtree of `id`.
     ///
-    /// Linear in the depth of `parent`, the children of the former parent and the size of the subtree of `id`.
+    /// Linear in the depth of `parent`, the children of the former parent and the size of the subtree of
+    /// `id`.
     pub fn reparent(&mut self, id: NodeId, parent: NodeId, edge: E, cost: f64) -> bool {
         if self.lineage(parent).any(|node| node == id) {
             return false;
@@ -174,8 +176,8 @@ impl<S, E> Tree<S, E> {
         })
     }
 
-    /// The tree of these states, each with its parent, edge and cost, or `None` for roots; in linear time. Every parent
-    /// must be one of the nodes.
+    /// The tree of these states, each with its parent, edge and cost, or `None` for roots; in linear time.
+    /// Every parent must be one of the nodes.
     ///
     /// # Errors
     /// A node that is its own ancestor.
@@ -236,8 +238,8 @@ impl<S, E> Tree<S, E> {
         std::iter::successors(Some(id), |&node| self.parent(node))
     }
 
-    /// The path between a node and its root, in forward time: from the root in a forward tree, to the root in a backward
-    /// tree.
+    /// The path between a node and its root, in forward time: from the root in a forward tree, to the root in
+    /// a backward tree.
     #[must_use]
     pub fn path(&self, id: NodeId) -> Path<S, E>
     where
@@ -253,8 +255,8 @@ impl<S, E> Tree<S, E> {
         Path { states, edges }
     }
 
-    /// Removes a node with its subtree. The other nodes keep their order and are renumbered without gaps. Returns their
-    /// former ids: what is now node `i` was node `answer[i]`.
+    /// Removes a node with its subtree. The other nodes keep their order and are renumbered without gaps.
+    /// Returns their former ids: what is now node `i` was node `answer[i]`.
     ///
     /// Linear in the size of the tree.
     pub fn prune(&mut self, id: NodeId) -> Vec<NodeId> {
@@ -281,8 +283,8 @@ impl<S, E> Tree<S, E> {
         survivors
     }
 
-    /// For each node whether it is in the subtree of `id`. Works for any order of parents and children: rewiring may put
-    /// a parent after its child.
+    /// For each node whether it is in the subtree of `id`. Works for any order of parents and children:
+    /// rewiring may put a parent after its child.
     fn below(&self, id: NodeId) -> Vec<bool> {
         let mut known: Vec<Option<bool>> = vec![None; self.len()];
         known[id as usize] = Some(true);

@@ -11,8 +11,8 @@ use mp_cspace::{
 pub(crate) struct TreePair<'c, C: Space, L: LocalPlanner<C::State>, Se, A> {
     pub(crate) core: Core<'c, C, L>,
     pub(crate) trees: [SearchTree<C, L, Se, A>; 2],
-    /// How many listed goal states were considered as roots, how many roots that gave, and to how many of those a straight
-    /// motion from the start was tried.
+    /// How many listed goal states were considered as roots, how many roots that gave, and to how many of
+    /// those a straight motion from the start was tried.
     rooted: usize,
     roots: NodeId,
     tried: NodeId,
@@ -57,8 +57,9 @@ where
         })
     }
 
-    /// Begins an iteration: adds the roots, tries the straight motions to the goals if it may, and adds a sampled goal as a
-    /// root. After a panic of the user's code the next one continues behind the motion that panicked.
+    /// Begins an iteration: adds the roots, tries the straight motions to the goals if it may, and adds a
+    /// sampled goal as a root. After a panic of the user's code the next one continues behind the motion that
+    /// panicked.
     pub(crate) fn begin(
         &mut self,
         may_connect: bool,
@@ -105,8 +106,9 @@ where
         turn
     }
 
-    /// The path through two nodes with the same state, if it passes verification; otherwise the part from the failed edge
-    /// on is pruned, and `pruned` is called with the direction of the tree, as by [`SearchTree::verify`].
+    /// The path through two nodes with the same state, if it passes verification; otherwise the part from the
+    /// failed edge on is pruned, and `pruned` is called with the direction of the tree, as by
+    /// [`SearchTree::verify`].
     pub(crate) fn candidate(
         &mut self,
         meeting: [NodeId; 2],

@@ -20,8 +20,8 @@ struct Link<E> {
     cost: f64,
 }
 
-/// An object with the members `direction`, `states` and `links`; a link has `parent`, `edge` and `cost`, and is null for
-/// roots. Which edges are verified is not serialized.
+/// An object with the members `direction`, `states` and `links`; a link has `parent`, `edge` and `cost`, and
+/// is null for roots. Which edges are verified is not serialized.
 impl<S: Serialize, E: Serialize> Serialize for Tree<S, E> {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         let link = |id| {
@@ -34,8 +34,8 @@ impl<S: Serialize, E: Serialize> Serialize for Tree<S, E> {
     }
 }
 
-/// Refuses what is not a tree: a parent that does not exist, a cycle, a cost that is negative or not finite. No edge
-/// counts as verified. The children of a node are in the order of their ids.
+/// Refuses what is not a tree: a parent that does not exist, a cycle, a cost that is negative or not finite.
+/// No edge counts as verified. The children of a node are in the order of their ids.
 impl<'de, S: Deserialize<'de>, E: Deserialize<'de>> Deserialize<'de> for Tree<S, E> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let written: Written<S, Link<E>> = Written::deserialize(deserializer)?;

@@ -48,15 +48,16 @@ pub const BALANCE: Parameter = Parameter {
 pub struct Tuning {
     /// Longest step, in (0, extent of the space]; by default a twentieth of the extent.
     pub step: Length,
-    /// Probability of aiming at the goal rather than exploring, in \[0, 1\]; by default 0.05. Planners that grow a tree
-    /// from the goal sample a new goal state with this probability, where there is a sampler.
+    /// Probability of aiming at the goal rather than exploring, in \[0, 1\]; by default 0.05. Planners that
+    /// grow a tree from the goal sample a new goal state with this probability, where there is a sampler.
     pub goal_bias: f64,
-    /// After this many rejected paths the local planner is no longer trusted: each new edge is verified as it grows. By
-    /// default 10; 0 verifies every edge.
+    /// After this many rejected paths the local planner is no longer trusted: each new edge is verified as it
+    /// grows. By default 10; 0 verifies every edge.
     pub patience: u64,
-    /// Of two trees, one with more than this times the nodes of the other does not explore until that has caught up (J. J. Kuffner and
-    /// S. M. LaValle, *An efficient approach to path planning using balanced bidirectional RRT search*, CMU-RI-TR-05-34, 2005). At least
-    /// 1, or 0 for strict turns, the default. It helps where one end is boxed in, unless hardly any step is free there.
+    /// Of two trees, one with more than this times the nodes of the other does not explore until that has
+    /// caught up (J. J. Kuffner and S. M. LaValle, *An efficient approach to path planning using balanced
+    /// bidirectional RRT search*, CMU-RI-TR-05-34, 2005). At least 1, or 0 for strict turns, the default. It
+    /// helps where one end is boxed in, unless hardly any step is free there.
     pub balance: f64,
 }
 

@@ -9,13 +9,13 @@ use mp_cspace::{
 
 /// A planner that grows one tree from the start and one from the goal until they meet.
 ///
-/// The first iteration tries a straight motion from the start to each listed goal state, unless one of the extenders
-/// [declines](Extender::allows_direct). Each iteration then grows one tree toward a sampled target, and the other toward
-/// the node that was added; the trees take turns, unless the larger one is to [wait](crate::Tuning::balance). Where they meet, the path is
-/// verified. The goal tree has a root for each listed
-/// goal state; where goals come from a sampler, a root is added with probability
-/// [`goal_bias`](crate::Tuning::goal_bias) per iteration, and in every iteration until there is one. Stepping on after a
-/// solution continues with the same trees.
+/// The first iteration tries a straight motion from the start to each listed goal state, unless one of the
+/// extenders [declines](Extender::allows_direct). Each iteration then grows one tree toward a sampled target,
+/// and the other toward the node that was added; the trees take turns, unless the larger one is to
+/// [wait](crate::Tuning::balance). Where they meet, the path is verified. The goal tree has a root for each
+/// listed goal state; where goals come from a sampler, a root is added with probability
+/// [`goal_bias`](crate::Tuning::goal_bias) per iteration, and in every iteration until there is one. Stepping
+/// on after a solution continues with the same trees.
 #[derive(Debug)]
 pub struct TwoTrees<'c, C: Space, L: LocalPlanner<C::State>, P, Se, GA, GB, A> {
     pair: TreePair<'c, C, L, Se, A>,

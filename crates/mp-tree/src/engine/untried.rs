@@ -4,8 +4,8 @@ use super::{Extender, Growing, Grown, Inserter, Selector};
 use mp_control::InputChoice;
 use mp_cspace::{Direction, LocalPlanner, NodeId, Space};
 
-/// Extends by the inputs that have not been tried at a node, the most promising first: one per call, or as many as it
-/// takes to add a node. A node from which the latter fails is exhausted.
+/// Extends by the inputs that have not been tried at a node, the most promising first: one per call, or as
+/// many as it takes to add a node. A node from which the latter fails is exhausted.
 #[derive(Clone, Debug, Default)]
 pub struct Untried {
     one: bool,

@@ -8,7 +8,8 @@ use std::sync::Arc;
 pub type ProblemFactory<'c> =
     Arc<dyn Fn() -> Result<AnyProblem<'c, Configuration>, BuildError> + Send + Sync + 'c>;
 
-/// The planner called `name`, as [`build_from`] makes it, for [configurations](Configuration). Calling it compiles no planner.
+/// The planner called `name`, as [`build_from`] makes it, for [configurations](Configuration). Calling it
+/// compiles no planner.
 ///
 /// # Errors
 /// As [`build_from`].

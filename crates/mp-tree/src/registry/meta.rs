@@ -17,7 +17,7 @@ use std::sync::{Arc, OnceLock};
 /// A way to run another planner; its name is a prefix of the name of that planner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MetaPlanner {
-    /// The prefix.
+    /// What stands before the name of the planner, such as `or-`.
     pub prefix: &'static str,
     /// What it is and when to use it, in a line.
     pub summary: &'static str,
@@ -53,7 +53,8 @@ const RESTART: MetaPlanner = MetaPlanner {
     around: None,
 };
 
-/// All meta-planners of the crate. They may be combined: `or-restart-rrt-connect` runs several planners that restart.
+/// All meta-planners of the crate. They may be combined: `or-restart-rrt-connect` runs several planners that
+/// restart.
 #[must_use]
 pub fn meta_planners() -> &'static [MetaPlanner] {
     &[OR, SHARED, RESTART]
@@ -111,8 +112,8 @@ impl PlannerSpec {
         }
     }
 
-    /// Refuses settings that neither the planner nor a meta-planner has, and values that cannot be read. The range of the
-    /// planner's own parameters is checked when it is made.
+    /// Refuses settings that neither the planner nor a meta-planner has, and values that cannot be read. The
+    /// range of the planner's own parameters is checked when it is made.
     ///
     /// # Errors
     /// When there is such a setting or value.
@@ -136,8 +137,8 @@ impl fmt::Display for PlannerSpec {
     }
 }
 
-/// As [`build_with`](crate::build_with), for meta-planners too. `make` makes the problem, once for each run; the runs use
-/// `workers`.
+/// As [`build_with`](crate::build_with), for meta-planners too. `make` makes the problem, once for each run;
+/// the runs use `workers`.
 ///
 /// # Errors
 /// As [`build`](crate::build), and when `make` fails.

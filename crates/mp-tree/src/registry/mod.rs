@@ -27,12 +27,12 @@ pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
     found.ok_or_else(|| BuildError::unknown_planner(name, planners()))
 }
 
-/// Makes the planner called `name`, with the nearest neighbours that suit the space. Hints, gradient and geometry of
-/// obstacles come from the [problem](Problem::with_obstacles).
+/// Makes the planner called `name`, with the nearest neighbours that suit the space. Hints, gradient and
+/// geometry of obstacles come from the [problem](Problem::with_obstacles).
 ///
 /// # Errors
-/// When there is no such planner, it has no such parameters, or refuses their values; when the problem lacks the
-/// knowledge of obstacles that the planner needs.
+/// When there is no such planner, it has no such parameters, or refuses their values; when the problem lacks
+/// the knowledge of obstacles that the planner needs.
 pub fn build<'c, C, M>(
     name: &str,
     problem: Problem<'c, C, Straight<'c, C, M>>,

@@ -57,7 +57,8 @@ impl<const N: usize> MotionClearance<SVector<f64, N>> for Boxes<N> {
     }
 }
 
-/// Certified straight motions among boxes: of one type with any other check, so that planners are compiled once for all.
+/// Certified straight motions among boxes: of one type with any other check, so that planners are compiled
+/// once for all.
 pub(crate) fn certified<'c>(
     space: &'c Rn<2>,
     boxes: Boxes<2>,

@@ -51,8 +51,9 @@ fn settings(step: f64) -> Settings {
     Settings::parse([format!("step={step}")]).unwrap()
 }
 
-/// A problem: a space, a robot in it, where from and where to, and a step that suits. Planners of erased problems are
-/// compiled in the library already, and are the same as those compiled for the space, to the bit: see `erased`.
+/// A problem: a space, a robot in it, where from and where to, and a step that suits. Planners of erased
+/// problems are compiled in the library already, and are the same as those compiled for the space, to the
+/// bit: see `erased`.
 struct World<C: Space, V> {
     space: AsVectors<C>,
     erased: AnySpace<'static, Configuration>,

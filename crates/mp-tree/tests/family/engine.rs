@@ -61,7 +61,8 @@ fn budgets_are_kept_exactly() {
     }
 }
 
-/// The goal is in a closed cell, where hardly any step is free: the tree from the start waits for the one inside, if it is to.
+/// The goal is in a closed cell, where hardly any step is free: the tree from the start waits for the one
+/// inside, if it is to.
 #[test]
 fn a_balanced_tree_waits_for_a_smaller_one() {
     let (space, boxes) = (square(), closed());

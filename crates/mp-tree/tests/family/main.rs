@@ -1,4 +1,5 @@
-//! Tests of the whole family. One program, so that what they share is compiled once; spaces that only few have are in `spaces`.
+//! Tests of the whole family. One program, so that what they share is compiled once; spaces that only few
+//! have are in `spaces`.
 
 mod bad_input;
 #[path = "../common/mod.rs"]

@@ -11,7 +11,8 @@ const HALF: f64 = 0.004;
 /// A number by which lengths along axes become lengths along diagonals.
 const TURN: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// How far to one side of the middle of the corridor, which leads along y = x, and how far along it from the middle of the square.
+/// How far to one side of the middle of the corridor, which leads along y = x, and how far along it from the
+/// middle of the square.
 fn across_and_along(q: &Point) -> (f64, f64) {
     ((q.y - q.x) * TURN, (q.x + q.y - 1.0) * TURN)
 }

@@ -53,8 +53,8 @@ fn the_number_of_threads_changes_nothing() {
     assert!(rejected > 10 && pruned == [true; 2], "{rejected} paths were rejected, {pruned:?}");
 }
 
-/// The trees by hand, which never meet: nearest of all nodes before the batch, one step, in order, nothing twice; then the other
-/// tree toward each new node.
+/// The trees by hand, which never meet: nearest of all nodes before the batch, one step, in order, nothing
+/// twice; then the other tree toward each new node.
 #[test]
 fn a_batch_grows_one_tree_and_then_the_other_toward_what_it_gave() {
     let (space, boxes) = (square(), hollow([0.75, 0.25], 0.2, 0.02, 0.0));

@@ -56,7 +56,8 @@ fn it_goes_around_a_hill() {
     assert!(ours.0 < 0.6 * plain.0 && ours.1 < 0.5 * plain.1, "T-RRT {ours:?}, RRT {plain:?}");
 }
 
-/// By name: through a narrow passage and a wide one, it takes the wide one more often, and keeps away from walls.
+/// By name: through a narrow passage and a wide one, it takes the wide one more often, and keeps away from
+/// walls.
 #[test]
 fn it_keeps_away_from_obstacles() {
     let space = square();

@@ -108,7 +108,8 @@ fn velocities_by_accelerations() {
     }
 }
 
-/// The order changes the number of tests and nothing else; the condition changes the tree; both names have all four corners.
+/// The order changes the number of tests and nothing else; the condition changes the tree; both names have
+/// all four corners.
 #[test]
 fn four_corners() {
     let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));

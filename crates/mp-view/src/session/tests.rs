@@ -57,7 +57,6 @@ fn message(head: Value) -> Message {
     Message { head, data: Vec::new() }
 }
 
-/// A request with files.
 fn with_files(mut request: Value, files: &[(&str, &[u8])]) -> Message {
     let mut message = Message::default();
     let list: Vec<_> =
@@ -68,12 +67,10 @@ fn with_files(mut request: Value, files: &[(&str, &[u8])]) -> Message {
     message
 }
 
-/// The scene file of a reply.
 fn scene_of(reply: &Message) -> SceneFile {
     SceneFile::parse(&reply.bytes(&reply.head["scene"], "scene").unwrap()).unwrap()
 }
 
-/// The files of a reply.
 fn files_of(reply: &Message) -> Vec<(String, Vec<u8>)> {
     let list = reply.head["files"].as_array().unwrap();
     let file =
@@ -204,13 +201,11 @@ fn plans_as_the_library_does() {
     }
 }
 
-/// An array of an event.
 fn numbers_of<T: crate::arrays::Entry>(event: &Message, array: &Value) -> Vec<T> {
     let array: crate::arrays::ArrayRef = serde_json::from_value(array.clone()).unwrap();
     crate::arrays::extract(&event.data, &array, "array").unwrap()
 }
 
-/// The scene file of a run, with what it has grown.
 fn file_of_run(scene: &Scene, request: &mp_plan::Request) -> SceneFile {
     let mut grown = crate::GrownTrees::new(scene, request);
     scene.plan_with(request, &mut mp_plan::Control::new(mp_cspace::Cancel::default(), &mut grown)).unwrap();

@@ -209,7 +209,6 @@ impl Workspace {
         self.reply()
     }
 
-    /// The document of a request.
     fn document(&self, request: &Message) -> Result<SceneDocument, Error> {
         let document = request.head.get("document").cloned().unwrap_or_default();
         serde_json::from_value(document).map_err(|e| {

@@ -35,9 +35,10 @@ pub(crate) fn pose_groups(pair: &Pair, meshes: &Meshes, count: usize, seed: u64)
     Ok(all)
 }
 
-/// A pose at which the robot touches the obstacles, up to rounding: a corner, or the middle of an edge, on a corner, the
-/// middle of an edge, or a point within a triangle. Half of the rotations are symmetries of the
-/// cube, which makes faces and edges of boxes coplanar; a third of the poses are then moved by a tiny distance.
+/// A pose at which the robot touches the obstacles, up to rounding: a corner, or the middle of an edge, on a
+/// corner, the middle of an edge, or a point within a triangle. Half of the rotations are symmetries of the
+/// cube, which makes faces and edges of boxes coplanar; a third of the poses are then moved by a tiny
+/// distance.
 fn touching(pair: &Pair, space: &Se3, rng: &mut Rng) -> Isometry3<f64> {
     let turns = cube_turns();
     let rotation = match rng.random::<bool>() {

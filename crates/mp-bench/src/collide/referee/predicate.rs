@@ -26,7 +26,8 @@ pub(crate) fn apart(a: &Triangle, b: &Triangle) -> bool {
         || eb.iter().any(|v| separates(&nb.cross(v), a, b))
 }
 
-/// Whether the intervals of `a` and `b` along `axis` are certainly disjoint; this is valid for any axis, rounded or not.
+/// Whether the intervals of `a` and `b` along `axis` are certainly disjoint; this is valid for any axis,
+/// rounded or not.
 fn separates(axis: &Vector3<f64>, a: &Triangle, b: &Triangle) -> bool {
     let slab = |t: &Triangle| {
         t.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {

@@ -1,4 +1,5 @@
-//! The k nearest by the bounds of their lanes alone: the metric is evaluated for the answers, and for few others.
+//! The k nearest by the bounds of their lanes alone: the metric is evaluated for the answers, and for few
+//! others.
 
 use super::super::Hit;
 use super::super::collect::Collector;
@@ -8,11 +9,13 @@ use crate::nn::Embed;
 /// The most neighbours looked for by bounds; more are found by the metric.
 pub(super) const MOST: usize = 64;
 
-/// How much farther than its bound a state of a [tight](crate::nn::Layout) layout may be, for the search to succeed
-/// at once: without rotations and with them. The bound of an angle θ is 4 sin(θ/4), which is within 2% up to θ = 78°.
+/// How much farther than its bound a state of a [tight](crate::nn::Layout) layout may be, for the search to
+/// succeed at once: without rotations and with them. The bound of an angle θ is 4 sin(θ/4), which is within
+/// 2% up to θ = 78°.
 const STRETCH: [f64; 2] = [1.00001, 1.02];
 
-/// Collects all states within a limit, which falls as states come: to a little more than the `k`-th least bound.
+/// Collects all states within a limit, which falls as states come: to a little more than the `k`-th least
+/// bound.
 ///
 /// Distances of hits are squared bounds.
 #[derive(Debug)]
@@ -63,8 +66,8 @@ impl Collector for Bounded<'_> {
 }
 
 impl<const K: usize> KdTree<K> {
-    /// Writes the `k` nearest states in order to `out`. Returns `false` where bounds do not suffice to tell which they are; then
-    /// `out` has something else.
+    /// Writes the `k` nearest states in order to `out`. Returns `false` where bounds do not suffice to tell
+    /// which they are; then `out` has something else.
     pub(super) fn k_nearest_by_bounds<C: Embed>(
         &self,
         space: &C,

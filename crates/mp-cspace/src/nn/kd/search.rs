@@ -32,7 +32,8 @@ pub(super) struct Search<'a, C: Embed, L, const K: usize> {
 }
 
 impl<const K: usize> KdTree<K> {
-    /// Offers `collector` every state that it may want. Returns the squared bound beyond which none is wanted.
+    /// Offers `collector` every state that it may want. Returns the squared bound beyond which none is
+    /// wanted.
     pub(super) fn search<C: Embed>(
         &self,
         space: &C,

@@ -44,7 +44,6 @@ impl Source {
         self.stride
     }
 
-    /// Row `i`, all of it.
     pub(super) fn row(&self, i: usize) -> &[f64] {
         let start = self.offset + i * self.stride;
         &self.values[start..start + self.stride]

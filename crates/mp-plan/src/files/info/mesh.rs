@@ -11,7 +11,7 @@ use std::path::Path;
 /// What is in a mesh file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MeshInfo {
-    /// The file.
+    /// The file, as it was named.
     pub file: String,
     /// The properties of the mesh.
     #[serde(flatten)]

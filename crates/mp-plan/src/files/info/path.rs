@@ -11,9 +11,9 @@ use std::path::Path;
 /// What is in a path file. Metres and radians.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PathInfo {
-    /// The file.
+    /// The file, as it was named.
     pub file: String,
-    /// The number of configurations.
+    /// Configurations, start and goal included.
     pub configurations: usize,
     /// How many numbers each configuration has.
     pub numbers: usize,

@@ -233,7 +233,6 @@ impl<'m> Motion<'m> {
         (self.moved(a, meet, frames, ends) + self.moved(b, meet, frames, ends)) * ROUND_UP
     }
 
-    /// A frame and all above it.
     fn above(&self, frame: usize) -> impl Iterator<Item = usize> {
         let parent = |frame: &usize| match self.model.frames.get(*frame)? {
             ModelFrame::Fixed { parent, .. } => *parent,

@@ -43,7 +43,6 @@ impl NamedValues {
         Ok(named)
     }
 
-    /// The groups of the SRDF of a robot.
     pub(super) fn groups(&self, robot: usize) -> &SrdfGroups {
         &self.groups[robot]
     }

@@ -21,8 +21,9 @@ struct Axis {
 
 /// A space that is cut into a grid of regions of equal measure.
 ///
-/// The regions are those of the unit cube, which [`Space::unit_cube_to_state`] maps to the space. So they tile the space, whatever it is.
-/// Along which numbers it can be cut is found with [`Space::velocity_into`]: a space without velocities is one region.
+/// The regions are those of the unit cube, which [`Space::unit_cube_to_state`] maps to the space. So they
+/// tile the space, whatever it is. Along which numbers it can be cut is found with [`Space::velocity_into`]:
+/// a space without velocities is one region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subdivision<S> {
     dim: usize,
@@ -38,8 +39,8 @@ pub struct Subdivision<S> {
 const ROUNDING: f64 = 1e-6;
 
 impl<S: Clone> Subdivision<S> {
-    /// The space cut into this number of regions, which are sampled beyond their faces by a part `overlap` of their widths. One region, if it
-    /// cannot be cut.
+    /// The space cut into this number of regions, which are sampled beyond their faces by a part `overlap` of
+    /// their widths. One region, if it cannot be cut.
     ///
     /// # Errors
     /// When there are no regions, or more than 10⁶, or the part is not in \[0, 1\].
@@ -48,7 +49,8 @@ impl<S: Clone> Subdivision<S> {
         let dim = space.dim();
         let mut axes: Vec<Axis> =
             (0..dim).filter_map(|coordinate| straight_axis(space, coordinate)).collect();
-        // Each factor, the largest first, cuts the regions where they are longest, the first of axes of the same length.
+        // Each factor, the largest first, cuts the regions where they are longest, the first of axes of the
+        // same length.
         for factor in factors(regions as u32).into_iter().rev() {
             let longer = |best: Option<usize>, i: usize| {
                 let length = |i: usize| axes[i].length / f64::from(axes[i].cells);
@@ -84,7 +86,7 @@ impl<S: Clone> Subdivision<S> {
         &self.pairs
     }
 
-    /// The region in which a state is.
+    /// The region that holds a state; a state on a border belongs to the upper one.
     pub fn region_of<C: Space<State = S>>(&self, space: &C, q: &S) -> u32 {
         let cell = |(axis, x): (&Axis, f64)| {
             let cell = (x * f64::from(axis.cells)).floor().clamp(0.0, f64::from(axis.cells - 1));
@@ -132,7 +134,8 @@ fn cell(axis: &Axis, region: u32) -> u32 {
     region / axis.stride % axis.cells
 }
 
-/// The axis of a coordinate of the unit cube along which states move straight, alone and in proportion: not a rotation.
+/// The axis of a coordinate of the unit cube along which states move straight, alone and in proportion: not a
+/// rotation.
 fn straight_axis<C: Space>(space: &C, coordinate: usize) -> Option<Axis> {
     let mut velocity = vec![0.0; space.dim()];
     let state = |others: f64, x: f64| {
