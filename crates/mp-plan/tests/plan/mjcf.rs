@@ -105,7 +105,7 @@ fn errors_are_about_the_model() {
         .unwrap();
     let e = Scene::load(&file).unwrap_err();
     assert!(e.to_string().contains("two.xml:5:7") && e.to_string().contains("gone.stl"), "{e}");
-    let e = error(".03 .04 .05", ".3 .4 .9");
+    let e = error(".03 .04 .05", "2 2 2");
     let help = e.remedy().unwrap_or_default();
     assert!(help.contains("<exclude>") && help.contains("mp srdf"), "{help}");
 }
