@@ -4,6 +4,7 @@
 //! A mesh format is a row of the table, and a file in the folder `formats`.
 
 pub(crate) mod collada;
+pub(crate) mod gltf;
 pub(crate) mod obj;
 pub(crate) mod off;
 pub(crate) mod ply;
@@ -76,7 +77,8 @@ formats! {
     Mp4, "film", ["mp4"], false, true, None;
     Page, "page of the viewer", ["html", "htm"], false, true, None;
     ViewerScene, "scene of the viewer", ["mpv"], true, true, None;
-    Gltf, "moving meshes in binary glTF", ["glb"], false, true, None;
+    Gltf, "meshes in binary glTF", ["glb"], true, true, Some((gltf::begins, gltf::read));
+    GltfText, "mesh in glTF", ["gltf"], true, false, Some((|_| false, gltf::read));
 }
 
 use Content::{

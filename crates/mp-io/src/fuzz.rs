@@ -21,7 +21,7 @@ use std::path::Path;
 pub type Target = fn(&[u8]) -> Result<(), Error>;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 24] = [
+pub const TARGETS: [(&str, Target); 25] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -31,6 +31,7 @@ pub const TARGETS: [(&str, Target); 24] = [
     ("obj", obj),
     ("collada", collada),
     ("ply", ply),
+    ("gltf", gltf),
     ("points-text", points_text),
     ("points-pcd", points_pcd),
     ("points-npy", points_npy),
@@ -159,6 +160,23 @@ pub fn obj(bytes: &[u8]) -> Result<(), Error> {
 /// When the bytes are refused.
 pub fn ply(bytes: &[u8]) -> Result<(), Error> {
     parse_mesh("f.ply", bytes).map(drop)
+}
+
+/// glTF, text and binary: binary files get the lengths of their parts.
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn gltf(bytes: &[u8]) -> Result<(), Error> {
+    let mut bytes = bytes.to_vec();
+    let name = if bytes.starts_with(b"glTF") { "f.glb" } else { "f.gltf" };
+    if let Some(end) =
+        bytes.windows(4).position(|word| word == b"BIN\0").filter(|end| name == "f.glb" && *end >= 24)
+    {
+        let lengths = [end - 24, bytes.len() - end - 4].map(|length| (length as u32).to_le_bytes());
+        bytes[12..16].copy_from_slice(&lengths[0]);
+        bytes[end - 4..end].copy_from_slice(&lengths[1]);
+    }
+    parse_mesh(name, &bytes).map(drop)
 }
 
 /// COLLADA.

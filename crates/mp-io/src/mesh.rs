@@ -58,6 +58,15 @@ pub(crate) struct Reading<'a> {
     pub(crate) interrupt: Interrupt,
     /// Takes what was decided or passed over.
     pub(crate) remark: &'a mut dyn FnMut(&str),
+    /// Reads a file that the mesh names, relative to it.
+    pub(crate) beside: &'a dyn Fn(&str) -> Result<Vec<u8>, Error>,
+}
+
+/// What is said where a mesh names another file, and only its bytes are there.
+pub(crate) fn alone(name: &str) -> Result<Vec<u8>, Error> {
+    let message = format!("the mesh is in this file, which is not at hand: {}", crate::text::clipped(name));
+    Err(Error::new(ErrorKind::Unsupported, crate::text::clipped(name), message)
+        .help("export the mesh as one file"))
 }
 
 /// Reads the bytes of a mesh whose file errors call so.
@@ -74,7 +83,7 @@ pub fn parse_mesh(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
 /// As [`parse_mesh`]; `remark` takes what was decided or passed over.
 pub(crate) fn parse_noting(file: &str, bytes: &[u8], remark: &mut dyn FnMut(&str)) -> Result<TriMesh, Error> {
     let interrupt = Interrupt::never();
-    reader(file, bytes)?(file, bytes, &mut Reading { axes: Axes::YUp, interrupt, remark })
+    reader(file, bytes)?(file, bytes, &mut Reading { axes: Axes::YUp, interrupt, remark, beside: &alone })
 }
 
 fn reader(file: &str, bytes: &[u8]) -> Result<ReadMesh, Error> {
@@ -95,8 +104,9 @@ pub fn read_mesh_with(files: &dyn Files, path: &Path, axes: Axes) -> Result<TriM
         return stand_in(&file);
     }
     let remark = &mut |remark: &str| files.note(path, remark);
-    let mesh =
-        reader(&file, &bytes)?(&file, &bytes, &mut Reading { axes, interrupt: files.interrupt(), remark })?;
+    let beside = |name: &str| files.read(&path.with_file_name(name.replace("%20", " ")), MAX_MESH_BYTES);
+    let reading = &mut Reading { axes, interrupt: files.interrupt(), remark, beside: &beside };
+    let mesh = reader(&file, &bytes)?(&file, &bytes, reading)?;
     crate::trace::mesh(&file, &mesh);
     Ok(mesh)
 }

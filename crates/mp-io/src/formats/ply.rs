@@ -23,7 +23,8 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
 
 /// Reads the vertices alone, as points. They need not be finite.
 pub(crate) fn read_points(file: &str, bytes: &[u8], interrupt: Interrupt) -> Result<Vec<Point3<f64>>, Error> {
-    let reading = &mut Reading { axes: Axes::OfFile, interrupt, remark: &mut |_| () };
+    let reading =
+        &mut Reading { axes: Axes::OfFile, interrupt, remark: &mut |_| (), beside: &crate::mesh::alone };
     elements(file, bytes, false, reading).map(|(vertices, ..)| vertices)
 }
 

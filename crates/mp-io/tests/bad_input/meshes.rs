@@ -285,8 +285,73 @@ fn other_meshes() {
             Mesh,
             "m.wrl",
             "#VRML V2.0 utf8\n",
-            "m.wrl: this is not a mesh format that is read here; expected a file .off, .txt, .stl, .obj, .dae or .ply",
+            "m.wrl: this is not a mesh format that is read here; expected a file .off, .txt, .stl, .obj, .dae, .ply, .glb or .gltf",
             "convert the mesh to one of these",
+        ),
+    ]);
+}
+
+#[test]
+fn gltf_files() {
+    const GLTF: &str = include_str!("../../../../fuzz/corpus/gltf/good-2");
+    const AGAIN: &str = "export the mesh again, as glTF 2.0";
+    let of = |from: &str, to: &str, error, help| {
+        assert!(GLTF.contains(from), "{from}");
+        case(Mesh, "m.gltf", GLTF.replacen(from, to, 1), error, help)
+    };
+    check(&[
+        case(
+            Mesh,
+            "m.gltf",
+            "{",
+            "m.gltf:1:1: this is not JSON: EOF while parsing an object; expected glTF 2.0",
+            AGAIN,
+        ),
+        case(Mesh, "m.glb", "glTF\u{2}\0\0\0", "m.glb: the file is cut short", AGAIN),
+        case(Mesh, "m.glb", "glTF\u{1}\0\0\0", "m.glb: this is binary glTF of version 1, not 2", AGAIN),
+        case(
+            Mesh,
+            "m.glb",
+            "glTF\u{2}\0\0\0\0\0\0\0\u{9}\0\0\0JSON",
+            "m.glb: a part of the file is longer than the file",
+            AGAIN,
+        ),
+        case(
+            Mesh,
+            "m.glb",
+            "glTF\u{2}\0\0\0\0\0\0\0\0\0\0\0JUNK",
+            "m.glb: the part at byte 12 is not JSO",
+            AGAIN,
+        ),
+        of(
+            "\"asset\"",
+            "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"asset\"",
+            "m.gltf: the mesh is compressed by KHR_draco_mesh_compression, which is not read",
+            "export it without compression",
+        ),
+        of("base64,", "base64,?", "m.gltf: the bytes of buffer 0 are not base64", AGAIN),
+        of(
+            "\"children\":[1]",
+            "\"children\":[0]",
+            "m.gltf: node 0 is in two places, or nested more than 128 deep",
+            AGAIN,
+        ),
+        of("\"children\":[1]", "\"children\":[7]", "m.gltf: there is no node 7", AGAIN),
+        of("\"mesh\":0", "\"mesh\":4", "m.gltf: node 1 has the mesh 4, which is not there", AGAIN),
+        of("\"POSITION\"", "\"NORMAL\"", "m.gltf: primitive 0 of mesh 0 has no POSITION", AGAIN),
+        of("\"count\":4", "\"count\":5", "m.gltf: accessor 0 is longer than its bytes", AGAIN),
+        of(
+            "\"count\":4",
+            "\"count\":3",
+            "m.gltf: primitive 0 of mesh 0 has the vertex 3, and 3 vertices",
+            AGAIN,
+        ),
+        of("\"VEC3\"", "\"VEC2\"", "m.gltf: accessor 0 is VEC2, not VEC3", AGAIN),
+        of(
+            "5126",
+            "5122",
+            "m.gltf: accessor 0 has numbers of another type: positions are floats, and indices whole numbers above 0",
+            AGAIN,
         ),
     ]);
 }

@@ -34,7 +34,7 @@ fn environments() {
         env("5 0 0 0 0 0\n\nObstacle #1\nw.off\n2 0 0 0 0 0\nEnd", "5 0 0 0 0.1 0\nEnd\nSpace SE2", "s.env:4:1: the goal configuration leaves the plane; expected z, β and γ equal to 0, as the file says `Space SE2`", "write x y 0 α 0 0, or remove the line `Space SE2`"),
         env("w.off", "nowhere.off", "s.env:7:1: the mesh of Obstacle #1 is not readable: nowhere.off: cannot read the file: no such file", "check the spelling; it is looked for in the folder DIR"),
         env("w.off", "meshes\\w.off", "s.env:7:1: the mesh of Obstacle #1 is not readable: meshes\\w.off: cannot read the file: no such file", "folders in file names are separated by `/`"),
-        env("r.off", "r.step", "r.step: this is not a mesh format that is read here; expected a file .off, .txt, .stl, .obj, .dae or .ply (named at s.env:2:1)", "convert the mesh to one of these").with("r.step", "ISO-10303-21;"),
+        env("r.off", "r.step", "r.step: this is not a mesh format that is read here; expected a file .off, .txt, .stl, .obj, .dae, .ply, .glb or .gltf (named at s.env:2:1)", "convert the mesh to one of these").with("r.step", "ISO-10303-21;"),
         case(Scene, "s.env", ENV, "w.off:6:7: vertex 3 does not exist; expected an index from 0 to 2 (named at s.env:7:1)", "indices of OFF count from 0")
             .with("r.off", TRIANGLE)
             .with("w.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),

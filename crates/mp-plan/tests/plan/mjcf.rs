@@ -1,8 +1,9 @@
 //! Robots as models of MuJoCo.
 
 use mp_geom::TriMesh;
-use mp_io::{Disk, InMemory, RobotProblem};
-use mp_plan::{Info, Request, RobotPairs, Scene};
+use mp_io::{Disk, InMemory, ProblemChanges, RobotProblem};
+use mp_plan::info::Info;
+use mp_plan::{Request, RobotPairs, Scene};
 use mp_robot::{ArmModel, Kinematics};
 use std::path::Path;
 
@@ -71,7 +72,7 @@ fn a_model_is_planned_for_from_its_keyframe() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("two.xml");
     std::fs::write(&file, TWO).unwrap();
-    let changes = mp_plan::ProblemChanges { from: Some("home".to_owned()), ..Default::default() };
+    let changes = ProblemChanges { from: Some("home".to_owned()), ..Default::default() };
     let scene = Scene::load_changed(&Disk, &file, &changes).unwrap();
     assert_eq!(scene.start(), [0.3, 0.1, 0.0, 0.0, 0.0]);
     let report = scene.plan(&Request::new(scene.default_planner())).unwrap();
@@ -104,7 +105,7 @@ fn errors_are_about_the_model() {
         .unwrap();
     let e = Scene::load(&file).unwrap_err();
     assert!(e.to_string().contains("two.xml:5:7") && e.to_string().contains("gone.stl"), "{e}");
-    let e = error(".03 .04 .05", ".3 .4 .9");
+    let e = error(".03 .04 .05", "2 2 2");
     let help = e.remedy().unwrap_or_default();
     assert!(help.contains("<exclude>") && help.contains("mp srdf"), "{help}");
 }
