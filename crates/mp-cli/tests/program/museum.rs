@@ -56,9 +56,11 @@ fn what_was_planned_is_free() {
         let run = mp(&dir, args);
         assert!(free(&run), "{args:?}: {run:?}");
     }
+    let wrapped = ["check", "wrap.toml", "-", "--from", "0 3.183185307179586"];
+    assert!(free(&fed(&dir, &wrapped, &dir.read("wrap.yaml"))));
     let degrees = dir.read("degrees.csv").replace("shoulder,elbow", "shoulder [deg],elbow [deg]");
     assert!(free(&fed(&dir, &["check", "degrees.toml", "-"], &degrees)));
     let by_place = dir.read("names.csv").replace("elbow,shoulder", "shoulder,elbow");
     let run = fed(&dir, &["check", "names.toml", "-"], &by_place);
-    assert!(!run.stdout.contains("hits"), "{run:?}");
+    assert!(!free(&run) && run.stdout.contains("does not end") && !run.stdout.contains("hits"), "{run:?}");
 }
