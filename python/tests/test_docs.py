@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -24,3 +26,12 @@ def test_it_runs(page: Path) -> None:
 
 def test_pages_have_some() -> None:
     assert len(WITH_PYTHON) >= 6
+
+
+def test_samples_pass_all_of_the_museum() -> None:
+    museum = ROOT / "docs" / "museum"
+    printed = subprocess.run([sys.executable, museum / "sampled.py"], capture_output=True, text=True, check=True).stdout
+    assert f"```text\n{printed}```" in (museum / "README.md").read_text()
+    for name, verdict in (line.split(": ") for line in printed.splitlines()):
+        exhibit = next(part for part in (museum / "README.md").read_text().split("\n## ") if f"mp check {name}.toml" in part)
+        assert verdict.endswith("all free") and f"): {verdict}\n" in exhibit

@@ -77,6 +77,8 @@ const STANDARD: &str = "standard input";
 fn kind_of_text(text: &str) -> PathFileKind {
     match text.trim_start() {
         t if t.starts_with('{') => PathFileKind::Json,
+        // A message of ROS in YAML, which may have commas too.
+        t if t.contains("joint_names:") => PathFileKind::Text,
         t if t.lines().any(|line| line.contains(',')) => PathFileKind::Csv,
         _ => PathFileKind::Text,
     }

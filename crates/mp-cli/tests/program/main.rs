@@ -8,6 +8,7 @@ mod films;
 mod guides;
 mod kinds;
 mod many;
+mod museum;
 mod outputs;
 mod relax;
 mod routes;

@@ -93,6 +93,13 @@ fn trajectories_of_others_are_checked_by_name_and_unit() {
     assert_eq!(check("b.csv", fast, &["--as", "linear"]).code, 0);
     assert_eq!(check("b.csv", fast, &["--as", "controller"]).code, 1);
     assert_eq!(check("b.csv", fast, &["--as", "quintic"]).code, 2);
+    // Nobody stops a robot at once.
+    let moving = "time,reach,turn,reach_velocity,turn_velocity\n0,0,0,0,0\n2,1,1,0.5,0\n";
+    let run = check("b.csv", moving, &["--json"]);
+    assert!(
+        run.code == 0 && run.json()["warnings"].to_string().contains("ends while reach moves"),
+        "{run:?}"
+    );
     // The same in a message of MoveIt.
     let point = |q: &str, v: &str, sec: u32| {
         format!(

@@ -6,6 +6,7 @@
 
 use crate::explain::enclosures;
 use crate::finish::check::{end_faults, fault_text, verified, what_happens};
+use crate::goals::turning;
 use crate::path::states;
 use crate::robot::counted::Counted;
 use crate::{Error, PathRows, Robot, Verdict, brief, count, plain};
@@ -15,6 +16,7 @@ use mp_cspace::{
 };
 use mp_time::{BlendedPath, Interpolation, Knots, Limits, TimeError, Trajectory, timed};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 use std::sync::atomic::AtomicU64;
 
 /// How a path is timed.
@@ -354,6 +356,8 @@ impl LimitFault {
 const ROUNDED: f64 = 1e-3;
 /// A position may be so far beyond its limit (rad or m), as for states of paths.
 const HAIR: f64 = 1e-6;
+/// A joint that is slower stands still (rad/s or m/s).
+const STILL: f64 = 1e-3;
 
 /// Checks that the curve of a trajectory is free, leads from the start to a goal, and keeps the limits that are known.
 pub(crate) fn check(
@@ -372,6 +376,7 @@ pub(crate) fn check(
     let rows = &trajectory.knots().positions;
     let states: Vec<_> = rows.iter().map(|row| kind.state(row)).collect();
     let mut faults = end_faults(kind, &states);
+    faults.extend(turned_start(kind, &rows[0]));
     let limits = limit_faults(kind, trajectory, &rates);
     let unit =
         |fault: &LimitFault| columns.iter().find(|c| c.name == fault.joint).map_or("", |c| c.unit.as_str());
@@ -397,8 +402,10 @@ pub(crate) fn check(
         clearance = least.map_or(proved, |least| least.bound.max(proved));
         least_at = least.map(|least| least.time);
     }
-    let warnings =
-        if faults.is_empty() { enclosures(kind, &states[0]).into_iter().collect() } else { Vec::new() };
+    let warnings = match faults.is_empty() {
+        true => enclosures(kind, &states[0]).into_iter().chain(moving_ends(trajectory)).collect(),
+        false => Vec::new(),
+    };
     Ok(Verdict {
         scene: kind.name().to_owned(),
         path: String::new(),
@@ -417,6 +424,30 @@ pub(crate) fn check(
             limits,
         }),
     })
+}
+
+/// Which angle begins a turn away from the start. On a path that is the same place, but a controller that is sent there may turn all the way.
+fn turned_start(kind: &dyn Robot, first: &[f64]) -> Option<String> {
+    let start = kind.given_start();
+    let ends = start.iter().zip(first).zip(turning(kind));
+    let joint = ends.into_iter().position(|((start, first), turns)| turns && (first - start).abs() > PI)?;
+    let [start, first] = [start[joint], first[joint]].map(brief);
+    Some(format!(
+        "begins a turn away from the start: {} at {first}, not at {start}",
+        kind.columns()[joint].name
+    ))
+}
+
+/// A warning where a trajectory begins or ends while it moves. Between points on straight lines velocities jump anyway.
+fn moving_ends(trajectory: &Trajectory) -> Option<String> {
+    let velocities = &trajectory.knots().velocities;
+    let moving = |row: Option<&Vec<f64>>| row?.iter().position(|v| v.abs() > STILL);
+    let (when, joint) = moving(velocities.first())
+        .map(|joint| ("begins", joint))
+        .or_else(|| moving(velocities.last()).map(|joint| ("ends", joint)))
+        .filter(|_| trajectory.interpolation() != Interpolation::Linear)?;
+    let name = trajectory.joints().nth(joint)?.0;
+    Some(format!("the trajectory {when} while {name} moves: what the robot does there was not looked at"))
 }
 
 /// The limits that a trajectory exceeds.
