@@ -399,8 +399,7 @@ impl Scene {
         let cancel = mp_plan::Cancel::new();
         let interrupt = Interrupt::new(cancel.clone());
         let pace = Pace { velocity, acceleration, deviation };
-        let (timed, raised) =
-            self.work(py, &cancel, None, |_| self.scene.time(&path, &pace, &interrupt))?;
+        let (timed, raised) = self.work(py, &cancel, None, |_| self.scene.time(&path, &pace, &interrupt))?;
         raised.map_or(Ok(()), Err)?;
         let TimedPath { trajectory, tightened, clearance, notes, .. } = timed.to_python()?;
         let Knots { times, positions, velocities, .. } = trajectory.knots();

@@ -1,5 +1,6 @@
 //! Robot problems and the files they name.
 
+use super::joint_limits::{self, JointRates};
 use super::srdf_near::srdf_near;
 use super::{RobotEntry, RobotFile, RobotFilePart, RobotPart};
 use crate::error::Error;
@@ -20,6 +21,8 @@ pub struct DescribedRobot {
     pub srdf: Option<String>,
     /// Where the SRDF is, if the problem names none and one of this robot was found near the URDF.
     pub srdf_found: Option<PathBuf>,
+    /// How fast its joints may move, as the `joint_limits.yaml` of MoveIt beside the SRDF says.
+    pub rates: JointRates,
     /// The name of an SRDF beside the URDF that is not taken.
     pub srdf_beside: Option<String>,
     /// The folder that `package://` means.
@@ -112,9 +115,9 @@ fn described(files: &dyn Files, folder: &Path, file: &RobotFile, i: usize) -> Re
         }
     };
     let (urdf_file, urdf) = text(RobotPart::Urdf, &entry.urdf)?;
-    let srdf = match &entry.srdf {
-        Some(name) => Some(text(RobotPart::Srdf, name)?.1),
-        None => None,
+    let (named, srdf) = match &entry.srdf {
+        Some(name) => text(RobotPart::Srdf, name).map(|(place, text)| (Some(place), Some(text)))?,
+        None => (None, None),
     };
     let (mut srdf, mut srdf_found, mut srdf_beside) = (srdf, None, None);
     if srdf.is_none() {
@@ -124,8 +127,18 @@ fn described(files: &dyn Files, folder: &Path, file: &RobotFile, i: usize) -> Re
             None => srdf_beside = beside,
         }
     }
+    let rates = named.as_ref().or(srdf_found.as_ref()).map(|srdf| joint_limits::beside(files, srdf));
     let packages = entry.packages.as_ref().map(|name| folder.join(name));
-    Ok(DescribedRobot { urdf_file, urdf, srdf, srdf_found, srdf_beside, packages, solid: entry.solid })
+    Ok(DescribedRobot {
+        urdf_file,
+        urdf,
+        srdf,
+        srdf_found,
+        rates: rates.unwrap_or_default(),
+        srdf_beside,
+        packages,
+        solid: entry.solid,
+    })
 }
 
 /// The text of a URDF or SRDF, in the encoding that it declares.
