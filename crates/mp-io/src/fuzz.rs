@@ -10,7 +10,7 @@ use crate::mesh::Axes;
 use crate::{Column, csv_text, gempa_mesh_text, parse_csv, parse_mesh, stl_text};
 use crate::{
     Environment, Error, ErrorKind, GridMap, InMemory, JointPath, OffDocument, OmplProblem, PathFile,
-    PlanarFile, RobotFile, RosMap, SceneDocument,
+    PlanarFile, RobotFile, RosMap, SceneDocument, TrajectoryFile, TrajectoryKind,
 };
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
@@ -21,7 +21,7 @@ use std::path::Path;
 pub type Target = fn(&[u8]) -> Result<(), Error>;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 25] = [
+pub const TARGETS: [(&str, Target); 26] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -42,6 +42,7 @@ pub const TARGETS: [(&str, Target); 25] = [
     ("joint-path", joint_path),
     ("json-joint-path", json_joint_path),
     ("csv-path", csv_path),
+    ("trajectory", trajectory),
     ("planar-world", planar_world),
     ("ros-map", ros_map),
     ("map-image", map_image),
@@ -260,6 +261,26 @@ pub fn csv_path(bytes: &[u8]) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// Trajectories of a robot of two joints, in all their formats.
+///
+/// # Errors
+/// When the bytes are refused, as for all targets.
+pub fn trajectory(bytes: &[u8]) -> Result<(), Error> {
+    use TrajectoryKind::{Csv, Json, Yaml};
+    let columns = [Column::new("lift", "m"), Column::new("elbow", "rad")];
+    let parse = |bytes: &[u8], kind| TrajectoryFile::parse("f", bytes, kind, &columns);
+    let all = [Csv, Json, Yaml].map(|kind| parse(bytes, kind).map(|read| (read, kind)));
+    for (read, kind) in all.iter().flatten() {
+        let Some(read) = read else { continue };
+        match (parse(read.to_text(*kind).as_bytes(), *kind), kind) {
+            (again, Csv) => assert_eq!(again.ok().flatten().as_ref(), Some(read)),
+            // Times that are no whole nanoseconds may meet.
+            (again, _) => assert!(again.ok().flatten().is_none_or(|again| again.positions == read.positions)),
+        }
+    }
+    all.into_iter().find_map(Result::err).map_or(Ok(()), Err)
 }
 
 /// Worlds in the plane.

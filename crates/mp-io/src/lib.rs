@@ -47,6 +47,7 @@ mod trace;
 mod trajectory;
 mod xacro;
 mod xml;
+mod yaml;
 
 pub use changes::ProblemChanges;
 pub use columns::{Column, matched};
@@ -71,8 +72,8 @@ pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
 pub use problem_file::ProblemFile;
 pub use rigid_toml::{RigidMoving, RigidTask};
 pub use robot::{
-    AttachedEntry, DescribedRobot, FoundSrdf, MovingJoints, ObstacleEntry, PartChange, PartEntry, RobotEntry,
-    RobotFile, RobotFilePart, RobotPart, RobotProblem, read_robot_text, robot_name,
+    AttachedEntry, DescribedRobot, FoundSrdf, JointRates, MovingJoints, ObstacleEntry, PartChange, PartEntry,
+    RobotEntry, RobotFile, RobotFilePart, RobotPart, RobotProblem, read_robot_text, robot_name,
 };
 pub use robots::{FoundRobot, RobotPath};
 pub use shape::ShapeEntry;

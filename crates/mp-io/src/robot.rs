@@ -1,6 +1,7 @@
 //! Robot problems: an arm, obstacles, a start and goals, in TOML.
 
 mod entry;
+mod joint_limits;
 mod parts;
 mod problem;
 mod srdf_near;
@@ -10,6 +11,7 @@ mod urdf_mesh;
 
 pub use entry::{MovingJoints, RobotEntry, RobotPart};
 use entry::{RobotTables, robots_of};
+pub use joint_limits::JointRates;
 pub use parts::{PartChange, PartEntry};
 use parts::{PartTable, part_of};
 pub use problem::{DescribedRobot, RobotProblem, read_robot_text};

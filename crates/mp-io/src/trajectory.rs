@@ -3,7 +3,6 @@
 
 mod csv;
 mod ros;
-mod yaml;
 
 use crate::columns::Column;
 use crate::error::{Error, ErrorKind};

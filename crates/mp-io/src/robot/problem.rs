@@ -1,5 +1,6 @@
 //! Robot problems and the files they name.
 
+use super::joint_limits::{self, JointRates};
 use super::srdf_near::srdf_near;
 use super::{RobotEntry, RobotFile, RobotFilePart, RobotPart};
 use crate::error::{Error, ErrorKind};
@@ -21,6 +22,8 @@ pub struct DescribedRobot {
     pub srdf: Option<String>,
     /// Where the SRDF is, if the problem names none and one of this robot was found near the URDF.
     pub srdf_found: Option<PathBuf>,
+    /// How fast its joints may move, as the `joint_limits.yaml` of MoveIt beside the SRDF says.
+    pub rates: JointRates,
     /// The name of an SRDF beside the URDF that is not taken.
     pub srdf_beside: Option<String>,
     /// The folder that `package://` means.
@@ -121,9 +124,9 @@ fn described(files: &dyn Files, folder: &Path, file: &RobotFile, i: usize) -> Re
         urdf = read.urdf.clone();
         mjcf = Some(read);
     }
-    let srdf = match &entry.srdf {
-        Some(name) => Some(text(RobotPart::Srdf, name)?.1),
-        None => None,
+    let (named, srdf) = match &entry.srdf {
+        Some(name) => text(RobotPart::Srdf, name).map(|(place, text)| (Some(place), Some(text)))?,
+        None => (None, None),
     };
     let (mut srdf, mut srdf_found, mut srdf_beside) = (srdf, None, None);
     if srdf.is_none() {
@@ -135,8 +138,19 @@ fn described(files: &dyn Files, folder: &Path, file: &RobotFile, i: usize) -> Re
     }
     let own = mjcf.as_ref().filter(|_| srdf.is_none() && !entry.without_srdf);
     srdf = srdf.or(own.map(|mjcf| mjcf.srdf.clone()));
+    let rates = named.as_ref().or(srdf_found.as_ref()).map(|srdf| joint_limits::beside(files, srdf));
     let packages = entry.packages.as_ref().map(|name| folder.join(name));
-    Ok(DescribedRobot { urdf_file, urdf, srdf, srdf_found, srdf_beside, packages, solid: entry.solid, mjcf })
+    Ok(DescribedRobot {
+        urdf_file,
+        urdf,
+        srdf,
+        srdf_found,
+        rates: rates.unwrap_or_default(),
+        srdf_beside,
+        packages,
+        solid: entry.solid,
+        mjcf,
+    })
 }
 
 impl DescribedRobot {

@@ -119,7 +119,13 @@ pub(super) fn parse(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<Optio
         }
         let number = |i: usize| text.number(row[i], "a number");
         let value = number(time)?;
-        read.times.push(if times == over { value } else { value * times / over });
+        let seconds = if times == over { value } else { value * times / over };
+        if !seconds.is_finite() {
+            return Err(text
+                .error(row[time], "the time is too large")
+                .expected("a finite number of seconds"));
+        }
+        read.times.push(seconds);
         let rows = [&mut read.positions, &mut read.velocities, &mut read.accelerations];
         for ((matching, group), rows) in matched.iter().zip(&groups).zip(rows) {
             let Some(matching) = matching else { continue };

@@ -1,10 +1,10 @@
 //! `trajectory_msgs/JointTrajectory` of ROS as JSON and YAML, also inside of `RobotTrajectory` and `DisplayTrajectory` of MoveIt.
 
-use super::{GUIDE, TrajectoryFile, yaml};
+use super::{GUIDE, TrajectoryFile};
 use crate::columns::{Column, Fault, HELP, Matching};
 use crate::error::{Error, ErrorKind};
 use crate::files::decode;
-use crate::json;
+use crate::{json, yaml};
 use serde::Deserialize;
 use serde_json::Value;
 use std::fmt::Write as _;

@@ -249,6 +249,58 @@ fn what_controllers_run_is_what_is_checked() {
     );
 }
 
+/// MoveIt's file beside the SRDF comes before the URDF, and the problem before both.
+#[test]
+fn limits_are_those_of_the_problem_of_moveit_and_of_the_urdf() {
+    let folder = tempfile::tempdir().unwrap();
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/><axis xyz='0 0 1'/>\
+             <limit effort='1' velocity='2'/></joint>"
+        )
+    };
+    let joints = [joint("a", "base", "b1"), joint("b", "b1", "b2"), joint("c", "b2", "b3")].concat();
+    let links = ["base", "b1", "b2", "b3"].map(|name| format!("<link name='{name}'/>")).concat();
+    let config = folder.path().join("three_moveit_config/config");
+    std::fs::create_dir_all(&config).unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("three.urdf", &format!("<robot name='three'>{links}{joints}</robot>"));
+    write("three_moveit_config/config/three.srdf", "<robot name='three'/>");
+    write(
+        "three_moveit_config/config/joint_limits.yaml",
+        "joint_limits:\n  b:\n    has_velocity_limits: true\n    max_velocity: 0.5\n    has_acceleration_limits: true\n    \
+         max_acceleration: 3\n  c:\n    has_velocity_limits: true\n    max_velocity: 0.5\n  finger:\n    has_velocity_limits: true\n    \
+         max_velocity: 9\n",
+    );
+    let problem = "[robot]\nurdf = \"three.urdf\"\nmax_velocity = { c = 0.25 }\n[motion]\nstart = [0, 0, 0]\ngoal = [1, 0, 0]\n";
+    write("three.toml", problem);
+    let scene = Scene::load(folder.path().join("three.toml")).unwrap();
+    for (joint, velocity, acceleration) in [(0, 2.0, 1.0), (1, 0.5, 3.0), (2, 0.25, 1.0)] {
+        let mut end = vec![0.0; 3];
+        // Long enough for full speed, and not so long that this is reached within one interval of the grid.
+        end[joint] = [9.0, 0.6, 0.6][joint];
+        let rows = vec![
+            vec![0.0; 3],
+            end.iter().map(|x| x / 3.0).collect(),
+            end.iter().map(|x| x / 1.5).collect(),
+            end,
+        ];
+        let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+        let made = timed(&scene, &path, &Pace::default());
+        assert!((made.trajectory.fastest(joint).amount - velocity).abs() < 1e-3, "{joint}");
+        assert!((made.trajectory.hardest(joint).amount - acceleration).abs() < 1e-3, "{joint}");
+        assert!(
+            made.notes.len() == 1 && made.notes[0].contains("acceleration of a, c is known"),
+            "{:?}",
+            made.notes
+        );
+    }
+    let wrong = problem.replace("{ c =", "{ d =");
+    write("three.toml", &wrong);
+    let error = Scene::load(folder.path().join("three.toml")).unwrap_err().to_string();
+    assert!(error.contains("\"d\"") && error.contains("\"a\", \"b\", \"c\""), "{error}");
+}
+
 #[test]
 fn robots_without_trajectories_say_so() {
     for name in ["easy", "gempa-2", "wrench", "velocities", "crossing"] {
@@ -282,12 +334,12 @@ fn judged(name: &str, count: usize, step: f64) -> [usize; 2] {
     for case in 0..count {
         let mut knots = made.knots().clone();
         let last = knots.times.len() - 1;
-        for _ in 0..rng.random_range(1..4) {
+        for _ in 0..rng.random_range(1..6) {
             let (knot, joint) = (rng.random_range(0..=last), rng.random_range(0..names.len()));
-            let size = mp_math::powi(rng.random_range(0.0..1.0), 3);
+            let size: f64 = rng.random_range(0.0..1.0);
             match rng.random_range(0..3) {
                 0 if knot > 0 && knot < last => {
-                    knots.positions[knot][joint] += size * rng.random_range(-1.0..1.0)
+                    knots.positions[knot][joint] += 2.0 * size * rng.random_range(-1.0..1.0)
                 }
                 1 => knots.velocities[knot][joint] += 10.0 * size * rng.random_range(-1.0..1.0),
                 // Fewer points: the curve between the others is another.
@@ -333,8 +385,8 @@ fn judged(name: &str, count: usize, step: f64) -> [usize; 2] {
 #[test]
 fn changed_curves_are_judged_as_samples_judge_them() {
     for name in ["arm", "arm-7"] {
-        let [free, hit] = judged(name, 40, 2e-3);
-        assert!(free > 3 && hit > 3, "{name}: {free} free, {hit} in contact");
+        let [free, hit] = judged(name, 80, 2e-3);
+        assert!(free > 3 && hit > 1, "{name}: {free} free, {hit} in contact");
     }
 }
 

@@ -6,7 +6,7 @@ use crate::{Error, brief, count, plain};
 use mp_cspace::{FloatingJoints, JointRange};
 use mp_geom::Aabb;
 use mp_io::{DescribedRobot, Files, MovingJoints, RobotEntry, RobotFilePart, RobotPart, RobotProblem};
-use mp_robot::{Arm, ArmError, ArmModel, Kinematics, UrdfError};
+use mp_robot::{Arm, ArmError, ArmModel, JointKind, Kinematics, UrdfError};
 
 /// One robot of a problem.
 #[derive(Clone, Copy)]
@@ -56,6 +56,16 @@ fn described(files: &dyn Files, robot: One<'_>) -> Result<ArmModel, Error> {
     for (i, (joint, [low, high])) in entry.limits.iter().enumerate() {
         let limited = model.with_limits(joint, *low, *high);
         model = limited.map_err(|e| robot.fault(RobotPart::Limits(i), e, NAMES))?;
+    }
+    // Of joints that the robot does not have nothing is said: the file may be of more of it.
+    for (joint, rates) in &described.rates {
+        for (rate, accelerations) in rates.iter().zip([false, true]) {
+            if let Some(rate) = rate
+                && model.joints.iter().any(|j| j.name == *joint && j.kind != JointKind::Fixed)
+            {
+                model = model.with_rate(Some(joint), *rate, accelerations)?;
+            }
+        }
     }
     let velocities = entry.max_velocity.iter().map(|(joint, rate)| (joint, *rate, RobotPart::Velocity));
     let all = entry.max_acceleration.iter().map(|(joint, rate)| (joint, *rate, RobotPart::Acceleration));

@@ -1,6 +1,5 @@
 //! YAML as the values of JSON.
 
-use super::GUIDE;
 use crate::error::{Error, ErrorKind};
 use saphyr_parser::{Event, Parser, ScalarStyle, StrInput};
 use serde_json::{Map, Number, Value};
@@ -9,7 +8,7 @@ use serde_json::{Map, Number, Value};
 const DEPTH: usize = 32;
 
 /// The first document of `text`, which errors call `file`.
-pub(super) fn value(file: &str, text: &str) -> Result<Value, Error> {
+pub(crate) fn value(file: &str, text: &str) -> Result<Value, Error> {
     let mut reader = Reader { file, text, events: Parser::new_from_str(text) };
     loop {
         match reader.next()? {
@@ -39,7 +38,7 @@ impl<'t> Reader<'t> {
     fn error(&self, at: usize, message: impl Into<String>) -> Error {
         let at = self.text.char_indices().nth(at).map_or(self.text.len(), |(at, _)| at);
         Error::at(ErrorKind::Format, self.file, self.text, at, 1, message.into())
-            .help(format!("the format is described in docs/formats/{GUIDE}"))
+            .help("YAML is read as far as messages of ROS and files of MoveIt use it")
     }
 
     /// The value that begins with `event`.
@@ -48,6 +47,9 @@ impl<'t> Reader<'t> {
             return Err(self.error(at, "this is nested too deep"));
         }
         match event {
+            Event::Scalar(.., Some(tag)) if !tag.is_yaml_core_schema() => {
+                Err(self.error(at, "this has a tag, which is not read"))
+            }
             Event::Scalar(text, style, ..) => Ok(scalar(&text, style == ScalarStyle::Plain)),
             Event::SequenceStart(..) => {
                 let mut items = Vec::new();
