@@ -66,6 +66,7 @@ mod finish;
 #[cfg(all(feature = "pictures", feature = "roadmaps"))]
 pub mod fuzz;
 mod goals;
+mod links;
 mod numbers;
 mod output;
 mod parallel;

@@ -1,7 +1,5 @@
 //! A scene of any kind, and what can be done with it.
 
-mod arms;
-
 use crate::explain::{check_ends, explain, lint};
 use crate::finish::certificate::certificate;
 use crate::finish::check::check;
@@ -42,12 +40,12 @@ use std::time::Duration;
 /// ```
 #[derive(Clone)]
 pub struct Scene {
-    robot: Arc<dyn Robot>,
+    pub(crate) robot: Arc<dyn Robot>,
     file: Option<PathBuf>,
     pub(crate) files: Arc<SceneFiles>,
     /// What it was made from, if that is a document of an editor.
     document: Option<Arc<EditedScene>>,
-    notes: Arc<[String]>,
+    pub(crate) notes: Arc<[String]>,
     /// What readers of its files remarked.
     pub(crate) remarks: Arc<[String]>,
     kind: Option<&'static str>,

@@ -165,12 +165,15 @@ enum RateEntry {
     Joints(BTreeMap<String, f64>),
 }
 
+/// Limits of joints by name, or of all.
+type Rates = Vec<(Option<String>, f64)>;
+
 /// The limits of an entry, and where it is.
 fn rates_of(
     source: &TomlText<'_>,
     what: &str,
     entry: Option<Spanned<RateEntry>>,
-) -> Result<(Vec<(Option<String>, f64)>, Range<usize>), Error> {
+) -> Result<(Rates, Range<usize>), Error> {
     let Some(entry) = entry else { return Ok((Vec::new(), 0..0)) };
     let span = entry.span();
     let rates: Vec<_> = match entry.into_inner() {

@@ -1,7 +1,6 @@
 //! What only scenes of arms are asked for.
 
-use super::Scene;
-use crate::{ArmScene, Error, Reached};
+use crate::{ArmScene, Error, Reached, Scene};
 use mp_cspace::Interrupt;
 use mp_io::PoseEntry;
 use nalgebra::Isometry3;
