@@ -362,7 +362,7 @@ impl Scene {
     }
 
     /// The configuration of a row.
-    fn state(&self, row: &[f64]) -> Result<Configuration, Error> {
+    pub(crate) fn state(&self, row: &[f64]) -> Result<Configuration, Error> {
         state(&*self.robot, row)
     }
 
