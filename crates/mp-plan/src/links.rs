@@ -38,7 +38,7 @@ impl Scene {
         let Some(arm) = self.robot::<ArmScene>() else { return Ok(None) };
         let Some(next) = arm.next_part(end, interrupt)? else { return Ok(None) };
         let (notes, kept) = (next.said(), self.clearance_kept());
-        let scene = Self { robot: Arc::new(next), notes: notes.into(), ..self.clone() };
+        let scene = self.clone().with_notes(notes).of_robot(Arc::new(next));
         if kept > 0.0 { scene.keeping(kept) } else { Ok(scene) }.map(Some)
     }
 

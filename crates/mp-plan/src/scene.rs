@@ -45,7 +45,7 @@ pub struct Scene {
     pub(crate) files: Arc<SceneFiles>,
     /// What it was made from, if that is a document of an editor.
     document: Option<Arc<EditedScene>>,
-    pub(crate) notes: Arc<[String]>,
+    notes: Arc<[String]>,
     /// What readers of its files remarked.
     pub(crate) remarks: Arc<[String]>,
     kind: Option<&'static str>,
@@ -168,6 +168,11 @@ impl Scene {
     #[must_use]
     pub fn with_file(self, file: impl Into<PathBuf>) -> Self {
         Self { file: Some(file.into()), ..self }
+    }
+
+    /// The same with another robot.
+    pub(crate) fn of_robot(self, robot: Arc<dyn Robot>) -> Self {
+        Self { robot, ..self }
     }
 
     pub(crate) fn with_notes(self, notes: Vec<String>) -> Self {
