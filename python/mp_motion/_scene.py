@@ -147,8 +147,8 @@ class Scene:
     Parameters
     ----------
     name : str or path
-        A file (GEMPA ``.env``, OMPL.app ``.cfg``, ``.toml``, ``.mp.json``, ``.urdf``, MJCF ``.xml``, a map ``.yaml``) or a shipped
-        scene: :func:`scenes` lists them. To make a scene in code, use :meth:`rigid`, :meth:`arm`, :meth:`plane` or
+        A file (GEMPA ``.env``, OMPL.app ``.cfg``, ``.toml``, ``.mp.json``, ``.urdf``, MJCF ``.xml``, a map ``.yaml``) or
+        a shipped scene: :func:`scenes` lists them. To make a scene in code, use :meth:`rigid`, :meth:`arm`, :meth:`plane` or
         :meth:`from_dict`.
 
     Raises

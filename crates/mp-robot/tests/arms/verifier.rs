@@ -131,7 +131,7 @@ impl Pieces {
         let x = t * self.0.len() as f64;
         let piece = (x as usize).min(self.0.len() - 1);
         let u = x - piece as f64;
-        let value = |c: &[f64; 6]| (0..6).map(|i| c[i] * u.powi(i as i32)).sum::<f64>();
+        let value = |c: &[f64; 6]| (0..6).map(|i| c[i] * mp_math::powi(u, i as i32)).sum::<f64>();
         self.0[piece].iter().map(value).collect()
     }
 }
