@@ -241,7 +241,7 @@ pub(crate) fn find<'n>(name: &'n str, wanted: &[Column]) -> Option<(usize, Optio
     readings().find_map(exact).or_else(|| readings().find_map(loose))
 }
 
-/// Name and unit of `name [unit]` and `name (unit)`.
+/// Name and unit of `name [unit]` and `name (unit)`. What has brackets itself is no unit.
 pub(crate) fn bracketed(name: &str) -> Option<(&str, &str)> {
     let name = name.trim();
     let open = match name.chars().last()? {
@@ -250,7 +250,7 @@ pub(crate) fn bracketed(name: &str) -> Option<(&str, &str)> {
         _ => return None,
     };
     let (own, unit) = name[..name.len() - 1].rsplit_once(open)?;
-    Some((own.trim(), unit.trim()))
+    (!unit.contains(['[', ']', '(', ')'])).then(|| (own.trim(), unit.trim()))
 }
 
 /// Units that may end a name without brackets.

@@ -42,21 +42,27 @@ impl Scene {
         if kept > 0.0 { scene.keeping(kept) } else { Ok(scene) }.map(Some)
     }
 
-    /// Whether the robot is an arm whose base stands still: bodies of such can be [drawn](Self::drawn).
+    /// Whether the robot is an arm whose base stands still: its bodies can be [placed](Self::reaching_from).
     #[must_use]
     pub fn has_links(&self) -> bool {
         self.robot::<ArmScene>().is_some()
     }
 
-    /// The configuration near `from` in which a body of an arm has the pose `pose`, or, where that is not reached, only its origin is
-    /// there. `body` is a number in [`bodies`](Self::bodies). `None` when neither is reached, when no joint moves the body, and when the
-    /// robot is no arm whose base stands still. Whether it is free is not looked at.
+    /// Inverse kinematics from one seed, for drags: the configuration near `from` in which a body of an arm has the pose `pose` in the
+    /// world (metres). Where that is out of reach, only the body's origin is there, turned in any way. `body` is its index in
+    /// [`bodies`](Self::bodies). `None` when neither is reached, no joint moves the body, or the robot is no arm whose base stands still. The
+    /// configuration is within the limits of the joints, and may be in collision.
     ///
     /// # Errors
     /// When `from` does not have as many numbers as the robot's configurations.
-    pub fn drawn(&self, body: usize, pose: &Isometry3<f64>, from: &[f64]) -> Result<Option<Vec<f64>>, Error> {
+    pub fn reaching_from(
+        &self,
+        body: usize,
+        pose: &Isometry3<f64>,
+        from: &[f64],
+    ) -> Result<Option<Vec<f64>>, Error> {
         let from = self.state(from)?;
-        let drawn = self.robot::<ArmScene>().and_then(|arm| arm.drawn(body, pose, &from));
-        Ok(drawn.map(|row| self.robot.row(&row)))
+        let reached = self.robot::<ArmScene>().and_then(|arm| arm.reaching_from(body, pose, &from));
+        Ok(reached.map(|q| self.robot.row(&q)))
     }
 }

@@ -12,9 +12,9 @@ use crate::run::prepare;
 use crate::run::{regions::RegionalWork, scene_roadmap::SceneRoadmap};
 use crate::sweep::{resample, sweep, track};
 use crate::{
-    Body, Certificate, Column, Constraint, Control, Error, Explanation, Finished, FoundRun, Length, Pace,
+    Body, Certificate, Column, Constraint, Control, Error, Explanation, Finished, FoundRun, Length,
     PathFileKind, PathFormat, PathRows, PreparedRun, RelaxField, Report, Request, Robot, SceneFiles, Sweep,
-    TimedPath, Track, Trajectory, Verdict,
+    Track, Verdict,
 };
 use mp_cspace::registry::PlannerInfo;
 use mp_cspace::{Configuration, Interrupt, Interrupted, Rng, Space, Validity};
@@ -566,39 +566,6 @@ impl Scene {
     /// As [`check`](Self::check).
     pub fn check_until(&self, path: &PathRows, interrupt: &Interrupt) -> Result<Verdict, Error> {
         check(&*self.robot, path, interrupt)
-    }
-
-    /// Gives a path times: goes along it as fast as the limits of velocity and acceleration allow, with rounded corners (TOPP-RA), and proves the
-    /// curve that a controller runs between the points of the trajectory. The same path and pace give the same trajectory.
-    ///
-    /// ```
-    /// use mp_plan::{Interrupt, Pace, PathRows, Request, Scene};
-    /// let scene = Scene::find("arm-6")?;
-    /// let report = scene.plan(&Request::default())?;
-    /// let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows: report.path.unwrap_or_default() };
-    /// let timed = scene.time(&path, &Pace { velocity: 0.5, ..Pace::default() }, &Interrupt::never())?;
-    /// assert!(timed.trajectory.fastest(0).amount <= 0.5 * 3.1416);
-    /// # Ok::<(), mp_plan::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// When the robot is no arm whose base stands still or moves in the plane; when the path is not free, or its curve is not proved before
-    /// `interrupt` says to end; and when the pace is not valid.
-    pub fn time(&self, path: &PathRows, pace: &Pace, interrupt: &Interrupt) -> Result<TimedPath, Error> {
-        crate::finish::trajectory::time(&*self.robot, path, pace, interrupt)
-    }
-
-    pub(crate) fn robot_rates(&self) -> Option<Vec<[Option<f64>; 2]>> {
-        self.robot.rates()
-    }
-
-    /// Verifies the curve of a trajectory from the start to a goal: that it is free, and within the limits of position, velocity and acceleration
-    /// that are known. Its joints must be those of [`columns`](Self::columns), in this order.
-    ///
-    /// # Errors
-    /// When the trajectory is of another robot, or the robot has none. One that is not free is no error: see [`Verdict::free`].
-    pub fn check_trajectory(&self, trajectory: &Trajectory, interrupt: &Interrupt) -> Result<Verdict, Error> {
-        crate::finish::trajectory::check(&*self.robot, trajectory, interrupt)
     }
 
     /// The certificate of a path: a file with which another program proves again that it is free. `clearance` (m) is that of the path, 0 if

@@ -1,6 +1,8 @@
-//! Trajectories from files, and as the content of files.
+//! Trajectories of a scene: paths that get times, the check of curves, and their files.
 
-use crate::{Error, Scene};
+use crate::finish::trajectory::{check, time};
+use crate::{Error, Pace, PathRows, Scene, TimedPath, Verdict};
+use mp_cspace::Interrupt;
 use mp_io::{Column, TrajectoryFile, TrajectoryKind};
 use mp_time::{Interpolation, Knots, Trajectory};
 use std::path::Path;
@@ -9,7 +11,36 @@ impl Scene {
     /// Whether the robot has trajectories: an arm does whose base stands still or moves in the plane.
     #[must_use]
     pub fn has_trajectories(&self) -> bool {
-        self.robot_rates().is_some()
+        self.robot.rates().is_some()
+    }
+
+    /// Gives a path times: goes along it as fast as the limits of velocity and acceleration allow, with rounded corners (TOPP-RA), and proves the
+    /// curve that a controller runs between the points of the trajectory. The same path and pace give the same trajectory.
+    ///
+    /// ```
+    /// use mp_plan::{Interrupt, Pace, PathRows, Request, Scene};
+    /// let scene = Scene::find("arm-6")?;
+    /// let report = scene.plan(&Request::default())?;
+    /// let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows: report.path.unwrap_or_default() };
+    /// let timed = scene.time(&path, &Pace { velocity: 0.5, ..Pace::default() }, &Interrupt::never())?;
+    /// assert!(timed.trajectory.fastest(0).amount <= 0.5 * 3.1416);
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the robot is no arm whose base stands still or moves in the plane; when the path is not free, or its curve is not proved before
+    /// `interrupt` says to end; and when the pace is not valid.
+    pub fn time(&self, path: &PathRows, pace: &Pace, interrupt: &Interrupt) -> Result<TimedPath, Error> {
+        time(&*self.robot, path, pace, interrupt)
+    }
+
+    /// Verifies the curve of a trajectory from the start to a goal: that it is free, and within the limits of position, velocity and acceleration
+    /// that are known. Its joints must be those of [`columns`](Self::columns), in this order.
+    ///
+    /// # Errors
+    /// When the trajectory is of another robot, or the robot has none. One that is not free is no error: see [`Verdict::free`].
+    pub fn check_trajectory(&self, trajectory: &Trajectory, interrupt: &Interrupt) -> Result<Verdict, Error> {
+        check(&*self.robot, trajectory, interrupt)
     }
 
     /// Reads a trajectory of the robot from a file: `.csv`, `.json` or `.yaml`. The curve between its points is `curve`, or what

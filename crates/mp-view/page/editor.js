@@ -57,7 +57,7 @@ export class Editor {
     /** @type {doc.History | null} */ this.history = null;
     /** The document as the session has it. @type {Document | null} */ this.sent = null;
     /** @type {Selection | null} */ this.selection = null;
-    /** By which body an arm is drawn. */ this.held = 0;
+    /** By which body an arm is dragged. */ this.held = 0;
     /** Called after anything changed here. @type {(() => void)[]} */ this.onchange = [];
     /** Commands wait for the ones before; how many there are. */ this.queue = Promise.resolve();
     this.waiting = 0;
@@ -289,23 +289,23 @@ export class Editor {
       },
     };
   }
-  /** An arm is drawn by one of its bodies. @param {End} end @returns {Target | null} */
+  /** An arm is dragged by one of its bodies. @param {End} end @returns {Target | null} */
   linkTarget(end) {
     const first = this.ends.at(end);
     const pose = first?.poses.slice(7 * this.held, 7 * this.held + 7);
     if (!first || pose?.length !== 7) return null;
     const frame = { origin: /** @type {Three} */ (pose.slice(0, 3)), turn: /** @type {Quaternion} */ (pose.slice(3)) };
-    const draw = (/** @type {Change} */ change) => this.workbench.attempt(() => this.ends.draw(end, this.held, changedPose(pose, 0, frame.origin, change)));
+    const reach = (/** @type {Change} */ change) => this.workbench.attempt(() => this.ends.reach(end, this.held, changedPose(pose, 0, frame.origin, change)));
     let words = "";
     return {
       frame,
       modes: ["move", "turn"],
       planar: false,
       words: () => (words = verdictWords(this.ends.verdicts.get(end)) || words),
-      preview: draw,
+      preview: reach,
       done: async (change) => {
-        if (change) await draw(change);
-        await this.ends.drawn(end, change ? null : first);
+        if (change) await reach(change);
+        await this.ends.reached(end, change ? null : first);
       },
     };
   }

@@ -18,8 +18,8 @@ export class Ends {
     /** Ends whose present poses were given with the row. @type {Set<End>} */ this.posed = new Set();
     /** Whether start or goals are not those of the scene. */ this.moved = { start: false, goals: false };
     this.asking = false;
-    /** Where a body is drawn to next. @type {{end: End, body: number, pose: number[]} | null} */ this.wish = null;
-    /** While bodies are drawn. @type {Promise<void> | null} */ this.drawing = null;
+    /** Where a body is to be next. @type {{end: End, body: number, pose: number[]} | null} */ this.wish = null;
+    /** While wishes are asked for. @type {Promise<void> | null} */ this.asked = null;
   }
   /** Takes the ends of a scene. @param {Scene} scene */
   show(scene) {
@@ -47,10 +47,10 @@ export class Ends {
   }
   /** Moves an end so that a body of the robot has this pose, as far as the robot reaches. Of several wishes the last counts.
    * @param {End} end @param {number} body @param {number[]} pose */
-  draw(end, body, pose) {
+  reach(end, body, pose) {
     this.wish = { end, body, pose };
-    this.drawing ??= this.grant().finally(() => (this.drawing = null));
-    return this.drawing;
+    this.asked ??= this.grant().finally(() => (this.asked = null));
+    return this.asked;
   }
   async grant() {
     const { scene } = this;
@@ -59,15 +59,15 @@ export class Ends {
       this.wish = null;
       const now = this.at(end)?.row;
       if (!now) return;
-      const { row, poses } = await this.session.request({ do: "draw", row: now, body, pose });
+      const { row, poses } = await this.session.request({ do: "reach", row: now, body, pose });
       if (scene !== this.scene) return;
       if (row) this.set(end, row, { settled: false, poses });
     }
   }
-  /** Ends the drawing of a body: the end stays where it is, or goes back. @param {End} end @param {Configuration | null} back */
-  async drawn(end, back) {
+  /** Ends a drag by a body: the end stays where it is, or goes back. @param {End} end @param {Configuration | null} back */
+  async reached(end, back) {
     if (back) this.wish = null;
-    await this.drawing;
+    await this.asked;
     const at = back ?? this.at(end);
     if (at) this.set(end, at.row, { poses: at.poses });
   }

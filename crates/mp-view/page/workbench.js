@@ -18,7 +18,7 @@ export class Workbench {
     this.ends = new Ends(session);
     /** What can be edited, or null. @type {Message | null} */ this.document = null;
     /** Whether the session has a scene open. */ this.open = false;
-    /** Whether bodies of the robot can be drawn: docs/formats/session.md. */ this.links = false;
+    /** Whether bodies of the robot can be put to places: docs/formats/session.md. */ this.links = false;
     /** How many parts of the motion come after this one. */ this.partsLeft = 0;
     /** Called after a scene was opened (“open”), or came back changed from the planner (“edit”).
      * @type {((reply: Message, how: "open" | "edit") => void)[]} */ this.onopened = [];

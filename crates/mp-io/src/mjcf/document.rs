@@ -142,6 +142,11 @@ impl<'m> Model<'m> {
         )
     }
 
+    /// The error at `node` of a model that is larger than what is read.
+    pub(super) fn too_large(&self, node: Element<'m>, message: impl Into<String>) -> Error {
+        self.error(node, message).with_kind(ErrorKind::TooLarge).help("make the model smaller")
+    }
+
     /// An attribute that `node` must have itself.
     pub(super) fn own(&self, node: Element<'m>, key: &str) -> Result<&'m str, Error> {
         node.attribute(key).filter(|value| !value.trim().is_empty()).ok_or_else(|| {

@@ -2,7 +2,7 @@
 
 use super::document::{Classes, Element, Model, Said};
 use super::tree::{Numbers, Reader};
-use crate::error::{Error, ErrorKind};
+use crate::error::Error;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// The most pairs of links that may touch.
@@ -159,11 +159,7 @@ impl<'m> Reader<'_, 'm> {
         if may_touch.len() > MAX_PAIRS {
             let root = self.model.documents[0].root_element();
             let message = format!("more than {MAX_PAIRS} pairs of bodies touch by contype and conaffinity");
-            return Err(self
-                .model
-                .error(root, message)
-                .with_kind(ErrorKind::TooLarge)
-                .help("make the model smaller"));
+            return Err(self.model.too_large(root, message));
         }
         Ok([may_touch, kept_apart])
     }

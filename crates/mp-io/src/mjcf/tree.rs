@@ -4,7 +4,7 @@ use super::document::{Classes, Element, MAX_DEPTH, Model, Said, too_deep};
 use super::geom::{GeomShape, MeshAsset, assets};
 use super::pairs::{Bits, Couplings, PairedGeoms};
 use super::pose::{Compiler, turned};
-use crate::error::{Error, ErrorKind};
+use crate::error::Error;
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
 use nalgebra::{Isometry3, Translation3, Unit, Vector3};
@@ -209,11 +209,7 @@ impl<'a, 'm> Reader<'a, 'm> {
         }
         if self.links.len() >= MAX_BODIES {
             let message = format!("the model has more than {MAX_BODIES} bodies and joints");
-            return Err(self
-                .model
-                .error(node, message)
-                .with_kind(ErrorKind::TooLarge)
-                .help("make it smaller"));
+            return Err(self.model.too_large(node, message));
         }
         if !self.names.insert(format!("link {name}")) {
             let message = format!("there are two bodies named \"{}\"", crate::text::clipped(name));

@@ -196,13 +196,19 @@ fn names(trajectory: &TrajectoryFile) -> String {
     serde_json::to_string(&names).unwrap_or_default()
 }
 
+/// Positions, velocities and accelerations of each point as lists, and its time: seconds and nanoseconds.
+fn points(trajectory: &TrajectoryFile) -> impl Iterator<Item = ([String; 3], [i64; 2])> {
+    let TrajectoryFile { times, positions, velocities, accelerations, .. } = trajectory;
+    let point = |(i, time): (usize, &f64)| {
+        ([positions.get(i), velocities.get(i), accelerations.get(i)].map(list), duration(*time))
+    };
+    times.iter().enumerate().map(point)
+}
+
 /// As [`TrajectoryFile::to_text`].
 pub(super) fn json_text(trajectory: &TrajectoryFile) -> String {
-    let TrajectoryFile { times, positions, velocities, accelerations, .. } = trajectory;
     let mut out = format!("{{\"joint_names\": {}, \"points\": [", names(trajectory));
-    for (i, time) in times.iter().enumerate() {
-        let [p, v, a] = [positions.get(i), velocities.get(i), accelerations.get(i)].map(list);
-        let [sec, nanosec] = duration(*time);
+    for (i, ([p, v, a], [sec, nanosec])) in points(trajectory).enumerate() {
         let _ = write!(
             out,
             "{}\n{{\"positions\": {p}, \"velocities\": {v}, \"accelerations\": {a}, \"effort\": [], \
@@ -215,11 +221,8 @@ pub(super) fn json_text(trajectory: &TrajectoryFile) -> String {
 
 /// As [`TrajectoryFile::to_text`].
 pub(super) fn yaml_text(trajectory: &TrajectoryFile) -> String {
-    let TrajectoryFile { times, positions, velocities, accelerations, .. } = trajectory;
     let mut out = format!("joint_names: {}\npoints:\n", names(trajectory));
-    for (i, time) in times.iter().enumerate() {
-        let [p, v, a] = [positions.get(i), velocities.get(i), accelerations.get(i)].map(list);
-        let [sec, nanosec] = duration(*time);
+    for ([p, v, a], [sec, nanosec]) in points(trajectory) {
         let _ = writeln!(
             out,
             "- positions: {p}\n  velocities: {v}\n  accelerations: {a}\n  effort: []\n  \

@@ -138,9 +138,9 @@ fn explains_configurations() {
 }
 
 /// The events of a run give the tree of its report, and the result is that of planning without a session.
-/// Bodies of an arm are drawn to places; the path of a motion's part leads to the next part.
+/// The body of an arm reaches a place; the path of a motion's part leads to the next part.
 #[test]
-fn arms_are_drawn_and_motions_have_parts() {
+fn bodies_of_arms_reach_places_and_motions_have_parts() {
     let page = Page::new(Opening::default());
     let opened = page.ask(json!({"do": "open", "scene": "carry"}));
     assert_eq!(opened.head["links"], true);
@@ -151,15 +151,15 @@ fn arms_are_drawn_and_motions_have_parts() {
     // Four centimetres to the side.
     let mut pose = last(&start.poses);
     pose[1] += 0.04;
-    let drawn = page.ask(json!({"do": "draw", "row": start.row, "body": body, "pose": pose})).head;
-    let poses: Vec<f64> = serde_json::from_value(drawn["poses"].clone()).unwrap();
+    let reached = page.ask(json!({"do": "reach", "row": start.row, "body": body, "pose": pose})).head;
+    let poses: Vec<f64> = serde_json::from_value(reached["poses"].clone()).unwrap();
     assert!(last(&poses).iter().zip(&pose).all(|(a, b)| (a - b).abs() < 1e-6), "{poses:?} {pose:?}");
-    assert_ne!(drawn["row"], json!(start.row));
+    assert_ne!(reached["row"], json!(start.row));
     pose[0] += 100.0;
-    let far = page.ask(json!({"do": "draw", "row": start.row, "body": body, "pose": pose})).head;
+    let far = page.ask(json!({"do": "reach", "row": start.row, "body": body, "pose": pose})).head;
     assert!(far["row"].is_null(), "{far:?}");
     assert!(
-        page.refused(json!({"do": "draw", "row": start.row, "body": 0, "pose": [0, 0, 0, 0, 0, 0, 0]}))
+        page.refused(json!({"do": "reach", "row": start.row, "body": 0, "pose": [0, 0, 0, 0, 0, 0, 0]}))
             .contains("pose")
     );
 

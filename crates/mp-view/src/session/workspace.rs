@@ -75,7 +75,7 @@ impl Workspace {
             "thumbnail" => self.thumbnail(request),
             "path" => self.path(request),
             "check" => self.check(request),
-            "draw" => self.draw(request),
+            "reach" => self.reach(request),
             "next" => self.next(request),
             "field" => self.field(request),
             "save" => self.save(request),
@@ -330,16 +330,16 @@ impl Workspace {
     }
 
     /// The configuration that puts a body of an arm to a place.
-    fn draw(&self, request: &Message) -> Answer {
+    fn reach(&self, request: &Message) -> Answer {
         let scene = &self.opened()?.scene;
         let (row, pose) = (row_of(&request.head, "row")?, row_of(&request.head, "pose")?);
         let pose = of_seven(&pose).ok_or_else(|| {
             Error::new("`pose` of the request is no pose: x y z and the quaternion x y z w, not zero")
         })?;
-        let drawn = scene.drawn(number_of(&request.head, "body")? as usize, &pose, &row)?;
-        let poses = drawn.as_ref().map(|row| scene.poses(row)).transpose()?.unwrap_or_default();
+        let reached = scene.reaching_from(number_of(&request.head, "body")? as usize, &pose, &row)?;
+        let poses = reached.as_ref().map(|row| scene.poses(row)).transpose()?.unwrap_or_default();
         let poses: Vec<f64> = poses.iter().flat_map(crate::of_scene::seven).collect();
-        Ok(Message::default().with("row", drawn).with("poses", poses))
+        Ok(Message::default().with("row", reached).with("poses", poses))
     }
 
     /// Opens the next part of the motion, which begins where the last one ended.

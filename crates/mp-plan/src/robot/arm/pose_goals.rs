@@ -159,8 +159,8 @@ impl super::ArmScene {
         Ok(found.into_iter().map(reached).collect())
     }
 
-    /// See [`Scene::drawn`](crate::Scene::drawn).
-    pub(crate) fn drawn(
+    /// See [`Scene::reaching_from`](crate::Scene::reaching_from).
+    pub(crate) fn reaching_from(
         &self,
         body: usize,
         pose: &Isometry3<f64>,

@@ -205,7 +205,7 @@ browserTest("in the plane bodies keep z; a world that is no document lets start 
   assert.deepEqual([moved[0], ...moved.slice(2)], [at[0], ...at.slice(2)]);
 }));
 
-browserTest("an arm is drawn by its gripper, and each part of its motion is planned from where the last one ended", () => withPage("carry", async (driver) => {
+browserTest("an arm is dragged by its gripper, and each part of its motion is planned from where the last one ended", () => withPage("carry", async (driver) => {
   const state = () => driver.page.evaluate(async () => {
     const { viewer, links, partsLeft } = (await window.mpView.planner);
     const { start, robot } = viewer.scene;
