@@ -6,7 +6,7 @@ import math
 import operator
 import re
 from numbers import Real
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -32,9 +32,9 @@ def whole(name: str, value: Any, least: int = 0, most: int = MOST) -> int:
 
 def number(name: str, value: Any, *, above: float | None = None, least: float = -math.inf) -> float:
     """Return a finite number, larger than `above`, `least` or more."""
-    if isinstance(value, bool | np.bool_) or not isinstance(value, Real | np.number):
+    if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
         raise TypeError(f"`{name}` must be a number, not {value!r} ({type(value).__name__})")
-    given = float(value)
+    given = float(cast("float", value))
     if not math.isfinite(given) or given < least or (above is not None and given <= above):
         which = f" above {above:g}" if above is not None else "" if least == -math.inf else f" from {least:g} on"
         raise RequestError(f"`{name}` must be a finite number{which}, not {given}", kind="request")
@@ -45,7 +45,7 @@ def flag(name: str, value: Any) -> bool:
     """Return True or False."""
     if not isinstance(value, bool | np.bool_):
         raise TypeError(f"`{name}` must be True or False, not {value!r} ({type(value).__name__})")
-    return bool(value)
+    return bool(cast("bool", value))
 
 
 def text(name: str, value: Any) -> str:

@@ -83,7 +83,7 @@ def test_an_error_while_drawing_comes_after_the_results_before_it() -> None:
         list(mp.plan_many(mp.Scene(name) for name in ["easy", "nowhere"]))
     with pytest.raises(TypeError):
         list(mp.plan_many([1, 2]))  # type: ignore[list-item]
-    with pytest.raises(mp.Error, match="0 threads"):
+    with pytest.raises(mp.Error, match="`threads` must be 1 or more, not 0"):
         mp.plan_many([], threads=0)
     assert list(mp.plan_many([])) == []
 

@@ -401,7 +401,7 @@ def test_errors_are_of_the_customary_kinds(tmp_path: Path) -> None:
         scene.save(tmp_path / "there" / "scene.html")
     assert not (tmp_path / "there").exists()
     with pytest.raises(TypeError, match="count"):
-        scene.routes(1.5)  # pyright: ignore[reportArgumentType]
+        scene.routes(1.5)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="bound"):
         mp.Space([0], [math.nan])
     assert scene.roadmap("prm").nodes == 2000
