@@ -32,8 +32,9 @@ def whole(name: str, value: Any, least: int = 0, most: int = MOST) -> int:
 
 def number(name: str, value: Any, *, above: float | None = None, least: float = -math.inf) -> float:
     """Return a finite number, larger than `above`, `least` or more."""
+    shown = f"{value!r} ({type(value).__name__})"
     if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
-        raise TypeError(f"`{name}` must be a number, not {value!r} ({type(value).__name__})")
+        raise TypeError(f"`{name}` must be a number, not {shown}")
     given = float(cast("float", value))
     if not math.isfinite(given) or given < least or (above is not None and given <= above):
         which = f" above {above:g}" if above is not None else "" if least == -math.inf else f" from {least:g} on"
