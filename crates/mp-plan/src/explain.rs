@@ -1,8 +1,8 @@
 //! What is wrong with a configuration, or with the ends of a scene.
 
-use crate::numbers::told_apart;
 use crate::{Contact, End, Error, ErrorKind, Robot};
 use mp_cspace::{Clearance, Configuration, Space, Validity};
+use mp_kinds::numbers::told_apart;
 use serde::{Deserialize, Serialize};
 
 /// Why a configuration is free or not.

@@ -9,13 +9,13 @@ pub(crate) mod trajectory;
 use crate::finish::check::{clearance, fault_text, verified};
 use crate::finish::relax::relax_if_requested;
 use crate::path::states;
-use crate::possible::Possible;
 use crate::report::{RunStage, StageTime};
-use crate::robot::motion::{By, Counting, motions};
 use crate::{Control, Error, Finish, PathRows, Request, Robot, Stage, StoppedBy};
 use mp_cspace::erased::{AnyCheck, AnySpace};
 use mp_cspace::shorten::{Effort, reduce, shortcut, simplify};
 use mp_cspace::{Configuration, Factored, Interrupt, MotionCheck, MotionValidity, Path, Rng};
+use mp_kinds::motion::{By, Counting, motions};
+use mp_kinds::possible::Possible;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 

@@ -59,32 +59,26 @@
 //! Units are metres, radians and seconds. The crate prints nothing. It reports through `tracing`, with the spans `load`,
 //! `build`, `plan`, `roadmap`, `query`, `relax`, `shorten`, `verify`, `check` and `certificate`.
 
-mod error;
 mod explain;
 mod files;
 mod finish;
 #[cfg(all(feature = "pictures", feature = "roadmaps"))]
 pub mod fuzz;
-mod goals;
 mod links;
-mod numbers;
 mod output;
 mod parallel;
 mod path;
 #[cfg(feature = "pictures")]
 mod picture;
 mod portfolio_counts;
-mod possible;
 mod report;
 mod request;
-mod robot;
 mod run;
 mod scene;
 mod sweep;
 mod trajectory;
 mod watch;
 
-pub use error::{Error, ErrorKind};
 pub use explain::Explanation;
 pub use files::find::{SceneFiles, find_problem, shipped_files};
 pub use files::info;
@@ -94,8 +88,6 @@ pub use finish::check::Verdict;
 pub use finish::field::FieldImage;
 pub use finish::trajectory::{LeastAlong, LimitFault, Pace, TightCorner, TimedPath, TrajectoryVerdict};
 pub use finish::{Finished, shorten};
-pub use goals::GoalPart;
-pub use numbers::{brief, count, plain, positive_number};
 pub use output::{Claims, is_standard, make_folder, write_file};
 pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
@@ -105,14 +97,7 @@ pub use picture::film::{Film, FilmKind};
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
 pub use portfolio_counts::{PortfolioCounts, PortfolioSchedule};
 pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
-pub use request::{Budget, Finish, MetricName, MotionValidator, RelaxField, Request};
-pub use robot::motion::{AnyChecker, AnyMotion, AnyVerifier, Counting, TypedMotion};
-pub use robot::{
-    Appearance, ArmScene, Body, BodyShape, Checker, Column, Constraint, Contact, Counted, Description,
-    Deviation, Drivable, Drive, DriveModel, DrivenScene, End, FloatingScene, LinkedScene, LinkedSpace,
-    Measured, ModelBody, ModelFrame, ModelPair, ModelPart, Motion, MotionModel, MovingScene, PathFormat,
-    PlanarBody, PlanarScene, Queries, Reached, RigidScene, RigidSpace, Robot, SpeedBound, Step, WithMoving,
-};
+pub use request::{Budget, Finish, MotionValidator, RelaxField, Request};
 pub use run::planners::{meta_planners, planners, roadmap_planners};
 #[cfg(feature = "roadmaps")]
 pub use run::regions::{RegionalTally, RegionalWork};
@@ -129,6 +114,15 @@ pub use watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
 
 #[cfg(feature = "pictures")]
 pub use mp_render::{Mode, View};
+
+pub use mp_kinds::motion::{AnyChecker, AnyMotion, AnyVerifier, Counting, TypedMotion};
+pub use mp_kinds::{
+    Appearance, ArmScene, Body, BodyShape, Checker, Column, Constraint, Contact, Counted, Description,
+    Deviation, Drivable, Drive, DriveModel, DrivenScene, End, Error, ErrorKind, FloatingScene, GoalPart,
+    LinkedScene, LinkedSpace, Measured, MetricName, ModelBody, ModelFrame, ModelPair, ModelPart, Motion,
+    MotionModel, MovingScene, PathFormat, PlanarBody, PlanarScene, Queries, Reached, RigidScene, RigidSpace,
+    Robot, SpeedBound, Step, WithMoving, brief, count, plain, positive_number,
+};
 
 pub use mp_io::{FoundRobot, FreeTurns, PoseEntry, ProblemChanges, RobotPath, TrajectoryKind};
 pub use mp_robot::{SampledPair, SampledPairs, TouchReason};

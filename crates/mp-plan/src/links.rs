@@ -4,7 +4,6 @@ use crate::{ArmScene, Error, Reached, Scene};
 use mp_cspace::Interrupt;
 use mp_io::PoseEntry;
 use nalgebra::Isometry3;
-use std::sync::Arc;
 
 impl Scene {
     /// Configurations that place a link of an arm, the free ones first: see [`ArmScene::reaching`].
@@ -38,7 +37,7 @@ impl Scene {
         let Some(arm) = self.robot::<ArmScene>() else { return Ok(None) };
         let Some(next) = arm.next_part(end, interrupt)? else { return Ok(None) };
         let (notes, kept) = (next.said(), self.clearance_kept());
-        let scene = self.clone().with_notes(notes).of_robot(Arc::new(next));
+        let scene = self.clone().with_notes(notes).of_robot(mp_kinds::build::shared_arm(next));
         if kept > 0.0 { scene.keeping(kept) } else { Ok(scene) }.map(Some)
     }
 

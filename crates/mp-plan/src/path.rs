@@ -2,10 +2,8 @@
 
 use crate::{Column, Error, PathFormat, Robot};
 use mp_cspace::Configuration;
-use mp_cspace::angle::angle_difference;
 use mp_io::{Content, JointPath, PathFile};
 use serde::Serialize;
-use std::f64::consts::TAU;
 use std::path::Path;
 
 /// A path as rows of numbers, one configuration in each row, start first: the form in which paths are written, read and
@@ -141,29 +139,6 @@ impl PathRows {
             }
         }
     }
-}
-
-/// Rows of a path, in which numbers that are the same after a full turn, as `turning` says, go on from row to row by the shorter
-/// way and begin as in `given`: they may leave (-π, π], and never jump.
-pub(crate) fn continued(turning: &[bool], given: &[f64], mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    // The row before: as the space has it, and as it is written.
-    let (mut own, mut written) = (given.to_vec(), given.to_vec());
-    for row in &mut rows {
-        let next = row.clone();
-        for (i, x) in row.iter_mut().enumerate().filter(|(i, _)| turning.get(*i) == Some(&true)) {
-            let (Some(own), Some(written)) = (own.get(i), written.get(i)) else { continue };
-            let by = angle_difference(*own, *x);
-            let turns = ((written + by - *x) / TAU).round();
-            // Whole turns are added to the number itself, so that rounding does not add up.
-            if by.abs() <= 1e-12 {
-                *x = *written;
-            } else if turns != 0.0 {
-                *x += turns * TAU;
-            }
-        }
-        (own, written) = (next, row.clone());
-    }
-    rows
 }
 
 pub(crate) fn states(kind: &dyn Robot, path: &PathRows) -> Result<Vec<Configuration>, Error> {

@@ -5,7 +5,6 @@ use crate::finish::certificate::certificate;
 use crate::finish::check::check;
 use crate::finish::finish_given;
 use crate::path::state;
-use crate::robot::Constrained;
 use crate::run::plan::plan;
 use crate::run::prepare;
 #[cfg(feature = "roadmaps")]
@@ -20,8 +19,9 @@ use mp_cspace::registry::PlannerInfo;
 use mp_cspace::{Configuration, Interrupt, Interrupted, Rng, Space, Validity};
 use mp_geom::{Aabb, TriMesh, short_six_from_pose};
 use mp_io::{DocumentShape, SceneDocument};
+use mp_kinds::Constrained;
+use mp_kinds::build::Built;
 use nalgebra::{Isometry3, Point3};
-use std::any::Any;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -79,8 +79,12 @@ impl Scene {
     /// A scene with a robot of your own kind, or of one of the kinds of this crate: [`RigidScene`](crate::RigidScene),
     /// [`ArmScene`](crate::ArmScene), [`PlanarScene`](crate::PlanarScene).
     pub fn new(robot: impl Robot + 'static) -> Self {
+        Self::of_shared(Arc::new(robot))
+    }
+
+    fn of_shared(robot: Arc<dyn Robot>) -> Self {
         Self {
-            robot: Arc::new(robot),
+            robot,
             file: None,
             files: Arc::default(),
             document: None,
@@ -157,11 +161,12 @@ impl Scene {
 
     /// The robot, if it is of this kind.
     pub(crate) fn robot<K: 'static>(&self) -> Option<&K> {
-        (&*self.robot as &dyn Any).downcast_ref()
+        mp_kinds::build::of_kind(&*self.robot)
     }
 
-    pub(crate) fn of_kind(self, kind: &'static str) -> Self {
-        Self { kind: Some(kind), ..self }
+    pub(crate) fn built(built: Built) -> Self {
+        let Built { robot, kind, notes } = built;
+        Self { kind: Some(kind), notes: notes.into(), ..Self::of_shared(robot) }
     }
 
     /// Sets the file that reports name as the source of the scene.

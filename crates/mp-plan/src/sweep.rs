@@ -1,10 +1,11 @@
 //! Poses of a robot along a path, for pictures and animations.
 
-use crate::goals::turning;
-use crate::path::{continued, states};
+use crate::path::states;
 use crate::{Error, ErrorKind, PathRows, Robot};
 use mp_cspace::{Clearance, Configuration, MotionClearance, Space};
 use mp_geom::evenly;
+use mp_kinds::turns::continued;
+use mp_kinds::turns::turning;
 use nalgebra::{Isometry3, Point3};
 
 /// The poses of the moving bodies along a path, as pictures need them.

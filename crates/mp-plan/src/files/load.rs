@@ -3,10 +3,7 @@
 use super::without_problem;
 use crate::files::inputs::Recording;
 use crate::{Error, Scene, SceneFiles};
-use mp_io::{
-    Content, Disk, Files, GoalEntry, ProblemChanges, ProblemFile, RigidProblem, RobotProblem, SceneDocument,
-    StartEntry,
-};
+use mp_io::{Content, Disk, Files, ProblemChanges, ProblemFile, RigidProblem, SceneDocument};
 use std::path::Path;
 use std::sync::{Arc, PoisonError};
 
@@ -119,7 +116,9 @@ impl Scene {
                     Self::from_world_until(*problem, &files.interrupt()).map_err(of)?
                 }
                 ProblemFile::Body(task) => Self::from_task_until(*task, &files.interrupt()).map_err(of)?,
-                ProblemFile::Links(problem) => arm(files, *problem, before)?,
+                ProblemFile::Links(problem) => {
+                    Self::built(mp_kinds::build::arm(files, *problem, before.map(|scene| &*scene.robot))?)
+                }
             },
             None if matches!(named, Some(Content::Document | Content::JsonPath)) => {
                 let folder = file.parent().unwrap_or(Path::new(""));
@@ -182,30 +181,6 @@ impl Scene {
         let files = mp_io::Until { files: &Disk, interrupt: interrupt.clone() };
         Self::load_changed(&OneText { file: &file, text, files: &files }, &file, changes)
     }
-}
-
-/// The scene of an arm, whose base stands still or floats.
-fn arm(files: &dyn Files, problem: RobotProblem, before: Option<&Scene>) -> Result<Scene, Error> {
-    if problem.file.robots.iter().any(|robot| robot.floating.is_some()) {
-        let before = before.and_then(Scene::robot);
-        let scene = crate::FloatingScene::from_problem_after(files, problem, before)?;
-        let notes = scene.said();
-        return Ok(Scene::new(scene).of_kind("floating").with_notes(notes));
-    }
-    let chosen = |goal: &GoalEntry| matches!(goal, GoalEntry::All(values) if values.is_empty());
-    let open = matches!(&problem.file.start, StartEntry::All(values) if values.is_empty());
-    if problem.file.robots.iter().all(|robot| robot.driven.is_none())
-        && (open || problem.file.goals.iter().any(chosen))
-    {
-        return without_problem::with_chosen_ends(files, problem);
-    }
-    let scene = crate::ArmScene::from_problem_after(files, problem, before.and_then(Scene::robot))?;
-    let notes = scene.said();
-    let scene = match scene.driven()? {
-        Some(driven) => Scene::new(driven).of_kind("driven"),
-        None => Scene::new(scene).of_kind("arms"),
-    };
-    Ok(scene.with_notes(notes))
 }
 
 /// A text in place of one file, among other files.

@@ -1,9 +1,9 @@
 //! Which links of a robot may touch, found by sampling, and the SRDF that says so.
 
 use super::without_problem::robot_alone;
-use crate::robot::model_of;
 use crate::{Error, Interrupt, SceneFiles};
 use mp_io::{Content, Disk, Files, RobotProblem, Until, robot_name};
+use mp_kinds::model_of;
 use mp_robot::SampledPairs;
 use std::path::Path;
 

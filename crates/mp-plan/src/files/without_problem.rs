@@ -77,8 +77,7 @@ pub(crate) fn with_macros(files: &dyn Files, file: &Path, changes: &ProblemChang
 
 /// The scene of a problem of an arm that leaves its start, its goals or both open.
 pub(crate) fn with_chosen_ends(files: &dyn Files, problem: mp_io::RobotProblem) -> Result<Scene, Error> {
-    let (scene, notes) = crate::ArmScene::with_chosen_ends(files, problem)?;
-    Ok(Scene::new(scene).of_kind("arms").with_notes(notes))
+    Ok(Scene::built(mp_kinds::build::arm_with_chosen_ends(files, problem)?))
 }
 
 /// The problem of a URDF alone, without start and goal.

@@ -2,10 +2,7 @@
 
 use crate::explain::{enclosures, list};
 use crate::finish::trajectory::TrajectoryVerdict;
-use crate::goals::next_to;
-use crate::numbers::{brief, plain};
 use crate::path::states;
-use crate::robot::counted::Counted;
 use crate::{Error, PathRows, Robot};
 use mp_cspace::erased::AnyCheck;
 use mp_cspace::{
@@ -13,6 +10,9 @@ use mp_cspace::{
     path::{PathFault, PathReport},
     verify_path,
 };
+use mp_kinds::counted::Counted;
+use mp_kinds::goals::next_to;
+use mp_kinds::numbers::{brief, plain};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicU64;
 

@@ -1,9 +1,9 @@
 //! The fields that push snakes: made by name, and as an image of a world of the plane.
 
-use crate::robot::motion::Counting;
 use crate::{Error, RelaxField, Robot};
 use mp_cspace::erased::AnyGradient;
 use mp_cspace::{Configuration, Path, PushingField};
+use mp_kinds::motion::Counting;
 use mp_snake::{Field, Grid, Repulsion, With};
 use nalgebra::Vector2;
 use std::sync::Arc;

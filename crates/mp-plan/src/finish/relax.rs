@@ -1,12 +1,12 @@
 //! Relaxing a path by a snake.
 
 use super::field;
-use crate::possible::Possible;
-use crate::robot::motion::{By, Counting, motions};
 use crate::{Control, Error, Finish, RelaxField, Request, Robot, Stage};
 use mp_cspace::erased::{AnyCheck, AnyGradient, AnySpace};
 use mp_cspace::shorten::reduce;
 use mp_cspace::{Configuration, Demand, Interrupt, Path, Space, verify_path};
+use mp_kinds::motion::{By, Counting, motions};
+use mp_kinds::possible::Possible;
 use mp_snake::{Params, relax};
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;

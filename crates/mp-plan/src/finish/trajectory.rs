@@ -6,14 +6,14 @@
 
 use crate::explain::enclosures;
 use crate::finish::check::{end_faults, fault_text, verified, what_happens};
-use crate::goals::turning;
 use crate::path::states;
-use crate::robot::counted::Counted;
 use crate::{Error, PathRows, Robot, Verdict, brief, count, plain};
 use mp_cspace::erased::AnyCheck;
 use mp_cspace::{
     Clearance, Configuration, Curve, Interrupt, MotionCheck, MotionClearance, MotionValidity, Path,
 };
+use mp_kinds::counted::Counted;
+use mp_kinds::turns::turning;
 use mp_time::{BlendedPath, Interpolation, Knots, Limits, TimeError, Trajectory, timed};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;

@@ -204,7 +204,7 @@ pub(crate) fn reported(
     report.path_length = Some(finished.length);
     report.clearance = finished.clearance;
     let numbers = finished.path.rows.iter().flatten().copied();
-    report.fingerprint = Some(format!("{:016x}", crate::numbers::fingerprint(numbers)));
+    report.fingerprint = Some(format!("{:016x}", mp_kinds::numbers::fingerprint(numbers)));
     report.path = Some(finished.path.rows);
     Ok(report)
 }

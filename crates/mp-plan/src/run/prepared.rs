@@ -1,10 +1,6 @@
 //! A request prepared for a robot: the space, an index, a verifier, and the problems, planners and stops made from them.
 
 use crate::finish::field::TreeField;
-use crate::goals;
-use crate::possible::{Deadlines, Possible};
-use crate::robot::counted::QueryBudget;
-use crate::robot::motion::{AnyVerifier, By, Counting, motions};
 use crate::run::auto;
 use crate::run::planners::PlannerKind;
 use crate::run::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
@@ -15,6 +11,10 @@ use mp_cspace::{
     AnyProblem, BuildError, Configuration, Endpoint, Interrupt, Iterations, MotionCheck, MotionValidity,
     Nodes, ObstacleKnowledge, ParameterError, Problem, Stop, Straight, Workers, registry::PlannerInfo,
 };
+use mp_kinds::counted::QueryBudget;
+use mp_kinds::goals;
+use mp_kinds::motion::{AnyVerifier, By, Counting, motions};
+use mp_kinds::possible::{Deadlines, Possible};
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,11 +1,11 @@
 //! A roadmap by regions, in numbered items that may be done anywhere.
 
-use crate::robot::counted::queries_of_thread;
 use crate::run::planners::PlannerKind;
 use crate::run::prepared::Prepared;
 use crate::run::scene_roadmap::of_map;
 use crate::{Error, Request, Robot, SceneRoadmap};
 use mp_cspace::{Configuration, Interrupt, NodeId, Rng};
+use mp_kinds::counted::queries_of_thread;
 use mp_roadmap::{AnyEdgeChecker, InRegions, PATIENCE, Piece, Roadmap, erased::AnyRegions};
 use rand::RngExt;
 use std::fmt;

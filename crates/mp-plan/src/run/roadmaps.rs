@@ -196,7 +196,7 @@ impl<'p> RoadmapPlanner<'p> {
         file: Option<&GrowingFile<'_>>,
     ) -> Result<Self, Error> {
         let PlannerParts { problem, index, settings, workers, threads, queries } = parts;
-        let meter = QueryMeter { of_thread: crate::robot::counted::queries_of_thread, common: queries };
+        let meter = QueryMeter { of_thread: mp_kinds::counted::queries_of_thread, common: queries };
         // Each problem checks its start and goals. That counts once, however many threads there are.
         let first = Cell::new(true);
         let problem = || {

@@ -1,8 +1,8 @@
 //! What is in a path file.
 
-use crate::numbers::plain_row;
 use crate::{PathFormat, PathRows, brief, count};
 use mp_geom::pose_from_six;
+use mp_kinds::numbers::plain_row;
 use nalgebra::Isometry3;
 use serde::Serialize;
 use std::fmt;

@@ -1,9 +1,9 @@
 //! What is in a scene.
 
 use super::Surface;
-use crate::numbers::plain_row;
 use crate::{BodyShape, Scene, brief, count, plain};
 use mp_geom::six_from_pose;
+use mp_kinds::numbers::plain_row;
 use serde::Serialize;
 use std::fmt;
 

@@ -1,6 +1,7 @@
 //! Goals of which some numbers are fixed, some are in intervals, and some are free.
 
-use crate::{Description, Robot};
+use crate::Robot;
+use crate::turns::turning;
 use mp_cspace::angle::wrap_angle;
 use mp_cspace::{Clearance, Configuration, Goals, Rng, Sampler, Space};
 pub use mp_io::GoalPart;
@@ -10,15 +11,6 @@ use rand::RngExt;
 const TRIES: usize = 1000;
 /// How far, as a part of the extent of the space, a configuration may be from a goal that it is at: rounding.
 const ROUNDING: f64 = 1e-9;
-
-/// Which numbers of a configuration are angles without limits, that is, the same after a full turn.
-pub(crate) fn turning<K: Description + ?Sized>(kind: &K) -> Vec<bool> {
-    let limits = kind.limits();
-    let turns = |(i, column): (usize, crate::Column)| {
-        column.unit == "rad" && limits.get(i).is_some_and(Option::is_none)
-    };
-    kind.columns().into_iter().enumerate().map(turns).collect()
-}
 
 /// Where the row of a configuration would have to be to be at a goal: the same row if it is there. `turning` says which
 /// numbers are the same after a full turn.
@@ -40,7 +32,8 @@ fn row_at(turning: &[bool], goal: &[GoalPart], mut row: Vec<f64>) -> Vec<f64> {
     row
 }
 
-pub(crate) fn next_to(kind: &dyn Robot, goal: &[GoalPart], q: &Configuration) -> Configuration {
+/// The configuration nearest to `q`, number by number, that is at a goal: `q` itself if it is there.
+pub fn next_to(kind: &dyn Robot, goal: &[GoalPart], q: &Configuration) -> Configuration {
     kind.state(&row_at(&turning(kind), goal, kind.row(q)))
 }
 
@@ -70,7 +63,7 @@ impl Sampler<Configuration> for FromGoals<'_> {
 }
 
 /// The goals of a robot, for planners: the configurations, or what they may be.
-pub(crate) fn of_kind(kind: &dyn Robot) -> Goals<'_, Configuration> {
+pub fn of_kind(kind: &dyn Robot) -> Goals<'_, Configuration> {
     let Some(goals) = kind.goal_parts() else { return Goals::states(kind.goals().iter().cloned()) };
     let rounding = ROUNDING * kind.any_space().extent().max(1.0);
     let turning = turning(kind);
@@ -84,7 +77,7 @@ pub(crate) fn of_kind(kind: &dyn Robot) -> Goals<'_, Configuration> {
 
 /// One configuration for each goal, free if one is found: with the numbers of the start where the goal leaves them free, or
 /// else drawn at random, always the same.
-pub(crate) fn examples(kind: &dyn Robot, goals: &[Vec<GoalPart>]) -> Vec<Configuration> {
+pub fn examples(kind: &dyn Robot, goals: &[Vec<GoalPart>]) -> Vec<Configuration> {
     let (mut checker, mut rng) = (kind.any_checker(), Rng::seed(0));
     let enough = 2.0 * kind.tolerance();
     let example = |goal: &Vec<GoalPart>| {
@@ -106,7 +99,7 @@ pub(crate) fn examples(kind: &dyn Robot, goals: &[Vec<GoalPart>]) -> Vec<Configu
 }
 
 /// The configurations of goals of which every number is given; `None` when one is not.
-pub(crate) fn rows(goals: &[Vec<GoalPart>]) -> Option<Vec<Vec<f64>>> {
+pub fn rows(goals: &[Vec<GoalPart>]) -> Option<Vec<Vec<f64>>> {
     let value = |part: &GoalPart| match part {
         GoalPart::Exactly(v) => Some(*v),
         _ => None,
@@ -115,7 +108,7 @@ pub(crate) fn rows(goals: &[Vec<GoalPart>]) -> Option<Vec<Vec<f64>>> {
 }
 
 /// A goal as people write it: `x 1.5 to 1.7, y 2, yaw free`.
-pub(crate) fn written(kind: &dyn Robot, goal: &[GoalPart]) -> String {
+pub fn written(kind: &dyn Robot, goal: &[GoalPart]) -> String {
     let part = |(column, part): (crate::Column, &GoalPart)| match part {
         GoalPart::Exactly(v) => format!("{} {}", column.name, crate::plain(*v)),
         GoalPart::Between([low, high]) => {

@@ -16,7 +16,7 @@ pub fn brief(v: f64) -> String {
 }
 
 /// Two numbers that are compared: brief, unless they would look the same.
-pub(crate) fn told_apart(a: f64, b: f64) -> [String; 2] {
+pub fn told_apart(a: f64, b: f64) -> [String; 2] {
     let short = [a, b].map(brief);
     if short[0] != short[1] || a == b { short } else { [a, b].map(|v| v.to_string()) }
 }
@@ -40,7 +40,7 @@ pub fn positive_number(text: &str) -> Result<f64, String> {
 }
 
 /// A hash of the bits of numbers (XXH3), as saved roadmaps have it.
-pub(crate) fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
+pub fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
     let mut hash = xxhash_rust::xxh3::Xxh3::new();
     numbers.into_iter().for_each(|x| hash.update(&x.to_le_bytes()));
     hash.digest()
@@ -58,6 +58,6 @@ pub fn plain(v: f64) -> String {
 }
 
 /// Numbers that can be pasted back, separated by blanks.
-pub(crate) fn plain_row(row: &[f64]) -> String {
+pub fn plain_row(row: &[f64]) -> String {
     row.iter().map(|v| plain(*v)).collect::<Vec<_>>().join(" ")
 }

@@ -34,7 +34,7 @@ fn robots(problem: &RobotProblem) -> impl Iterator<Item = One<'_>> {
 ///
 /// # Errors
 /// When its URDF or its limits are not valid, or there are several robots.
-pub(crate) fn model_of(files: &dyn Files, problem: &RobotProblem) -> Result<ArmModel, Error> {
+pub fn model_of(files: &dyn Files, problem: &RobotProblem) -> Result<ArmModel, Error> {
     let mut all = robots(problem);
     match (all.next(), all.next()) {
         (Some(robot), None) => described(files, robot),

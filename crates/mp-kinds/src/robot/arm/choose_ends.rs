@@ -18,7 +18,7 @@ impl ArmScene {
     ///
     /// # Errors
     /// As [`from_problem`](Self::from_problem), and when no free configuration is found.
-    pub(crate) fn with_chosen_ends(
+    pub fn with_chosen_ends(
         files: &dyn Files,
         mut problem: RobotProblem,
     ) -> Result<(Self, Vec<String>), Error> {

@@ -11,14 +11,15 @@ use std::time::Duration;
 ///
 /// A run asks one token. Its deadline is that of the search, but while a path is proved.
 #[derive(Debug, Default)]
-pub(crate) struct Deadlines {
+pub struct Deadlines {
     search: AtomicU64,
     proof: AtomicU64,
     proving: AtomicBool,
 }
 
 impl Deadlines {
-    pub(crate) fn set(&self, search: Duration, proof: Duration) {
+    /// Sets both times; the search comes first.
+    pub fn set(&self, search: Duration, proof: Duration) {
         let nanoseconds = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
         self.search.store(nanoseconds(search), Ordering::Relaxed);
         self.proof.store(nanoseconds(proof), Ordering::Relaxed);
@@ -26,7 +27,7 @@ impl Deadlines {
     }
 
     /// A path is proved from now on.
-    pub(crate) fn prove(&self, interrupt: &Interrupt) {
+    pub fn prove(&self, interrupt: &Interrupt) {
         self.enter(true, &self.proof, interrupt);
     }
 
@@ -47,12 +48,16 @@ impl Deadlines {
 }
 
 /// A check that finds no motion free that the robot cannot make, and none at all once it is interrupted.
-pub(crate) struct Possible<'k> {
-    pub(crate) kind: &'k dyn Robot,
-    pub(crate) check: AnyCheck<'k, Configuration>,
-    pub(crate) interrupt: Interrupt,
+#[allow(missing_debug_implementations, reason = "a pointer has nothing to print")]
+pub struct Possible<'k> {
+    /// The robot.
+    pub kind: &'k dyn Robot,
+    /// The check of motions that it can make.
+    pub check: AnyCheck<'k, Configuration>,
+    /// What ends the run.
+    pub interrupt: Interrupt,
     /// Those of the run that it is a part of.
-    pub(crate) deadlines: Option<&'k Deadlines>,
+    pub deadlines: Option<&'k Deadlines>,
 }
 
 impl MotionValidity<Configuration> for Possible<'_> {

@@ -160,7 +160,7 @@ impl super::ArmScene {
     }
 
     /// See [`Scene::reaching_from`](crate::Scene::reaching_from).
-    pub(crate) fn reaching_from(
+    pub fn reaching_from(
         &self,
         body: usize,
         pose: &Isometry3<f64>,

@@ -91,7 +91,7 @@ impl<'c> Counting<'c> {
     }
 
     /// Adds each query at once if `exactly`, so that the common count is always exact.
-    pub(crate) fn exactly(self, exactly: bool) -> Self {
+    pub fn exactly(self, exactly: bool) -> Self {
         Self { exactly, ..self }
     }
 
@@ -104,7 +104,7 @@ impl<'c> Counting<'c> {
 
 /// How motions are checked.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum By {
+pub enum By {
     /// With a certificate of this tolerance (m).
     Certificates(f64),
     /// At states so far apart.
@@ -119,7 +119,7 @@ const STRIDE: f64 = 0.02;
 ///
 /// # Errors
 /// When tolerance or resolution are not valid.
-pub(crate) fn motions<'c>(
+pub fn motions<'c>(
     kind: &dyn Robot,
     space: &'c AnySpace<'c, Configuration>,
     by: By,

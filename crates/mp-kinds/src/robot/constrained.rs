@@ -54,7 +54,7 @@ const FINER: f64 = 4.0;
 
 /// A robot under a [`Constraint`]. All but that it takes from the robot.
 #[derive(Clone, Debug)]
-pub(crate) struct Constrained {
+pub struct Constrained {
     robot: Arc<dyn Robot>,
     constraint: Constraint,
     /// How far apart states are tested, in the metric of the space.
@@ -64,7 +64,7 @@ pub(crate) struct Constrained {
 impl Constrained {
     /// # Errors
     /// When the distance between tested states is not valid in the space of the robot.
-    pub(crate) fn new(robot: Arc<dyn Robot>, constraint: Constraint) -> Result<Self, Error> {
+    pub fn new(robot: Arc<dyn Robot>, constraint: Constraint) -> Result<Self, Error> {
         let every = constraint.every.resolution_in(&robot.any_space());
         let every = every.map_err(|e| Error::new(format!("the constraint `{}`: {e}", constraint.name)))?;
         Ok(Self { robot, constraint, every })

@@ -1,7 +1,7 @@
 //! Kinds of robots: the interface between a scene and the rest of this crate.
 
-pub(crate) mod counted;
-pub(crate) mod motion;
+pub mod counted;
+pub mod motion;
 
 mod arm;
 mod constrained;
@@ -11,21 +11,20 @@ mod moving;
 mod planar;
 mod rigid;
 
-pub(crate) use arm::model_of;
+pub use arm::model_of;
 pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace, Reached};
-pub(crate) use constrained::Constrained;
-pub use constrained::Constraint;
-pub(crate) use driven::greatest_speed;
+pub use constrained::{Constrained, Constraint};
+pub use driven::greatest_speed;
 pub use driven::{Drivable, DrivenScene, SpeedBound};
 pub use model::{Drive, DriveModel, ModelBody, ModelFrame, ModelPair, ModelPart, MotionModel, Step};
 pub use moving::{MovingScene, WithMoving};
 pub use planar::{PlanarBody, PlanarScene};
 pub use rigid::{RigidScene, RigidSpace};
 
-use crate::goals::turning;
 use crate::numbers::plain;
-use crate::path::continued;
 use crate::robot::motion::AnyMotion;
+use crate::turns::continued;
+use crate::turns::turning;
 use crate::{Error, Length, MetricName};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex};
 use mp_cspace::{

@@ -13,10 +13,10 @@ use super::{
     Appearance, Body, BodyShape, Column, Contact, Counted, Description, End, Measured, Motion, Queries,
     SpeedBound, hints_and_gradient, no_metric,
 };
-use crate::goals::{GoalPart, examples, rows, turning};
+use crate::goals::{GoalPart, examples, rows};
 use crate::numbers::plain_row;
-use crate::path::continued;
 use crate::robot::motion::TypedMotion;
+use crate::turns::{continued, turning};
 use crate::{Error, MetricName, brief, plain};
 use ends::{Ends, wrong_count};
 use mp_cspace::{
@@ -29,7 +29,7 @@ use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, JointKind};
 use nalgebra::Isometry3;
 use named::NamedValues;
 pub use pose_goals::Reached;
-pub(crate) use read::model_of;
+pub use read::model_of;
 use read::{srdf_help, what};
 use std::fmt::Debug;
 
@@ -233,7 +233,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
     }
 
     /// As [`from_problem_in`](Self::from_problem_in). The arm is that of the scene `before`, if that has the same among other obstacles.
-    pub(crate) fn from_problem_after(
+    pub fn from_problem_after(
         files: &dyn Files,
         mut problem: RobotProblem,
         before: Option<&Self>,
@@ -286,7 +286,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
 
     /// What decides which links may touch without being asked for, and what goals were made, in sentences: what of an SRDF was not taken, and pairs that are
     /// left out for being close in every configuration.
-    pub(crate) fn said(&self) -> Vec<String> {
+    pub fn said(&self) -> Vec<String> {
         [&self.said[..], &self.of_goals].concat()
     }
 

@@ -13,7 +13,7 @@ const MAX_MESSAGE: usize = 400;
 /// file, if there is one.
 ///
 /// ```
-/// use mp_plan::{End, ErrorKind, Request, Scene};
+/// use mp_kinds::{End, ErrorKind, Request, Scene};
 /// let scene = Scene::find("easy")?;
 /// let error = scene.plan(&Request::new("rrt-conect")).unwrap_err();
 /// assert_eq!(error.kind(), ErrorKind::Planner);
@@ -22,7 +22,7 @@ const MAX_MESSAGE: usize = 400;
 /// assert_eq!(Scene::load("nowhere.env").unwrap_err().kind(), ErrorKind::File);
 /// let below = scene.with_ends(&[0.0, 0.0, -99.0, 0.0, 0.0, 0.0], &scene.goals())?;
 /// assert_eq!(below.check_ends().unwrap_err().kind(), ErrorKind::NotFree(End::Start));
-/// # Ok::<(), mp_plan::Error>(())
+/// # Ok::<(), mp_kinds::Error>(())
 /// ```
 #[derive(Debug)]
 pub struct Error(Box<Inner>);

@@ -69,7 +69,7 @@ pub trait SpeedBound:
 }
 
 /// The greatest speed of a robot moved by inputs, in the metric of its space per second.
-pub(crate) fn greatest_speed<C: Space>(space: &C, driven: &Driven) -> f64 {
+pub fn greatest_speed<C: Space>(space: &C, driven: &Driven) -> f64 {
     let middle = space.unit_cube_to_state(&vec![0.5; space.dim()]);
     let moment = 1e-3;
     let moved = space.moved(&middle, &System::greatest_rates(&driven.drive), moment);

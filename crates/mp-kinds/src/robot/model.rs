@@ -201,7 +201,7 @@ impl ModelBody {
     }
 
     /// The middle of the box around the vertices, and the distance from there to the farthest point of the body.
-    pub(crate) fn ball(&self) -> (Point3<f64>, f64) {
+    pub fn ball(&self) -> (Point3<f64>, f64) {
         let points = self.vertices.iter().map(|v| Point3::from(*v));
         let (low, high) = points.clone().fold(
             (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3])),

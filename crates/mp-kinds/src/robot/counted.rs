@@ -20,8 +20,7 @@ thread_local! {
 }
 
 /// How many queries this thread has reported so far.
-#[cfg(feature = "roadmaps")]
-pub(crate) fn queries_of_thread() -> u64 {
+pub fn queries_of_thread() -> u64 {
     OF_THREAD.get()
 }
 
@@ -51,7 +50,7 @@ impl<'a, R: Queries> Counted<'a, R> {
     }
 
     /// Adds each query at once, so that the common count is always exact.
-    pub(crate) fn exactly(mut self) -> Self {
+    pub fn exactly(mut self) -> Self {
         self.most_unreported = 1;
         self
     }
@@ -80,9 +79,11 @@ impl<'a, R: Queries> Counted<'a, R> {
 
 /// Stops when the common count reaches a number of queries. Does not depend on a clock.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct QueryBudget<'a> {
-    pub(crate) queries: &'a AtomicU64,
-    pub(crate) most: u64,
+pub struct QueryBudget<'a> {
+    /// The common count.
+    pub queries: &'a AtomicU64,
+    /// The number at which it stops.
+    pub most: u64,
 }
 
 impl Stop for QueryBudget<'_> {

@@ -1,0 +1,33 @@
+//! Kinds of robots: what a scene is made of before anybody plans in it.
+//!
+//! | kind | its file |
+//! |---|---|
+//! | [`RigidScene`] | rigid bodies among meshes, in space or in the plane |
+//! | [`ArmScene`], [`FloatingScene`] | trees of links, also on bases that float or roll |
+//! | [`PlanarScene`] | discs and polygons among polygons |
+//! | [`MovingScene`] | any of them among obstacles that move |
+//! | [`DrivenScene`] | any of them moved by inputs |
+//! | [`Constrained`] | any of them with conditions of one's own |
+//!
+//! Each is a [`Robot`], which is asked in three parts: planners ask its [`Motion`], messages and files its [`Description`], pictures its
+//! [`Appearance`]. `mp-plan` plans for robots without knowing their kinds, and exports everything here that its users need.
+//!
+//! The checks of motions that planning spends its time in are compiled here, optimised. What stands above can be compiled in seconds.
+
+pub mod build;
+mod error;
+pub mod goals;
+mod metric_name;
+pub mod numbers;
+pub mod possible;
+mod robot;
+pub mod turns;
+
+pub use error::{Error, ErrorKind};
+pub use goals::GoalPart;
+pub use metric_name::MetricName;
+pub use numbers::{brief, count, plain, positive_number};
+pub use robot::motion::{AnyChecker, AnyMotion, AnyVerifier, Counting, TypedMotion};
+pub use robot::*;
+
+pub use mp_cspace::{Interrupt, Length};
