@@ -16,18 +16,26 @@
 
 pub mod build;
 mod error;
+pub mod field;
 pub mod goals;
 mod metric_name;
 pub mod numbers;
 pub mod possible;
+pub mod proof;
+pub mod relax;
+mod relax_field;
 mod robot;
+mod shorten;
 pub mod turns;
 
 pub use error::{Error, ErrorKind};
+pub use field::FieldImage;
 pub use goals::GoalPart;
 pub use metric_name::MetricName;
 pub use numbers::{brief, count, plain, positive_number};
+pub use relax_field::RelaxField;
 pub use robot::motion::{AnyChecker, AnyMotion, AnyVerifier, Counting, TypedMotion};
 pub use robot::*;
+pub use shorten::shorten;
 
 pub use mp_cspace::{Interrupt, Length};

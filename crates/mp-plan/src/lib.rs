@@ -83,11 +83,10 @@ pub use explain::Explanation;
 pub use files::find::{SceneFiles, find_problem, shipped_files};
 pub use files::info;
 pub use files::robot_pairs::RobotPairs;
+pub use finish::Finished;
 pub use finish::certificate::Certificate;
 pub use finish::check::Verdict;
-pub use finish::field::FieldImage;
 pub use finish::trajectory::{LeastAlong, LimitFault, Pace, TightCorner, TimedPath, TrajectoryVerdict};
-pub use finish::{Finished, shorten};
 pub use output::{Claims, is_standard, make_folder, write_file};
 pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
@@ -97,7 +96,7 @@ pub use picture::film::{Film, FilmKind};
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
 pub use portfolio_counts::{PortfolioCounts, PortfolioSchedule};
 pub use report::{REPORT_VERSION, Report, RunStage, StageTime, StoppedBy};
-pub use request::{Budget, Finish, MotionValidator, RelaxField, Request};
+pub use request::{Budget, Finish, MotionValidator, Request};
 pub use run::planners::{meta_planners, planners, roadmap_planners};
 #[cfg(feature = "roadmaps")]
 pub use run::regions::{RegionalTally, RegionalWork};
@@ -118,10 +117,11 @@ pub use mp_render::{Mode, View};
 pub use mp_kinds::motion::{AnyChecker, AnyMotion, AnyVerifier, Counting, TypedMotion};
 pub use mp_kinds::{
     Appearance, ArmScene, Body, BodyShape, Checker, Column, Constraint, Contact, Counted, Description,
-    Deviation, Drivable, Drive, DriveModel, DrivenScene, End, Error, ErrorKind, FloatingScene, GoalPart,
-    LinkedScene, LinkedSpace, Measured, MetricName, ModelBody, ModelFrame, ModelPair, ModelPart, Motion,
-    MotionModel, MovingScene, PathFormat, PlanarBody, PlanarScene, Queries, Reached, RigidScene, RigidSpace,
-    Robot, SpeedBound, Step, WithMoving, brief, count, plain, positive_number,
+    Deviation, Drivable, Drive, DriveModel, DrivenScene, End, Error, ErrorKind, FieldImage, FloatingScene,
+    GoalPart, LinkedScene, LinkedSpace, Measured, MetricName, ModelBody, ModelFrame, ModelPair, ModelPart,
+    Motion, MotionModel, MovingScene, PathFormat, PlanarBody, PlanarScene, Queries, Reached, RelaxField,
+    RigidScene, RigidSpace, Robot, SpeedBound, Step, WithMoving, brief, count, plain, positive_number,
+    shorten,
 };
 
 pub use mp_io::{FoundRobot, FreeTurns, PoseEntry, ProblemChanges, RobotPath, TrajectoryKind};

@@ -4,7 +4,7 @@ use crate::explain::{check_ends, explain, lint};
 use crate::finish::certificate::certificate;
 use crate::finish::check::check;
 use crate::finish::finish_given;
-use crate::path::state;
+use crate::path::{state, states};
 use crate::run::plan::plan;
 use crate::run::prepare;
 #[cfg(feature = "roadmaps")]
@@ -15,12 +15,13 @@ use crate::{
     PathFileKind, PathFormat, PathRows, PreparedRun, RelaxField, Report, Request, Robot, SceneFiles, Sweep,
     Track, Verdict,
 };
-use mp_cspace::registry::PlannerInfo;
+use mp_cspace::registry::{PlannerInfo, Settings};
 use mp_cspace::{Configuration, Interrupt, Interrupted, Rng, Space, Validity};
 use mp_geom::{Aabb, TriMesh, short_six_from_pose};
 use mp_io::{DocumentShape, SceneDocument};
 use mp_kinds::Constrained;
 use mp_kinds::build::Built;
+use mp_tree::algo::rrs::RANGE;
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -730,7 +731,22 @@ impl Scene {
         cells: usize,
     ) -> Result<crate::FieldImage, Error> {
         if self.is_planar_world() {
-            return crate::finish::field::field(&*self.robot, field, row, path, range, cells);
+            let mut settings = Settings::default();
+            if let Some(range) = range {
+                settings.set(RANGE.name, range);
+            }
+            let range = settings.length_of(&RANGE, &self.robot.any_space())?;
+            let path =
+                path.map(|path| Ok::<_, Error>(mp_cspace::Path::straight(states(&*self.robot, path)?)));
+            self.state(row)?;
+            return mp_kinds::field::field(
+                &*self.robot,
+                field,
+                row,
+                path.transpose()?.as_ref(),
+                range,
+                cells,
+            );
         }
         Err(Error::new(format!("the field of {} is not drawn", self.name()))
             .help("only that of a world of the plane is"))

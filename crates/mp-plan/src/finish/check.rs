@@ -4,17 +4,11 @@ use crate::explain::{enclosures, list};
 use crate::finish::trajectory::TrajectoryVerdict;
 use crate::path::states;
 use crate::{Error, PathRows, Robot};
-use mp_cspace::erased::AnyCheck;
-use mp_cspace::{
-    Configuration, Interrupt, MotionCheck, Path, Space, least_clearance,
-    path::{PathFault, PathReport},
-    verify_path,
-};
-use mp_kinds::counted::Counted;
+use mp_cspace::{Configuration, Interrupt, MotionCheck, Path, Space, path::PathFault};
 use mp_kinds::goals::next_to;
 use mp_kinds::numbers::{brief, plain};
+use mp_kinds::proof::{clearance, verified};
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::AtomicU64;
 
 /// The result of checking a path. `mp check --json` prints its JSON form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -75,34 +69,6 @@ impl Verdict {
         }
         format!("{}: not free in {}\n  {}", self.path, self.scene, self.faults.join("\n  "))
     }
-}
-
-/// Verifies a path edge by edge. Where `interrupt` says to end, the path has a fault.
-pub(crate) fn verified(
-    kind: &dyn Robot,
-    path: &Path<Configuration>,
-    interrupt: &Interrupt,
-) -> Result<PathReport, Error> {
-    let mut verifier: AnyCheck<'_, Configuration> = Box::new(kind.any_verifier()?);
-    verifier.interrupt_by(interrupt);
-    Ok(verify_path(&kind.any_space(), path, &mut verifier))
-}
-
-/// A lower bound on the clearance (m) along a free path, to within `accuracy` (m); `None` where none is known, or `interrupt` says
-/// to end.
-pub(crate) fn clearance(
-    kind: &dyn Robot,
-    path: &Path<Configuration>,
-    accuracy: f64,
-    interrupt: &Interrupt,
-) -> Option<f64> {
-    if kind.sampled().is_some() {
-        return None;
-    }
-    let unused = AtomicU64::new(0);
-    let mut checker = Counted::new(kind.any_measure(), &unused).with_interrupt(interrupt.clone());
-    let tightest = least_clearance(&kind.any_space(), &mut checker, path, accuracy)?;
-    interrupt.raised().is_none().then_some(tightest.clearance)
 }
 
 /// Whether a path, which has a state, begins elsewhere than at the start, or ends elsewhere than at a goal.

@@ -5,7 +5,7 @@
 //! proved before.
 
 use crate::explain::enclosures;
-use crate::finish::check::{end_faults, fault_text, verified, what_happens};
+use crate::finish::check::{end_faults, fault_text, what_happens};
 use crate::path::states;
 use crate::{Error, PathRows, Robot, Verdict, brief, count, plain};
 use mp_cspace::erased::AnyCheck;
@@ -13,6 +13,7 @@ use mp_cspace::{
     Clearance, Configuration, Curve, Interrupt, MotionCheck, MotionClearance, MotionValidity, Path,
 };
 use mp_kinds::counted::Counted;
+use mp_kinds::proof::verified;
 use mp_kinds::turns::turning;
 use mp_time::{BlendedPath, Interpolation, Knots, Limits, TimeError, Trajectory, timed};
 use serde::{Deserialize, Serialize};

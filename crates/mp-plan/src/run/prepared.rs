@@ -1,6 +1,5 @@
 //! A request prepared for a robot: the space, an index, a verifier, and the problems, planners and stops made from them.
 
-use crate::finish::field::TreeField;
 use crate::run::auto;
 use crate::run::planners::PlannerKind;
 use crate::run::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
@@ -12,6 +11,7 @@ use mp_cspace::{
     Nodes, ObstacleKnowledge, ParameterError, Problem, Stop, Straight, Workers, registry::PlannerInfo,
 };
 use mp_kinds::counted::QueryBudget;
+use mp_kinds::field::TreeField;
 use mp_kinds::goals;
 use mp_kinds::motion::{AnyVerifier, By, Counting, motions};
 use mp_kinds::possible::{Deadlines, Possible};

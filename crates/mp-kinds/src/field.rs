@@ -1,26 +1,21 @@
 //! The fields that push snakes: made by name, and as an image of a world of the plane.
 
+use crate::motion::Counting;
 use crate::{Error, RelaxField, Robot};
 use mp_cspace::erased::AnyGradient;
 use mp_cspace::{Configuration, Path, PushingField};
-use mp_kinds::motion::Counting;
+use mp_cspace::{Space, Validity};
+use mp_io::GridMap;
+use mp_snake::blurred;
+use mp_snake::plane::{BLUR, MOST_CELLS, STRIDE, occupancy, paper_energy, risk_energy};
+use mp_snake::risk::{MotionNoise, RangeNoise, RiskMaps};
 use mp_snake::{Field, Grid, Repulsion, With};
 use nalgebra::Vector2;
 use std::sync::Arc;
-use {
-    crate::PathRows,
-    crate::path::{state, states},
-    mp_cspace::{Space, Validity, registry::Settings},
-    mp_io::GridMap,
-    mp_snake::blurred,
-    mp_snake::plane::{BLUR, MOST_CELLS, STRIDE, occupancy, paper_energy, risk_energy},
-    mp_snake::risk::{MotionNoise, RangeNoise, RiskMaps},
-    mp_tree::algo::rrs::RANGE,
-    std::sync::atomic::AtomicU64,
-};
+use std::sync::atomic::AtomicU64;
 
 /// The energy of a field that pushes snakes, where the robot of a world of the plane may be.
-/// [`Scene::field`](crate::Scene::field) makes it.
+/// `Scene::field` of mp-plan makes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldImage {
     /// The lower left corner of the first cell (m).
@@ -37,7 +32,8 @@ pub struct FieldImage {
 }
 
 /// A field of any kind.
-pub(crate) struct AnyField<'a>(Box<dyn Field<Configuration> + 'a>);
+#[allow(missing_debug_implementations, reason = "a pointer has nothing to print")]
+pub struct AnyField<'a>(Box<dyn Field<Configuration> + 'a>);
 
 impl Field<Configuration> for AnyField<'_> {
     fn energy(&mut self, q: &Configuration, gradient: &mut [f64]) -> f64 {
@@ -65,7 +61,10 @@ fn on_plane(image: &Grid, q: &Configuration, gradient: &mut [f64]) -> f64 {
 }
 
 /// Refuses a field that does not suit the robot, or whose file cannot be read.
-pub(crate) fn check(kind: &dyn Robot, field: &RelaxField) -> Result<(), Error> {
+///
+/// # Errors
+/// Just then.
+pub fn check(kind: &dyn Robot, field: &RelaxField) -> Result<(), Error> {
     let names: Vec<_> = kind.columns().into_iter().map(|column| column.name).collect();
     let place = matches!(kind.limits()[..], [Some(_), Some(_), ..]);
     if *field == RelaxField::Clearance {
@@ -84,7 +83,7 @@ pub(crate) fn check(kind: &dyn Robot, field: &RelaxField) -> Result<(), Error> {
 }
 
 /// The field `name` with a range (m). That of risk is the landscape of `path`.
-pub(crate) fn make<'k>(
+pub fn make<'k>(
     kind: &'k dyn Robot,
     name: &RelaxField,
     range: f64,
@@ -105,21 +104,21 @@ const ROTATIONS: u32 = 16;
 
 /// What pushes the edges of trees, beside the repulsion of obstacles or alone. It is made once for each run.
 #[derive(Clone, Debug)]
-pub(crate) struct TreeField {
+pub struct TreeField {
     image: Arc<Grid>,
     alone: bool,
 }
 
 impl TreeField {
     /// The field that `settings` name, for a robot whose obstacles repel within `range` (m). `None` where that is the clearance.
-    pub(crate) fn new(kind: &dyn Robot, name: &RelaxField, range: f64) -> Result<Option<Self>, Error> {
+    pub fn new(kind: &dyn Robot, name: &RelaxField, range: f64) -> Result<Option<Self>, Error> {
         check(kind, name)?;
         let image = image(kind, name, range, None)?;
         Ok(image.map(|image| Self { image: Arc::new(image), alone: *name == RelaxField::Paper }))
     }
 
     /// The same for a problem.
-    pub(crate) fn pushing<'c>(&self) -> PushingField<'c, Configuration> {
+    pub fn pushing<'c>(&self) -> PushingField<'c, Configuration> {
         let image = Arc::clone(&self.image);
         let energy = move |q: &Configuration, gradient: &mut [f64]| on_plane(&image, q, gradient);
         PushingField { energy: Box::new(energy), alone: self.alone }
@@ -210,13 +209,17 @@ fn not_drawn(kind: &dyn Robot) -> Error {
     Error::new(format!("the field of {} is not drawn", kind.name()))
 }
 
-/// The image of the field `name` with about so many `cells` along the longer side. Coordinates of `row` other than the place stay.
-pub(crate) fn field(
+/// The image of the field `name` of the range `range` (m) with about so many `cells` along the longer side. Coordinates of `row`, which has as many numbers as
+/// the robot has columns, stay but for the place.
+///
+/// # Errors
+/// When the field does not suit the robot, or its file cannot be read.
+pub fn field(
     kind: &dyn Robot,
     name: &RelaxField,
     row: &[f64],
-    path: Option<&PathRows>,
-    range: Option<&str>,
+    path: Option<&Path<Configuration>>,
+    range: f64,
     cells: usize,
 ) -> Result<FieldImage, Error> {
     let [x, y] = bounds(kind)?;
@@ -230,23 +233,16 @@ pub(crate) fn field(
     let knowledge = kind.any_obstacles(&Counting::new(&unused, mp_cspace::Interrupt::never()));
     let gradient =
         knowledge.gradient.ok_or_else(|| not_drawn(kind).help("this robot knows no clearance gradient"))?;
-    let mut settings = Settings::default();
-    if let Some(range) = range {
-        settings.set(RANGE.name, range);
-    }
-    let range = settings.length_of(&RANGE, &kind.any_space())?;
-    let path = path.map(|path| Ok::<_, Error>(Path::straight(states(kind, path)?))).transpose()?;
-    let mut field = make(kind, name, range, path.as_ref(), gradient)?;
+    let mut field = make(kind, name, range, path, gradient)?;
     let sides = [x, y].map(|[low, high]| high - low);
     let cell = sides[0].max(sides[1]) / cells.clamp(2, 4096) as f64;
     let [width, height] = sides.map(|side| (side / cell).round().max(1.0) as usize);
     let (mut place, mut slope) = (row.to_vec(), vec![0.0; kind.any_space().dim()]);
     let mut energy = Vec::with_capacity(width * height);
     for i in 0..width * height {
-        // A row that does not fit is refused by `state`.
         let at = [x[0] + ((i % width) as f64 + 0.5) * cell, y[0] + ((i / width) as f64 + 0.5) * cell];
         place.iter_mut().zip(at).for_each(|(value, at)| *value = at);
-        energy.push(field.energy(&state(kind, &place)?, &mut slope));
+        energy.push(field.energy(&kind.state(&place), &mut slope));
     }
     Ok(FieldImage { origin: [x[0], y[0]], cell, width, energy, range })
 }

@@ -1,0 +1,125 @@
+//! Shortens paths.
+
+use crate::Error;
+use crate::Robot;
+use crate::motion::{By, Counting, motions};
+use crate::possible::Possible;
+use mp_cspace::erased::{AnyCheck, AnySpace};
+use mp_cspace::shorten::{Effort, reduce, shortcut, simplify};
+use mp_cspace::{Configuration, Factored, Interrupt, MotionCheck, MotionValidity, Path, Rng};
+use std::sync::atomic::AtomicU64;
+
+/// The stream of random numbers for shortening. Planning uses another one.
+const STREAM: u64 = 1;
+
+/// In passages too narrow for the clearance of shortcuts they keep this part of it.
+const NARROW: f64 = 0.1;
+
+/// Of two paths that lead through narrow passages, the one that keeps more elsewhere is taken if plain shortcuts do not make the other one
+/// shorter than this part of its length.
+const FAR_SHORTER: f64 = 0.8;
+
+/// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](crate::Motion::shortcut_clearance), or leads through a
+/// passage where the given path does not keep it: there they keep a tenth of it, or are edges of the given path; so does all of it where the
+/// way is far shorter then. The same seed gives the
+/// same path, unless `interrupt` ends it early: then the path is what it is after the last change.
+///
+/// # Errors
+/// When the tolerance of the robot is not valid.
+pub fn shorten(
+    kind: &dyn Robot,
+    path: &Path<Configuration>,
+    seed: u64,
+    interrupt: &Interrupt,
+) -> Result<Path<Configuration>, Error> {
+    let _span = tracing::info_span!("shorten").entered();
+    let (space, unused) = (AnySpace::new(&kind.any_space()), AtomicU64::new(0));
+    let counting = Counting::new(&unused, interrupt.clone());
+    let wide = kind.shortcut_clearance();
+    let narrow = (NARROW * wide).max(kind.tolerance());
+    // A clearance that was asked for is enough.
+    let has_wide = kind.kept() == 0.0 && kind.sampled().is_none();
+    let mut check = possible(
+        kind,
+        interrupt,
+        match kind.sampled() {
+            None => {
+                let tolerance = if has_wide { wide } else { narrow };
+                motions(kind, &space, By::Certificates(tolerance), &counting)?
+            }
+            Some(length) => {
+                let check = motions(kind, &space, By::States(length), &counting)?;
+                Box::new(Both { check, verifier: Box::new(kind.any_verifier()?) })
+            }
+        },
+    );
+    let mut rng = Rng::stream(seed, STREAM);
+    if let Some(short) = kind.shortened(path, &mut check, Effort::default(), &mut rng) {
+        return Ok(short);
+    }
+    let factors = kind.any_space();
+    let short = shorten_by(&factors, &mut check, path, &mut rng);
+    if !has_wide {
+        return Ok(short);
+    }
+    let edges = short.states.windows(2);
+    let roomy: Vec<bool> = edges.map(|w| check.check_motion(&w[0], &w[1]).is_free()).collect();
+    if roomy.iter().all(|roomy| *roomy) {
+        return Ok(short);
+    }
+    let narrow = motions(kind, &space, By::Certificates(narrow), &counting)?;
+    let mut narrow = possible(kind, interrupt, narrow);
+    let mut states: Vec<Configuration> = short.states.first().cloned().into_iter().collect();
+    let mut first = 0;
+    for passage in roomy.chunk_by(|a, b| a == b) {
+        let edges = &short.states[first..=first + passage.len()];
+        first += passage.len();
+        match passage[0] || passage.len() == 1 {
+            true => states.extend_from_slice(&edges[1..]),
+            false => {
+                let part = shorten_by(&factors, &mut narrow, &Path::straight(edges.to_vec()), &mut rng);
+                states.extend(part.states.into_iter().skip(1));
+            }
+        }
+    }
+    let short = Path::straight(states);
+    // There are passages where little is kept: a far shorter way may lead through others.
+    let other = reduce(&factors, &mut narrow, &short);
+    let other = shortcut(&factors, &mut narrow, &other, Effort::default(), &mut rng);
+    let is_far_shorter = other.length(&space) < FAR_SHORTER * short.length(&space);
+    Ok(if is_far_shorter { shorten_by(&factors, &mut narrow, &other, &mut rng) } else { short })
+}
+
+/// `check`, which finds no motion free that the robot cannot make.
+fn possible<'k>(
+    kind: &'k dyn Robot,
+    interrupt: &Interrupt,
+    check: AnyCheck<'k, Configuration>,
+) -> AnyCheck<'k, Configuration> {
+    Box::new(Possible { kind, check, interrupt: interrupt.clone(), deadlines: None })
+}
+
+/// A sampled check, and the verifier of what it finds free: a path made short by samples alone would graze what is between them.
+struct Both<'a> {
+    check: AnyCheck<'a, Configuration>,
+    verifier: AnyCheck<'a, Configuration>,
+}
+
+impl MotionValidity<Configuration> for Both<'_> {
+    fn check_motion(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
+        match self.check.check_motion(from, to) {
+            MotionCheck::Free { .. } => self.verifier.check_motion(from, to),
+            hit => hit,
+        }
+    }
+}
+
+/// [`shorten`] with a check behind a pointer: compiled for each space instead of each robot.
+fn shorten_by<C: Factored>(
+    space: &C,
+    check: &mut AnyCheck<'_, C::State>,
+    path: &Path<C::State>,
+    rng: &mut Rng,
+) -> Path<C::State> {
+    simplify(space, check, path, Effort::default(), rng)
+}
