@@ -1,12 +1,12 @@
 //! Problems in TOML files, recognised by their tables.
 
-use crate::error::Error;
-use crate::files::{Files, MAX_TEXT_BYTES, decode};
 use crate::planar::PlanarProblem;
 use crate::rigid_toml::RigidTask;
 use crate::robot::RobotProblem;
 use crate::shape;
 use crate::toml_problem::TomlText;
+use mp_formats::error::Error;
+use mp_formats::files::{Files, MAX_TEXT_BYTES, decode};
 use std::path::Path;
 
 /// The pages that describe the formats.

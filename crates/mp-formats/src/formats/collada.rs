@@ -3,7 +3,7 @@
 //! Node transforms are applied, then the unit of length. Then the up axis is turned to Y, as by assimp, the importer of
 //! OMPL.app, so that its problem files mean the same here; or it is not, as for robot descriptions.
 
-pub(crate) mod center;
+pub mod center;
 mod document;
 mod geometry;
 mod primitive;
@@ -25,6 +25,7 @@ use std::rc::Rc;
 const MAX_INSTANCED: usize = 50_000_000;
 
 /// A geometry and its place in the scene.
+#[derive(Debug)]
 pub(crate) struct Instance {
     geometry: Rc<Geometry>,
     /// From the frame of the geometry to the world.
@@ -32,7 +33,8 @@ pub(crate) struct Instance {
 }
 
 /// The visual scene of a file.
-pub(crate) struct Scene {
+#[derive(Debug)]
+pub struct Scene {
     instances: Vec<Instance>,
     /// What the file says of its coordinates.
     pub(crate) asset: scene::Asset,
@@ -53,7 +55,11 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
 }
 
 impl Scene {
-    pub(crate) fn parse(file: &str, bytes: &[u8], axes: Axes) -> Result<Self, Error> {
+    /// Reads `bytes`, the content of a file that errors call `file`.
+    ///
+    /// # Errors
+    /// [`Error`] when it is no COLLADA.
+    pub fn parse(file: &str, bytes: &[u8], axes: Axes) -> Result<Self, Error> {
         let text = &*crate::xml::text(file, bytes)?;
         let options = roxmltree::ParsingOptions { nodes_limit: document::MAX_NODES, ..Default::default() };
         let xml = roxmltree::Document::parse_with_options(text, options)
@@ -64,7 +70,7 @@ impl Scene {
     }
 
     /// What was made of axes and unit, for people.
-    pub(crate) fn remarks(&self, axes: Axes) -> Vec<String> {
+    pub fn remarks(&self, axes: Axes) -> Vec<String> {
         let scene::Asset { unit, up, .. } = self.asset;
         let turned = match axes {
             Axes::OfFile => Some(format!("COLLADA with {up}, whose axes stay as they are")),
@@ -79,7 +85,7 @@ impl Scene {
     }
 
     /// All instances in one mesh.
-    pub(crate) fn to_mesh(&self, file: &str) -> Result<TriMesh, Error> {
+    pub fn to_mesh(&self, file: &str) -> Result<TriMesh, Error> {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         let mut meshes: HashMap<*const Geometry, TriMesh> = HashMap::new();
         for Instance { geometry, matrix } in &self.instances {

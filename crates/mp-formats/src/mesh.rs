@@ -14,6 +14,9 @@ pub const MAX_CORNERS: usize = 4096;
 /// minute.
 const MAX_CUTTING: usize = 1_000_000_000;
 
+/// The largest coordinate of a problem, metres: beyond it single precision and volumes lose their meaning.
+pub const MAX_COORDINATE: f64 = 1e9;
+
 /// The remark on a mesh with points and segments among its faces.
 pub(crate) const LEFT_OUT: &str = "faces of fewer than three corners are left out";
 
@@ -35,7 +38,7 @@ pub fn read_mesh_of(files: &dyn Files, path: &Path) -> Result<TriMesh, Error> {
 }
 
 /// The mesh in place of one that is not needed: so small that it is in nothing's way.
-pub(crate) fn stand_in(file: &str) -> Result<TriMesh, Error> {
+pub fn stand_in(file: &str) -> Result<TriMesh, Error> {
     let corner = Point3::new(1e-9, 1e-9, 1e-9);
     let corners = vec![corner, corner * 2.0, Point3::origin()];
     TriMesh::new(corners, vec![[0, 1, 2]]).map_err(|e| mesh_error(file, &e))
@@ -133,7 +136,7 @@ pub(crate) fn build<'a>(
 }
 
 /// The error of a file whose triangles do not make a mesh.
-pub(crate) fn mesh_error(file: &str, e: &MeshError) -> Error {
+pub fn mesh_error(file: &str, e: &MeshError) -> Error {
     let error = Error::new(ErrorKind::Content, file, e.to_string());
     match e {
         MeshError::Empty => error.help("a body needs at least one triangle"),
@@ -142,7 +145,7 @@ pub(crate) fn mesh_error(file: &str, e: &MeshError) -> Error {
 }
 
 /// The mesh of `file` as a solid; one that is a solid already is not looked at again.
-pub(crate) fn solid_mesh(file: &str, mesh: TriMesh) -> Result<TriMesh, Error> {
+pub fn solid_mesh(file: &str, mesh: TriMesh) -> Result<TriMesh, Error> {
     if !mesh.solids().is_empty() {
         return Ok(mesh);
     }
@@ -151,6 +154,11 @@ pub(crate) fn solid_mesh(file: &str, mesh: TriMesh) -> Result<TriMesh, Error> {
         Error::new(ErrorKind::Content, file, message)
             .help("close it in a mesh editor, all triangles facing outward, or leave out `solid`: then it is a surface")
     })
+}
+
+/// A vertex too far away to compute with, if there is one.
+pub fn vertex_beyond(mesh: &TriMesh) -> Option<&Point3<f64>> {
+    mesh.vertices().iter().find(|v| v.iter().any(|c| c.abs() > MAX_COORDINATE))
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! GEMPA environment files: the robot, its initial and goal configuration, and the obstacles.
 
-use crate::error::Error;
-use crate::files::{MAX_TEXT_BYTES, read_file};
-use crate::number::Row;
 use crate::problem::SpaceKind;
-use crate::text::{Text, Token, clipped};
+use mp_formats::error::Error;
+use mp_formats::files::{MAX_TEXT_BYTES, read_file};
+use mp_formats::number::Row;
+use mp_formats::path::six;
+use mp_formats::text::{Text, Token, clipped};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -248,29 +249,6 @@ fn mesh_name(text: &Text<'_>, line: Token<'_>) -> Result<(), Error> {
         return Err(text.error(line, "the name of the mesh file has control characters"));
     }
     Ok(())
-}
-
-/// The six numbers of a line.
-pub(crate) fn six(
-    text: &Text<'_>,
-    line: Token<'_>,
-    subject: &str,
-    expected: &str,
-) -> Result<[f64; 6], Error> {
-    let mut out = [0.0; 6];
-    let mut found = 0;
-    for word in line.words() {
-        let value = text.number(word, expected)?;
-        if let Some(slot) = out.get_mut(found) {
-            *slot = value;
-        }
-        found += 1;
-    }
-    if found == 6 {
-        return Ok(out);
-    }
-    let numbers = if found == 1 { "number" } else { "numbers" };
-    Err(text.error(line, format!("{subject} has {found} {numbers}")).expected(expected))
 }
 
 #[cfg(test)]

@@ -4,39 +4,47 @@ use crate::error::{Error, ErrorKind};
 
 /// A text file being read.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Text<'a> {
-    pub(crate) file: &'a str,
-    pub(crate) text: &'a str,
+pub struct Text<'a> {
+    /// The name that errors call it.
+    pub file: &'a str,
+    /// Its content.
+    pub text: &'a str,
     /// The page that describes the format: the remedy of errors that have no better one.
-    pub(crate) guide: &'static str,
+    pub guide: &'static str,
 }
 
 /// A piece of the text, such as a word or a line, and where it begins, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Token<'a> {
-    pub(crate) text: &'a str,
-    pub(crate) at: usize,
+pub struct Token<'a> {
+    /// The piece.
+    pub text: &'a str,
+    /// Where it begins, in bytes.
+    pub at: usize,
 }
 
 impl<'a> Text<'a> {
-    pub(crate) fn new(file: &'a str, bytes: &'a [u8], guide: &'static str) -> Result<Self, Error> {
+    /// The content of `file`, which `guide`, a page of `docs/formats`, describes.
+    ///
+    /// # Errors
+    /// When it is not UTF-8.
+    pub fn new(file: &'a str, bytes: &'a [u8], guide: &'static str) -> Result<Self, Error> {
         Ok(Self { file, text: crate::files::decode(file, bytes)?, guide })
     }
 
     /// An error at a token.
-    pub(crate) fn error(&self, token: Token<'_>, message: impl Into<String>) -> Error {
+    pub fn error(&self, token: Token<'_>, message: impl Into<String>) -> Error {
         Error::at(ErrorKind::Format, self.file, self.text, token.at, token.text.len(), message.into())
             .help(format!("the format is described in docs/formats/{}", self.guide))
     }
 
     /// `file:line:column` of a token.
-    pub(crate) fn place(&self, token: Token<'_>) -> String {
+    pub fn place(&self, token: Token<'_>) -> String {
         let e = self.error(token, "");
         format!("{}:{}:{}", self.file, e.line().unwrap_or(1), e.column().unwrap_or(1))
     }
 
     /// An error where the text ends.
-    pub(crate) fn error_at_end(&self, expected: impl Into<String>) -> Error {
+    pub fn error_at_end(&self, expected: impl Into<String>) -> Error {
         let at = self.text.trim_end().len();
         if at == 0 {
             let message = "the file is empty".to_owned();
@@ -50,7 +58,7 @@ impl<'a> Text<'a> {
     }
 
     /// A finite number.
-    pub(crate) fn number(&self, token: Token<'_>, expected: &str) -> Result<f64, Error> {
+    pub fn number(&self, token: Token<'_>, expected: &str) -> Result<f64, Error> {
         match token.text.parse::<f64>() {
             Ok(v) if v.is_finite() => Ok(v),
             Ok(_) => {
@@ -73,7 +81,7 @@ impl<'a> Text<'a> {
     }
 
     /// A count or an index from 0.
-    pub(crate) fn count(&self, token: Token<'_>, expected: &str) -> Result<usize, Error> {
+    pub fn count(&self, token: Token<'_>, expected: &str) -> Result<usize, Error> {
         token.text.parse::<usize>().map_err(|_| {
             let digits = token.text.bytes().all(|b| b.is_ascii_digit());
             let what = if digits { "is too large a count" } else { "is not a count" };
@@ -83,18 +91,18 @@ impl<'a> Text<'a> {
 }
 
 /// Whether a word is how a C library writes infinity or what is no number: `-nan(ind)`, `nan(snan)`, `-1.#IND`, `1.#QNAN`, `inf`.
-pub(crate) fn is_not_a_number(word: &str) -> bool {
+pub fn is_not_a_number(word: &str) -> bool {
     let word = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
     ["nan", "ind", "inf", "qnan", "snan", "1.#"].iter().any(|start| word.starts_with(start))
 }
 
 /// At most 40 characters of `text`, with control characters replaced.
-pub(crate) fn clipped(text: &str) -> String {
+pub fn clipped(text: &str) -> String {
     clipped_to(text, 40)
 }
 
 /// At most `most` characters of `text`, with control characters replaced.
-pub(crate) fn clipped_to(text: &str, most: usize) -> String {
+pub fn clipped_to(text: &str, most: usize) -> String {
     let mut out: String =
         text.chars().take(most).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
     if text.chars().nth(most).is_some() {
@@ -105,19 +113,30 @@ pub(crate) fn clipped_to(text: &str, most: usize) -> String {
 
 impl<'a> Text<'a> {
     /// The lines that are not blank, trimmed. Lines end at `\n`, `\r\n` or a lone `\r`.
-    pub(crate) fn lines(&self) -> impl Iterator<Item = Token<'a>> + use<'a> {
-        let text = self.text;
-        text.split(['\n', '\r']).filter_map(move |line| {
-            let trimmed = line.trim();
-            let at = trimmed.as_ptr() as usize - text.as_ptr() as usize;
-            (!trimmed.is_empty()).then_some(Token { text: trimmed, at })
-        })
+    pub fn lines(&self) -> Lines<'a> {
+        Lines { text: self.text, parts: self.text.split(['\n', '\r']) }
+    }
+}
+
+/// The lines of a [`Text`].
+#[derive(Clone, Debug)]
+pub struct Lines<'a> {
+    text: &'a str,
+    parts: std::str::Split<'a, [char; 2]>,
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = Token<'a>;
+
+    fn next(&mut self) -> Option<Token<'a>> {
+        let trimmed = self.parts.by_ref().map(str::trim).find(|line| !line.is_empty())?;
+        Some(Token { text: trimmed, at: trimmed.as_ptr() as usize - self.text.as_ptr() as usize })
     }
 }
 
 impl<'a> Token<'a> {
     /// The words of a line.
-    pub(crate) fn words(self) -> impl Iterator<Item = Token<'a>> + Clone {
+    pub fn words(self) -> impl Iterator<Item = Token<'a>> + Clone {
         self.text.split_whitespace().map(move |word| Token {
             text: word,
             at: self.at + (word.as_ptr() as usize - self.text.as_ptr() as usize),
@@ -125,18 +144,18 @@ impl<'a> Token<'a> {
     }
 
     /// The parts between commas, without blanks and quotes around them. Commas between quotes are part of a cell.
-    pub(crate) fn cells(self) -> impl Iterator<Item = Token<'a>> + Clone {
+    pub fn cells(self) -> impl Iterator<Item = Token<'a>> + Clone {
         self.cells_between(',')
     }
 
     /// What cells of the line are between: commas, else semicolons, else tabs.
-    pub(crate) fn separator(self) -> char {
+    pub fn separator(self) -> char {
         let is_between = |separator: &char| self.cells_between(*separator).nth(1).is_some();
         [',', ';', '\t'].into_iter().find(is_between).unwrap_or(',')
     }
 
     /// As [`cells`](Self::cells), for another separator.
-    pub(crate) fn cells_between(self, separator: char) -> impl Iterator<Item = Token<'a>> + Clone {
+    pub fn cells_between(self, separator: char) -> impl Iterator<Item = Token<'a>> + Clone {
         let mut quoted = false;
         let ends = move |c| {
             quoted ^= c == '"';
@@ -156,31 +175,32 @@ impl<'a> Token<'a> {
     }
 
     /// Without blanks around it.
-    pub(crate) fn trimmed(self) -> Token<'a> {
+    pub fn trimmed(self) -> Token<'a> {
         let start = self.text.trim_start();
         Token { text: start.trim_end(), at: self.at + (self.text.len() - start.len()) }
     }
 
     /// The empty token right after it.
-    pub(crate) fn end(self) -> Token<'a> {
+    pub fn end(self) -> Token<'a> {
         Token { text: &self.text[self.text.len()..], at: self.at + self.text.len() }
     }
 }
 
 /// Reads words across lines, for formats in which line breaks mean little; `#` begins a comment.
 #[derive(Clone, Debug)]
-pub(crate) struct Lexer<'a> {
+pub struct Lexer<'a> {
     text: &'a str,
     at: usize,
 }
 
 impl<'a> Lexer<'a> {
-    pub(crate) fn new(text: &Text<'a>) -> Self {
+    /// Reads from the beginning.
+    pub fn new(text: &Text<'a>) -> Self {
         Self { text: text.text, at: 0 }
     }
 
     /// The next word; line breaks and comments are skipped.
-    pub(crate) fn next(&mut self) -> Option<Token<'a>> {
+    pub fn next(&mut self) -> Option<Token<'a>> {
         loop {
             if let Some(token) = self.next_on_line() {
                 return Some(token);
@@ -193,7 +213,7 @@ impl<'a> Lexer<'a> {
     }
 
     /// As [`next`](Self::next), for a number that is not used: `1.#IND` is one word.
-    pub(crate) fn next_unused(&mut self) -> Option<Token<'a>> {
+    pub fn next_unused(&mut self) -> Option<Token<'a>> {
         let Token { at, .. } = self.next()?;
         let bytes = self.text.as_bytes();
         while self.at < bytes.len() && !is_blank(bytes[self.at]) && !is_break(bytes[self.at]) {
@@ -203,7 +223,7 @@ impl<'a> Lexer<'a> {
     }
 
     /// The next word of this line; `None` at its end, where reading stays.
-    pub(crate) fn next_on_line(&mut self) -> Option<Token<'a>> {
+    pub fn next_on_line(&mut self) -> Option<Token<'a>> {
         let bytes = self.text.as_bytes();
         while self.at < bytes.len() && is_blank(bytes[self.at]) {
             self.at += 1;
@@ -216,7 +236,7 @@ impl<'a> Lexer<'a> {
     }
 
     /// Goes to the next line; returns the comment that ended this one.
-    pub(crate) fn next_line(&mut self) -> Option<&'a str> {
+    pub fn next_line(&mut self) -> Option<&'a str> {
         let bytes = self.text.as_bytes();
         let start = self.at;
         while self.at < bytes.len() && !is_break(bytes[self.at]) {
@@ -230,13 +250,13 @@ impl<'a> Lexer<'a> {
     }
 
     /// The number of words left on this line.
-    pub(crate) fn left_on_line(&self) -> usize {
+    pub fn left_on_line(&self) -> usize {
         let mut lookahead = self.clone();
         std::iter::from_fn(|| lookahead.next_on_line()).count()
     }
 
     /// Where the next read begins, in bytes.
-    pub(crate) fn position(&self) -> usize {
+    pub fn position(&self) -> usize {
         self.at
     }
 }

@@ -16,17 +16,13 @@ use std::path::Path;
 pub(crate) const GUIDE: &str = "shapes.md";
 
 /// Reads the points of a file in the format that its name says; text, if it says none.
-pub(crate) fn read_points(files: &dyn Files, path: &Path) -> Result<Vec<Point3<f64>>, Error> {
+pub fn read_points(files: &dyn Files, path: &Path) -> Result<Vec<Point3<f64>>, Error> {
     let bytes = files.read(path, MAX_MESH_BYTES)?;
     parse_points(path, &bytes, files.interrupt())
 }
 
 /// Reads `bytes`, the content of a file of points.
-pub(crate) fn parse_points(
-    path: &Path,
-    bytes: &[u8],
-    mut interrupt: Interrupt,
-) -> Result<Vec<Point3<f64>>, Error> {
+pub fn parse_points(path: &Path, bytes: &[u8], mut interrupt: Interrupt) -> Result<Vec<Point3<f64>>, Error> {
     let file = path.display().to_string();
     let points = match Content::of(path).next() {
         Some(Content::Ply) => ply::read_points(&file, bytes, interrupt)?,
@@ -46,7 +42,7 @@ pub(crate) fn parse_points(
 ///
 /// # Errors
 /// When none is left, or radius or cell do not suit them.
-pub(crate) fn balls(points: &Points, mut note: impl FnMut(&str)) -> Result<TriMesh, String> {
+pub fn balls(points: &Points, mut note: impl FnMut(&str)) -> Result<TriMesh, String> {
     let thinned = mp_geom::thin(&points.at, points.cell).map_err(|e| e.to_string())?;
     let (all, kept) = (points.at.len(), thinned.centers.len());
     if thinned.not_finite > 0 {

@@ -148,7 +148,7 @@ impl<F: Fn(&str) -> Option<B> + Send + Sync, B: AsRef<[u8]>> Files for InMemory<
 }
 
 /// Reads a regular file of at most `limit` bytes.
-pub(crate) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
+pub fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     Ok(mp_store::read(path, limit)?)
 }
 
@@ -161,12 +161,12 @@ pub fn read_text(path: &Path) -> Result<(String, Vec<u8>), Error> {
 }
 
 /// The name of a file, without folders and extension.
-pub(crate) fn stem(path: &Path) -> String {
+pub fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
 }
 
 /// `bytes` as UTF-8, without a byte order mark.
-pub(crate) fn decode<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Error> {
+pub fn decode<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Error> {
     let body = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = std::str::from_utf8(body).map_err(|e| {
         let good = std::str::from_utf8(&body[..e.valid_up_to()]).unwrap_or_default();

@@ -4,8 +4,8 @@ use std::fmt;
 
 /// A number, shown with the fewest digits that read back to the same bits; very large and very small ones
 /// with an exponent.
-#[derive(Clone, Copy)]
-pub(crate) struct Num(pub(crate) f64);
+#[derive(Clone, Copy, Debug)]
+pub struct Num(pub f64);
 
 impl fmt::Display for Num {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -19,7 +19,8 @@ impl fmt::Display for Num {
 }
 
 /// The numbers, separated by blanks.
-pub(crate) struct Row<'a>(pub(crate) &'a [f64]);
+#[derive(Clone, Copy, Debug)]
+pub struct Row<'a>(pub &'a [f64]);
 
 impl fmt::Display for Row<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -16,7 +16,7 @@ const MAX_COMPARED: usize = 64;
 
 impl Scene {
     /// The mean of all vertices, as OMPL.app computes it.
-    pub(crate) fn center(&self) -> Vector3<f64> {
+    pub fn center(&self) -> Vector3<f64> {
         let mut center = Center::default();
         let mut joined: HashMap<(*const Geometry, usize), Vec<[f32; 3]>> = HashMap::new();
         for Instance { geometry, matrix } in &self.instances {
@@ -32,7 +32,7 @@ impl Scene {
 
 /// The mean of the vertices of a mesh without normals: corners are merged when position and
 /// face normal agree.
-pub(crate) fn center_of_mesh(mesh: &mp_geom::TriMesh) -> Vector3<f64> {
+pub fn center_of_mesh(mesh: &mp_geom::TriMesh) -> Vector3<f64> {
     let geometry = Geometry::of_mesh(mesh);
     let mut center = Center::default();
     for group in &geometry.groups {

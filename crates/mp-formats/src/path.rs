@@ -4,7 +4,6 @@ use crate::columns::{Column, matched};
 use crate::error::{Error, ErrorKind};
 use crate::files::{decode, read_text};
 use crate::formats::Content;
-use crate::gempa::environment::six;
 use crate::json::{names, parse_rows, rows_text};
 use crate::number::Row;
 use crate::text::{Text, Token, clipped};
@@ -271,6 +270,24 @@ fn write<C: AsRef<[f64]> + Serialize>(
     }
     let content = if is_json(path) { rows_text(configurations) } else { text() };
     Ok(mp_store::write(path, content.as_bytes())?)
+}
+
+/// The six numbers of a line.
+pub fn six(text: &Text<'_>, line: Token<'_>, subject: &str, expected: &str) -> Result<[f64; 6], Error> {
+    let mut out = [0.0; 6];
+    let mut found = 0;
+    for word in line.words() {
+        let value = text.number(word, expected)?;
+        if let Some(slot) = out.get_mut(found) {
+            *slot = value;
+        }
+        found += 1;
+    }
+    if found == 6 {
+        return Ok(out);
+    }
+    let numbers = if found == 1 { "number" } else { "numbers" };
+    Err(text.error(line, format!("{subject} has {found} {numbers}")).expected(expected))
 }
 
 fn is_json(path: &Path) -> bool {

@@ -10,7 +10,7 @@ const MAX_ATTRIBUTES: usize = 64;
 const MAX_NAMESPACES: usize = 64;
 
 /// The text of an XML file, if it is one that is parsed in time and memory in proportion to its size.
-pub(crate) fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Error> {
+pub fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Error> {
     // Programs in C write the zero byte that ends their texts.
     let end = bytes.iter().rposition(|b| *b != 0).map_or(0, |last| last + 1);
     let is_wide = bytes.len() > 1 && (bytes[..2].contains(&0) || bytes.starts_with(b"\xff\xfe"));

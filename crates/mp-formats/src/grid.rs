@@ -1,6 +1,7 @@
 //! Images, whose dark pixels are obstacles.
 
-use super::pnm;
+mod pnm;
+
 use crate::error::{Error, ErrorKind};
 use mp_geom::planar::{Polygon, PolygonError, outline};
 use mp_stop::Interrupt;
@@ -45,6 +46,17 @@ impl GridMap {
         occupied: impl Fn(f32) -> bool,
         interrupt: &Interrupt,
     ) -> Result<Option<Polygon>, PolygonError> {
+        self.outline_where(scale, origin, &occupied, interrupt)
+    }
+
+    /// As [`outline`](Self::outline), compiled once, and in this crate.
+    fn outline_where(
+        &self,
+        scale: f64,
+        origin: [f64; 2],
+        occupied: &dyn Fn(f32) -> bool,
+        interrupt: &Interrupt,
+    ) -> Result<Option<Polygon>, PolygonError> {
         let [width, height] = self.size;
         // The first row of an image is its highest.
         let occupied = |x, y| occupied(self.brightness[(height - 1 - y) * width + x]);
@@ -53,12 +65,12 @@ impl GridMap {
 }
 
 /// An error about an image.
-pub(super) fn fault(file: &str, message: impl Into<String>) -> Error {
+fn fault(file: &str, message: impl Into<String>) -> Error {
     Error::new(ErrorKind::Format, file, message).help("save the image as PNG, or as PGM, of 8 bits")
 }
 
 /// Refuses images without pixels, and with too many.
-pub(super) fn check_size(file: &str, [width, height]: [usize; 2]) -> Result<(), Error> {
+fn check_size(file: &str, [width, height]: [usize; 2]) -> Result<(), Error> {
     let fits = |side: usize| (1..=MAX_SIDE).contains(&side);
     if fits(width) && fits(height) {
         return Ok(());
@@ -70,12 +82,12 @@ pub(super) fn check_size(file: &str, [width, height]: [usize; 2]) -> Result<(), 
 }
 
 /// The brightness of a pixel: its grey, or the mean of its red, green and blue.
-pub(super) fn mean(channels: &[u8]) -> f32 {
+fn mean(channels: &[u8]) -> f32 {
     channels.iter().map(|v| f32::from(*v)).sum::<f32>() / channels.len() as f32
 }
 
 /// 16 bits rounded to 8.
-pub(super) fn rounded(v: u16) -> u8 {
+fn rounded(v: u16) -> u8 {
     ((u32::from(v) + 128) / 257) as u8
 }
 

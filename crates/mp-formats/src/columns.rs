@@ -58,19 +58,23 @@ const QUATERNION: [&str; 4] = ["qw", "qx", "qy", "qz"];
 const UNIT_LENGTH: f64 = 1e-3;
 
 /// What is wrong with a table, and in which of its columns.
-pub(crate) struct Fault {
-    pub(crate) at: Option<usize>,
-    pub(crate) message: String,
-    pub(crate) expected: String,
+#[derive(Debug)]
+pub struct Fault {
+    /// Which column, if it is one.
+    pub at: Option<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What was expected there.
+    pub expected: String,
 }
 
 /// What to do about a [`Fault`].
-pub(crate) const HELP: &str = "name each column once and nothing else: `mp info SCENE` lists the names; \
+pub const HELP: &str = "name each column once and nothing else: `mp info SCENE` lists the names; \
     without names, the numbers are taken in their order";
 
 /// Where the numbers of a configuration are in the rows of a table.
 #[derive(Debug)]
-pub(crate) struct Matching {
+pub struct Matching {
     /// For each number its column, and what it is multiplied with and divided by; `None` for an angle from the quaternion.
     sources: Vec<Option<(usize, f64, f64)>>,
     /// The columns of w, x, y and z.
@@ -79,7 +83,7 @@ pub(crate) struct Matching {
 
 impl Matching {
     /// The matching of columns with these names, which may end with a unit, to those that are `wanted`.
-    pub(crate) fn new(names: &[String], wanted: &[Column]) -> Result<Self, Fault> {
+    pub fn new(names: &[String], wanted: &[Column]) -> Result<Self, Fault> {
         // What is written reads back the same, whatever the names are.
         let written = |(name, column): (&String, &Column)| {
             let Column { name: own, unit } = column;
@@ -142,7 +146,7 @@ impl Matching {
     }
 
     /// The configuration in a row of the table.
-    pub(crate) fn configuration(&self, row: &[f64]) -> Result<Vec<f64>, Fault> {
+    pub fn configuration(&self, row: &[f64]) -> Result<Vec<f64>, Fault> {
         let number = |source: &Option<(usize, f64, f64)>| {
             source
                 .map_or(0.0, |(at, times, over)| if times == over { row[at] } else { row[at] * times / over })
@@ -199,7 +203,7 @@ pub fn matched(
 }
 
 /// Whether the first column is the index of a data frame, which is no part of a configuration.
-pub(crate) fn is_index(names: &[String], wanted: &[Column]) -> bool {
+pub fn is_index(names: &[String], wanted: &[Column]) -> bool {
     let index = |name: &String| ["", "index", "Unnamed: 0"].contains(&name.trim());
     names.len() > 1 && names.first().is_some_and(|name| index(name) && find(name, wanted).is_none())
 }
@@ -220,7 +224,7 @@ fn is_pose(wanted: &[Column]) -> bool {
 }
 
 /// Which number a column is, and its unit if the name ends with one.
-pub(crate) fn find<'n>(name: &'n str, wanted: &[Column]) -> Option<(usize, Option<&'n str>)> {
+pub fn find<'n>(name: &'n str, wanted: &[Column]) -> Option<(usize, Option<&'n str>)> {
     let suffixed = name.trim().rsplit_once(['_', ' ']);
     let suffixed = suffixed.filter(|(_, unit)| SUFFIXES.contains(unit));
     let readings =
@@ -242,7 +246,7 @@ pub(crate) fn find<'n>(name: &'n str, wanted: &[Column]) -> Option<(usize, Optio
 }
 
 /// Name and unit of `name [unit]` and `name (unit)`. What has brackets itself is no unit.
-pub(crate) fn bracketed(name: &str) -> Option<(&str, &str)> {
+pub fn bracketed(name: &str) -> Option<(&str, &str)> {
     let name = name.trim();
     let open = match name.chars().last()? {
         ']' => '[',
@@ -257,7 +261,7 @@ pub(crate) fn bracketed(name: &str) -> Option<(&str, &str)> {
 const SUFFIXES: [&str; 8] = ["rad", "radians", "deg", "degrees", "m", "mm", "cm", "s"];
 
 /// What a value in a unit is multiplied with and divided by to be in another one.
-pub(crate) fn factor(from: Option<&str>, to: &str) -> Option<(f64, f64)> {
+pub fn factor(from: Option<&str>, to: &str) -> Option<(f64, f64)> {
     let from = from.filter(|unit| !unit.is_empty() && *unit != to);
     let Some(from) = from else { return Some((1.0, 1.0)) };
     let (from, to) = (scale(from)?, scale(to)?);

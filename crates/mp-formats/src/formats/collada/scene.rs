@@ -40,7 +40,7 @@ fn visual_scene<'a>(document: &Document<'a>) -> Result<Node<'a, 'a>, Error> {
 }
 
 /// What `<asset>` says of the coordinates.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Asset {
     /// The unit of length, metres.
     pub(crate) unit: f64,

@@ -73,7 +73,7 @@ impl Error {
     }
 
     /// The error of a reader that was interrupted.
-    pub(crate) fn interrupted(file: impl Display) -> Self {
+    pub fn interrupted(file: impl Display) -> Self {
         Self::new(
             ErrorKind::Interrupted,
             file,
@@ -98,14 +98,8 @@ impl Error {
     }
 
     /// An error at bytes `start..start + len` of `text`, the content of `file`.
-    pub(crate) fn at(
-        kind: ErrorKind,
-        file: &str,
-        text: &str,
-        start: usize,
-        len: usize,
-        message: String,
-    ) -> Self {
+    #[must_use]
+    pub fn at(kind: ErrorKind, file: &str, text: &str, start: usize, len: usize, message: String) -> Self {
         let start = floor_boundary(text, start.min(text.len()));
         let end = floor_boundary(text, start.saturating_add(len).min(text.len())).max(start);
         let (line, line_start) = line_of(text.as_bytes(), start);
@@ -116,7 +110,9 @@ impl Error {
         e
     }
 
-    pub(crate) fn expected(mut self, what: impl Into<String>) -> Self {
+    /// Adds what was expected there.
+    #[must_use]
+    pub fn expected(mut self, what: impl Into<String>) -> Self {
         self.0.expected = Some(one_line(&what.into(), MAX_EXPECTED));
         self
     }
@@ -128,24 +124,30 @@ impl Error {
         self
     }
 
-    pub(crate) fn with_kind(mut self, kind: ErrorKind) -> Self {
+    /// The same error as one of this kind.
+    #[must_use]
+    pub fn with_kind(mut self, kind: ErrorKind) -> Self {
         self.0.kind = kind;
         self
     }
 
     /// An error in the text of an option, instead of in a line of a file.
-    pub(crate) fn in_option(mut self, option: &str) -> Self {
+    #[must_use]
+    pub fn in_option(mut self, option: &str) -> Self {
         (self.0.file, self.0.position, self.0.excerpt) = (option.to_owned(), None, None);
         self
     }
 
     /// Adds the place at which another file names the file in error.
-    pub(crate) fn cited_at(mut self, place: String) -> Self {
+    #[must_use]
+    pub fn cited_at(mut self, place: String) -> Self {
         self.0.cited_at = Some(one_line(&place, MAX_FILE));
         self
     }
 
-    pub(crate) fn with_position(mut self, line: usize, column: usize) -> Self {
+    /// Adds line and column, counted from 1.
+    #[must_use]
+    pub fn with_position(mut self, line: usize, column: usize) -> Self {
         self.0.position = Some((line, column));
         self
     }
@@ -193,7 +195,8 @@ impl Error {
     }
 
     /// What to do about a file that another file names and that cannot be used.
-    pub(crate) fn remedy_of_named_file(&self) -> &str {
+    #[must_use]
+    pub fn remedy_of_named_file(&self) -> &str {
         self.remedy().unwrap_or("check the name of the file")
     }
 
@@ -314,6 +317,21 @@ impl Excerpt {
 /// The text without control characters, which could disturb a terminal.
 fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() && c != '\t' { '\u{fffd}' } else { c }).collect()
+}
+
+/// Checks that an error can be shown: one line, a place inside the file, a remedy.
+///
+/// # Panics
+/// When it cannot. For tests.
+pub fn check_error(error: &Error) {
+    let line = error.to_string();
+    assert!(!line.contains(char::is_control) && line.chars().count() < 500, "{line}");
+    assert!(error.line().is_none_or(|l| l > 0) && error.column().is_none_or(|c| c > 0));
+    assert!(error.remedy().is_some(), "{line}");
+    let report = error.report();
+    assert!(report.lines().count() <= 4 && report.chars().count() < 500, "{report}");
+    // Tabs of the file stay in its line and above the mark below.
+    assert!(!report.contains(|c: char| c.is_control() && !matches!(c, '\n' | '\t')), "{report:?}");
 }
 
 /// Line of byte `at` (from 1), and where that line begins. A line ends at `\n`, `\r\n` or a lone `\r`.

@@ -141,7 +141,7 @@ mod tests {
     fn other_encodings_are_refused_with_what_to_do() {
         let says = |bytes: &[u8], words: &[&str]| {
             let e = xml(bytes).unwrap_err();
-            crate::fuzz::check_error(&e);
+            crate::error::check_error(&e);
             let shown = e.report();
             assert!(words.iter().all(|w| shown.contains(w)), "{shown}");
         };

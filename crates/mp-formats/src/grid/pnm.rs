@@ -1,6 +1,6 @@
 //! Images of Netpbm: PBM, PGM and PPM, as text (P1 to P3) and as bytes (P4 to P6).
 
-use super::grid::{GridMap, check_size, fault, mean, rounded};
+use super::{GridMap, check_size, fault, mean, rounded};
 use crate::error::{Error, line_of};
 
 /// The largest value that a sample may have, 16 bits.
