@@ -360,8 +360,9 @@ impl Triangles<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::Disk;
     use crate::mesh::parse_mesh;
-    use crate::{Disk, read_mesh_with};
+    use crate::mesh::read_mesh_with;
 
     const CORPUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/gltf/good-");
 

@@ -6,35 +6,35 @@ use super::*;
 fn collada() {
     check(&[
         case(
-            Mesh,
+            mesh,
             "m.dae",
             "",
             "m.dae:1:1: the document does not have a root node; expected COLLADA, an XML file",
             "the file is cut short or not COLLADA: export it again",
         ),
         case(
-            Mesh,
+            mesh,
             "m.dae",
             "<COLLADA>\n<node",
             "m.dae:1:1: the root node was opened but never closed; expected COLLADA, an XML file",
             "the file is cut short or not COLLADA: export it again",
         ),
         case(
-            Mesh,
+            mesh,
             "m.dae",
             "<gltf/>",
             "m.dae:1:1: the document is <gltf>; expected <COLLADA>",
             "the format is described in docs/formats/meshes.md",
         ),
         case(
-            Mesh,
+            mesh,
             "m.dae",
             "<COLLADA/>",
             "m.dae:1:1: the file does not say which scene it shows; expected <scene><instance_visual_scene url=\"#id\"/></scene>",
             "the format is described in docs/formats/meshes.md",
         ),
         case(
-            Mesh,
+            mesh,
             "m.dae",
             "<!DOCTYPE c [<!ENTITY a \"b\">]>\n<COLLADA/>",
             "m.dae:1:1: XML with DTD detected; expected COLLADA, an XML file",

@@ -3,7 +3,8 @@
 mod png;
 mod pnm;
 
-use mp_io::{Error, ErrorKind, GridMap};
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::grid::GridMap;
 
 /// The brightness of the pixels.
 fn read(bytes: &[u8]) -> Result<Vec<f32>, Error> {
