@@ -1,7 +1,8 @@
 //! PNG files of every kind, written here, so that what they must read as is known.
 
 use super::{read, refused};
-use mp_io::{ErrorKind, GridMap};
+use mp_formats::error::ErrorKind;
+use mp_formats::grid::GridMap;
 use proptest::prelude::*;
 
 const GREY: u8 = 0;

@@ -1,7 +1,8 @@
 //! Images of Netpbm.
 
 use super::{read, refused};
-use mp_io::{ErrorKind, GridMap};
+use mp_formats::error::ErrorKind;
+use mp_formats::grid::GridMap;
 use proptest::prelude::*;
 
 /// The file of an image: `kind` 1 to 6, samples of all pixels of which `most` is white (of bits: 1 is black).
