@@ -23,7 +23,7 @@ pub enum ErrorKind {
     Content,
     /// Larger than this crate reads.
     TooLarge,
-    /// The reader was interrupted: see [`Until`](crate::Until).
+    /// The reader was interrupted: see [`Until`](crate::files::Until).
     Interrupted,
 }
 
@@ -57,7 +57,7 @@ struct Excerpt {
 }
 
 impl Error {
-    /// An error of this kind about a file: for [`Files`](crate::Files) of your own.
+    /// An error of this kind about a file: for [`Files`](crate::files::Files) of your own.
     pub fn new(kind: ErrorKind, file: impl Display, message: impl Into<String>) -> Self {
         let message = one_line(&message.into(), MAX_MESSAGE);
         Self(Box::new(Inner {

@@ -20,7 +20,7 @@ pub const MAX_COORDINATE: f64 = 1e9;
 /// The remark on a mesh with points and segments among its faces.
 pub(crate) const LEFT_OUT: &str = "faces of fewer than three corners are left out";
 
-/// Reads the mesh `path`, of any format for meshes in the [table](crate::FORMATS). The ending of the name decides, or,
+/// Reads the mesh `path`, of any format for meshes in the [table](crate::formats::FORMATS). The ending of the name decides, or,
 /// when it is not known, the content.
 ///
 /// # Errors

@@ -9,7 +9,7 @@ pub(crate) type Reader = fn(&Path) -> Result<(), Error>;
 pub(crate) struct Case {
     reader: Reader,
     /// Name and content; the first one is read.
-    files: Vec<(&'static str, Vec<u8>)>,
+    pub(crate) files: Vec<(&'static str, Vec<u8>)>,
     /// `file:line:column: message; expected …`.
     error: &'static str,
     /// The remedy, or "".
@@ -24,13 +24,6 @@ pub(crate) fn case(
     help: &'static str,
 ) -> Case {
     Case { reader, files: vec![(name, content.as_ref().to_vec())], error, help }
-}
-
-impl Case {
-    pub(crate) fn with(mut self, name: &'static str, content: impl AsRef<[u8]>) -> Self {
-        self.files.push((name, content.as_ref().to_vec()));
-        self
-    }
 }
 
 fn run(folder: &Path, case: &Case) -> Error {

@@ -13,6 +13,13 @@ fn scene(file: &Path) -> Result<(), Error> {
     RigidProblem::load(file).map(drop)
 }
 
+impl Case {
+    fn with(mut self, name: &'static str, content: impl AsRef<[u8]>) -> Self {
+        self.files.push((name, content.as_ref().to_vec()));
+        self
+    }
+}
+
 const TRIANGLE: &str = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 const ENV: &str = "Robot\nr.off\n0 0 0 0 0 0\n5 0 0 0 0 0\n\nObstacle #1\nw.off\n2 0 0 0 0 0\nEnd\n";
 const CFG: &str = "[problem]\nrobot=r.off\nworld=w.off\nstart.x=0\nstart.y=0\nstart.theta=0\ngoal.x=1\ngoal.y=1\ngoal.theta=0\n";
