@@ -49,7 +49,7 @@ impl GridMap {
         self.outline_where(scale, origin, &occupied, interrupt)
     }
 
-    /// As [`outline`](Self::outline), compiled once, and in this crate.
+    /// As [`outline`](Self::outline), but compiled once, in this crate; asks once for each brightness, of which an image has few.
     fn outline_where(
         &self,
         scale: f64,
@@ -57,10 +57,17 @@ impl GridMap {
         occupied: &dyn Fn(f32) -> bool,
         interrupt: &Interrupt,
     ) -> Result<Option<Polygon>, PolygonError> {
+        // A brightness is a third of a whole number.
+        let mut asked = [None; 3 * 255 + 1];
+        let mut is_occupied = |&brightness: &f32| match &mut asked[((3.0 * brightness) as usize).min(3 * 255)]
+        {
+            Some((known, occupied)) if *known == brightness => *occupied,
+            other => other.insert((brightness, occupied(brightness))).1,
+        };
+        let pixels: Vec<bool> = self.brightness.iter().map(&mut is_occupied).collect();
         let [width, height] = self.size;
         // The first row of an image is its highest.
-        let occupied = |x, y| occupied(self.brightness[(height - 1 - y) * width + x]);
-        outline([width, height], scale, origin, occupied, interrupt)
+        outline([width, height], scale, origin, |x, y| pixels[(height - 1 - y) * width + x], interrupt)
     }
 }
 
