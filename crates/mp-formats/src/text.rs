@@ -81,7 +81,7 @@ impl<'a> Text<'a> {
     }
 
     /// A count or an index from 0.
-    pub fn count(&self, token: Token<'_>, expected: &str) -> Result<usize, Error> {
+    pub(crate) fn count(&self, token: Token<'_>, expected: &str) -> Result<usize, Error> {
         token.text.parse::<usize>().map_err(|_| {
             let digits = token.text.bytes().all(|b| b.is_ascii_digit());
             let what = if digits { "is too large a count" } else { "is not a count" };
@@ -91,7 +91,7 @@ impl<'a> Text<'a> {
 }
 
 /// Whether a word is how a C library writes infinity or what is no number: `-nan(ind)`, `nan(snan)`, `-1.#IND`, `1.#QNAN`, `inf`.
-pub fn is_not_a_number(word: &str) -> bool {
+pub(crate) fn is_not_a_number(word: &str) -> bool {
     let word = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
     ["nan", "ind", "inf", "qnan", "snan", "1.#"].iter().any(|start| word.starts_with(start))
 }
@@ -144,7 +144,7 @@ impl<'a> Token<'a> {
     }
 
     /// The parts between commas, without blanks and quotes around them. Commas between quotes are part of a cell.
-    pub fn cells(self) -> impl Iterator<Item = Token<'a>> + Clone {
+    pub(crate) fn cells(self) -> impl Iterator<Item = Token<'a>> + Clone {
         self.cells_between(',')
     }
 
@@ -188,19 +188,18 @@ impl<'a> Token<'a> {
 
 /// Reads words across lines, for formats in which line breaks mean little; `#` begins a comment.
 #[derive(Clone, Debug)]
-pub struct Lexer<'a> {
+pub(crate) struct Lexer<'a> {
     text: &'a str,
     at: usize,
 }
 
 impl<'a> Lexer<'a> {
-    /// Reads from the beginning.
-    pub fn new(text: &Text<'a>) -> Self {
+    pub(crate) fn new(text: &Text<'a>) -> Self {
         Self { text: text.text, at: 0 }
     }
 
     /// The next word; line breaks and comments are skipped.
-    pub fn next(&mut self) -> Option<Token<'a>> {
+    pub(crate) fn next(&mut self) -> Option<Token<'a>> {
         loop {
             if let Some(token) = self.next_on_line() {
                 return Some(token);
@@ -213,7 +212,7 @@ impl<'a> Lexer<'a> {
     }
 
     /// As [`next`](Self::next), for a number that is not used: `1.#IND` is one word.
-    pub fn next_unused(&mut self) -> Option<Token<'a>> {
+    pub(crate) fn next_unused(&mut self) -> Option<Token<'a>> {
         let Token { at, .. } = self.next()?;
         let bytes = self.text.as_bytes();
         while self.at < bytes.len() && !is_blank(bytes[self.at]) && !is_break(bytes[self.at]) {
@@ -223,7 +222,7 @@ impl<'a> Lexer<'a> {
     }
 
     /// The next word of this line; `None` at its end, where reading stays.
-    pub fn next_on_line(&mut self) -> Option<Token<'a>> {
+    pub(crate) fn next_on_line(&mut self) -> Option<Token<'a>> {
         let bytes = self.text.as_bytes();
         while self.at < bytes.len() && is_blank(bytes[self.at]) {
             self.at += 1;
@@ -236,7 +235,7 @@ impl<'a> Lexer<'a> {
     }
 
     /// Goes to the next line; returns the comment that ended this one.
-    pub fn next_line(&mut self) -> Option<&'a str> {
+    pub(crate) fn next_line(&mut self) -> Option<&'a str> {
         let bytes = self.text.as_bytes();
         let start = self.at;
         while self.at < bytes.len() && !is_break(bytes[self.at]) {
@@ -250,13 +249,13 @@ impl<'a> Lexer<'a> {
     }
 
     /// The number of words left on this line.
-    pub fn left_on_line(&self) -> usize {
+    pub(crate) fn left_on_line(&self) -> usize {
         let mut lookahead = self.clone();
         std::iter::from_fn(|| lookahead.next_on_line()).count()
     }
 
     /// Where the next read begins, in bytes.
-    pub fn position(&self) -> usize {
+    pub(crate) fn position(&self) -> usize {
         self.at
     }
 }

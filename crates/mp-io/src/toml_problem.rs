@@ -529,21 +529,4 @@ pub(crate) mod tests {
         let placed = error.line() == Some(line) && shown.contains(words);
         placed && error.remedy().is_some() && !shown.contains('\n')
     }
-
-    #[test]
-    fn toml_in_the_documentation_is_toml() {
-        let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs");
-        let pages = ["formats", "guides"]
-            .map(|folder| std::fs::read_dir(std::path::Path::new(docs).join(folder)).unwrap());
-        let mut count = 0;
-        for page in pages.into_iter().flatten() {
-            let text = std::fs::read_to_string(page.unwrap().path()).unwrap();
-            for block in text.split("\n```toml").skip(1) {
-                let (_, block) = block.split("\n```").next().unwrap().split_once('\n').unwrap();
-                toml::from_str::<toml::Table>(block).unwrap_or_else(|e| panic!("{e}\n{block}"));
-                count += 1;
-            }
-        }
-        assert!(count > 10, "{count} blocks");
-    }
 }
