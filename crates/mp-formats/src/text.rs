@@ -154,7 +154,7 @@ impl<'a> Token<'a> {
         [',', ';', '\t'].into_iter().find(is_between).unwrap_or(',')
     }
 
-    /// As [`cells`](Self::cells), for another separator.
+    /// The parts between separators, without blanks and quotes around them. Separators between quotes are part of a cell.
     pub fn cells_between(self, separator: char) -> impl Iterator<Item = Token<'a>> + Clone {
         let mut quoted = false;
         let ends = move |c| {
