@@ -1,12 +1,12 @@
 //! Problems that options of a command line change: another start, other goals, more obstacles. They become text of the problem, so that
 //! an option means what the same text means in a file.
 
-use crate::error::{Error, ErrorKind};
-use crate::files::Files;
 use crate::problem::PlacedBody;
 use crate::robot::{ObstacleTable, entry};
 use crate::shape::{Meshes, Shaped};
 use crate::toml_problem::TomlText;
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::files::Files;
 use mp_geom::pose_from_six;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -139,7 +139,7 @@ impl ProblemChanges {
 fn row(option: &'static str, text: &str) -> Result<Vec<f64>, Error> {
     let read = members(option, "list of numbers", &value(option, text)?)?;
     read.try_into::<Vec<f64>>().map_err(|_| {
-        let message = format!("`{}` is no list of numbers", crate::text::clipped(text));
+        let message = format!("`{}` is no list of numbers", mp_formats::text::clipped(text));
         Error::new(ErrorKind::Content, option, message)
             .help("write the numbers of a configuration; only problems in TOML have goals of other kinds")
     })
@@ -186,7 +186,7 @@ fn value(option: &'static str, given: &str) -> Result<String, Error> {
 fn members(option: &'static str, what: &str, value: &str) -> Result<Value, Error> {
     let read = toml::from_str::<toml::Table>(&format!("it = {value}")).ok().and_then(|mut t| t.remove("it"));
     read.ok_or_else(|| {
-        let message = format!("`{}` is no {what}", crate::text::clipped(value));
+        let message = format!("`{}` is no {what}", mp_formats::text::clipped(value));
         Error::new(ErrorKind::Format, option, message).help(help_of(option))
     })
 }

@@ -1,11 +1,12 @@
 //! Scenes as an editor keeps them, `.mp.json`: figures stay figures, with names, colours and scales.
 
-use crate::error::{Error, ErrorKind};
-use crate::files::{Files, MAX_TEXT_BYTES, decode};
-use crate::formats::off::{OffDocument, off_text};
-use crate::gempa::{Environment, Obstacle, gempa_mesh_text};
-use crate::mesh::{mesh_error, read_mesh_of, solid_mesh};
-use crate::problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind, vertex_beyond};
+use crate::environment::{Environment, Obstacle};
+use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind};
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::files::{Files, MAX_TEXT_BYTES, decode};
+use mp_formats::formats::gempa::gempa_mesh_text;
+use mp_formats::formats::off::{OffDocument, off_text};
+use mp_formats::mesh::{MAX_COORDINATE, mesh_error, read_mesh_of, solid_mesh, vertex_beyond};
 use mp_geom::{Aabb, PrimitiveError, Shape, TriMesh, pose_from_six, short_six_from_pose};
 use nalgebra::{Isometry3, Point3};
 use serde::{Deserialize, Serialize};
@@ -117,7 +118,7 @@ impl SceneDocument {
     /// [`Error`] when it is not a document of this version, with line and column, or a number, colour or name is not valid.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
-        let document: Self = crate::json::parse(file, text, "a scene of an editor (.mp.json)", GUIDE)
+        let document: Self = mp_formats::json::parse(file, text, "a scene of an editor (.mp.json)", GUIDE)
             .map_err(|e| match e.message().contains("`goals`") {
                 true => e.help(
                     "an editor has one goal; rigid problems (.toml) have sets of goals: docs/formats/rigid-problem.md",
@@ -447,7 +448,7 @@ fn free_name(scene: &str, word: &str, files: &[(String, String)]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::InMemory;
+    use mp_formats::files::InMemory;
 
     fn document() -> SceneDocument {
         let body = |name: &str, shape| DocumentBody {

@@ -1,7 +1,7 @@
 //! Robots that move by inputs: cars, unicycles, velocities and accelerations, as problems in TOML describe them.
 
-use crate::error::Error;
 use crate::toml_problem::TomlText;
+use mp_formats::error::Error;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -116,7 +116,7 @@ impl DriveTable {
         let keys = KEYS.iter().find(|(name, _)| name == kind.get_ref() && kinds.contains(name));
         let Some((name, keys)) = keys else {
             let message =
-                format!("there is no kind of robot `{}` here", crate::text::clipped(kind.get_ref()));
+                format!("there is no kind of robot `{}` here", mp_formats::text::clipped(kind.get_ref()));
             return Err(text
                 .error(&kind.span(), message)
                 .expected(format!("`kind = {}`, or no kind", one_of(kinds))));

@@ -5,13 +5,14 @@
 //! most readers do. `cargo xtask fuzz` calls them guided by coverage, and the test `fuzz` of this crate with the files that
 //! were found so, and with mutated ones (`docs/fuzzing.md`).
 
-use crate::formats::collada::Scene;
-use crate::mesh::Axes;
 use crate::{Column, csv_text, gempa_mesh_text, parse_csv, parse_mesh, stl_text};
 use crate::{
     Environment, Error, ErrorKind, GridMap, InMemory, JointPath, OffDocument, OmplProblem, PathFile,
     PlanarFile, RobotFile, RosMap, SceneDocument, TrajectoryFile, TrajectoryKind,
 };
+pub use mp_formats::error::check_error;
+use mp_formats::formats::collada::Scene;
+use mp_formats::mesh::Axes;
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
 use std::fmt::Debug;
@@ -94,9 +95,9 @@ pub fn points_las(bytes: &[u8]) -> Result<(), Error> {
 
 /// Points of a file, and balls around them.
 fn points(file: &str, bytes: &[u8]) -> Result<(), Error> {
-    let at = crate::points::parse_points(Path::new(file), bytes, Interrupt::never())?;
+    let at = mp_formats::points::parse_points(Path::new(file), bytes, Interrupt::never())?;
     let (count, mut kept) = (at.len(), 0);
-    if let Ok(mesh) = crate::points::balls(&mp_geom::Points::new(at, 0.1), |_| ()) {
+    if let Ok(mesh) = mp_formats::points::balls(&mp_geom::Points::new(at, 0.1), |_| ()) {
         kept = mesh.vertices().len();
     }
     assert!(kept <= count && count <= bytes.len().max(1) * 100);
@@ -213,7 +214,7 @@ pub fn robot_problem(bytes: &[u8]) -> Result<(), Error> {
 pub fn mjcf(bytes: &[u8]) -> Result<(), Error> {
     const INCLUDED: &str =
         "<mujocoinclude><body name='included'><joint/><geom size='1'/></body></mujocoinclude>";
-    let text = crate::xml::text("f.xml", bytes)?.into_owned();
+    let text = mp_formats::xml::text("f.xml", bytes)?.into_owned();
     let files = InMemory(|name: &str| (name != "f.xml").then_some(INCLUDED));
     let read = crate::mjcf::read(&files, Path::new("f.xml"), text)?;
     for (text, element) in [(&read.urdf, "link"), (&read.srdf, "robot")] {
@@ -348,21 +349,6 @@ fn round_trips<T: PartialEq + Debug>(
     let value = read(bytes)?;
     assert_eq!(read(text(&value).as_bytes()).ok(), Some(value));
     Ok(())
-}
-
-/// Checks that an error can be shown: one line, a place inside the file, a remedy.
-///
-/// # Panics
-/// When it cannot.
-pub fn check_error(error: &Error) {
-    let line = error.to_string();
-    assert!(!line.contains(char::is_control) && line.chars().count() < 500, "{line}");
-    assert!(error.line().is_none_or(|l| l > 0) && error.column().is_none_or(|c| c > 0));
-    assert!(error.remedy().is_some(), "{line}");
-    let report = error.report();
-    assert!(report.lines().count() <= 4 && report.chars().count() < 500, "{report}");
-    // Tabs of the file stay in its line and above the mark below.
-    assert!(!report.contains(|c: char| c.is_control() && !matches!(c, '\n' | '\t')), "{report:?}");
 }
 
 fn same_triangles(mesh: &TriMesh, again: &Result<TriMesh, Error>) {

@@ -16,24 +16,13 @@
 //! angles radians. The formats are documented in `docs/formats/`.
 
 mod changes;
-mod columns;
-mod csv;
 mod document;
 mod drive;
-mod encoding;
-mod error;
-mod files;
-mod formats;
+mod environment;
 pub mod fuzz;
-mod gempa;
-mod json;
-mod mesh;
 mod mjcf;
-mod number;
 mod ompl;
-mod path;
 mod planar;
-mod points;
 mod pose_goal;
 mod problem;
 mod problem_file;
@@ -41,34 +30,35 @@ mod rigid_toml;
 mod robot;
 mod robots;
 mod shape;
-mod text;
 mod toml_problem;
 mod trace;
 mod trajectory;
 mod xacro;
-mod xml;
 mod yaml;
 
 pub use changes::ProblemChanges;
-pub use columns::{Column, matched};
-pub use csv::{csv_text, parse_csv};
 pub use document::{DocumentBody, DocumentShape, SceneDocument};
 pub use drive::{Drive, Driven};
-pub use error::{Error, ErrorKind, one_line, shortened};
-pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, Until, read_text};
-pub use formats::off::{OffColor, OffDocument, OffFace, off_text, write_off};
-pub use formats::stl::{stl_text, write_stl};
-pub use formats::{Content, FORMATS, Format};
-pub use gempa::{Environment, Obstacle, gempa_mesh_text, write_gempa_mesh};
-pub use mesh::{Axes, MAX_CORNERS, parse_mesh, read_mesh, read_mesh_of, read_mesh_with};
+pub use environment::{Environment, Obstacle};
+pub use mp_formats::columns::{Column, matched};
+pub use mp_formats::csv::{csv_text, parse_csv};
+pub use mp_formats::error::{Error, ErrorKind, one_line, shortened};
+pub use mp_formats::files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, Until, read_text};
+pub use mp_formats::formats::gempa::{gempa_mesh_text, write_gempa_mesh};
+pub use mp_formats::formats::off::{OffColor, OffDocument, OffFace, off_text, write_off};
+pub use mp_formats::formats::stl::{stl_text, write_stl};
+pub use mp_formats::formats::{Content, FORMATS, Format};
+pub use mp_formats::grid::GridMap;
+pub use mp_formats::mesh::{
+    Axes, MAX_COORDINATE, MAX_CORNERS, parse_mesh, read_mesh, read_mesh_of, read_mesh_with,
+};
+pub use mp_formats::path::{JointPath, PathFile};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl, exported_files};
-pub use path::{JointPath, PathFile};
 pub use planar::{
-    GridMap, PlanarFile, PlanarMap, PlanarMoving, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape,
-    RosMap,
+    PlanarFile, PlanarMap, PlanarMoving, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape, RosMap,
 };
 pub use pose_goal::{FreeTurns, PoseEntry};
-pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
+pub use problem::{Body, PlacedBody, RigidProblem, SpaceKind};
 pub use problem_file::ProblemFile;
 pub use rigid_toml::{RigidMoving, RigidTask};
 pub use robot::{

@@ -10,9 +10,9 @@ mod tests;
 mod tree;
 mod write;
 
-use crate::error::{Error, ErrorKind};
-use crate::files::Files;
 use document::{Classes, Model, Source, sources};
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::files::Files;
 use mp_geom::TriMesh;
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,20 +1,17 @@
 //! Worlds in the plane: polygons, images and maps, a robot, a start and goals, in TOML.
 
-mod grid;
-mod pnm;
 mod problem;
 mod ros_map;
 #[cfg(test)]
 mod tests;
 
-pub use grid::GridMap;
 pub use problem::PlanarProblem;
 pub use ros_map::RosMap;
 
 use crate::drive::{Drive, DriveTable, Driven};
-use crate::error::Error;
-use crate::files::decode;
 use crate::toml_problem::{GoalPart, MotionPlaces, MotionTable, Timing, TomlText, timed_rows};
+use mp_formats::error::Error;
+use mp_formats::files::decode;
 use mp_geom::planar::Polygon;
 use nalgebra::Point2;
 use serde::Deserialize;
@@ -453,7 +450,7 @@ fn moving_entry(
     let name = name.unwrap_or_else(|| format!("moving obstacle {}", index + 1));
     let shape = ObstacleTable { name: Some(name), polygon, holes, rectangle, circle };
     let PlanarObstacle { name, polygon } = shaped(source, index, span, shape)?;
-    let shown = crate::text::clipped(&name).to_string();
+    let shown = mp_formats::text::clipped(&name).to_string();
     let rows = timed_rows(
         source,
         &shown,
@@ -502,7 +499,7 @@ fn shaped(
     table: ObstacleTable,
 ) -> Result<PlanarObstacle, Error> {
     let name = table.name.unwrap_or_else(|| format!("obstacle {}", index + 1));
-    let shown = crate::text::clipped(&name).to_string();
+    let shown = mp_formats::text::clipped(&name).to_string();
     let made = |span: &Range<usize>, made: Result<Polygon, mp_geom::planar::PolygonError>| {
         made.map_err(|e| source.error(span, format!("{shown}: {e}")).expected("sizes above zero, in metres"))
     };

@@ -1,8 +1,8 @@
 //! Goals that are places of a link: a tool at a pose.
 
-use crate::error::Error;
-use crate::text::clipped;
 use crate::toml_problem::{PartText, TomlText};
+use mp_formats::error::Error;
+use mp_formats::text::clipped;
 use std::collections::BTreeMap;
 use std::ops::Range;
 

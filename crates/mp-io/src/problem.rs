@@ -1,20 +1,17 @@
 //! Problems for rigid bodies, read from any of their formats.
 
 use crate::document;
-use crate::error::{Error, ErrorKind};
-use crate::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
-use crate::formats::Content;
-use crate::gempa::environment::{self, Environment};
-use crate::mesh::read_mesh_of;
+use crate::environment::{self, Environment};
 use crate::ompl;
-use crate::text::{Text, Token};
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
+use mp_formats::formats::Content;
+use mp_formats::mesh::{MAX_COORDINATE, read_mesh_of, vertex_beyond};
+use mp_formats::text::{Text, Token};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
-
-/// The largest coordinate of a problem, metres: beyond it single precision and volumes lose their meaning.
-pub const MAX_COORDINATE: f64 = 1e9;
 
 /// The space in which the robot moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -236,11 +233,6 @@ pub(crate) fn check_mesh(
                 .cited_at(text.place(place)))
         }
     }
-}
-
-/// A vertex too far away to compute with, if there is one.
-pub(crate) fn vertex_beyond(mesh: &TriMesh) -> Option<&Point3<f64>> {
-    mesh.vertices().iter().find(|v| v.iter().any(|c| c.abs() > MAX_COORDINATE))
 }
 
 /// Refuses numbers beyond [`MAX_COORDINATE`]; `what` has them.

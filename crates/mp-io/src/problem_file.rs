@@ -1,12 +1,12 @@
 //! Problems in TOML files, recognised by their tables.
 
-use crate::error::Error;
-use crate::files::{Files, MAX_TEXT_BYTES, decode};
 use crate::planar::PlanarProblem;
 use crate::rigid_toml::RigidTask;
 use crate::robot::RobotProblem;
 use crate::shape;
 use crate::toml_problem::TomlText;
+use mp_formats::error::Error;
+use mp_formats::files::{Files, MAX_TEXT_BYTES, decode};
 use std::path::Path;
 
 /// The pages that describe the formats.
@@ -100,5 +100,22 @@ mod tests {
             error.line() == Some(1) && error.remedy().is_some_and(|r| r.contains("docs/formats")),
             "{error}"
         );
+    }
+
+    #[test]
+    fn toml_in_the_documentation_is_toml() {
+        let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs");
+        let pages = ["formats", "guides"]
+            .map(|folder| std::fs::read_dir(std::path::Path::new(docs).join(folder)).unwrap());
+        let mut count = 0;
+        for page in pages.into_iter().flatten() {
+            let text = std::fs::read_to_string(page.unwrap().path()).unwrap();
+            for block in text.split("\n```toml").skip(1) {
+                let (_, block) = block.split("\n```").next().unwrap().split_once('\n').unwrap();
+                toml::from_str::<toml::Table>(block).unwrap_or_else(|e| panic!("{e}\n{block}"));
+                count += 1;
+            }
+        }
+        assert!(count > 10, "{count} blocks");
     }
 }

@@ -1,12 +1,12 @@
 //! Rigid bodies among meshes in TOML: obstacles that move, and goals that leave something free.
 
 use crate::drive::{DriveTable, Driven};
-use crate::error::Error;
-use crate::files::{Files, MAX_TEXT_BYTES, decode, stem};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind};
 use crate::robot::{ObstacleTable, entry};
 use crate::shape::{Meshes, Shaped};
 use crate::toml_problem::{GoalPart, MotionTable, Timing, TomlText, timed_rows};
+use mp_formats::error::Error;
+use mp_formats::files::{Files, MAX_TEXT_BYTES, decode, stem};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
 use nalgebra::Point3;
 use serde::Deserialize;
@@ -126,7 +126,7 @@ impl RigidTask {
             let shape = table.get_ref().shape(&source, &name, &table.span())?;
             let (_, mesh) = meshes.of(&source, &name, &shape)?;
             let expected = "rows [TIME, x, y, z] or [TIME, x, y, z, α, β, γ], times increasing";
-            let shown = crate::text::clipped(&name).to_string();
+            let shown = mp_formats::text::clipped(&name).to_string();
             let rows = timed_rows(&source, &shown, path, [6, 3], expected)?;
             let row = |row: &Vec<f64>| std::array::from_fn(|i| row.get(i).copied().unwrap_or(0.0));
             movers.push(RigidMoving { name, mesh, path: rows.iter().map(row).collect() });
@@ -263,8 +263,8 @@ fn driven(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::Disk;
     use crate::toml_problem::tests::is_clear;
+    use mp_formats::files::Disk;
 
     const GOOD: &str = "[robot]\nbox = [0.4, 0.2, 0.2]\nbounds = [[-3, -3, -1], [3, 3, 1]]\n\n[motion]\n\
         start = [-2, 0, 0, 0, 0, 0]\ngoal = { x = 2, y = [-1, 1] }\nspeed = 1\n\n[[obstacle]]\nsphere = 0.3\n\

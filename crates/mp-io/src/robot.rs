@@ -17,10 +17,10 @@ use parts::{PartTable, part_of};
 pub use problem::{DescribedRobot, RobotProblem, read_robot_text};
 pub use srdf_near::{FoundSrdf, robot_name};
 
-use crate::error::Error;
-use crate::files::decode;
 use crate::shape::{ShapeEntry, Shaped};
 use crate::toml_problem::{GoalEntry, MotionPlaces, MotionTable, StartEntry, TomlText};
+use mp_formats::error::Error;
+use mp_formats::files::decode;
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
@@ -231,7 +231,7 @@ pub(crate) fn entry(
     let shape = table.get_ref().shape(source, &name, &table.span())?;
     let pose = match (&own.pose, &own.at) {
         (Some(_), Some(at)) => {
-            let message = format!("{} has a pose, and a position", crate::text::clipped(&name));
+            let message = format!("{} has a pose, and a position", mp_formats::text::clipped(&name));
             return Err(source.error(&at.span(), message).expected("`pose` or `at`, not both"));
         }
         (None, Some(at)) => {
@@ -249,7 +249,7 @@ pub(crate) fn entry(
         if !points || *near.get_ref() < 0.0 {
             let message = format!(
                 "{} cannot leave out what is {} m from the robot",
-                crate::text::clipped(&name),
+                mp_formats::text::clipped(&name),
                 near.get_ref()
             );
             return Err(source

@@ -1,6 +1,6 @@
 //! Robots by name: descriptions in the places where other programs keep them.
 
-use crate::formats::Content;
+use mp_formats::formats::Content;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::env;

@@ -1,12 +1,11 @@
 //! Shapes in problem files: the members of a table that say what a body is like, the same for all kinds of bodies.
 
-use crate::error::Error;
-use crate::files::Files;
-use crate::mesh::{Axes, read_mesh_with, solid_mesh, stand_in};
-use crate::points::{balls, read_points};
-use crate::problem::{MAX_COORDINATE, vertex_beyond};
-use crate::text::clipped;
 use crate::toml_problem::TomlText;
+use mp_formats::error::Error;
+use mp_formats::files::Files;
+use mp_formats::mesh::{Axes, MAX_COORDINATE, read_mesh_with, solid_mesh, stand_in, vertex_beyond};
+use mp_formats::points::{balls, read_points};
+use mp_formats::text::clipped;
 use mp_geom::{HeightField, PRIMITIVES, Points, PrimitiveError, Shape, TriMesh};
 use nalgebra::Point3;
 use serde::Deserialize;

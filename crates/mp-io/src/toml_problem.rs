@@ -1,10 +1,10 @@
 //! Problems in TOML: the place of every value, so that errors can point at it, and the table of start and goals.
 
 use crate::changes::{help_of, option_at};
-use crate::error::{Error, ErrorKind};
 use crate::pose_goal::PoseEntry;
-use crate::problem::MAX_COORDINATE;
-use crate::text::clipped;
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::mesh::MAX_COORDINATE;
+use mp_formats::text::clipped;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
@@ -27,7 +27,7 @@ impl TomlText<'_> {
             let span = e.span().unwrap_or(0..0);
             // The parser's message may have several lines; an error has one.
             let message = e.message().split_whitespace().collect::<Vec<_>>().join(" ");
-            let message = crate::text::clipped_to(&message, 300);
+            let message = mp_formats::text::clipped_to(&message, 300);
             self.error(&span, message).with_kind(ErrorKind::Format)
         })
     }
@@ -37,7 +37,8 @@ impl TomlText<'_> {
         let read = T::deserialize(value.get_ref().clone());
         read.map_err(|e| {
             let message = e.message().split_whitespace().collect::<Vec<_>>().join(" ");
-            self.error(&value.span(), crate::text::clipped_to(&message, 300)).with_kind(ErrorKind::Format)
+            self.error(&value.span(), mp_formats::text::clipped_to(&message, 300))
+                .with_kind(ErrorKind::Format)
         })
     }
 
@@ -520,7 +521,7 @@ pub(crate) fn timed_rows(
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use crate::error::Error;
+    use mp_formats::error::Error;
 
     /// Whether an error is at `line`, says `words`, has a remedy and is shown on one line.
     pub(crate) fn is_clear(error: &Error, line: usize, words: &str) -> bool {

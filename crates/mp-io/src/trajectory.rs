@@ -4,9 +4,9 @@
 mod csv;
 mod ros;
 
-use crate::columns::Column;
-use crate::error::{Error, ErrorKind};
-use crate::formats::Content;
+use mp_formats::columns::Column;
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::formats::Content;
 use std::path::Path;
 
 /// The points of a trajectory, as a file has them. Rows are in the order and in the units of [`joints`](Self::joints).

@@ -1,6 +1,6 @@
 //! Robots with macros: files of xacro, expanded by the crate `xacro-rs`.
 
-use crate::error::{Error, ErrorKind};
+use mp_formats::error::{Error, ErrorKind};
 use std::path::Path;
 
 /// The URDF for which the macros in the file at `path` stand; `arguments` are `NAME:=VALUE`. The file and those that it includes are read from
@@ -16,7 +16,7 @@ pub fn expand_xacro(path: &Path, arguments: &[String]) -> Result<String, Error> 
             Error::new(
                 ErrorKind::Format,
                 "--arg",
-                format!("`{}` is no argument", crate::text::clipped(argument)),
+                format!("`{}` is no argument", mp_formats::text::clipped(argument)),
             )
             .help("write NAME:=VALUE")
         })?);
@@ -35,7 +35,7 @@ fn expanded(path: &Path, arguments: &[(&str, &str)]) -> Result<String, Error> {
         .with_compat_all();
     let builder = arguments.iter().fold(builder, |builder, (name, value)| builder.with_arg(*name, *value));
     builder.build().run(path).map_err(|e| {
-        let message = format!("the macros cannot be expanded: {}", crate::error::one_line(&e.to_string(), 250));
+        let message = format!("the macros cannot be expanded: {}", mp_formats::error::one_line(&e.to_string(), 250));
         Error::new(ErrorKind::Content, path.display(), message)
             .help("give arguments by --arg NAME:=VALUE, or expand it by the program of ROS: `xacro FILE > robot.urdf`")
     })

@@ -1,6 +1,6 @@
 //! YAML as the values of JSON.
 
-use crate::error::{Error, ErrorKind};
+use mp_formats::error::{Error, ErrorKind};
 use saphyr_parser::{Event, Parser, ScalarStyle, StrInput};
 use serde_json::{Map, Number, Value};
 
@@ -66,9 +66,8 @@ impl<'t> Reader<'t> {
                     let key = match self.next()? {
                         (Event::MappingEnd, _) => return Ok(Value::Object(entries)),
                         (Event::Scalar(key, ..), at) if entries.contains_key(&*key) => {
-                            return Err(
-                                self.error(at, format!("`{}` is there twice", crate::text::clipped(&key)))
-                            );
+                            return Err(self
+                                .error(at, format!("`{}` is there twice", mp_formats::text::clipped(&key))));
                         }
                         (Event::Scalar(key, ..), _) => key.into_owned(),
                         (_, at) => return Err(self.error(at, "a key is no word")),

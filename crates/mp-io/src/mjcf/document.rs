@@ -1,8 +1,8 @@
 //! The files of a model as one tree of elements, and what elements say with their defaults.
 
-use crate::error::{Error, ErrorKind};
-use crate::files::{Files, MAX_TEXT_BYTES};
-use crate::text::clipped;
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::files::{Files, MAX_TEXT_BYTES};
+use mp_formats::text::clipped;
 use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -61,7 +61,7 @@ pub(super) fn sources(files: &dyn Files, file: &Path, text: String) -> Result<Ve
                 let message = format!("the file included here cannot be used: {e}");
                 model.error(node, message).help(e.remedy().unwrap_or("correct its name").to_owned())
             })?;
-            let text = crate::xml::text(&place.display().to_string(), &bytes)?.into_owned();
+            let text = mp_formats::xml::text(&place.display().to_string(), &bytes)?.into_owned();
             found.push(Source { file: place, text });
         }
         drop(document);

@@ -2,7 +2,7 @@
 
 use super::document::{Classes, Element, Model, Said};
 use super::tree::{Numbers, Reader};
-use crate::error::Error;
+use mp_formats::error::Error;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// The most pairs of links that may touch.
@@ -130,7 +130,7 @@ impl<'m> Reader<'_, 'm> {
             let link = |key| {
                 let name = self.model.own(node, key)?;
                 names.get(name).copied().ok_or_else(|| {
-                    let message = format!("there is no body \"{}\"", crate::text::clipped(name));
+                    let message = format!("there is no body \"{}\"", mp_formats::text::clipped(name));
                     self.model.error(node, message).help(format!("name a body in {key}"))
                 })
             };

@@ -1,7 +1,7 @@
 //! Poses as elements of MJCF have them.
 
 use super::document::{Element, Model, Said};
-use crate::error::Error;
+use mp_formats::error::Error;
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// Shorter vectors (m) have no direction.

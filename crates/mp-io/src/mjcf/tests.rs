@@ -1,5 +1,5 @@
 use super::*;
-use crate::files::InMemory;
+use mp_formats::files::InMemory;
 use std::sync::Mutex;
 
 /// Files in memory, and what is said of them.

@@ -4,7 +4,7 @@ use super::document::{Classes, Element, MAX_DEPTH, Model, Said, too_deep};
 use super::geom::{GeomShape, MeshAsset, assets};
 use super::pairs::{Bits, Couplings, PairedGeoms};
 use super::pose::{Compiler, turned};
-use crate::error::Error;
+use mp_formats::error::Error;
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
 use nalgebra::{Isometry3, Translation3, Unit, Vector3};
@@ -212,7 +212,7 @@ impl<'a, 'm> Reader<'a, 'm> {
             return Err(self.model.too_large(node, message));
         }
         if !self.names.insert(format!("link {name}")) {
-            let message = format!("there are two bodies named \"{}\"", crate::text::clipped(name));
+            let message = format!("there are two bodies named \"{}\"", mp_formats::text::clipped(name));
             return Err(self.model.error(node, message).help("give each a name of its own"));
         }
         let number = self.links.len();
@@ -226,7 +226,8 @@ impl<'a, 'm> Reader<'a, 'm> {
     fn add_joint(&mut self, mut joint: MjJoint<'m>) -> Result<(), Error> {
         let taken = !self.names.insert(format!("joint {}", joint.name));
         if taken && joint.node.has_attribute("name") && joint.moves != Moves::Fixed {
-            let message = format!("there are two joints named \"{}\"", crate::text::clipped(&joint.name));
+            let message =
+                format!("there are two joints named \"{}\"", mp_formats::text::clipped(&joint.name));
             return Err(self.model.error(joint.node, message).help("give each a name of its own"));
         }
         if taken {

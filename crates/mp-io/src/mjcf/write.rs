@@ -3,8 +3,8 @@
 use super::document::Element;
 use super::geom::Geometry;
 use super::tree::{MjJoint, Moves, Reader};
-use crate::error::Error;
-use crate::number::Row;
+use mp_formats::error::Error;
+use mp_formats::number::Row;
 use mp_geom::six_from_pose;
 use nalgebra::Isometry3;
 use std::fmt::Write as _;

@@ -1,9 +1,9 @@
 //! OMPL.app problem files, `.cfg`: the section `[problem]`.
 
-use crate::error::{Error, ErrorKind};
-use crate::files::{MAX_TEXT_BYTES, read_file};
 use crate::problem::SpaceKind;
-use crate::text::{Text, Token, clipped};
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::files::{MAX_TEXT_BYTES, read_file};
+use mp_formats::text::{Text, Token, clipped};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::HashMap;
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! A problem as one JSON and two OFF files, for running other planners on the same problem.
 
-use crate::error::{Error, ErrorKind};
-use crate::formats::off::off_text;
 use crate::problem::{RigidProblem, SpaceKind};
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::formats::off::off_text;
 use mp_geom::TriMesh;
 use nalgebra::Isometry3;
 use serde::Serialize;

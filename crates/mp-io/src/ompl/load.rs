@@ -1,13 +1,13 @@
 //! OMPL.app problems and the meshes they name.
 
 use super::config;
-use crate::error::{Error, ErrorKind};
-use crate::files::{Files, MAX_MESH_BYTES, stem};
-use crate::formats::Content;
-use crate::formats::collada::{Scene, center::center_of_mesh};
-use crate::mesh::{Axes, read_mesh_of};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind, check_mesh, check_size, cited};
-use crate::text::Text;
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::files::{Files, MAX_MESH_BYTES, stem};
+use mp_formats::formats::Content;
+use mp_formats::formats::collada::{Scene, center::center_of_mesh};
+use mp_formats::mesh::{Axes, read_mesh_of};
+use mp_formats::text::Text;
 use mp_geom::{Aabb, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::path::Path;

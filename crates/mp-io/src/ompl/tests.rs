@@ -1,8 +1,8 @@
 //! Problems of our own in the form of OMPL.app's.
 
 use super::{OmplExport, OmplProblem, export_ompl};
-use crate::error::ErrorKind;
 use crate::{RigidProblem, SpaceKind, write_off, write_stl};
+use mp_formats::error::ErrorKind;
 use mp_geom::{TriMesh, primitives};
 use nalgebra::{Isometry3, Point3, Vector3};
 

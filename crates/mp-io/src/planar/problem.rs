@@ -1,9 +1,10 @@
 //! Worlds in the plane and the files they name.
 
-use super::{GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, RosMap};
-use crate::error::Error;
-use crate::files::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES, stem};
-use crate::problem::MAX_COORDINATE;
+use super::{PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, RosMap};
+use mp_formats::error::Error;
+use mp_formats::files::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES, stem};
+use mp_formats::grid::GridMap;
+use mp_formats::mesh::MAX_COORDINATE;
 use mp_geom::planar::{Polygon, PolygonError};
 use nalgebra::{Isometry2, Point2};
 use std::path::Path;

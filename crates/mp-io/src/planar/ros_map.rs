@@ -1,10 +1,11 @@
 //! Maps of ROS's map_server: a YAML file and an image.
 
-use super::{GUIDE, GridMap};
-use crate::error::{Error, ErrorKind};
-use crate::files::decode;
-use crate::problem::MAX_COORDINATE;
-use crate::text::clipped;
+use super::GUIDE;
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::files::decode;
+use mp_formats::grid::GridMap;
+use mp_formats::mesh::MAX_COORDINATE;
+use mp_formats::text::clipped;
 use mp_geom::planar::Polygon;
 use nalgebra::Isometry2;
 use saphyr_parser::{Event, Parser, StrInput};

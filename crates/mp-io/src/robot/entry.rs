@@ -1,8 +1,8 @@
 //! The tables `robot` of robot problems: each a robot.
 
 use crate::drive::{DriveTable, Driven};
-use crate::error::Error;
 use crate::toml_problem::TomlText;
+use mp_formats::error::Error;
 use mp_geom::pose_from_six;
 use nalgebra::Isometry3;
 use serde::Deserialize;
@@ -185,7 +185,7 @@ fn rates_of(
         if *rate <= 0.0 {
             let of = joint
                 .as_ref()
-                .map_or_else(String::new, |joint| format!(" of {}", crate::text::clipped(joint)));
+                .map_or_else(String::new, |joint| format!(" of {}", mp_formats::text::clipped(joint)));
             return Err(source.error(&span, format!("{what}{of} is {rate}")).expected("a number above zero"));
         }
     }
@@ -284,7 +284,7 @@ fn base_of(
             ))
         }
         (Some(word), _) => {
-            let message = format!("the base is `{}`", crate::text::clipped(word));
+            let message = format!("the base is `{}`", mp_formats::text::clipped(word));
             let expected = "six numbers, `[x, y, z, α, β, γ]`, \"planar\" or \"floating\"";
             Err(source.error(&span, message).expected(expected))
         }
@@ -405,7 +405,7 @@ fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) 
     };
     let (mut limits, mut places_of_limits) = (Vec::new(), Vec::new());
     for (joint, range) in robot.limits {
-        let (what, span) = (format!("the limits of {}", crate::text::clipped(&joint)), range.span());
+        let (what, span) = (format!("the limits of {}", mp_formats::text::clipped(&joint)), range.span());
         let [low, high] = *range.get_ref();
         source.check(&what, &[low, high], &span)?;
         if low > high {
@@ -418,7 +418,7 @@ fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) 
     }
     let (mut hold, mut places_of_hold) = (Vec::new(), Vec::new());
     for (joint, value) in robot.hold {
-        let (what, span) = (format!("the held joint {}", crate::text::clipped(&joint)), value.span());
+        let (what, span) = (format!("the held joint {}", mp_formats::text::clipped(&joint)), value.span());
         source.check(&what, &[*value.get_ref()], &span)?;
         if limits.iter().any(|(limited, _)| *limited == joint) {
             let message = format!("{what} has limits too");

@@ -1,7 +1,7 @@
 //! MoveIt's `joint_limits.yaml`, beside the SRDF of a robot: how fast its joints may move.
 
-use crate::files::{Files, MAX_TEXT_BYTES, decode};
 use crate::yaml;
+use mp_formats::files::{Files, MAX_TEXT_BYTES, decode};
 use serde_json::Value;
 use std::path::Path;
 

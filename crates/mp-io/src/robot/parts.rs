@@ -1,9 +1,9 @@
 //! Motions of several parts, between which things are attached to links and put down again.
 
 use super::{AttachedEntry, RobotFile, RobotProblem};
-use crate::error::Error;
 use crate::problem::PlacedBody;
 use crate::toml_problem::{GoalEntry, GoalText, Goals, StartEntry, TomlText};
+use mp_formats::error::Error;
 use mp_geom::six_from_pose;
 use nalgebra::Isometry3;
 use serde::Deserialize;

@@ -3,11 +3,11 @@
 use super::joint_limits::{self, JointRates};
 use super::srdf_near::srdf_near;
 use super::{RobotEntry, RobotFile, RobotFilePart, RobotPart};
-use crate::error::{Error, ErrorKind};
-use crate::files::{Disk, Files, MAX_TEXT_BYTES, stem};
 use crate::mjcf::{self, Mjcf};
 use crate::problem::PlacedBody;
 use crate::shape::Meshes;
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::files::{Disk, Files, MAX_TEXT_BYTES, stem};
 use mp_geom::pose_from_six;
 use std::path::{Path, PathBuf};
 
@@ -179,7 +179,7 @@ impl DescribedRobot {
 /// [`Error`] when it cannot be read, is no text, or has elements that would take hours to read.
 pub fn read_robot_text(files: &dyn Files, path: &Path) -> Result<String, Error> {
     let bytes = files.read(path, MAX_TEXT_BYTES)?;
-    Ok(crate::xml::text(&path.display().to_string(), &bytes)?.into_owned())
+    Ok(mp_formats::xml::text(&path.display().to_string(), &bytes)?.into_owned())
 }
 
 /// The error of a file that cannot be used, at the place that names it.

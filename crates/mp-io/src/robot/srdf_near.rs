@@ -1,8 +1,8 @@
 //! The SRDF of a robot that nobody has named: beside the URDF, or where MoveIt's packages have it.
 
-use crate::files::Files;
-use crate::formats::Content;
 use crate::robot::read_robot_text;
+use mp_formats::files::Files;
+use mp_formats::formats::Content;
 use std::path::{Path, PathBuf};
 
 /// An SRDF that was found.

@@ -1,6 +1,6 @@
 use super::*;
-use crate::files::Files;
 use crate::toml_problem::tests::is_clear;
+use mp_formats::files::Files;
 use mp_geom::TriMesh;
 use nalgebra::Point3;
 

@@ -1,10 +1,9 @@
 //! Finding the meshes that a URDF names: files relative to it, and files of packages.
 
 use super::DescribedRobot;
-use crate::files::{Disk, Files};
-use crate::mesh::{Axes, read_mesh_with, solid_mesh};
-use crate::problem::{MAX_COORDINATE, vertex_beyond};
 use crate::robots::package_folders;
+use mp_formats::files::{Disk, Files};
+use mp_formats::mesh::{Axes, MAX_COORDINATE, read_mesh_with, solid_mesh, vertex_beyond};
 use mp_geom::TriMesh;
 use std::path::{Path, PathBuf};
 

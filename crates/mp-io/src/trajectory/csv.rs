@@ -1,10 +1,10 @@
 //! Trajectories as comma-separated values.
 
 use super::{GUIDE, TrajectoryFile};
-use crate::columns::{Column, Fault, HELP, Matching, bracketed, factor, find, is_index};
-use crate::csv::csv_text;
-use crate::error::{Error, ErrorKind};
-use crate::text::{Text, Token};
+use mp_formats::columns::{Column, Fault, HELP, Matching, bracketed, factor, find, is_index};
+use mp_formats::csv::csv_text;
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::text::{Text, Token};
 
 /// What columns of times are called.
 const TIMES: [&str; 6] = ["time", "t", "time_from_start", "timestamp", "stamp", "seconds"];
@@ -33,7 +33,7 @@ fn column(name: &str, wanted: &[Column]) -> Option<Result<Is, String>> {
     let is_time = |stem: &str| TIMES.contains(&stem.trim().to_lowercase().as_str());
     let readings = [Some((name, "")), bracketed(name), suffixed];
     if let Some((_, unit)) = readings.into_iter().flatten().find(|(stem, _)| is_time(stem)) {
-        let wrong = || format!("`{}` cannot be converted to seconds", crate::text::clipped(name));
+        let wrong = || format!("`{}` cannot be converted to seconds", mp_formats::text::clipped(name));
         let converted = factor(Some(unit), "s").map(|(times, over)| Is::Time(times, over));
         return Some(converted.ok_or_else(wrong));
     }
@@ -90,7 +90,7 @@ pub(super) fn parse(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<Optio
             Some(Ok(Is::Number(kind, own))) => groups[kind].push((i, own)),
             Some(Err(message)) => return Err(error(message, "s, ms, us, ns, min".to_owned())),
             None => {
-                let shown = crate::text::clipped(&names[i]);
+                let shown = mp_formats::text::clipped(&names[i]);
                 let message = format!("`{shown}` is no number of a configuration here, nor of its motion");
                 return Err(error(message, format!("time, and {}", listed())));
             }

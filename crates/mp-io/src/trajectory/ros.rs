@@ -1,10 +1,11 @@
 //! `trajectory_msgs/JointTrajectory` of ROS as JSON and YAML, also inside of `RobotTrajectory` and `DisplayTrajectory` of MoveIt.
 
 use super::{GUIDE, TrajectoryFile};
-use crate::columns::{Column, Fault, HELP, Matching};
-use crate::error::{Error, ErrorKind};
-use crate::files::decode;
-use crate::{json, yaml};
+use crate::yaml;
+use mp_formats::columns::{Column, Fault, HELP, Matching};
+use mp_formats::error::{Error, ErrorKind};
+use mp_formats::files::decode;
+use mp_formats::json;
 use serde::Deserialize;
 use serde_json::Value;
 use std::fmt::Write as _;

@@ -6,14 +6,14 @@ use super::*;
 fn ompl_app_problems() {
     check(&[
         case(
-            Scene,
+            scene,
             "s.cfg",
             "",
             "s.cfg:1:1: the file is empty; expected the section [problem]",
             "an OMPL.app problem begins with the line [problem]",
         ),
         case(
-            Scene,
+            scene,
             "s.cfg",
             "[planner]\nrrt=\n",
             "s.cfg:2:5: the file ends too early; expected the section [problem]",

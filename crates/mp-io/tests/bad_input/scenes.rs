@@ -5,8 +5,8 @@ use super::*;
 #[test]
 fn environments() {
     check(&[
-        case(Scene, "s.env", "", "s.env:1:1: the file is empty; expected `Robot`", "an export may have failed: write the file again"),
-        case(Scene, "s.env", "\n \n", "s.env:1:1: the file is empty; expected `Robot`", "an export may have failed: write the file again"),
+        case(scene, "s.env", "", "s.env:1:1: the file is empty; expected `Robot`", "an export may have failed: write the file again"),
+        case(scene, "s.env", "\n \n", "s.env:1:1: the file is empty; expected `Robot`", "an export may have failed: write the file again"),
         env("Robot\n", "Robbot\n", "s.env:1:1: the file begins with `Robbot`; expected `Robot`", "an environment file begins with the line `Robot`, then the mesh file, the initial and the goal six-tuple"),
         env("r.off\n", "", "s.env:2:1: `0 0 0 0 0 0` is not the name of a file; expected the name of a mesh file", "the format is described in docs/formats/gempa-environment.md"),
         env("0 0 0 0 0 0", "0 0 0 0 0", "s.env:3:1: the initial configuration has 5 numbers; expected six numbers: x y z α β γ", "the format is described in docs/formats/gempa-environment.md"),
@@ -35,18 +35,18 @@ fn environments() {
         env("w.off", "nowhere.off", "s.env:7:1: the mesh of Obstacle #1 is not readable: nowhere.off: cannot read the file: no such file", "check the spelling; it is looked for in the folder DIR"),
         env("w.off", "meshes\\w.off", "s.env:7:1: the mesh of Obstacle #1 is not readable: meshes\\w.off: cannot read the file: no such file", "folders in file names are separated by `/`"),
         env("r.off", "r.step", "r.step: this is not a mesh format that is read here; expected a file .off, .txt, .stl, .obj, .dae, .ply, .glb or .gltf (named at s.env:2:1)", "convert the mesh to one of these").with("r.step", "ISO-10303-21;"),
-        case(Scene, "s.env", ENV, "w.off:6:7: vertex 3 does not exist; expected an index from 0 to 2 (named at s.env:7:1)", "indices of OFF count from 0")
+        case(scene, "s.env", ENV, "w.off:6:7: vertex 3 does not exist; expected an index from 0 to 2 (named at s.env:7:1)", "indices of OFF count from 0")
             .with("r.off", TRIANGLE)
             .with("w.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
-        case(Scene, "s.env", ENV, "r.off: the mesh has no triangles (named at s.env:2:1)", "a body needs at least one triangle")
+        case(scene, "s.env", ENV, "r.off: the mesh has no triangles (named at s.env:2:1)", "a body needs at least one triangle")
             .with("r.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n")
             .with("w.off", TRIANGLE),
-        case(Scene, "s.env", ENV, "r.off: vertex (1e12, 0e0, 0e0) is beyond 1e9 m (named at s.env:2:1)", "coordinates are metres: scale the mesh")
+        case(scene, "s.env", ENV, "r.off: vertex (1e12, 0e0, 0e0) is beyond 1e9 m (named at s.env:2:1)", "coordinates are metres: scale the mesh")
             .with("r.off", TRIANGLE.replace("1 0 0", "1e12 0 0"))
             .with("w.off", TRIANGLE),
-        case(Scene, "s.env", b"Robot\nr\xf6bot.off\n", "s.env:2:2: byte 0xf6 is not UTF-8 text; expected a text file", "save the file as UTF-8; a binary or UTF-16 file cannot be read here"),
-        case(Scene, "s.env", b"R\0o\0b\0o\0t\0", "s.env:1:2: a zero byte: this is not UTF-8 text; expected a text file", "save the file as UTF-8; a binary or UTF-16 file cannot be read here"),
-        case(Scene, "scene.xml", "<scene/>", "scene.xml: this is not a problem that is read here; expected the problem of a rigid body: .env, .cfg or .mp.json", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
-        case(Scene, "s.off", TRIANGLE, "s.off: this is not a problem that is read here; expected the problem of a rigid body: .env, .cfg or .mp.json", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
+        case(scene, "s.env", b"Robot\nr\xf6bot.off\n", "s.env:2:2: byte 0xf6 is not UTF-8 text; expected a text file", "save the file as UTF-8; a binary or UTF-16 file cannot be read here"),
+        case(scene, "s.env", b"R\0o\0b\0o\0t\0", "s.env:1:2: a zero byte: this is not UTF-8 text; expected a text file", "save the file as UTF-8; a binary or UTF-16 file cannot be read here"),
+        case(scene, "scene.xml", "<scene/>", "scene.xml: this is not a problem that is read here; expected the problem of a rigid body: .env, .cfg or .mp.json", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
+        case(scene, "s.off", TRIANGLE, "s.off: this is not a problem that is read here; expected the problem of a rigid body: .env, .cfg or .mp.json", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
     ]);
 }

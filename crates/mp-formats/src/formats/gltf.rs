@@ -1,0 +1,404 @@
+//! glTF 2.0, text and binary: the triangles of the scene. See `docs/formats/meshes.md`.
+
+use crate::error::{Error, ErrorKind};
+use crate::mesh::{Axes, LEFT_OUT, Reading, mesh_error};
+use mp_geom::TriMesh;
+use nalgebra::{Matrix3, Matrix4, Point3, Quaternion, UnitQuaternion, Vector3};
+use serde::Deserialize;
+use std::collections::HashMap;
+
+/// The most triangles and vertices of a scene.
+const MAX_INSTANCED: usize = 50_000_000;
+/// Nodes may be nested this deep.
+const MAX_DEPTH: usize = 128;
+/// The first bytes of binary files, and the names of their parts.
+const MAGIC: &[u8; 4] = b"glTF";
+const JSON: &[u8] = b"JSON";
+const BIN: &[u8] = b"BIN\0";
+
+#[derive(Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+#[derive(Default)]
+struct Document {
+    extensions_required: Vec<String>,
+    scene: usize,
+    scenes: Vec<Scene>,
+    nodes: Vec<Node>,
+    meshes: Vec<Mesh>,
+    skins: Vec<serde::de::IgnoredAny>,
+    accessors: Vec<Accessor>,
+    buffer_views: Vec<View>,
+    buffers: Vec<Buffer>,
+}
+
+#[derive(Deserialize)]
+struct Scene {
+    #[serde(default)]
+    nodes: Vec<usize>,
+}
+
+#[derive(Deserialize)]
+struct Node {
+    #[serde(default)]
+    children: Vec<usize>,
+    mesh: Option<usize>,
+    matrix: Option<[f64; 16]>,
+    translation: Option<[f64; 3]>,
+    rotation: Option<[f64; 4]>,
+    scale: Option<[f64; 3]>,
+}
+
+#[derive(Deserialize)]
+struct Mesh {
+    primitives: Vec<Primitive>,
+}
+
+#[derive(Deserialize)]
+struct Primitive {
+    attributes: HashMap<String, usize>,
+    indices: Option<usize>,
+    mode: Option<u32>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Accessor {
+    buffer_view: Option<usize>,
+    #[serde(default)]
+    byte_offset: usize,
+    component_type: u32,
+    count: usize,
+    #[serde(rename = "type")]
+    kind: String,
+    sparse: Option<serde::de::IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct View {
+    buffer: usize,
+    #[serde(default)]
+    byte_offset: usize,
+    byte_length: usize,
+    byte_stride: Option<usize>,
+}
+
+#[derive(Deserialize)]
+struct Buffer {
+    uri: Option<String>,
+}
+
+/// Whether bytes begin like a binary file.
+pub(crate) fn begins(bytes: &[u8]) -> bool {
+    bytes.starts_with(MAGIC)
+}
+
+/// Reads `bytes`, the content of a file that errors call `file`: all triangles of its scene, at the places of their nodes, as one mesh.
+pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {
+    let (json, rest) = if begins(bytes) { parts(file, bytes)? } else { (bytes, None) };
+    let text = crate::files::decode(file, json)?;
+    let document: Document = crate::json::parse(file, text, "glTF 2.0", HELP)?;
+    if let Some(extension) =
+        document.extensions_required.iter().find(|name| COMPRESSED.contains(&name.as_str()))
+    {
+        let message = format!("the mesh is compressed by {extension}, which is not read");
+        return Err(Error::new(ErrorKind::Unsupported, file, message).help("export it without compression"));
+    }
+    let mut scene = Triangles {
+        file,
+        document: &document,
+        buffers: Vec::new(),
+        vertices: Vec::new(),
+        triangles: Vec::new(),
+        left_out: false,
+    };
+    for (i, buffer) in document.buffers.iter().enumerate() {
+        let bytes = match &buffer.uri {
+            None => rest
+                .filter(|_| i == 0)
+                .ok_or_else(|| scene.wrong(format!("buffer {i} has no bytes")))?
+                .to_vec(),
+            Some(uri) => match uri.strip_prefix("data:").and_then(|data| data.split_once(";base64,")) {
+                Some((_, data)) => base64(data)
+                    .ok_or_else(|| scene.wrong(format!("the bytes of buffer {i} are not base64")))?,
+                None => (reading.beside)(uri)?,
+            },
+        };
+        scene.buffers.push(bytes);
+    }
+    scene.collect(reading)?;
+    let remark = match reading.axes {
+        Axes::OfFile => Some("glTF, in which y is up: its axes stay as they are"),
+        Axes::YUp => None,
+    };
+    remark.into_iter().for_each(|remark| (reading.remark)(remark));
+    if scene.left_out {
+        (reading.remark)(LEFT_OUT);
+    }
+    if !document.skins.is_empty() {
+        (reading.remark)("skins are not applied: meshes stay as they are stored");
+    }
+    // Corners at seams of colour are there once for each side.
+    TriMesh::new(scene.vertices, scene.triangles).map(|mesh| mesh.welded()).map_err(|e| mesh_error(file, &e))
+}
+
+const HELP: &str = "export the mesh again, as glTF 2.0";
+
+/// Extensions by which positions are stored in other ways.
+const COMPRESSED: [&str; 4] = [
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
+    "KHR_mesh_quantization",
+];
+
+/// The JSON of a binary file, and the bytes after it.
+fn parts<'a>(file: &str, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), Error> {
+    let wrong = |message: &str| Error::new(ErrorKind::Format, file, message).help(HELP);
+    let number = |at: usize| {
+        let four = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
+        four.map(|four| u32::from_le_bytes(four) as usize).ok_or_else(|| wrong("the file is cut short"))
+    };
+    let version = number(4)?;
+    if version != 2 {
+        return Err(wrong(&format!("this is binary glTF of version {version}, not 2")));
+    }
+    let part = |at: usize, name: &[u8]| {
+        let length = number(at)?;
+        let body = bytes.get(at + 8..).and_then(|rest| rest.get(..length));
+        let body = body.ok_or_else(|| wrong("a part of the file is longer than the file"))?;
+        match &bytes[at + 4..at + 8] == name {
+            true => Ok((body, at + 8 + length)),
+            false => {
+                Err(wrong(&format!("the part at byte {at} is not {}", String::from_utf8_lossy(&name[..3]))))
+            }
+        }
+    };
+    let (json, end) = part(12, JSON)?;
+    let rest = if end < bytes.len() { Some(part(end, BIN)?.0) } else { None };
+    Ok((json, rest))
+}
+
+/// Bytes of base64; `None` when the text is none.
+fn base64(text: &str) -> Option<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut bits, mut count) = (0u32, 0);
+    for c in text.trim_end_matches('=').bytes() {
+        let value = match c {
+            b'A'..=b'Z' => c - b'A',
+            b'a'..=b'z' => c - b'a' + 26,
+            b'0'..=b'9' => c - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => return None,
+        };
+        (bits, count) = (bits << 6 | u32::from(value), count + 6);
+        if count >= 8 {
+            count -= 8;
+            bytes.push((bits >> count) as u8);
+        }
+    }
+    Some(bytes)
+}
+
+struct Triangles<'a> {
+    file: &'a str,
+    document: &'a Document,
+    buffers: Vec<Vec<u8>>,
+    vertices: Vec<Point3<f64>>,
+    triangles: Vec<[u32; 3]>,
+    /// Whether points or lines were left out.
+    left_out: bool,
+}
+
+impl Triangles<'_> {
+    fn wrong(&self, message: impl Into<String>) -> Error {
+        Error::new(ErrorKind::Content, self.file, message).help(HELP)
+    }
+
+    /// Takes the meshes of all nodes of the scene.
+    fn collect(&mut self, reading: &mut Reading<'_>) -> Result<(), Error> {
+        let Document { scene, scenes, nodes, .. } = self.document;
+        let children: std::collections::HashSet<_> = nodes.iter().flat_map(|node| &node.children).collect();
+        let roots = match scenes.get(*scene) {
+            Some(scene) => scene.nodes.clone(),
+            None => (0..nodes.len()).filter(|i| !children.contains(i)).collect(),
+        };
+        let mut seen = vec![false; nodes.len()];
+        let mut stack: Vec<_> = roots.iter().rev().map(|&node| (node, Matrix4::identity(), 1)).collect();
+        while let Some((i, around, depth)) = stack.pop() {
+            if reading.interrupt.ask() {
+                return Err(Error::interrupted(self.file));
+            }
+            let node = nodes.get(i).ok_or_else(|| self.wrong(format!("there is no node {i}")))?;
+            if std::mem::replace(&mut seen[i], true) || depth > MAX_DEPTH {
+                return Err(
+                    self.wrong(format!("node {i} is in two places, or nested more than {MAX_DEPTH} deep"))
+                );
+            }
+            let place = around * self.matrix(i, node)?;
+            if let Some(mesh) = node.mesh {
+                let all = self.document.meshes.get(mesh);
+                let all = all
+                    .ok_or_else(|| self.wrong(format!("node {i} has the mesh {mesh}, which is not there")))?;
+                for (k, primitive) in all.primitives.iter().enumerate() {
+                    self.add(&format!("primitive {k} of mesh {mesh}"), primitive, &place)?;
+                }
+            }
+            stack.extend(node.children.iter().rev().map(|&child| (child, place, depth + 1)));
+        }
+        Ok(())
+    }
+
+    fn matrix(&self, i: usize, node: &Node) -> Result<Matrix4<f64>, Error> {
+        let matrix = match node.matrix {
+            Some(columns) => Matrix4::from_column_slice(&columns),
+            None => {
+                let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+                let turn = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+                let scale = Matrix3::from_diagonal(&Vector3::from(node.scale.unwrap_or([1.0; 3])));
+                let mut matrix = Matrix4::identity();
+                matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&(turn.to_rotation_matrix().matrix() * scale));
+                matrix
+                    .fixed_view_mut::<3, 1>(0, 3)
+                    .copy_from(&Vector3::from(node.translation.unwrap_or_default()));
+                matrix
+            }
+        };
+        match matrix.iter().all(|x| x.is_finite()) {
+            true => Ok(matrix),
+            false => {
+                Err(self.wrong(format!("the place of node {i} is no matrix, or its rotation has length 0")))
+            }
+        }
+    }
+
+    /// Adds a primitive, whose frame is at `place`.
+    fn add(&mut self, what: &str, primitive: &Primitive, place: &Matrix4<f64>) -> Result<(), Error> {
+        let mode = primitive.mode.unwrap_or(4);
+        if !(4..=6).contains(&mode) {
+            self.left_out = true;
+            return Ok(());
+        }
+        let positions = primitive.attributes.get("POSITION");
+        let &positions = positions.ok_or_else(|| self.wrong(format!("{what} has no POSITION")))?;
+        let positions = self.numbers(positions, "VEC3")?;
+        let count = positions.len() / 3;
+        let corners: Vec<u32> = match primitive.indices {
+            Some(accessor) => self.numbers(accessor, "SCALAR")?.into_iter().map(|i| i as u32).collect(),
+            None => (0..count as u32).collect(),
+        };
+        if let Some(corner) = corners.iter().find(|corner| **corner as usize >= count) {
+            return Err(self.wrong(format!("{what} has the vertex {corner}, and {count} vertices")));
+        }
+        if self.vertices.len() + count > MAX_INSTANCED || self.triangles.len() + corners.len() > MAX_INSTANCED
+        {
+            let message = format!("the scene has more than {MAX_INSTANCED} triangles or vertices");
+            return Err(Error::new(ErrorKind::TooLarge, self.file, message).help("simplify the meshes"));
+        }
+        let (turn, moved) =
+            (place.fixed_view::<3, 3>(0, 0).into_owned(), place.fixed_view::<3, 1>(0, 3).into_owned());
+        let base = self.vertices.len() as u32; // at most MAX_INSTANCED
+        let point = |p: &[f64]| Point3::from(turn * Vector3::new(p[0], p[1], p[2]) + moved);
+        self.vertices.extend(positions.chunks_exact(3).map(point));
+        let triangles: Vec<[u32; 3]> = match mode {
+            4 => corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+            5 => corners.windows(3).enumerate().map(|(i, t)| [t[0], t[1 + i % 2], t[2 - i % 2]]).collect(),
+            _ => corners.windows(2).skip(1).map(|t| [corners[0], t[0], t[1]]).collect(),
+        };
+        // A mirror turns triangles over.
+        let order = if turn.determinant() < 0.0 { [0, 2, 1] } else { [0, 1, 2] };
+        self.triangles.extend(triangles.into_iter().map(|t| order.map(|k| t[k] + base)));
+        Ok(())
+    }
+
+    /// The numbers of an accessor of this kind: coordinates, or indices of vertices.
+    fn numbers(&self, number: usize, kind: &str) -> Result<Vec<f64>, Error> {
+        let wrong = |what: &str| self.wrong(format!("accessor {number} {what}"));
+        let accessor = self.document.accessors.get(number).ok_or_else(|| wrong("is not there"))?;
+        let (width, columns) = match (kind, accessor.component_type) {
+            ("VEC3", 5126) => (4, 3),
+            ("SCALAR", 5121) => (1, 1),
+            ("SCALAR", 5123) => (2, 1),
+            ("SCALAR", 5125) => (4, 1),
+            _ => {
+                return Err(wrong(
+                    "has numbers of another type: positions are floats, and indices whole numbers above 0",
+                ));
+            }
+        };
+        if accessor.kind != kind {
+            return Err(wrong(&format!("is {}, not {kind}", crate::text::clipped(&accessor.kind))));
+        }
+        let view = accessor.buffer_view.filter(|_| accessor.sparse.is_none());
+        let view = view.ok_or_else(|| wrong("is sparse, or has no buffer view, which is not read"))?;
+        let view = self
+            .document
+            .buffer_views
+            .get(view)
+            .ok_or_else(|| wrong("has a buffer view that is not there"))?;
+        let buffer = self.buffers.get(view.buffer).ok_or_else(|| wrong("has a buffer that is not there"))?;
+        let bytes = buffer.get(view.byte_offset..).and_then(|rest| rest.get(..view.byte_length));
+        let bytes = bytes.and_then(|bytes| bytes.get(accessor.byte_offset..));
+        let (size, stride) = (width * columns, view.byte_stride.unwrap_or(width * columns));
+        let needed = accessor.count.saturating_sub(1).checked_mul(stride).and_then(|n| n.checked_add(size));
+        let bytes =
+            bytes.filter(|bytes| stride >= size && needed.is_some_and(|needed| needed <= bytes.len()));
+        let bytes = bytes.ok_or_else(|| wrong("is longer than its bytes"))?;
+        let four = |b: &[u8]| [b[0], b[1], b[2], b[3]];
+        let read = |b: &[u8]| match accessor.component_type {
+            5126 => f64::from(f32::from_le_bytes(four(b))),
+            5121 => f64::from(b[0]),
+            5123 => f64::from(u16::from_le_bytes([b[0], b[1]])),
+            _ => f64::from(u32::from_le_bytes(four(b))),
+        };
+        let rows = (0..accessor.count).map(|i| &bytes[i * stride..][..size]);
+        Ok(rows.flat_map(|row| row.chunks_exact(width).map(read)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::Disk;
+    use crate::mesh::parse_mesh;
+    use crate::mesh::read_mesh_with;
+
+    const CORPUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/gltf/good-");
+
+    /// A tetrahedron with three edges of length 1, moved 0.5 up along z, doubled, turned so that y becomes z, and moved 1 along z.
+    #[test]
+    fn triangles_are_at_the_places_of_their_nodes() {
+        let [binary, text] = ["1", "2"].map(|k| std::fs::read(format!("{CORPUS}{k}")).unwrap());
+        let mesh = parse_mesh("m.glb", &binary).unwrap();
+        assert_eq!(parse_mesh("m.gltf", &text).unwrap(), mesh);
+        assert!((mesh.signed_volume() - 8.0 / 6.0).abs() < 1e-14 && mesh.topology().is_solid());
+        let (low, high) = (mesh.aabb().min, mesh.aabb().max);
+        let off = (low - Point3::new(0.0, -3.0, 1.0)).amax().max((high - Point3::new(2.0, -1.0, 3.0)).amax());
+        assert!(off < 1e-14, "{low} {high}");
+    }
+
+    #[test]
+    fn strips_fans_mirrors_and_files_beside() {
+        let text = std::fs::read_to_string(format!("{CORPUS}2")).unwrap();
+        let area = |text: &str| parse_mesh("m.gltf", text.as_bytes()).map(|mesh| mesh.triangles().len());
+        // 0 2 1 0 1 3 1 2 3 0 3 2: triangles with two equal corners are dropped.
+        assert!(area(&text.replace("\"mode\":4", "\"mode\":5")).unwrap() >= 4);
+        assert!(area(&text.replace("\"mode\":4", "\"mode\":6")).unwrap() >= 4);
+        let points = area(&text.replace("\"mode\":4", "\"mode\":0")).unwrap_err();
+        assert!(points.remedy().is_some_and(|help| help.contains("at least one triangle")), "{points}");
+        let mirrored = text.replace("\"scale\":[2,2,2]", "\"scale\":[2,-2,2]");
+        let mirrored = parse_mesh("m.gltf", mirrored.as_bytes()).unwrap();
+        assert!(mirrored.signed_volume() > 1.3);
+        let folder = tempfile::tempdir().unwrap();
+        let (_, rest) = text.split_once("base64,").unwrap();
+        let (data, _) = rest.split_once('"').unwrap();
+        std::fs::write(folder.path().join("a b.bin"), base64(data).unwrap()).unwrap();
+        let apart = text.replace(&format!("data:application/octet-stream;base64,{data}"), "a%20b.bin");
+        std::fs::write(folder.path().join("m.gltf"), &apart).unwrap();
+        let read = read_mesh_with(&Disk, &folder.path().join("m.gltf"), Axes::OfFile).unwrap();
+        assert_eq!(read, parse_mesh("m.gltf", text.as_bytes()).unwrap());
+        let gone = parse_mesh("m.gltf", apart.as_bytes()).unwrap_err();
+        assert!(gone.remedy().is_some_and(|help| help.contains("as one file")), "{gone}");
+    }
+}

@@ -1,0 +1,207 @@
+//! Files of points. See `docs/formats/shapes.md`. Coordinates need not be finite: depth cameras give NaN where they see nothing.
+
+mod las;
+mod npy;
+mod pcd;
+
+use crate::error::{Error, ErrorKind};
+use crate::files::{Files, MAX_MESH_BYTES};
+use crate::formats::{Content, ply};
+use crate::text::{Text, Token};
+use mp_geom::{Points, TriMesh};
+use mp_stop::Interrupt;
+use nalgebra::Point3;
+use std::path::Path;
+
+pub(crate) const GUIDE: &str = "shapes.md";
+
+/// Reads the points of a file in the format that its name says; text, if it says none.
+pub fn read_points(files: &dyn Files, path: &Path) -> Result<Vec<Point3<f64>>, Error> {
+    let bytes = files.read(path, MAX_MESH_BYTES)?;
+    parse_points(path, &bytes, files.interrupt())
+}
+
+/// Reads `bytes`, the content of a file of points.
+pub fn parse_points(path: &Path, bytes: &[u8], mut interrupt: Interrupt) -> Result<Vec<Point3<f64>>, Error> {
+    let file = path.display().to_string();
+    let points = match Content::of(path).next() {
+        Some(Content::Ply) => ply::read_points(&file, bytes, interrupt)?,
+        Some(Content::Pcd) => pcd::read(&file, bytes, &mut interrupt)?,
+        Some(Content::NumpyArray) => npy::read(&file, bytes)?,
+        Some(Content::Las) => las::read(&file, bytes)?,
+        _ => text(&file, bytes, &mut interrupt)?,
+    };
+    match points.is_empty() {
+        true => Err(Error::new(ErrorKind::Content, file, "there are no points in the file")
+            .help("write at least one point, or leave the obstacle out")),
+        false => Ok(points),
+    }
+}
+
+/// Balls around points, as their [`Points`] say; says to `note` what is left out.
+///
+/// # Errors
+/// When none is left, or radius or cell do not suit them.
+pub fn balls(points: &Points, mut note: impl FnMut(&str)) -> Result<TriMesh, String> {
+    let thinned = mp_geom::thin(&points.at, points.cell).map_err(|e| e.to_string())?;
+    let (all, kept) = (points.at.len(), thinned.centers.len());
+    if thinned.not_finite > 0 {
+        let left = if thinned.not_finite == 1 { "is" } else { "are" };
+        note(&format!("{} of {all} points {left} not finite and left out", thinned.not_finite));
+    }
+    if kept + thinned.not_finite < all {
+        let (cell, padding) = (points.cell, thinned.padding);
+        note(&format!(
+            "{all} points became {kept}, one for each cell of {cell} m, with a radius larger by {padding:.3e} m"
+        ));
+    }
+    TriMesh::of_balls(thinned.centers, points.radius + thinned.padding).map_err(|e| e.to_string())
+}
+
+/// Text: a line for each point, with x, y and z (m) first, between blanks or commas. Lines that begin with `#` are comments.
+fn text(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Result<Vec<Point3<f64>>, Error> {
+    let text = Text::new(file, bytes, GUIDE)?;
+    let lines = text.lines().filter(|line| !line.text.starts_with('#'));
+    lines
+        .map(|line| {
+            interrupt.go_on().map_err(|_| Error::interrupted(file))?;
+            match line.text.contains(',') {
+                true => point(&text, line, line.cells()),
+                false => point(&text, line, line.words()),
+            }
+        })
+        .collect()
+}
+
+/// The point in the first three words of a line.
+fn point<'a>(
+    text: &Text<'a>,
+    line: Token<'a>,
+    mut words: impl Iterator<Item = Token<'a>>,
+) -> Result<Point3<f64>, Error> {
+    let mut point = Point3::origin();
+    for number in point.iter_mut() {
+        let word = words.next().ok_or_else(|| text.error(line, "a number is missing").expected(EXPECTED))?;
+        *number = any_number(text, word)?;
+    }
+    Ok(point)
+}
+
+const EXPECTED: &str = "x y z of a point, metres";
+
+/// A number, which need not be finite.
+fn any_number(text: &Text<'_>, word: Token<'_>) -> Result<f64, Error> {
+    match word.text.parse() {
+        Ok(number) => Ok(number),
+        Err(_) if crate::text::is_not_a_number(word.text) => Ok(f64::NAN),
+        Err(_) => text.number(word, EXPECTED),
+    }
+}
+
+/// An error in a binary file, `at` which byte.
+fn error(file: &str, at: usize, message: impl std::fmt::Display) -> Error {
+    Error::new(ErrorKind::Format, file, format!("{message} (at byte {at})"))
+        .help("correct the program that wrote the points, or export them again: docs/formats/shapes.md")
+}
+
+/// The bytes from `at` on, an array of `N`.
+fn bytes_at<const N: usize>(file: &str, bytes: &[u8], at: usize) -> Result<[u8; N], Error> {
+    let taken = bytes.get(at..).and_then(|rest| rest.first_chunk());
+    taken.copied().ok_or_else(|| error(file, bytes.len(), "the file ends too early"))
+}
+
+/// `count` rows of `row` bytes from `at` on, which must be there.
+fn rows<'b>(
+    file: &str,
+    bytes: &'b [u8],
+    at: usize,
+    count: usize,
+    row: usize,
+) -> Result<std::slice::ChunksExact<'b, u8>, Error> {
+    let size = count.checked_mul(row).filter(|_| row > 0);
+    let all = size.and_then(|size| bytes.get(at..)?.get(..size));
+    let all = all.ok_or_else(|| {
+        error(
+            file,
+            bytes.len(),
+            format!("the file ends too early: it announces {count} points of {row} bytes"),
+        )
+    })?;
+    Ok(all.chunks_exact(row))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Vec<[f64; 3]>, Error> {
+        let points = parse_points(Path::new(name), bytes, Interrupt::never())?;
+        Ok(points.into_iter().map(Into::into).collect())
+    }
+
+    #[test]
+    fn text_of_any_kind() {
+        let expected = [[1.0, 2.0, 3.0], [4.5, -1.0, 0.0]];
+        for (name, text) in [
+            ("a.xyz", "# scan\n1 2 3 255\n\n4.5 -1 0\n"),
+            ("a.csv", "1, 2, 3\n4.5,-1,0\n"),
+            ("a.txt", "1\t2 3\r\n4.5 -1 0"),
+        ] {
+            assert_eq!(read(name, text.as_bytes()).unwrap(), expected, "{name}");
+        }
+        let found = read("a.xyz", b"nan nan nan\n1 2 -1.#IND\n1 2 3\n").unwrap();
+        assert!(found[0][0].is_nan() && found[1][2].is_nan() && found[2] == [1.0, 2.0, 3.0]);
+        for (text, line) in [("1 2\n", Some(1)), ("1 2 3\n1 x 3", Some(2)), ("# none\n", None), ("", None)] {
+            assert_eq!(read("a.xyz", text.as_bytes()).unwrap_err().line(), line, "{text}");
+        }
+    }
+
+    #[test]
+    fn points_of_ply() {
+        let head = |format: &str| {
+            format!(
+                "ply\nformat {format} 1.0\nelement vertex 2\nproperty float x\nproperty uchar red\nproperty double y\nproperty float z\nend_header\n"
+            )
+        };
+        let text = head("ascii") + "1 255 2 3\nnan 0 nan nan\n";
+        let mut binary = head("binary_little_endian").into_bytes();
+        for [x, y, z] in [[1.0_f32, 2.0, 3.0], [f32::NAN; 3]] {
+            binary
+                .extend([&x.to_le_bytes()[..], &[7], &f64::from(y).to_le_bytes(), &z.to_le_bytes()].concat());
+        }
+        for bytes in [text.as_bytes(), &binary] {
+            let found = read("a.ply", bytes).unwrap();
+            assert!(found[0] == [1.0, 2.0, 3.0] && found[1].iter().all(|x| x.is_nan()));
+            assert!(read("a.ply", &bytes[..bytes.len() - 9]).is_err());
+        }
+        // Vertices of a mesh.
+        let mesh = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                    element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+        assert_eq!(read("a.ply", mesh.as_bytes()).unwrap().len(), 3);
+        assert!(
+            read("a.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n")
+                .is_err()
+        );
+    }
+
+    #[test]
+    fn what_is_left_out_is_said() {
+        let at = [[0.0, 0.0, 0.0], [0.001, 0.0, 0.0], [1.0, 0.0, 0.0], [f64::NAN; 3]].map(Point3::from);
+        let mut said = Vec::new();
+        let mesh = balls(&Points::new(at.to_vec(), 0.01), |note| said.push(note.to_owned())).unwrap();
+        assert_eq!(mesh.vertices().len(), 2);
+        assert_eq!(
+            said,
+            [
+                "1 of 4 points is not finite and left out",
+                "4 points became 2, one for each cell of 0.005 m, with a radius larger by 5.000e-4 m",
+            ]
+        );
+        assert_eq!(
+            balls(&Points::new(vec![at[3]], 0.01), |_| ()).unwrap_err(),
+            "none of 1 points has finite coordinates"
+        );
+        let one = balls(&Points::new(vec![at[2]], 0.01), |note| panic!("{note}")).unwrap();
+        assert_eq!((one.vertices(), one.rounding()), (&at[2..3], Some(0.01)));
+    }
+}
