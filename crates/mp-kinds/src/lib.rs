@@ -22,6 +22,7 @@ mod metric_name;
 pub mod numbers;
 pub mod possible;
 pub mod proof;
+pub mod prove;
 pub mod relax;
 mod relax_field;
 mod robot;

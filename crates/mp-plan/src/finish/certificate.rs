@@ -5,14 +5,11 @@
 //! checking* (2005): what is farther apart than it can move stays apart.
 
 mod compare;
-mod motion;
-mod prove;
 
 use crate::path::states;
-use crate::{Error, MotionModel, PathRows, Robot, brief};
+use crate::{Error, MotionModel, PathRows, Robot};
 use mp_cspace::Interrupt;
-use nalgebra::Isometry3;
-use prove::Prover;
+use mp_kinds::prove::{Prover, agrees};
 use serde::Serialize;
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -23,9 +20,6 @@ const VERSION: u32 = 2;
 
 /// The member that ends a certificate: a hash of all bytes before it.
 const CHECKSUM: &str = ",\n\"checksum\":";
-
-/// How far a pose of the model may be from that of the robot: rounding, as a fraction of the coordinates.
-const ROUNDING: f64 = 1e-9;
 
 /// A path with the proof that it is free: see docs/formats/certificate.md.
 #[derive(Clone, Debug)]
@@ -126,26 +120,4 @@ pub(crate) fn certificate(
 /// Name and unit of each number of a row.
 fn columns(kind: &dyn Robot) -> Vec<String> {
     kind.columns().iter().map(ToString::to_string).collect()
-}
-
-/// The model must place the bodies of the robot where the robot has them.
-fn agrees(model: &MotionModel, row: &[f64], poses: &[Isometry3<f64>]) -> Result<(), Error> {
-    let placed = motion::Motion::new(model, row, row)
-        .map_err(Error::new)?
-        .poses(0.0)
-        .ok_or_else(|| Error::new("the model of the robot has no pose here"))?;
-    let robots = model.bodies.iter().zip(placed).filter(|(body, _)| body.of_robot);
-    for ((body, at), pose) in robots.zip(poses) {
-        let off = body.vertices.iter().map(|v| {
-            let v = nalgebra::Point3::from(*v);
-            let (p, q) = (at * v, pose * v);
-            (p - q).norm() / (1.0 + q.coords.norm())
-        });
-        let off = off.fold(0.0, f64::max);
-        if off > ROUNDING {
-            let message = format!("the model of {} is {} off", body.name, brief(off));
-            return Err(Error::new(message).help("this is a fault of the program: please report it"));
-        }
-    }
-    Ok(())
 }

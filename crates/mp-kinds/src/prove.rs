@@ -1,7 +1,9 @@
 //! Divides edges into parts of which each is proved free by one distance.
 
-use super::motion::Motion;
-use crate::{ModelBody, ModelFrame, MotionModel};
+mod motion;
+
+use crate::{Error, ModelBody, ModelFrame, MotionModel, brief};
+use motion::Motion;
 use mp_collide::reference::RefMesh;
 use mp_cspace::Interrupt;
 use mp_geom::TriMesh;
@@ -10,6 +12,9 @@ use std::rc::Rc;
 
 /// Parts shorter than this are not divided.
 const SHORTEST: f64 = 1e-9;
+
+/// How far a pose of the model may be from that of the robot: rounding, as a fraction of the coordinates.
+const ROUNDING: f64 = 1e-9;
 
 /// What is proved free of what.
 struct Shapes {
@@ -23,7 +28,8 @@ struct Shapes {
 }
 
 /// Proves the edges of a path, each pair of bodies by itself.
-pub(super) struct Prover<'m> {
+#[allow(missing_debug_implementations, reason = "meshes for searches have nothing to print")]
+pub struct Prover<'m> {
     model: &'m MotionModel,
     shapes: Vec<Shapes>,
     /// The clearance (m) to prove.
@@ -32,9 +38,11 @@ pub(super) struct Prover<'m> {
 }
 
 impl<'m> Prover<'m> {
+    /// A prover of edges of a robot with this model, which keep the clearance `margin` (m), unless `interrupt` says to end.
+    ///
     /// # Errors
     /// When the bodies are too large to compute with.
-    pub(super) fn new(model: &'m MotionModel, margin: f64, interrupt: &Interrupt) -> Result<Self, String> {
+    pub fn new(model: &'m MotionModel, margin: f64, interrupt: &Interrupt) -> Result<Self, String> {
         let mut meshes: Vec<(Vec<usize>, Rc<RefMesh>)> = Vec::new();
         let mut mesh = |bodies: &[usize], in_world: bool| {
             if let Some((_, mesh)) = meshes.iter().find(|(of, _)| of == bodies) {
@@ -64,7 +72,7 @@ impl<'m> Prover<'m> {
     ///
     /// # Errors
     /// Why the edge is not proved.
-    pub(super) fn edge(&mut self, from: &[f64], to: &[f64]) -> Result<Vec<Vec<[f64; 2]>>, String> {
+    pub fn edge(&mut self, from: &[f64], to: &[f64]) -> Result<Vec<Vec<[f64; 2]>>, String> {
         let motion = Motion::new(self.model, from, to)?;
         (0..self.shapes.len()).map(|pair| self.pair(&motion, pair)).collect()
     }
@@ -149,4 +157,29 @@ fn merged<'b>(
     }
     let mesh = TriMesh::merged(&clouds).ok_or("the bodies have too many triangles")?;
     Ok(RefMesh::new(&mesh))
+}
+
+/// Checks that the model places the bodies of the robot where the robot has them at a row of numbers.
+///
+/// # Errors
+/// When it does not.
+pub fn agrees(model: &MotionModel, row: &[f64], poses: &[Isometry3<f64>]) -> Result<(), Error> {
+    let placed = Motion::new(model, row, row)
+        .map_err(Error::new)?
+        .poses(0.0)
+        .ok_or_else(|| Error::new("the model of the robot has no pose here"))?;
+    let robots = model.bodies.iter().zip(placed).filter(|(body, _)| body.of_robot);
+    for ((body, at), pose) in robots.zip(poses) {
+        let off = body.vertices.iter().map(|v| {
+            let v = Point3::from(*v);
+            let (p, q) = (at * v, pose * v);
+            (p - q).norm() / (1.0 + q.coords.norm())
+        });
+        let off = off.fold(0.0, f64::max);
+        if off > ROUNDING {
+            let message = format!("the model of {} is {} off", body.name, brief(off));
+            return Err(Error::new(message).help("this is a fault of the program: please report it"));
+        }
+    }
+    Ok(())
 }
