@@ -13,16 +13,10 @@ const MAX_MESSAGE: usize = 400;
 /// file, if there is one.
 ///
 /// ```
-/// use mp_kinds::{End, ErrorKind, Request, Scene};
-/// let scene = Scene::find("easy")?;
-/// let error = scene.plan(&Request::new("rrt-conect")).unwrap_err();
-/// assert_eq!(error.kind(), ErrorKind::Planner);
-/// let error = scene.plan(&Request::default().set("step", "far")).unwrap_err();
-/// assert_eq!(error.kind(), ErrorKind::Request);
-/// assert_eq!(Scene::load("nowhere.env").unwrap_err().kind(), ErrorKind::File);
-/// let below = scene.with_ends(&[0.0, 0.0, -99.0, 0.0, 0.0, 0.0], &scene.goals())?;
-/// assert_eq!(below.check_ends().unwrap_err().kind(), ErrorKind::NotFree(End::Start));
-/// # Ok::<(), mp_kinds::Error>(())
+/// use mp_kinds::{Error, ErrorKind};
+/// let error = Error::new("there is no planner `rrt-conect`").help("take rrt-connect").of_kind(ErrorKind::Planner);
+/// assert_eq!(error.context("cannot plan in cubicles").report(),
+///     "error: cannot plan in cubicles\n  there is no planner `rrt-conect`\n  help: take rrt-connect");
 /// ```
 #[derive(Debug)]
 pub struct Error(Box<Inner>);

@@ -60,14 +60,14 @@ fn a_run_is_told_from_loading_to_verifying() {
     let map = folder.path().join("map");
     let wanted = [
         "mp_plan load",
-        "mp_io: mesh",
+        "mp_formats: mesh",
         "mp_io: problem",
         "mp_robot build",
         "mp_collide build",
         "mp_plan plan",
         "mp_tree: made",
         "mp_cspace: solved",
-        "mp_plan shorten",
+        "mp_kinds shorten",
         "mp_cspace: simplified",
         "mp_plan verify",
         "mp_cspace: verified",

@@ -4,10 +4,21 @@ use mp_geom::TriMesh;
 use mp_geom::primitives::cuboid;
 use mp_plan::info::{Info, MeshInfo, Surface};
 use mp_plan::{
-    Length, MetricName, MotionValidator, PathFileKind, PathRows, RelaxField, Request, Scene, Track, brief,
-    plain, write_file,
+    End, ErrorKind, Length, MetricName, MotionValidator, PathFileKind, PathRows, RelaxField, Request, Scene,
+    Track, brief, plain, write_file,
 };
 use nalgebra::{Isometry3, Point3};
+
+#[test]
+fn errors_say_what_they_are_about() {
+    let scene = Scene::find("easy").unwrap();
+    let kind = |request: Request| scene.plan(&request).unwrap_err().kind();
+    assert_eq!(kind(Request::new("rrt-conect")), ErrorKind::Planner);
+    assert_eq!(kind(Request::default().set("step", "far")), ErrorKind::Request);
+    assert_eq!(Scene::load("nowhere.env").unwrap_err().kind(), ErrorKind::File);
+    let below = scene.with_ends(&[0.0, 0.0, -99.0, 0.0, 0.0, 0.0], &scene.goals()).unwrap();
+    assert_eq!(below.check_ends().unwrap_err().kind(), ErrorKind::NotFree(End::Start));
+}
 
 #[test]
 fn numbers_are_brief() {
