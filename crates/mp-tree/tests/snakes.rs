@@ -59,8 +59,8 @@ fn problem<'c>(
     space: &'c Rn<2>,
     boxes: &Boxes<2>,
     ends: [[f64; 2]; 2],
-) -> Problem<'c, Rn<2>, Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>> {
-    let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap());
+) -> Problem<'c, Rn<2>, Checked<'c, Rn<2>>> {
+    let local = certified(space, boxes.clone(), 1e-3);
     let problem = Problem::new(space, local, Exact(boxes.clone()), ends[0].into(), SVector::from(ends[1]));
     bending(problem.unwrap(), field(boxes))
 }
@@ -192,7 +192,7 @@ fn a_rod_bends_and_turns() {
     let (start, goal) = (Se2State::new(0.05, 0.05, 0.0), Se2State::new(0.95, 0.95, 1.0));
     let settings = Settings::parse(["step=0.5", "range=0.02"]).unwrap();
     for (name, seed) in [("rrs", 1), ("rrs-connect", 2)] {
-        let local = Straight::new(&space, Certified::new(&space, rod.clone(), 1e-3).unwrap());
+        let local = certified(&space, rod.clone(), 1e-3);
         let verifier = FineDiscrete::new(&space, rod.clone(), Length::Absolute(1e-4)).unwrap();
         let problem = Problem::new(&space, local, verifier, start, goal).unwrap();
         let problem = bending(problem, rod_field(&rod, &space));

@@ -43,7 +43,8 @@ impl RefMesh {
     /// The ball around the boxes of all solids.
     fn around_solids(&self) -> (Point3<f64>, f64) {
         *self.around_solids.get_or_init(|| {
-            let corners: Vec<_> = self.solids.iter().flat_map(|(_, bounds)| [bounds.min, bounds.max]).collect();
+            let corners: Vec<_> =
+                self.solids.iter().flat_map(|(_, bounds)| [bounds.min, bounds.max]).collect();
             let bounds = Aabb::of_points(&corners);
             (nalgebra::center(&bounds.min, &bounds.max), 0.5 * (bounds.max - bounds.min).norm())
         })

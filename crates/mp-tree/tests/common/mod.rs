@@ -57,14 +57,24 @@ impl<const N: usize> MotionClearance<SVector<f64, N>> for Boxes<N> {
     }
 }
 
-/// Certified straight motions among boxes: of one type with any other check, so that planners are compiled
-/// once for all.
-pub(crate) fn certified<'c>(
-    space: &'c Rn<2>,
-    boxes: Boxes<2>,
+/// Straight motions of a space: of one type with any check, so that planners are compiled once for all.
+pub(crate) type Checked<'c, C> = Straight<'c, C, erased::AnyCheck<'c, <C as Space>::State>>;
+
+/// Straight motions with this check.
+pub(crate) fn checked<'c, C: Space>(
+    space: &'c C,
+    check: impl MotionValidity<C::State> + Send + 'c,
+) -> Checked<'c, C> {
+    Straight::new(space, Box::new(check))
+}
+
+/// Certified straight motions of a robot.
+pub(crate) fn certified<'c, C: Space, V: MotionClearance<C::State> + Send + 'c>(
+    space: &'c C,
+    robot: V,
     tolerance: f64,
-) -> Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>> {
-    Straight::new(space, Box::new(Certified::new(space, boxes, tolerance).unwrap()))
+) -> Checked<'c, C> {
+    checked(space, Certified::new(space, robot, tolerance).unwrap())
 }
 
 /// The exact verifier of straight motions among boxes.

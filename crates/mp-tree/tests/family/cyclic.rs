@@ -216,7 +216,7 @@ fn bad_tolerances_are_refused() {
         (0.2, -0.1, "step"),
     ] {
         let check = Discrete::new(&space, boxes.clone(), Length::Absolute(0.01)).unwrap();
-        let local = Straight::new(&space, check);
+        let local = checked(&space, check);
         let problem = Problem::new(&space, local, Exact(boxes.clone()), START, GOAL).unwrap();
         let tuning = Tuning { step: Length::Absolute(step), ..Tuning::default() };
         let error = CyclicRrt::new(problem, tuning, tolerance).map(|_| ()).unwrap_err();

@@ -154,13 +154,10 @@ fn assert_same(tree: &Tree<Point, ()>, copy: &[(Point, Option<NodeId>)]) {
 }
 
 /// A discrete check so coarse that candidates are refuted and pruned now and then.
-fn coarse<'c>(
-    space: &'c Rn<2>,
-    boxes: &Boxes<2>,
-) -> Problem<'c, Rn<2>, Straight<'c, Rn<2>, Discrete<'c, Rn<2>, Boxes<2>>>> {
+fn coarse<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Problem<'c, Rn<2>, Local<'c>> {
     let check = Discrete::new(space, boxes.clone(), Length::Absolute(0.05)).unwrap();
     let ends = [Point::new(0.1, 0.1), Point::new(0.9, 0.1)];
-    Problem::new(space, Straight::new(space, check), Exact(boxes.clone()), ends[0], ends[1]).unwrap()
+    Problem::new(space, checked(space, check), Exact(boxes.clone()), ends[0], ends[1]).unwrap()
 }
 
 #[test]

@@ -21,8 +21,8 @@ fn point_problem<'c, const N: usize>(
     space: &'c Rn<N>,
     boxes: &Boxes<N>,
     ends: [[f64; N]; 2],
-) -> Problem<'c, Rn<N>, Straight<'c, Rn<N>, Certified<'c, Rn<N>, Boxes<N>>>> {
-    let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap());
+) -> Problem<'c, Rn<N>, Checked<'c, Rn<N>>> {
+    let local = certified(space, boxes.clone(), 1e-3);
     Problem::new(space, local, Exact(boxes.clone()), ends[0].into(), SVector::from(ends[1])).unwrap()
 }
 
@@ -85,7 +85,7 @@ fn a_rod_turns_to_pass_a_gap() {
         ends,
         |q| valid.is_valid(q),
         |weights, rng| {
-            let local = Straight::new(&space, Certified::new(&space, rod.clone(), 1e-3).unwrap());
+            let local = certified(&space, rod.clone(), 1e-3);
             let fine = FineDiscrete::new(&space, rod.clone(), Length::Fraction(5e-4)).unwrap();
             let problem = Problem::new(&space, local, fine, ends[0], ends[1]).unwrap();
             let mut planner = Obrrt::new(problem, rod.clone(), step(0.3), weights).unwrap();
@@ -174,7 +174,8 @@ fn bad_weights_are_refused() {
             weights = [value; 8];
         }
         let problem = point_problem(&space, &boxes, [[0.1, 0.5], [0.9, 0.5]]);
-        let error = Obrrt::new(problem, boxes.clone(), step(0.2), GrowthWeights(weights)).unwrap_err();
+        let error =
+            Obrrt::new(problem, boxes.clone(), step(0.2), GrowthWeights(weights)).map(drop).unwrap_err();
         assert!(matches!(error, BuildError::OutOfRange { name: "weights", .. }), "{error}");
     }
 }

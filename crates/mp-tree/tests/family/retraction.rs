@@ -1,6 +1,7 @@
 //! Retraction-based RRT: blocked steps go on along the obstacle.
 
-use mp_cspace::{Discrete, FineDiscrete, Iterations, Length, Outcome, Planner, Rn, Rng, Straight};
+use crate::common::checked;
+use mp_cspace::{Discrete, FineDiscrete, Iterations, Length, Outcome, Planner, Rn, Rng};
 use mp_tree::{Problem, RetractionRrt, RrtConnect, Tuning};
 use nalgebra::Vector2;
 
@@ -53,7 +54,7 @@ fn iterations<P: Planner<Point, Edge = ()>>(mut planner: P, seed: u64) -> u64 {
 fn a_long_corridor_is_passed_in_a_fraction_of_the_iterations() {
     let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0]).unwrap();
     let problem = || {
-        let local = Straight::new(&space, Discrete::new(&space, free, Length::Fraction(0.0005)).unwrap());
+        let local = checked(&space, Discrete::new(&space, free, Length::Fraction(0.0005)).unwrap());
         let verifier = FineDiscrete::new(&space, free, Length::Fraction(0.0001)).unwrap();
         Problem::new(&space, local, verifier, Point::new(0.05, 0.15), Point::new(0.95, 0.85)).unwrap()
     };
@@ -70,7 +71,7 @@ fn without_slides_it_is_rrt_connect() {
     let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0]).unwrap();
     let open = |q: &Point| (q - Point::new(0.5, 0.5)).norm() > 0.3;
     let problem = || {
-        let local = Straight::new(&space, Discrete::new(&space, open, Length::Fraction(0.01)).unwrap());
+        let local = checked(&space, Discrete::new(&space, open, Length::Fraction(0.01)).unwrap());
         let verifier = FineDiscrete::new(&space, open, Length::Fraction(0.001)).unwrap();
         Problem::new(&space, local, verifier, Point::new(0.1, 0.5), Point::new(0.9, 0.5)).unwrap()
     };

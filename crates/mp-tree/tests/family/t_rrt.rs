@@ -39,7 +39,7 @@ fn it_goes_around_a_hill() {
     let (space, top) = (square(), Boxes(vec![([0.49, 0.49], [0.51, 0.51])]));
     let tuning = Tuning { step: Length::Absolute(0.05), ..Tuning::default() };
     let problem = || {
-        let local = Straight::new(&space, Certified::new(&space, top.clone(), 1e-3).unwrap());
+        let local = certified(&space, top.clone(), 1e-3);
         let (start, goal) = (Point::new(0.1, 0.5), Point::new(0.9, 0.5));
         Problem::new(&space, local, Exact(top.clone()), start, goal).unwrap()
     };
@@ -69,7 +69,7 @@ fn it_keeps_away_from_obstacles() {
     let [mut ours, mut plain] = [0.0; 2];
     for seed in 0..20 {
         for (name, sum) in [("t-rrt", &mut ours), ("rrt", &mut plain)] {
-            let local = Straight::new(&space, Certified::new(&space, boxes.clone(), 1e-3).unwrap());
+            let local = certified(&space, boxes.clone(), 1e-3);
             let (start, goal) = (Point::new(0.1, 0.2), Point::new(0.9, 0.4));
             let problem = Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap();
             let problem = problem.with_obstacles(knowledge(&space, &boxes));
@@ -87,7 +87,7 @@ fn what_costs_too_much_is_never_entered() {
         let r = (q - Point::new(0.8, 0.5)).norm();
         if (0.05..0.15).contains(&r) { f64::INFINITY } else { 1.0 }
     };
-    let local = Straight::new(&space, Certified::new(&space, empty.clone(), 1e-3).unwrap());
+    let local = certified(&space, empty.clone(), 1e-3);
     let problem =
         Problem::new(&space, local, Exact(empty), Point::new(0.1, 0.5), Point::new(0.8, 0.5)).unwrap();
     let tuning = Tuning { step: Length::Absolute(0.05), ..Tuning::default() };
@@ -101,7 +101,7 @@ fn what_costs_too_much_is_never_entered() {
 fn parameters_are_checked() {
     let (space, empty) = (square(), Boxes::default());
     let made = |with| {
-        let local = Straight::new(&space, Certified::new(&space, empty.clone(), 1e-3).unwrap());
+        let local = certified(&space, empty.clone(), 1e-3);
         let (start, goal) = (Point::new(0.1, 0.5), Point::new(0.9, 0.5));
         let problem = Problem::new(&space, local, Exact(empty.clone()), start, goal).unwrap();
         TRrt::new(problem, hill, Tuning::default(), with).map(drop)

@@ -1,4 +1,4 @@
-//! Certificates of paths are replayed by `mp_verify_certificate`, which shares no code with this crate; damaged ones are refused.
+//! Certificates of paths are replayed by `mp_verify_certificate`, which shares no code with the crates that make them; damaged ones are refused.
 
 mod changed;
 mod clouds;
