@@ -174,7 +174,7 @@ impl Measured<'_> {
 /// planners its [`Motion`], messages and files its [`Description`], pictures its [`Appearance`].
 ///
 /// Rigid bodies ([`RigidScene`]), arms ([`ArmScene`], [`FloatingScene`]) and robots of the plane ([`PlanarScene`]) are robots. To add a
-/// kind, implement [`TypedMotion`](crate::TypedMotion) and the three parts; [`Scene::new`](crate::Scene::new) makes a scene of it, and
+/// kind, implement [`TypedMotion`](crate::TypedMotion) and the three parts; `Scene::new` of mp-plan makes a scene of it, and
 /// the rest of this crate works with it: planning by name, checking, explaining, shortening, relaxing, roadmaps. docs/own-robot.md is
 /// a guide.
 pub trait Robot: Motion + Description + Appearance + Any + fmt::Debug + Send + Sync {}

@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// Whether a constraint holds at a row of numbers.
 type Holds = dyn Fn(&[f64]) -> bool + Send + Sync;
 
-/// A function that says which configurations may be: see [`Scene::under`](crate::Scene::under).
+/// A function that says which configurations may be: see `Scene::under` of mp-plan.
 ///
 /// Nothing is known of it between configurations, so that it is sampled along motions.
 #[derive(Clone)]

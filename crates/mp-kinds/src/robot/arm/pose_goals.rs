@@ -159,7 +159,7 @@ impl super::ArmScene {
         Ok(found.into_iter().map(reached).collect())
     }
 
-    /// See [`Scene::reaching_from`](crate::Scene::reaching_from).
+    /// See `Scene::reaching_from` of mp-plan.
     pub fn reaching_from(
         &self,
         body: usize,
