@@ -80,9 +80,7 @@ pub struct RefMesh {
     corners: Vec<Point3<f64>>,
     /// The triangles of each solid, and the box around them.
     solids: Vec<(Range<u32>, Aabb)>,
-    /// The ball around their boxes, found at the first use.
-    around_solids: OnceLock<(Point3<f64>, f64)>,
-    /// A vertex of each connected component, in the order of their first coordinate, found at the first use.
+    /// A vertex of each connected component, found at the first use.
     components: OnceLock<Vec<Point3<f64>>>,
 }
 
@@ -120,7 +118,6 @@ impl RefMesh {
             // Axes separate corners, not balls.
             corners: if mesh.balls().is_empty() { distinct(triangles().flatten()) } else { Vec::new() },
             solids: nested::solids(mesh),
-            around_solids: OnceLock::new(),
             components: OnceLock::new(),
         };
         let mut order = std::mem::take(&mut tree.order);

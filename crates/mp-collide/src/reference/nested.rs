@@ -26,28 +26,8 @@ impl RefMesh {
             return false;
         }
         let pose = pose_ws.inverse() * pose_wo;
-        let vertices = other.components.get_or_init(|| {
-            let mut vertices = other.mesh.component_vertices();
-            vertices.sort_by(|p, q| p.x.total_cmp(&q.x));
-            vertices
-        });
-        // A cloud has many: only those in the ball around all solids can be inside.
-        let (center, radius) = self.around_solids();
-        let center = pose.inverse() * center;
-        let reach = radius + 1e-9 * (radius + center.coords.amax() + pose.translation.vector.amax());
-        let first = vertices.partition_point(|p| p.x < center.x - reach);
-        let near = vertices[first..].iter().take_while(|p| p.x <= center.x + reach);
-        near.filter(|p| (**p - center).norm_squared() <= reach * reach).any(|p| self.has_inside(&(pose * p)))
-    }
-
-    /// The ball around the boxes of all solids.
-    fn around_solids(&self) -> (Point3<f64>, f64) {
-        *self.around_solids.get_or_init(|| {
-            let corners: Vec<_> =
-                self.solids.iter().flat_map(|(_, bounds)| [bounds.min, bounds.max]).collect();
-            let bounds = Aabb::of_points(&corners);
-            (nalgebra::center(&bounds.min, &bounds.max), 0.5 * (bounds.max - bounds.min).norm())
-        })
+        let vertices = other.components.get_or_init(|| other.mesh.component_vertices());
+        vertices.iter().any(|p| self.has_inside(&(pose * p)))
     }
 
     /// Whether a point, in the frame of the mesh, is inside of one of its solids.
