@@ -83,6 +83,9 @@ pub struct Matching {
 
 impl Matching {
     /// The matching of columns with these names, which may end with a unit, to those that are `wanted`.
+    ///
+    /// # Errors
+    /// When a column is missing, unknown, named twice, or has a unit that cannot be converted.
     pub fn new(names: &[String], wanted: &[Column]) -> Result<Self, Fault> {
         // What is written reads back the same, whatever the names are.
         let written = |(name, column): (&String, &Column)| {
@@ -146,6 +149,9 @@ impl Matching {
     }
 
     /// The configuration in a row of the table.
+    ///
+    /// # Errors
+    /// When its quaternion does not have length one.
     pub fn configuration(&self, row: &[f64]) -> Result<Vec<f64>, Fault> {
         let number = |source: &Option<(usize, f64, f64)>| {
             source

@@ -148,6 +148,9 @@ impl<F: Fn(&str) -> Option<B> + Send + Sync, B: AsRef<[u8]>> Files for InMemory<
 }
 
 /// Reads a regular file of at most `limit` bytes.
+///
+/// # Errors
+/// When it cannot be read, or is larger.
 pub fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     Ok(mp_store::read(path, limit)?)
 }
@@ -166,6 +169,9 @@ pub fn stem(path: &Path) -> String {
 }
 
 /// `bytes` as UTF-8, without a byte order mark.
+///
+/// # Errors
+/// When they are not UTF-8.
 pub fn decode<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Error> {
     let body = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = std::str::from_utf8(body).map_err(|e| {

@@ -41,6 +41,9 @@ struct OnlyPath<'a, R> {
 }
 
 /// `text` as JSON: `what` is expected, and `help` says where it is described.
+///
+/// # Errors
+/// When it is not.
 pub fn parse<T: DeserializeOwned>(file: &str, text: &str, what: &str, help: &str) -> Result<T, Error> {
     serde_json::from_str(text).map_err(|e| {
         let at = offset(text, e.line(), e.column());

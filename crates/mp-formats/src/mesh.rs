@@ -145,6 +145,9 @@ pub fn mesh_error(file: &str, e: &MeshError) -> Error {
 }
 
 /// The mesh of `file` as a solid; one that is a solid already is not looked at again.
+///
+/// # Errors
+/// When its surface is not closed, or does not face outward.
 pub fn solid_mesh(file: &str, mesh: TriMesh) -> Result<TriMesh, Error> {
     if !mesh.solids().is_empty() {
         return Ok(mesh);

@@ -273,6 +273,9 @@ fn write<C: AsRef<[f64]> + Serialize>(
 }
 
 /// The six numbers of a line.
+///
+/// # Errors
+/// When they are not six, or one is no finite number.
 pub fn six(text: &Text<'_>, line: Token<'_>, subject: &str, expected: &str) -> Result<[f64; 6], Error> {
     let mut out = [0.0; 6];
     let mut found = 0;

@@ -16,12 +16,18 @@ use std::path::Path;
 pub(crate) const GUIDE: &str = "shapes.md";
 
 /// Reads the points of a file in the format that its name says; text, if it says none.
+///
+/// # Errors
+/// When it cannot be read, or is not in that format.
 pub fn read_points(files: &dyn Files, path: &Path) -> Result<Vec<Point3<f64>>, Error> {
     let bytes = files.read(path, MAX_MESH_BYTES)?;
     parse_points(path, &bytes, files.interrupt())
 }
 
 /// Reads `bytes`, the content of a file of points.
+///
+/// # Errors
+/// When they are not in the format that its name says.
 pub fn parse_points(path: &Path, bytes: &[u8], mut interrupt: Interrupt) -> Result<Vec<Point3<f64>>, Error> {
     let file = path.display().to_string();
     let points = match Content::of(path).next() {

@@ -58,6 +58,9 @@ impl<'a> Text<'a> {
     }
 
     /// A finite number.
+    ///
+    /// # Errors
+    /// When the token is none.
     pub fn number(&self, token: Token<'_>, expected: &str) -> Result<f64, Error> {
         match token.text.parse::<f64>() {
             Ok(v) if v.is_finite() => Ok(v),

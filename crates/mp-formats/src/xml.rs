@@ -10,6 +10,9 @@ const MAX_ATTRIBUTES: usize = 64;
 const MAX_NAMESPACES: usize = 64;
 
 /// The text of an XML file, if it is one that is parsed in time and memory in proportion to its size.
+///
+/// # Errors
+/// When it is not, or its encoding is not known.
 pub fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Error> {
     // Programs in C write the zero byte that ends their texts.
     let end = bytes.iter().rposition(|b| *b != 0).map_or(0, |last| last + 1);

@@ -1,5 +1,7 @@
 //! What is written reads back the same.
 
+mod numbers;
+
 use mp_formats::formats::gempa::gempa_mesh_text;
 use mp_formats::formats::off::{OffColor, OffDocument, OffFace, off_text};
 use mp_formats::formats::stl::stl_text;
@@ -7,20 +9,9 @@ use mp_formats::mesh::parse_mesh;
 use mp_formats::path::PathFile;
 use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
+use numbers::{number, six};
 use proptest::collection::vec;
 use proptest::prelude::*;
-
-fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL | proptest::num::f64::ZERO,
-        -100.0..100.0,
-        (-50..50_i32).prop_map(f64::from),
-    ]
-}
-
-fn six() -> impl Strategy<Value = [f64; 6]> {
-    proptest::array::uniform6(number())
-}
 
 fn unit() -> impl Strategy<Value = f64> {
     prop_oneof![0.0..=1.0, Just(0.0), Just(1.0)]

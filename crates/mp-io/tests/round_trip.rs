@@ -1,20 +1,12 @@
 //! What is written reads back the same.
 
+#[path = "../../mp-formats/tests/numbers/mod.rs"]
+mod numbers;
+
 use mp_io::{Environment, Obstacle, SpaceKind};
+use numbers::six;
 use proptest::collection::vec;
 use proptest::prelude::*;
-
-fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL | proptest::num::f64::ZERO,
-        -100.0..100.0,
-        (-50..50_i32).prop_map(f64::from),
-    ]
-}
-
-fn six() -> impl Strategy<Value = [f64; 6]> {
-    proptest::array::uniform6(number())
-}
 
 fn environment() -> impl Strategy<Value = Environment> {
     let name = "[a-z_]{1,8}( [a-z]{1,4})?\\.(off|txt|stl)";

@@ -3,13 +3,11 @@
 use crate::motion::Counting;
 use crate::{Error, RelaxField, Robot};
 use mp_cspace::erased::AnyGradient;
-use mp_cspace::{Configuration, Path, PushingField};
-use mp_cspace::{Space, Validity};
+use mp_cspace::{Configuration, Path, PushingField, Space, Validity};
 use mp_io::GridMap;
-use mp_snake::blurred;
 use mp_snake::plane::{BLUR, MOST_CELLS, STRIDE, occupancy, paper_energy, risk_energy};
 use mp_snake::risk::{MotionNoise, RangeNoise, RiskMaps};
-use mp_snake::{Field, Grid, Repulsion, With};
+use mp_snake::{Field, Grid, Repulsion, With, blurred};
 use nalgebra::Vector2;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
@@ -60,10 +58,10 @@ fn on_plane(image: &Grid, q: &Configuration, gradient: &mut [f64]) -> f64 {
     energy
 }
 
-/// Refuses a field that does not suit the robot, or whose file cannot be read.
+/// Checks that a field suits the robot.
 ///
 /// # Errors
-/// Just then.
+/// When it does not, or its file cannot be read.
 pub fn check(kind: &dyn Robot, field: &RelaxField) -> Result<(), Error> {
     let names: Vec<_> = kind.columns().into_iter().map(|column| column.name).collect();
     let place = matches!(kind.limits()[..], [Some(_), Some(_), ..]);
@@ -83,6 +81,9 @@ pub fn check(kind: &dyn Robot, field: &RelaxField) -> Result<(), Error> {
 }
 
 /// The field `name` with a range (m). That of risk is the landscape of `path`.
+///
+/// # Errors
+/// When the range is not above zero, or the file of the field cannot be read.
 pub fn make<'k>(
     kind: &'k dyn Robot,
     name: &RelaxField,
@@ -111,6 +112,9 @@ pub struct TreeField {
 
 impl TreeField {
     /// The field that `settings` name, for a robot whose obstacles repel within `range` (m). `None` where that is the clearance.
+    ///
+    /// # Errors
+    /// When the field does not suit the robot, or its file cannot be read.
     pub fn new(kind: &dyn Robot, name: &RelaxField, range: f64) -> Result<Option<Self>, Error> {
         check(kind, name)?;
         let image = image(kind, name, range, None)?;
@@ -209,8 +213,8 @@ fn not_drawn(kind: &dyn Robot) -> Error {
     Error::new(format!("the field of {} is not drawn", kind.name()))
 }
 
-/// The image of the field `name` of the range `range` (m) with about so many `cells` along the longer side. Coordinates of `row`, which has as many numbers as
-/// the robot has columns, stay but for the place.
+/// The image of the field `name` with a range (m), about so many `cells` along the longer side. Only the place changes from pixel to pixel;
+/// the other numbers are those of `row`, which has one for each column of the robot.
 ///
 /// # Errors
 /// When the field does not suit the robot, or its file cannot be read.

@@ -1,6 +1,6 @@
 //! Kinds of robots: what a scene is made of before anybody plans in it.
 //!
-//! | kind | its file |
+//! | kind | what moves |
 //! |---|---|
 //! | [`RigidScene`] | rigid bodies among meshes, in space or in the plane |
 //! | [`ArmScene`], [`FloatingScene`] | trees of links, also on bases that float or roll |
@@ -12,7 +12,9 @@
 //! Each is a [`Robot`], which is asked in three parts: planners ask its [`Motion`], messages and files its [`Description`], pictures its
 //! [`Appearance`]. `mp-plan` plans for robots without knowing their kinds, and exports everything here that its users need.
 //!
-//! The checks of motions that planning spends its time in are compiled here, optimised. What stands above can be compiled in seconds.
+//! What is done with their paths is here too: [`shorten`], [`relax`], [`field`], [`proof`], and [`prove`] for certificates. So the checks of
+//! motions, in which planning spends its time, are compiled here, optimised, and what stands above is compiled in seconds: [`build`] makes
+//! robots of problems behind pointers.
 
 pub mod build;
 mod error;

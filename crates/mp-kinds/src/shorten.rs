@@ -1,12 +1,11 @@
 //! Shortens paths.
 
-use crate::Error;
-use crate::Robot;
 use crate::motion::{By, Counting, motions};
 use crate::possible::Possible;
+use crate::{Error, Robot};
 use mp_cspace::erased::{AnyCheck, AnySpace};
 use mp_cspace::shorten::{Effort, reduce, shortcut, simplify};
-use mp_cspace::{Configuration, Factored, Interrupt, MotionCheck, MotionValidity, Path, Rng};
+use mp_cspace::{Configuration, Interrupt, MotionCheck, MotionValidity, Path, Rng};
 use std::sync::atomic::AtomicU64;
 
 /// The stream of random numbers for shortening. Planning uses another one.
@@ -21,8 +20,8 @@ const FAR_SHORTER: f64 = 0.8;
 
 /// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](crate::Motion::shortcut_clearance), or leads through a
 /// passage where the given path does not keep it: there they keep a tenth of it, or are edges of the given path; so does all of it where the
-/// way is far shorter then. The same seed gives the
-/// same path, unless `interrupt` ends it early: then the path is what it is after the last change.
+/// way is far shorter then. The same seed gives the same path, unless `interrupt` ends it early: then the path is what it is after the last
+/// change.
 ///
 /// # Errors
 /// When the tolerance of the robot is not valid.
@@ -58,7 +57,7 @@ pub fn shorten(
         return Ok(short);
     }
     let factors = kind.any_space();
-    let short = shorten_by(&factors, &mut check, path, &mut rng);
+    let short = simplify(&factors, &mut check, path, Effort::default(), &mut rng);
     if !has_wide {
         return Ok(short);
     }
@@ -77,7 +76,13 @@ pub fn shorten(
         match passage[0] || passage.len() == 1 {
             true => states.extend_from_slice(&edges[1..]),
             false => {
-                let part = shorten_by(&factors, &mut narrow, &Path::straight(edges.to_vec()), &mut rng);
+                let part = simplify(
+                    &factors,
+                    &mut narrow,
+                    &Path::straight(edges.to_vec()),
+                    Effort::default(),
+                    &mut rng,
+                );
                 states.extend(part.states.into_iter().skip(1));
             }
         }
@@ -87,7 +92,11 @@ pub fn shorten(
     let other = reduce(&factors, &mut narrow, &short);
     let other = shortcut(&factors, &mut narrow, &other, Effort::default(), &mut rng);
     let is_far_shorter = other.length(&space) < FAR_SHORTER * short.length(&space);
-    Ok(if is_far_shorter { shorten_by(&factors, &mut narrow, &other, &mut rng) } else { short })
+    Ok(if is_far_shorter {
+        simplify(&factors, &mut narrow, &other, Effort::default(), &mut rng)
+    } else {
+        short
+    })
 }
 
 /// `check`, which finds no motion free that the robot cannot make.
@@ -112,14 +121,4 @@ impl MotionValidity<Configuration> for Both<'_> {
             hit => hit,
         }
     }
-}
-
-/// [`shorten`] with a check behind a pointer: compiled for each space instead of each robot.
-fn shorten_by<C: Factored>(
-    space: &C,
-    check: &mut AnyCheck<'_, C::State>,
-    path: &Path<C::State>,
-    rng: &mut Rng,
-) -> Path<C::State> {
-    simplify(space, check, path, Effort::default(), rng)
 }

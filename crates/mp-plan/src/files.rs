@@ -3,7 +3,7 @@
 pub(crate) mod find;
 pub mod info;
 pub(crate) mod inputs;
-pub(crate) mod kinds;
 pub(crate) mod load;
+pub(crate) mod problems;
 pub(crate) mod robot_pairs;
 pub(crate) mod without_problem;

@@ -85,6 +85,9 @@ impl Scene {
     }
 
     /// All instances in one mesh.
+    ///
+    /// # Errors
+    /// When they have no triangles, or too many.
     pub fn to_mesh(&self, file: &str) -> Result<TriMesh, Error> {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         let mut meshes: HashMap<*const Geometry, TriMesh> = HashMap::new();
