@@ -1,6 +1,6 @@
 //! Running the cases of experiments, and writing their results.
 
-use super::log::{CaseKey, Log, RunRecord};
+use super::log::{self, Appender, CaseKey, Done, Log, RunRecord};
 use super::provenance;
 use super::ranks;
 use super::table::Table;
@@ -13,8 +13,10 @@ use mp_cspace::Cancel;
 use mp_plan::{Error, write_file};
 use mp_store::Lock;
 use rayon::prelude::*;
+use serde_json::Value;
+use std::ops::Range;
 use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The number of groups of cases for each thread of a rank that makes all threads end at about the same time.
@@ -92,12 +94,12 @@ impl Lab {
             None => Log::open(&file, cap, self.options.fresh),
             Some(link) if self.is_master => {
                 let log = Log::open(&file, cap, self.options.fresh)?;
-                ranks::shared(&*link, &log.all().into_iter().collect::<Vec<_>>())?;
+                ranks::share(&*link, &log.values()?)?;
                 Ok(log)
             }
             Some(link) => {
                 let mut log = Log::in_memory(cap);
-                log.learn(ranks::learned(&*link)?);
+                log.learn_values(ranks::learn(&*link)?)?;
                 Ok(log)
             }
         }
@@ -114,20 +116,24 @@ impl Lab {
 
     /// Does all jobs; returns their results in the same order. `None` when a job was interrupted or not
     /// started: `job` returns `None` when it is interrupted.
-    pub(crate) fn all<J: Sync, R: Send>(
+    pub(crate) fn all<J: Sync, R: Send + Sync>(
         &self,
         what: &str,
         jobs: &[J],
         job: impl Fn(&J) -> Result<Option<R>> + Sync,
     ) -> Result<Option<Vec<R>>> {
         let bar = bar(what, jobs.len(), 0);
-        let done = self.parallel(jobs, |one| {
-            let done = job(one)?;
+        let results: Vec<OnceLock<R>> = jobs.iter().map(|_| OnceLock::new()).collect();
+        let done = self.parallel(jobs.len(), &|i| {
+            if let Some(result) = job(&jobs[i])? {
+                let _ = results[i].set(result);
+            }
             bar.inc(1);
-            Ok(done)
+            Ok(())
         });
         bar.finish_and_clear();
-        Ok(done?.into_iter().collect())
+        done?;
+        Ok(results.into_iter().map(OnceLock::into_inner).collect())
     }
 
     /// Runs the cases that are not in the log. False when it was interrupted; finished runs are kept.
@@ -152,32 +158,60 @@ impl Lab {
         set_up: impl Fn(&K) -> Result<P> + Sync,
         run: impl Fn(&P, &K) -> Result<Option<R>> + Sync,
     ) -> Result<bool> {
-        let all =
-            cases.chunk_by(&together).enumerate().filter(|(nth, _)| self.options.shard.has(*nth as u64));
-        let mine: Vec<&[K]> = all.map(|(_, group)| group).collect();
-        let open = |group: &&[K]| group.iter().filter(|case| log.get(case).is_none()).cloned().collect();
-        let groups: Vec<Vec<K>> = mine.iter().map(open).filter(|group: &Vec<K>| !group.is_empty()).collect();
-        let count: usize = mine.iter().map(|group| group.len()).sum();
-        let known = count - groups.iter().map(Vec::len).sum::<usize>();
+        let mut ends = 0;
+        let groups = cases.chunk_by(&together).map(|group| {
+            ends += group.len();
+            ends - group.len()..ends
+        });
+        let groups: Vec<_> = groups.collect();
+        let missing: Vec<bool> = cases.iter().map(|case| log.get(case).is_none()).collect();
+        let group = |group: &[usize], done: &Done<'_>| -> Result<()> {
+            let setup = set_up(&cases[group[0]])?;
+            for &i in group {
+                if self.interrupted() {
+                    break;
+                }
+                let Some(run) = run(&setup, &cases[i])? else { break };
+                done(i, log::value(&run)?)?;
+            }
+            Ok(())
+        };
+        let case = |i: usize| log::value(&cases[i]);
+        let runs = self.run_groups(&log.appender(), what, &groups, &missing, &case, &group)?;
+        for (i, run) in runs {
+            log.learn([(cases[i].clone(), log::from_value(run)?)]);
+        }
+        if self.interrupted() {
+            note("interrupted: the same command goes on from here");
+        }
+        // A shard is complete without being all.
+        Ok(!self.interrupted() && self.is_whole())
+    }
+
+    /// Runs those cases of the groups that are missing, and appends them to the log. `group` runs some cases of a
+    /// group in order.
+    ///
+    /// Cases are numbers here, and runs are JSON: so it is compiled once for all experiments.
+    fn run_groups(
+        &self,
+        log: &Appender<'_>,
+        what: &str,
+        groups: &[Range<usize>],
+        missing: &[bool],
+        case: &(dyn Fn(usize) -> Result<Value> + Sync),
+        group: &(dyn Fn(&[usize], &Done<'_>) -> Result<()> + Sync),
+    ) -> Result<Vec<(usize, Value)>> {
+        let mine =
+            || (0..).zip(groups).filter(|(nth, _)| self.options.shard.has(*nth)).map(|(_, group)| group);
+        let count: usize = mine().map(ExactSizeIterator::len).sum();
+        let open = mine().map(|group| group.clone().filter(|i| missing[*i]).collect());
+        let mut open: Vec<Vec<usize>> = open.filter(|group: &Vec<usize>| !group.is_empty()).collect();
+        let known = count - open.iter().map(Vec::len).sum::<usize>();
         if known > 0 {
             note(&format!("{what}: {known} of {count} runs are known already; --fresh measures anew"));
         }
         let bar = bar(what, count, known);
-        // The runs of a group, each given to `done` as well.
-        let group = |cases: &Vec<K>, done: &dyn Fn(&K, &R) -> Result<()>| -> Result<Vec<(K, R)>> {
-            let setup = set_up(&cases[0])?;
-            let mut runs = Vec::new();
-            for case in cases {
-                if self.interrupted() {
-                    break;
-                }
-                let Some(run) = run(&setup, case)? else { break };
-                done(case, &run)?;
-                runs.push((case.clone(), run));
-            }
-            Ok(runs)
-        };
-        let done = match ranks::link() {
+        let runs = match ranks::link() {
             Some(link) => {
                 let options = mp_ranks::Options {
                     threads: self.pool.current_num_threads(),
@@ -186,49 +220,44 @@ impl Lab {
                 // Few groups are cut, each into no more pieces than there are threads, as each piece has a
                 // setup of its own.
                 let workers = link.ranks() * options.threads;
-                let pieces = (GROUPS * workers).div_ceil(groups.len().max(1)).min(workers);
-                let cut = |group: &Vec<K>| -> Vec<Vec<K>> {
-                    group.chunks(group.len().div_ceil(pieces)).map(<[K]>::to_vec).collect()
+                let pieces = (GROUPS * workers).div_ceil(open.len().max(1)).min(workers);
+                let cut = |group: &Vec<usize>| -> Vec<Vec<usize>> {
+                    group.chunks(group.len().div_ceil(pieces)).map(<[usize]>::to_vec).collect()
                 };
-                let groups: Vec<Vec<K>> = groups.iter().flat_map(cut).collect();
+                open = open.iter().flat_map(cut).collect();
                 let mut told = Instant::now();
-                let took = |runs: usize| {
-                    bar.inc(runs as u64);
+                let took = |runs: &[(usize, Value)]| {
+                    runs.iter().try_for_each(|(i, run)| log.append(case(*i)?, run.clone()))?;
+                    bar.inc(runs.len() as u64);
                     // Ranks have no terminal.
                     if bar.is_hidden() && told.elapsed() >= TELL {
                         told = Instant::now();
                         note(&format!("{what}: {} of {count} runs", bar.position()));
                     }
+                    Ok(())
                 };
-                ranks::measured(&*link, &options, log, &groups, |cases| group(cases, &|_, _| Ok(())), took)
+                ranks::measured(&*link, &options, &open, group, took)
             }
             None => {
-                let shared = &*log;
-                let done = |case: &K, run: &R| {
+                let runs = Mutex::new(Vec::new());
+                let done = |i: usize, run: Value| {
                     bar.inc(1);
-                    shared.write(case, run)
+                    log.append(case(i)?, run.clone())?;
+                    runs.lock().unwrap_or_else(PoisonError::into_inner).push((i, run));
+                    Ok(())
                 };
-                self.parallel(&groups, |cases| group(cases, &done).map(Some))
-                    .map(|done| done.into_iter().flatten().flatten().collect())
+                self.parallel(open.len(), &|nth| group(&open[nth], &done))
+                    .map(|()| runs.into_inner().unwrap_or_else(PoisonError::into_inner))
             }
         };
         bar.finish_and_clear();
-        log.learn(done?);
-        if self.interrupted() {
-            note("interrupted: the same command goes on from here");
-        }
-        // A shard is complete without being all.
-        Ok(!self.interrupted() && self.is_whole())
+        runs
     }
 
-    /// Does jobs in parallel; `None` for those that were interrupted or not started.
-    fn parallel<J: Sync, R: Send>(
-        &self,
-        jobs: &[J],
-        job: impl Fn(&J) -> Result<Option<R>> + Sync,
-    ) -> Result<Vec<Option<R>>> {
-        let one = |one: &J| if self.interrupted() { Ok(None) } else { job(one) };
-        self.pool.install(|| jobs.par_iter().with_max_len(1).map(one).collect())
+    /// Does jobs in parallel, by their numbers; none is started after an interruption.
+    fn parallel(&self, jobs: usize, job: &(dyn Fn(usize) -> Result<()> + Sync)) -> Result<()> {
+        let one = |i: usize| if self.interrupted() { Ok(()) } else { job(i) };
+        self.pool.install(|| (0..jobs).into_par_iter().with_max_len(1).try_for_each(one))
     }
 
     /// Writes a file in the folder for results.

@@ -15,12 +15,13 @@ use std::path::Path;
 /// The largest log that is read, bytes (1 GiB).
 const MAX_LOG_BYTES: u64 = 1 << 30;
 
+/// Cases and runs are values of JSON in it: so it is read and written by the same code in all experiments.
 #[derive(Serialize, Deserialize)]
-struct Line<K, R> {
+struct Line {
     /// The limit of a run: seconds, iterations or queries.
     cap: f64,
-    case: K,
-    run: R,
+    case: Value,
+    run: Value,
     /// The commit of the program that ran it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     commit: Option<String>,
@@ -67,33 +68,72 @@ impl<K: Clone + Eq + Hash + Ord + Serialize + DeserializeOwned + Send + Sync> Ca
 pub(crate) trait RunRecord: Clone + Serialize + DeserializeOwned + Send + Sync {}
 impl<R: Clone + Serialize + DeserializeOwned + Send + Sync> RunRecord for R {}
 
+/// What is told of each finished run: the number of its case, and its result.
+pub(crate) type Done<'a> = dyn Fn(usize, Value) -> Result<()> + Sync + 'a;
+
+/// As JSON.
+pub(crate) fn value(of: &impl Serialize) -> Result<Value> {
+    serde_json::to_value(of).into_error()
+}
+
+/// From JSON.
+pub(crate) fn from_value<T: DeserializeOwned>(value: Value) -> Result<T> {
+    serde_json::from_value(value).into_error()
+}
+
+/// Appends finished runs to the file of a log.
+#[derive(Debug)]
+pub(crate) struct Appender<'a> {
+    cap: f64,
+    journal: Option<&'a Journal>,
+}
+
+impl Appender<'_> {
+    /// Appends a finished run.
+    pub(crate) fn append(&self, case: Value, run: Value) -> Result<()> {
+        let line = Line { cap: self.cap, case, run, commit: commit().map(str::to_owned) };
+        let text = serde_json::to_string(&line).into_error()?;
+        self.journal.map_or(Ok(()), |journal| Ok(journal.append(&text)?))
+    }
+}
+
+/// The lines of the log at `path`, of whatever cap, and all that is whole of it as text. An incomplete last line is
+/// left out.
+fn lines(path: &Path) -> Result<(Vec<Line>, String)> {
+    let text = String::from_utf8_lossy(&mp_store::read(path, MAX_LOG_BYTES)?).into_owned();
+    let (mut lines, mut kept) = (Vec::new(), String::new());
+    let count = text.lines().count();
+    for (i, line) in text.lines().enumerate() {
+        match serde_json::from_str(line) {
+            Ok(known) => {
+                kept.push_str(line);
+                kept.push('\n');
+                lines.push(known);
+            }
+            Err(_) if i + 1 == count => {}
+            Err(e) => return Err(bad_line(path, i, &e)),
+        }
+    }
+    Ok((lines, kept))
+}
+
+fn bad_line(path: &Path, nth: usize, why: &impl std::fmt::Display) -> Error {
+    Error::new(format!("{}, line {}: {why}", path.display(), nth + 1)).help("delete it to measure anew")
+}
+
 impl<K: CaseKey, R: RunRecord> Log<K, R> {
     /// Opens the log at `path`, or creates it; `fresh` empties it. Only runs of the same cap are used.
     /// An incomplete last line is dropped.
     pub(crate) fn open(path: &Path, cap: f64, fresh: bool) -> Result<Self> {
         mp_store::make_folder(mp_store::folder_of(path))?;
-        let text = match path.exists() && !fresh {
-            true => String::from_utf8_lossy(&mp_store::read(path, MAX_LOG_BYTES)?).into_owned(),
-            false => String::new(),
-        };
-        let (mut runs, mut earlier, mut kept) = (HashMap::new(), HashMap::new(), String::new());
-        let lines: Vec<&str> = text.lines().collect();
-        for (i, line) in lines.iter().enumerate() {
-            match serde_json::from_str::<Line<K, R>>(line) {
-                Ok(known) => {
-                    kept.push_str(line);
-                    kept.push('\n');
-                    if known.cap == cap {
-                        earlier
-                            .insert(known.case.clone(), known.commit.unwrap_or_else(|| "unknown".to_owned()));
-                        runs.insert(known.case, known.run);
-                    }
-                }
-                Err(_) if i + 1 == lines.len() => {}
-                Err(e) => {
-                    let message = format!("{}, line {}: {e}", path.display(), i + 1);
-                    return Err(Error::new(message).help("delete it to measure anew"));
-                }
+        let (lines, kept) = if path.exists() && !fresh { lines(path)? } else { Default::default() };
+        let (mut runs, mut earlier) = (HashMap::new(), HashMap::new());
+        for (i, line) in lines.into_iter().enumerate() {
+            let known = from_value(line.case).and_then(|case: K| Ok((case, from_value(line.run)?)));
+            let (case, run) = known.map_err(|e| bad_line(path, i, &e))?;
+            if line.cap == cap {
+                earlier.insert(case.clone(), line.commit.unwrap_or_else(|| "unknown".to_owned()));
+                runs.insert(case, run);
             }
         }
         Ok(Self { cap, runs, earlier, journal: Some(Journal::create(path, &kept)?) })
@@ -109,12 +149,22 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
         self.runs.get(case)
     }
 
-    /// Appends a finished run to the file; [`learn`](Self::learn) adds it to the runs in memory.
-    pub(crate) fn write(&self, case: &K, run: &R) -> Result<()> {
-        let commit = commit().map(str::to_owned);
-        let line = Line { cap: self.cap, case: case.clone(), run: run.clone(), commit };
-        let text = serde_json::to_string(&line).into_error()?;
-        self.journal.as_ref().map_or(Ok(()), |journal| Ok(journal.append(&text)?))
+    /// What appends finished runs to the file; [`learn`](Self::learn) adds them to the runs in memory.
+    pub(crate) fn appender(&self) -> Appender<'_> {
+        Appender { cap: self.cap, journal: self.journal.as_ref() }
+    }
+
+    /// All runs as JSON, sorted.
+    pub(crate) fn values(&self) -> Result<Vec<(Value, Value)>> {
+        self.all().into_iter().map(|(case, run)| Ok((value(case)?, value(run)?))).collect()
+    }
+
+    /// Adds finished runs in JSON to those in memory.
+    pub(crate) fn learn_values(&mut self, runs: Vec<(Value, Value)>) -> Result<()> {
+        for (case, run) in runs {
+            self.runs.insert(from_value(case)?, from_value(run)?);
+        }
+        Ok(())
     }
 
     /// Adds finished runs to those in memory.
@@ -168,8 +218,8 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
         let mut sorted = cases.to_vec();
         sorted.sort();
         for (case, run) in self.each(&sorted) {
-            let mut row = members(serde_json::to_value(case).into_error()?);
-            row.extend(members(serde_json::to_value(run).into_error()?));
+            let mut row = members(value(case)?);
+            row.extend(members(value(run)?));
             if table.head.is_empty() {
                 table.head = row.iter().map(|(name, _)| name.clone()).collect();
             }
@@ -252,13 +302,15 @@ mod tests {
         let path = folder.path().join("a/runs.jsonl");
         let open = |cap, fresh| Log::<(String, usize), (bool, f64)>::open(&path, cap, fresh);
         let log = open(6.0, false).unwrap();
-        log.write(&case(2), &run).unwrap();
-        log.write(&case(4), &run).unwrap();
+        let write =
+            |log: &Log<_, _>, n| log.appender().append(value(&case(n)).unwrap(), value(&run).unwrap());
+        write(&log, 2).unwrap();
+        write(&log, 4).unwrap();
         std::fs::write(&path, std::fs::read_to_string(&path).unwrap() + "{\"cap\":6").unwrap();
         let mut log = open(6.0, false).unwrap();
         assert_eq!(log.get(&case(4)), Some(&run));
         assert_eq!(log.get(&case(8)), None);
-        log.write(&case(8), &run).unwrap();
+        write(&log, 8).unwrap();
         log.learn([(case(8), run)]);
         assert_eq!(log.all().len(), 3);
         assert_eq!(open(6.0, false).unwrap().all().len(), 3);

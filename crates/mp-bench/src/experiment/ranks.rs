@@ -1,13 +1,17 @@
 //! Experiments on several ranks: each comes to the same calls, the master keeps the log, and all learn what
 //! was measured.
 
-use super::log::{CaseKey, Log, RunRecord};
+use super::log::Done;
 use crate::clock;
 use crate::error::{IntoError, Result};
 use mp_cspace::Cancel;
 use mp_ranks::{ItemContext, Items, Link, Options, Shares, broadcast, run};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
 use std::cell::RefCell;
 use std::rc::Rc;
+use std::sync::{Mutex, PoisonError};
 
 /// What a thread that measures has to do with other ranks.
 struct RankContext {
@@ -40,28 +44,32 @@ pub(crate) fn with<T>(link: Rc<dyn Link>, cancel: Cancel, job: impl FnOnce() -> 
 }
 
 /// Tells all ranks what is known; the master calls it.
-pub(crate) fn shared<K: CaseKey, R: RunRecord>(link: &dyn Link, runs: &[(&K, &R)]) -> Result<()> {
-    broadcast(link, serde_json::to_vec(runs).into_error()?).map(drop).into_error()
+pub(crate) fn share<T: Serialize>(link: &dyn Link, known: &T) -> Result<()> {
+    broadcast(link, serde_json::to_vec(known).into_error()?).map(drop).into_error()
 }
 
-/// What the master [tells](shared); the others call it.
-pub(crate) fn learned<K: CaseKey, R: RunRecord>(link: &dyn Link) -> Result<Vec<(K, R)>> {
+/// What the master [tells](share); the others call it.
+pub(crate) fn learn<T: DeserializeOwned>(link: &dyn Link) -> Result<T> {
     serde_json::from_slice(&broadcast(link, Vec::new()).into_error()?).into_error()
 }
 
-/// Runs groups of cases, each on some rank, and appends them to the log of the master. `took` learns how many
-/// runs a group had, on the master. Returns all runs, on all ranks; none when it was cancelled.
-pub(crate) fn measured<K: CaseKey, R: RunRecord>(
+/// Runs groups of cases, each on some rank. `took` learns the runs of each group, on the master. Returns all
+/// runs with the numbers of their cases, on all ranks; none when it was cancelled.
+pub(crate) fn measured(
     link: &dyn Link,
     options: &Options,
-    log: &Log<K, R>,
-    groups: &[Vec<K>],
-    group: impl Fn(&Vec<K>) -> Result<Vec<(K, R)>> + Sync,
-    mut took: impl FnMut(usize),
-) -> Result<Vec<(K, R)>> {
+    groups: &[Vec<usize>],
+    group: &(dyn Fn(&[usize], &Done<'_>) -> Result<()> + Sync),
+    mut took: impl FnMut(&[(usize, Value)]) -> Result<()>,
+) -> Result<Vec<(usize, Value)>> {
     let work = |item: u64, context: &ItemContext| {
         let began = clock::nanoseconds();
-        let runs = group(&groups[item as usize]).map_err(|e| e.to_string())?;
+        let runs = Mutex::new(Vec::new());
+        let done = |i: usize, run: Value| {
+            runs.lock().unwrap_or_else(PoisonError::into_inner).push((i, run));
+            Ok(())
+        };
+        group(&groups[item as usize], &done).map_err(|e| e.to_string())?;
         match context.cancel.is_raised() {
             true => Err("interrupted".to_owned()),
             false => serde_json::to_vec(&(clock::seconds_since(began), runs)).map_err(|e| e.to_string()),
@@ -69,14 +77,14 @@ pub(crate) fn measured<K: CaseKey, R: RunRecord>(
     };
     if !link.is_master() {
         run(link, options, None, &work).into_error()?;
-        return if options.cancel.is_raised() { Ok(Vec::new()) } else { learned(link) };
+        return if options.cancel.is_raised() { Ok(Vec::new()) } else { learn(link) };
     }
-    let mut all: Vec<(K, R)> = Vec::new();
+    let mut all: Vec<(usize, Value)> = Vec::new();
     let take = |_, rank, result: Vec<u8>| {
-        let (work, runs): (f64, Vec<(K, R)>) = serde_json::from_slice(&result).map_err(|e| e.to_string())?;
+        let (work, runs): (f64, Vec<(usize, Value)>) =
+            serde_json::from_slice(&result).map_err(|e| e.to_string())?;
         CONTEXT.with_borrow_mut(|context| context.as_mut().map(|context| context.shares.add(rank, work)));
-        runs.iter().try_for_each(|(case, run)| log.write(case, run)).map_err(|e| e.to_string())?;
-        took(runs.len());
+        took(&runs).map_err(|e| e.to_string())?;
         all.extend(runs);
         Ok(())
     };
@@ -85,7 +93,7 @@ pub(crate) fn measured<K: CaseKey, R: RunRecord>(
     let mut job = Items::dearest_first(0..groups.len() as u64, runs, take);
     let ran = run(link, options, Some(&mut job), &work).into_error()?;
     if !ran.cancelled {
-        shared(link, &all.iter().map(|(case, run)| (case, run)).collect::<Vec<_>>())?;
+        share(link, &all)?;
     }
     Ok(all)
 }

@@ -17,6 +17,7 @@ mod linear;
 mod metric_tree;
 mod node;
 mod spaces;
+mod states;
 
 pub use crate::layout::Layout;
 pub use embed::Embed;

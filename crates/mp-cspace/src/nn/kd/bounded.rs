@@ -4,7 +4,7 @@
 use super::super::Hit;
 use super::super::collect::Collector;
 use super::KdTree;
-use crate::nn::Embed;
+use crate::nn::states::EmbeddedStates;
 
 /// The most neighbours looked for by bounds; more are found by the metric.
 pub(super) const MOST: usize = 64;
@@ -68,11 +68,9 @@ impl Collector for Bounded<'_> {
 impl<const K: usize> KdTree<K> {
     /// Writes the `k` nearest states in order to `out`. Returns `false` where bounds do not suffice to tell
     /// which they are; then `out` has something else.
-    pub(super) fn k_nearest_by_bounds<C: Embed>(
+    pub(super) fn k_nearest_by_bounds(
         &self,
-        space: &C,
-        points: &[C::State],
-        query: &C::State,
+        states: &dyn EmbeddedStates,
         k: usize,
         out: &mut Vec<Hit>,
     ) -> bool {
@@ -85,13 +83,13 @@ impl<const K: usize> KdTree<K> {
         let pad = self.pads(self.largest)[1];
         let stretch = STRETCH[usize::from(!self.layout.antipodes.is_empty())];
         let mut bounded = Bounded { k, least, stretch, pad, found: out };
-        let reach = f64::from(self.search(space, points, query, &mut bounded));
+        let reach = f64::from(self.search(states, &mut bounded));
         let limit = bounded.limit();
         // All states whose distance is at most the limit have been found, with a bound within the last reach.
         out.retain_mut(|hit| {
             let passes = hit.distance <= reach;
             if passes {
-                hit.distance = space.distance(&points[hit.id as usize], query);
+                hit.distance = states.to_query(hit.id);
             }
             passes && !hit.distance.is_nan()
         });

@@ -3,7 +3,7 @@
 use super::super::NodeId;
 use super::super::leaf::{CAP, Coincident, FILL};
 use super::{Inner, KdTree, Ref, Weight};
-use crate::nn::Embed;
+use crate::nn::states::EmbeddedStates;
 
 /// The states to build a subtree from.
 #[derive(Debug)]
@@ -85,18 +85,19 @@ impl Items {
 
 impl<const K: usize> KdTree<K> {
     /// Moves the states below `r` into `items` and frees its nodes.
-    pub(super) fn gather<C: Embed>(&mut self, space: &C, points: &[C::State], r: Ref, items: &mut Items) {
+    pub(super) fn gather(&mut self, states: &dyn EmbeddedStates, r: Ref, items: &mut Items) {
         match r.get() {
             Ok(i) => {
                 for child in self.inner[i].children {
-                    self.gather(space, points, child, items);
+                    self.gather(states, child, items);
                 }
                 self.free_inner.push(i);
             }
             Err(leaf) => {
                 let mut coincident = self.leaves.take_coincident(leaf);
                 for &id in self.leaves.ids(leaf) {
-                    items.push(&self.layout.embed(space, &points[id as usize]), id, coincident.take());
+                    let x = self.layout.embed(|out| states.embed(id, out));
+                    items.push(&x, id, coincident.take());
                 }
                 self.leaves.free(leaf);
             }
@@ -104,23 +105,23 @@ impl<const K: usize> KdTree<K> {
     }
 
     /// A subtree of `items`; moves their coincident states into it.
-    pub(super) fn build<S: PartialEq>(&mut self, points: &[S], items: &mut Items) -> Ref {
+    pub(super) fn build(&mut self, states: &dyn EmbeddedStates, items: &mut Items) -> Ref {
         let mut order: Vec<u32> = (0..items.ids.len() as u32).collect();
-        self.build_part(points, items, &mut order)
+        self.build_part(states, items, &mut order)
     }
 
-    fn build_part<S: PartialEq>(&mut self, points: &[S], items: &mut Items, order: &mut [u32]) -> Ref {
+    fn build_part(&mut self, states: &dyn EmbeddedStates, items: &mut Items, order: &mut [u32]) -> Ref {
         // Only lane 0 of a leaf may stand for more than one state.
         let shared = order.iter().filter(|&&i| items.coincident[i as usize].is_some()).count();
         if order.len() > FILL || shared > 1 {
             if let Some((d, split, first)) = items.split(order) {
                 let (left, right) = order.split_at_mut(first);
-                let children = [self.build_part(points, items, left), self.build_part(points, items, right)];
+                let children = [self.build_part(states, items, left), self.build_part(states, items, right)];
                 let leaves = children.iter().map(|&c| self.leaves_below(c)).sum();
                 return self.new_inner(Inner { split, children, dim: d as u32, weight: Weight::new(leaves) });
             }
             if order.len() > CAP || shared > 1 {
-                return self.build_coincident_leaf(points, items, order);
+                return self.build_coincident_leaf(states, items, order);
             }
         }
         order.sort_by_key(|&i| items.coincident[i as usize].is_none());
@@ -133,7 +134,12 @@ impl<const K: usize> KdTree<K> {
     }
 
     /// A leaf for any number of states with the same coordinates.
-    fn build_coincident_leaf<S: PartialEq>(&mut self, points: &[S], items: &mut Items, order: &[u32]) -> Ref {
+    fn build_coincident_leaf(
+        &mut self,
+        states: &dyn EmbeddedStates,
+        items: &mut Items,
+        order: &[u32],
+    ) -> Ref {
         let mut ids = Vec::new();
         let mut same = true;
         for &i in order {
@@ -144,8 +150,7 @@ impl<const K: usize> KdTree<K> {
             }
         }
         let first = ids.iter().copied().min().unwrap_or(0);
-        let state = &points[first as usize];
-        same &= order.iter().all(|&i| points[items.ids[i as usize] as usize] == *state);
+        same &= order.iter().all(|&i| states.same(items.ids[i as usize], first));
         let leaf = self.leaves.alloc(items.dim);
         if let Some(&i) = order.first() {
             self.leaves.push(leaf, items.dim, first, |d| items.at(i, d) as f32);

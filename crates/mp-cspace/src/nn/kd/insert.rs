@@ -5,16 +5,16 @@ use super::super::leaf::CAP;
 use super::build::Items;
 use super::layout::TreeLayout;
 use super::{Inner, KdTree, Ref, Weight};
-use crate::nn::Embed;
+use crate::nn::states::EmbeddedStates;
 
 impl<const K: usize> KdTree<K> {
-    pub(super) fn insert<C: Embed>(&mut self, space: &C, points: &[C::State], id: NodeId) {
-        let state = &points[id as usize];
+    /// Adds the state `id`, which is the query.
+    pub(super) fn insert(&mut self, states: &dyn EmbeddedStates, id: NodeId) {
         if self.root.is_none() {
-            self.layout = TreeLayout::new(space, state);
+            self.layout = TreeLayout::new(states);
         }
         let dim = self.dim();
-        let x = self.layout.embed(space, state);
+        let x = self.layout.embed(|out| states.embed_query(out));
         let [low, high] = &mut self.bounds;
         low.iter_mut().zip(&x).for_each(|(low, x)| *low = low.min(*x));
         high.iter_mut().zip(&x).for_each(|(high, x)| *high = high.max(*x));
@@ -25,15 +25,15 @@ impl<const K: usize> KdTree<K> {
             None => *self.root.insert(Ref::leaf(self.leaves.alloc(dim))),
         };
         let leaf = self.descend(root, &x);
-        let joined = self.leaves.head(leaf).has_coincident && self.join(space, points, leaf, id, &x);
+        let joined = self.leaves.head(leaf).has_coincident && self.join(states, leaf, id, &x);
         if joined {
             return;
         }
         if self.leaves.ids(leaf).len() < CAP {
             self.leaves.push(leaf, dim, id, |d| x[d] as f32);
         } else {
-            self.split(space, points, leaf, id, &x);
-            self.rebalance(space, points);
+            self.split(states, leaf, id, &x);
+            self.rebalance(states);
         }
     }
 
@@ -56,32 +56,24 @@ impl<const K: usize> KdTree<K> {
 
     /// Adds a state whose coordinates are those of a leaf's lane 0 to the states coincident with it;
     /// `false` when the coordinates differ.
-    fn join<C: Embed>(
-        &mut self,
-        space: &C,
-        points: &[C::State],
-        leaf: usize,
-        id: NodeId,
-        x: &[f64; K],
-    ) -> bool {
+    fn join(&mut self, states: &dyn EmbeddedStates, leaf: usize, id: NodeId, x: &[f64; K]) -> bool {
         let Some(&first) = self.leaves.ids(leaf).first() else { return false };
-        let first = &points[first as usize];
-        if self.layout.embed(space, first) != *x {
+        if self.layout.embed(|out| states.embed(first, out)) != *x {
             return false;
         }
-        self.leaves.join(leaf, id, *first == points[id as usize]);
+        self.leaves.join(leaf, id, states.same(first, id));
         true
     }
 
     /// Splits a full leaf and adds a state to one of the halves.
-    fn split<C: Embed>(&mut self, space: &C, points: &[C::State], leaf: usize, id: NodeId, x: &[f64; K]) {
+    fn split(&mut self, states: &dyn EmbeddedStates, leaf: usize, id: NodeId, x: &[f64; K]) {
         let r = match self.halve(leaf, id, x) {
             Some(r) => r,
             None => {
                 let mut items = Items::new(self.dim());
-                self.gather(space, points, Ref::leaf(leaf), &mut items);
+                self.gather(states, Ref::leaf(leaf), &mut items);
                 items.push(x, id, None);
-                self.build(points, &mut items)
+                self.build(states, &mut items)
             }
         };
         self.replace_at(self.path.len(), r);
@@ -162,7 +154,7 @@ impl<const K: usize> KdTree<K> {
 
     /// Rebuilds the highest node of the path that is out of balance and has grown enough since it was
     /// built to pay for it.
-    fn rebalance<C: Embed>(&mut self, space: &C, points: &[C::State]) {
+    fn rebalance(&mut self, states: &dyn EmbeddedStates) {
         let unbalanced = |&(i, _): &(usize, usize)| {
             let node = &self.inner[i];
             let [a, b] = node.children.map(|child| self.leaves_below(child));
@@ -172,8 +164,8 @@ impl<const K: usize> KdTree<K> {
         let (i, _) = self.path[depth];
         let before = i64::from(self.inner[i].weight.leaves);
         let mut items = Items::new(self.dim());
-        self.gather(space, points, Ref::inner(i), &mut items);
-        let r = self.build(points, &mut items);
+        self.gather(states, Ref::inner(i), &mut items);
+        let r = self.build(states, &mut items);
         self.replace_at(depth, r);
         let after = i64::from(self.leaves_below(r));
         self.count(depth, after - before);

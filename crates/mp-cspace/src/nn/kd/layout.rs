@@ -2,7 +2,7 @@
 
 use super::ANY;
 use crate::layout::{Layout, Symmetry};
-use crate::nn::Embed;
+use crate::nn::states::EmbeddedStates;
 
 /// The coordinates of a space as a tree uses them, fixed by the first state.
 #[derive(Clone, Debug)]
@@ -42,9 +42,9 @@ impl<const K: usize> Default for TreeLayout<K> {
 }
 
 impl<const K: usize> TreeLayout<K> {
-    /// The layout of `space`, relative to the state `first`.
-    pub(super) fn new<C: Embed>(space: &C, first: &C::State) -> Self {
-        let Layout { groups, symmetries, tight } = space.layout();
+    /// The layout of `states`, relative to the query.
+    pub(super) fn new(states: &dyn EmbeddedStates) -> Self {
+        let Layout { groups, symmetries, tight } = states.layout();
         let full = groups.last().copied().unwrap_or(0);
         let dim = if K == ANY { full.min(K) } else { K };
         let mut layout = Self { dim, full, tight: tight && full == dim, ..Self::default() };
@@ -64,7 +64,7 @@ impl<const K: usize> TreeLayout<K> {
         layout.group[start..].fill(layout.ends.len() as u32 - 1);
         let last = layout.ends.len() - 1;
         layout.ends[last] = dim;
-        let mut origin = layout.embed(space, first);
+        let mut origin = layout.embed(|out| states.embed_query(out));
         for s in symmetries {
             match s {
                 Symmetry::Period { coordinate, period } if coordinate < dim => {
@@ -90,19 +90,19 @@ impl<const K: usize> TreeLayout<K> {
         squares.fold(f64::INFINITY, f64::min)
     }
 
-    /// The coordinates of `state` that the tree uses, relative to the origin; all finite.
+    /// The coordinates that the tree uses of those that `embed` writes, relative to the origin; all finite.
     #[inline]
-    pub(super) fn embed<C: Embed>(&self, space: &C, state: &C::State) -> [f64; K] {
+    pub(super) fn embed(&self, embed: impl FnOnce(&mut [f64])) -> [f64; K] {
         let mut x = [0.0; K];
         if self.full <= K {
-            space.embed(state, &mut x);
+            embed(&mut x);
         } else if self.full <= ANY {
             let mut all = [0.0; ANY];
-            space.embed(state, &mut all);
+            embed(&mut all);
             x.copy_from_slice(&all[..K]);
         } else {
             let mut all = vec![0.0; self.full];
-            space.embed(state, &mut all);
+            embed(&mut all);
             x.copy_from_slice(&all[..K]);
         }
         for (x, o) in x.iter_mut().zip(&self.origin) {

@@ -10,6 +10,7 @@ mod search;
 use super::collect::{KNearest, OneNearest, WithinRadius};
 use super::leaf::Leaves;
 use super::node::{Ref, Weight};
+use super::states::Of;
 use super::{Embed, Hit, NearestNeighbors, NodeId};
 use layout::TreeLayout;
 
@@ -90,7 +91,7 @@ impl<const K: usize> KdTree<K> {
 
 impl<C: Embed, const K: usize> NearestNeighbors<C> for KdTree<K> {
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId) {
-        self.insert(space, points, id);
+        self.insert(&Of { space, points, query: &points[id as usize] }, id);
     }
 
     fn clear(&mut self) {
@@ -99,21 +100,22 @@ impl<C: Embed, const K: usize> NearestNeighbors<C> for KdTree<K> {
 
     fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit> {
         OneNearest::of(|nearest| {
-            self.search(space, points, q, nearest);
+            self.search(&Of { space, points, query: q }, nearest);
         })
     }
 
     fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
-        if !self.k_nearest_by_bounds(space, points, q, k, out) {
+        let states = Of { space, points, query: q };
+        if !self.k_nearest_by_bounds(&states, k, out) {
             KNearest::of(k, out, |nearest| {
-                self.search(space, points, q, nearest);
+                self.search(&states, nearest);
             });
         }
     }
 
     fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
         WithinRadius::of(radius, out, |within| {
-            self.search(space, points, q, within);
+            self.search(&Of { space, points, query: q }, within);
         });
     }
 }

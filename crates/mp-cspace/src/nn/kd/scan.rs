@@ -6,9 +6,8 @@ use super::super::leaf::{CAP, Coincident, WIDE};
 use super::super::{Hit, NodeId};
 use super::bounded::MOST;
 use super::search::Search;
-use crate::nn::Embed;
 
-impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
+impl<L: Collector, const K: usize> Search<'_, L, K> {
     /// Offers the states of a leaf that pass the filter.
     #[inline(never)]
     pub(super) fn scan(&mut self, leaf: usize) {
@@ -149,7 +148,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         }
         let distance = match L::BY_BOUND {
             true => f64::from(bound),
-            false => self.space.distance(&self.points[first as usize], self.query),
+            false => self.states.to_query(first),
         };
         // Equal distances in the order of ids: after the first one refused all would be.
         let most = if L::BY_BOUND && coincident.same { MOST } else { usize::MAX };
@@ -160,7 +159,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
 
     #[inline]
     fn offer(&mut self, id: NodeId) {
-        let distance = self.space.distance(&self.points[id as usize], self.query);
+        let distance = self.states.to_query(id);
         if !self.is_repeated(id) && self.collector.offer(Hit { id, distance }) {
             self.limit();
         }
@@ -172,7 +171,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         if L::MAY_REPEAT || self.lane_reach <= self.single {
             return false;
         }
-        let x = self.tree.layout.embed(self.space, &self.points[id as usize]);
+        let x = self.tree.layout.embed(|out| self.states.embed(id, out));
         // The nearer of an image and its antipode finds it; of two equally near the one not negated.
         (0..).zip(&self.tree.layout.antipodes).any(|(a, &(start, end))| {
             let dot: f64 = (start..end).map(|d| x[d] * self.q[d]).sum();

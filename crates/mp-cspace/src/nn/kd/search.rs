@@ -2,14 +2,12 @@
 
 use super::super::collect::Collector;
 use super::{Inner, KdTree, Ref};
-use crate::nn::Embed;
+use crate::nn::states::EmbeddedStates;
 
 /// One search under way. Distances to cells and lanes are squared.
-pub(super) struct Search<'a, C: Embed, L, const K: usize> {
+pub(super) struct Search<'a, L, const K: usize> {
     pub(super) tree: &'a KdTree<K>,
-    pub(super) space: &'a C,
-    pub(super) points: &'a [C::State],
-    pub(super) query: &'a C::State,
+    pub(super) states: &'a dyn EmbeddedStates,
     pub(super) collector: &'a mut L,
     /// Coordinates of the image of the query being searched for.
     pub(super) q: [f64; K],
@@ -34,22 +32,14 @@ pub(super) struct Search<'a, C: Embed, L, const K: usize> {
 impl<const K: usize> KdTree<K> {
     /// Offers `collector` every state that it may want. Returns the squared bound beyond which none is
     /// wanted.
-    pub(super) fn search<C: Embed>(
-        &self,
-        space: &C,
-        points: &[C::State],
-        query: &C::State,
-        collector: &mut impl Collector,
-    ) -> f32 {
+    pub(super) fn search(&self, states: &dyn EmbeddedStates, collector: &mut impl Collector) -> f32 {
         let Some(root) = self.root else { return f32::INFINITY };
-        let q = self.layout.embed(space, query);
+        let q = self.layout.embed(|out| states.embed_query(out));
         let pads = self.pads(q.iter().fold(self.largest, |largest, x| largest.max(x.abs())));
         let [low, high] = &self.bounds;
         let mut search = Search {
             tree: self,
-            space,
-            points,
-            query,
+            states,
             collector,
             q,
             q32: [0.0; K],
@@ -75,7 +65,7 @@ impl<const K: usize> KdTree<K> {
     }
 }
 
-impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
+impl<L: Collector, const K: usize> Search<'_, L, K> {
     /// Reads the limit of the collector.
     #[inline]
     pub(super) fn limit(&mut self) {

@@ -4,7 +4,7 @@ use super::super::NodeId;
 use super::super::leaf::{CAP, Coincident, FILL};
 use super::super::node::{Ref, Weight};
 use super::{Inner, MetricTree, ROWS, capped};
-use crate::Space;
+use crate::nn::states::States;
 
 /// The states to build a subtree from.
 #[derive(Debug, Default)]
@@ -26,18 +26,11 @@ impl Items {
 impl MetricTree {
     /// The distance of state `id` from the ancestor that has row `row` at depth `depth` of the
     /// path.
-    pub(super) fn ancestor_distance<C: Space>(
-        &self,
-        space: &C,
-        points: &[C::State],
-        depth: usize,
-        row: usize,
-        id: NodeId,
-    ) -> f32 {
+    pub(super) fn ancestor_distance(&self, states: &dyn States, depth: usize, row: usize, id: NodeId) -> f32 {
         match (depth.saturating_sub(ROWS)..depth).find(|d| d % ROWS == row) {
             Some(d) => {
                 let vantage = self.inner[self.path[d].node].vantage;
-                capped(space.distance(&points[vantage as usize], &points[id as usize])) as f32
+                capped(states.distance(vantage, id)) as f32
             }
             None => 0.0,
         }
@@ -45,10 +38,9 @@ impl MetricTree {
 
     /// Moves the states below `r`, at depth `depth`, into `items` and frees its nodes. The
     /// distances are those to the ancestors of a node at depth `top`.
-    pub(super) fn gather<C: Space>(
+    pub(super) fn gather(
         &mut self,
-        space: &C,
-        points: &[C::State],
+        states: &dyn States,
         top: usize,
         depth: usize,
         r: Ref,
@@ -58,11 +50,9 @@ impl MetricTree {
             Ok(i) => {
                 let node = &mut self.inner[i];
                 let (vantage, coincident, children) = (node.vantage, node.coincident.take(), node.children);
-                items.push(vantage, coincident, |row| {
-                    self.ancestor_distance(space, points, top, row, vantage)
-                });
+                items.push(vantage, coincident, |row| self.ancestor_distance(states, top, row, vantage));
                 for child in children {
-                    self.gather(space, points, top, depth + 1, child, items);
+                    self.gather(states, top, depth + 1, child, items);
                 }
                 self.free_inner.push(i);
             }
@@ -75,7 +65,7 @@ impl MetricTree {
                     items.push(id, coincident.take(), |row| {
                         match (top.saturating_sub(ROWS)..top).find(|d| d % ROWS == row) {
                             Some(d) if d >= kept => lanes[row * CAP + lane],
-                            _ => self.ancestor_distance(space, points, top, row, id),
+                            _ => self.ancestor_distance(states, top, row, id),
                         }
                     });
                 }
@@ -85,33 +75,20 @@ impl MetricTree {
     }
 
     /// A subtree of `items` at depth `depth`.
-    pub(super) fn build<C: Space>(
-        &mut self,
-        space: &C,
-        points: &[C::State],
-        depth: usize,
-        items: &mut Items,
-    ) -> Ref {
+    pub(super) fn build(&mut self, states: &dyn States, depth: usize, items: &mut Items) -> Ref {
         let mut order: Vec<u32> = (0..items.ids.len() as u32).collect();
-        self.build_part(space, points, depth, items, &mut order)
+        self.build_part(states, depth, items, &mut order)
     }
 
-    fn build_part<C: Space>(
-        &mut self,
-        space: &C,
-        points: &[C::State],
-        depth: usize,
-        items: &mut Items,
-        order: &mut [u32],
-    ) -> Ref {
+    fn build_part(&mut self, states: &dyn States, depth: usize, items: &mut Items, order: &mut [u32]) -> Ref {
         // Only lane 0 of a leaf may stand for more than one state.
         let shared = order.iter().filter(|&&i| items.coincident[i as usize].is_some()).count();
         if order.len() <= FILL && shared <= 1 {
             order.sort_by_key(|&i| items.coincident[i as usize].is_none());
             return self.build_leaf(items, order);
         }
-        let state = |i: u32| &points[items.ids[i as usize] as usize];
-        if order.iter().all(|&i| state(i) == state(order[0])) {
+        let id = |i: u32| items.ids[i as usize];
+        if order.iter().all(|&i| states.same(id(i), id(order[0]))) {
             return self.build_coincident_leaf(items, order);
         }
         // A state far from the parent's vantage point, hence near the rim, cuts the rest into
@@ -123,13 +100,8 @@ impl MetricTree {
         }
         let (vantage, rest) = (order[0] as usize, &mut order[1..]);
         let id = items.ids[vantage];
-        let mut distances: Vec<(f64, u32)> = rest
-            .iter()
-            .map(|&i| {
-                let other = &points[items.ids[i as usize] as usize];
-                (capped(space.distance(&points[id as usize], other)), i)
-            })
-            .collect();
+        let mut distances: Vec<(f64, u32)> =
+            rest.iter().map(|&i| (capped(states.distance(id, items.ids[i as usize])), i)).collect();
         let half = distances.len() / 2;
         distances.select_nth_unstable_by(half, |a, b| a.0.total_cmp(&b.0));
         for (slot, &(distance, i)) in rest.iter_mut().zip(&distances) {
@@ -144,7 +116,7 @@ impl MetricTree {
         drop(distances);
         let coincident = items.coincident[vantage].take();
         let (first, second) = rest.split_at_mut(half);
-        let children = [first, second].map(|part| self.build_part(space, points, depth + 1, items, part));
+        let children = [first, second].map(|part| self.build_part(states, depth + 1, items, part));
         let leaves = children.iter().map(|&c| self.leaves_below(c)).sum();
         let node = Inner {
             vantage: id,

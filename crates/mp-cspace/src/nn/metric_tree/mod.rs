@@ -6,6 +6,7 @@ mod search;
 use super::collect::{KNearest, OneNearest, WithinRadius};
 use super::leaf::{CAP, Coincident, Leaves};
 use super::node::{Ref, Weight};
+use super::states::{Of, States};
 use super::{Hit, NearestNeighbors, NodeId};
 use crate::{Space, TrueMetric};
 use build::Items;
@@ -73,9 +74,8 @@ impl MetricTree {
 
     /// The leaf of state `id`; sets `path` to the steps down to it. `Err` when the state equals a vantage
     /// point: it then joins that.
-    fn descend<C: Space>(&mut self, space: &C, points: &[C::State], id: NodeId) -> Result<usize, ()> {
+    fn descend(&mut self, states: &dyn States, id: NodeId) -> Result<usize, ()> {
         self.path.clear();
-        let state = &points[id as usize];
         let Some(mut r) = self.root else {
             let leaf = self.leaves.alloc(ROWS);
             self.root = Some(Ref::leaf(leaf));
@@ -87,9 +87,8 @@ impl MetricTree {
                 Ok(i) => i,
             };
             let node = &mut self.inner[i];
-            let vantage = &points[node.vantage as usize];
-            let distance = capped(space.distance(vantage, state));
-            if distance == 0.0 && vantage == state {
+            let distance = capped(states.distance(node.vantage, id));
+            if distance == 0.0 && states.same(node.vantage, id) {
                 let coincident =
                     node.coincident.get_or_insert_with(|| Coincident { ids: Vec::new(), same: true });
                 node.vantage = coincident.join(node.vantage, id);
@@ -103,15 +102,14 @@ impl MetricTree {
         }
     }
 
-    fn insert<C: Space>(&mut self, space: &C, points: &[C::State], id: NodeId) {
-        let state = &points[id as usize];
-        if !space.distance(state, state).is_finite() {
+    fn insert(&mut self, states: &dyn States, id: NodeId) {
+        if !states.distance(id, id).is_finite() {
             self.unmeasurable.push(id);
             return;
         }
-        let Ok(leaf) = self.descend(space, points, id) else { return };
+        let Ok(leaf) = self.descend(states, id) else { return };
         let ids = self.leaves.ids(leaf);
-        if self.leaves.head(leaf).has_coincident && points[ids[0] as usize] == *state {
+        if self.leaves.head(leaf).has_coincident && states.same(ids[0], id) {
             self.leaves.join(leaf, id, true);
             return;
         }
@@ -123,7 +121,7 @@ impl MetricTree {
             self.leaves.push(leaf, ROWS, id, |row| rows[row]);
             return;
         }
-        self.rebuild(space, points, self.path.len(), Ref::leaf(leaf), Some(id));
+        self.rebuild(states, self.path.len(), Ref::leaf(leaf), Some(id));
         // The highest node that is out of balance.
         let unbalanced = |step: &Step| {
             let node = &self.inner[step.node];
@@ -131,7 +129,7 @@ impl MetricTree {
             node.weight.is_unbalanced(a.max(b))
         };
         if let Some(depth) = self.path.iter().position(unbalanced) {
-            self.rebuild(space, points, depth, Ref::inner(self.path[depth].node), None);
+            self.rebuild(states, depth, Ref::inner(self.path[depth].node), None);
         }
     }
 
@@ -140,21 +138,14 @@ impl MetricTree {
     }
 
     /// Rebuilds the subtree `r`, which is at `depth` of the path, with the state `more` added.
-    fn rebuild<C: Space>(
-        &mut self,
-        space: &C,
-        points: &[C::State],
-        depth: usize,
-        r: Ref,
-        more: Option<NodeId>,
-    ) {
+    fn rebuild(&mut self, states: &dyn States, depth: usize, r: Ref, more: Option<NodeId>) {
         let before = self.leaves_below(r);
         let mut items = Items::default();
-        self.gather(space, points, depth, depth, r, &mut items);
+        self.gather(states, depth, depth, r, &mut items);
         if let Some(id) = more {
-            items.push(id, None, |row| self.ancestor_distance(space, points, depth, row, id));
+            items.push(id, None, |row| self.ancestor_distance(states, depth, row, id));
         }
-        let r = self.build(space, points, depth, &mut items);
+        let r = self.build(states, depth, &mut items);
         match depth.checked_sub(1).map(|parent| self.path[parent]) {
             Some(parent) => self.inner[parent.node].children[parent.side] = r,
             None => self.root = Some(r),
@@ -171,7 +162,7 @@ where
     C: Space + TrueMetric,
 {
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId) {
-        self.insert(space, points, id);
+        self.insert(&Of { space, points, query: &points[id as usize] }, id);
     }
 
     fn clear(&mut self) {
@@ -179,14 +170,14 @@ where
     }
 
     fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit> {
-        OneNearest::of(|nearest| self.search(space, points, q, nearest))
+        OneNearest::of(|nearest| self.search(&Of { space, points, query: q }, nearest))
     }
 
     fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
-        KNearest::of(k, out, |nearest| self.search(space, points, q, nearest));
+        KNearest::of(k, out, |nearest| self.search(&Of { space, points, query: q }, nearest));
     }
 
     fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
-        WithinRadius::of(radius, out, |within| self.search(space, points, q, within));
+        WithinRadius::of(radius, out, |within| self.search(&Of { space, points, query: q }, within));
     }
 }

@@ -5,14 +5,12 @@ use super::super::leaf::{CAP, Coincident, WIDE};
 use super::super::node::Ref;
 use super::super::{Hit, NodeId};
 use super::{MetricTree, ROWS, capped};
-use crate::Space;
+use crate::nn::states::States;
 
 /// One search under way.
-struct Search<'a, C: Space, L> {
+struct Search<'a, L> {
     tree: &'a MetricTree,
-    space: &'a C,
-    points: &'a [C::State],
-    query: &'a C::State,
+    states: &'a dyn States,
     collector: &'a mut L,
     /// Distances from the last vantage points above, as in the leaves.
     rows: [f32; ROWS],
@@ -22,24 +20,18 @@ struct Search<'a, C: Space, L> {
 
 impl MetricTree {
     /// Offers `collector` every state that it may want.
-    pub(super) fn search<C: Space>(
-        &self,
-        space: &C,
-        points: &[C::State],
-        query: &C::State,
-        collector: &mut impl Collector,
-    ) {
+    pub(super) fn search(&self, states: &dyn States, collector: &mut impl Collector) {
         for &id in &self.unmeasurable {
-            collector.offer(Hit { id, distance: space.distance(&points[id as usize], query) });
+            collector.offer(Hit { id, distance: states.to_query(id) });
         }
         if let Some(root) = self.root {
             let rows = [0.0; ROWS];
-            Search { tree: self, space, points, query, collector, rows, largest: 0.0 }.visit(root, 0);
+            Search { tree: self, states, collector, rows, largest: 0.0 }.visit(root, 0);
         }
     }
 }
 
-impl<C: Space, L: Collector> Search<'_, C, L> {
+impl<L: Collector> Search<'_, L> {
     fn visit(&mut self, r: Ref, depth: usize) {
         let i = match r.get() {
             Err(leaf) => return self.scan(leaf),
@@ -109,7 +101,7 @@ impl<C: Space, L: Collector> Search<'_, C, L> {
     /// Offers a state and those equal to it; returns its distance.
     #[inline]
     fn offer(&mut self, id: NodeId, coincident: Option<&Coincident>) -> f64 {
-        let distance = self.space.distance(&self.points[id as usize], self.query);
+        let distance = self.states.to_query(id);
         if self.collector.offer(Hit { id, distance })
             && let Some(coincident) = coincident
         {
