@@ -4,6 +4,7 @@
 //! kept in a log, so that an interrupted measurement can be continued; then tables and charts of the log.
 //! `experiment` is the base of them all. Results are Markdown on standard output, and files in a folder.
 
+mod arms;
 mod assets;
 mod certificates;
 mod clock;
@@ -66,6 +67,8 @@ pub struct Options {
     puzzles: puzzles::Options,
     #[command(flatten)]
     robots: robots::Options,
+    #[command(flatten)]
+    arms: arms::Options,
     #[command(flatten)]
     assets: assets::Options,
 }
@@ -154,6 +157,7 @@ fn run_suite(suite: Suite, options: &Options) -> Result<bool, Error> {
         Suite::Scaling => scaling::run(common),
         Suite::Certificates => certificates::run(common),
         Suite::Robots => robots::run(common, &options.robots),
+        Suite::Arms => arms::run(common, &options.arms),
         Suite::Assets => assets::run(&options.assets),
         Suite::All => suite::run_each(&suite::MEASURED, |suite| run_suite(suite, options)),
     };

@@ -32,6 +32,8 @@ pub(crate) enum Suite {
     Certificates,
     /// Descriptions of robots below a folder: which are planned for, and why not the rest.
     Robots,
+    /// Arms on problem sets of MotionBenchMaker: planning, shortening, proof and the whole call.
+    Arms,
     /// No measurement: generate the shipped scenes, or check that they are up to date.
     Assets,
     /// All measurements, one after the other; what fails is said at the end.
@@ -69,6 +71,7 @@ impl Suite {
             Self::Scaling => ["10 min", "1 min"],
             Self::Certificates => ["2 min", "30 s"],
             Self::Robots => ["10 min", "2 min"],
+            Self::Arms => ["2 min", "10 s"],
             Self::Assets => ["10 s", "10 s"],
             Self::All => ["days", "20 min"],
         }
@@ -129,7 +132,7 @@ mod tests {
                 list.lines().any(|l| l.starts_with(&format!("  {name} ")) && l.ends_with(&what)),
                 "{name}"
             );
-            let alone = [Suite::Robots, Suite::Assets, Suite::All].contains(suite);
+            let alone = [Suite::Arms, Suite::Robots, Suite::Assets, Suite::All].contains(suite);
             assert!(MEASURED.contains(suite) != alone && !what.is_empty(), "{name}");
         }
     }

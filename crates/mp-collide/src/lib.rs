@@ -81,6 +81,7 @@ mod broad;
 mod bvh;
 mod cloud;
 mod counters;
+mod cover;
 mod depth;
 mod filled;
 mod kernels;
@@ -95,6 +96,7 @@ pub mod reference;
 pub mod triangle;
 
 pub use counters::Counters;
+pub use cover::{Cover, MOST_BALLS, PlacedCover};
 pub use filled::FillError;
 pub use mesh::CollisionMesh;
 pub use query::Query;

@@ -116,7 +116,7 @@ pub(crate) fn to_world(pose: &Isometry3<f64>, p: &Point3<f64>) -> Point3<f64> {
 
 /// The rotation by `q`, which need not be quite of unit length.
 #[inline(always)]
-fn rotation_matrix(q: &Quaternion<f64>) -> Matrix3<f64> {
+pub(crate) fn rotation_matrix(q: &Quaternion<f64>) -> Matrix3<f64> {
     let s = 2.0 / q.norm_squared();
     let (w, x, y, z) = (q.w, q.i, q.j, q.k);
     Matrix3::new(

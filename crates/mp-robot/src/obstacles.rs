@@ -22,6 +22,12 @@ const MAX_MERGED: usize = 50_000;
 const MAX_TOGETHER: usize = 500_000;
 const FEW: usize = 200;
 
+/// More obstacles than this are one mesh for verifiers, whose tree says soon which of them are near.
+const MANY: usize = 64;
+
+/// A mesh as verifiers see it, and its pose in the world.
+pub(crate) type PlacedReference = (RefMesh, Isometry3<f64>);
+
 /// Whether a mesh is a solid, once that is known.
 type IsSolid = Arc<OnceLock<bool>>;
 
@@ -39,6 +45,8 @@ pub(crate) struct Obstacles {
     solids: OnceLock<Vec<(BodyId, SolidObstacle)>>,
     /// Made for the first verifier; `None` inside when there are no obstacles.
     reference: OnceLock<Option<Arc<RefMesh>>>,
+    /// Each obstacle for verifiers, made for the first one that asks.
+    references: OnceLock<Arc<[PlacedReference]>>,
 }
 
 impl Obstacles {
@@ -101,8 +109,8 @@ impl Obstacles {
         }
         scene.merge_static_until(interrupt)?;
         let bounds = placed.iter().map(|(_, mesh)| mesh.aabb()).fold(Aabb::empty(), |a, b| a.union(&b));
-        let (solids, reference) = (OnceLock::new(), OnceLock::new());
-        Ok(Arc::new(Self { scene, placed, own, bounds, solids, reference }))
+        let (solids, reference, references) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        Ok(Arc::new(Self { scene, placed, own, bounds, solids, reference, references }))
     }
 
     /// An obstacle with this mesh, the mesh in the world, and whether it is a solid. The obstacle with the number `i` comes
@@ -176,6 +184,34 @@ impl Obstacles {
         make_once(&self.reference, interrupt, || {
             let reference = |mesh: TriMesh| RefMesh::new_until(&mesh, interrupt).map(Arc::new);
             self.merged().map(|mesh| reference(mesh).ok_or(Interrupted)).transpose()
+        })
+    }
+
+    /// The obstacles for verifiers, each in its own frame with its pose; one mesh of all where they are many.
+    pub(crate) fn references(&self) -> Arc<[PlacedReference]> {
+        // Nothing ends it.
+        let _: Result<(), Interrupted> = self.make_references(&Interrupt::never());
+        self.references.get().map_or_else(|| Arc::from([]), Arc::clone)
+    }
+
+    /// Makes the [`references`](Self::references), unless `interrupt` says to end.
+    ///
+    /// # Errors
+    /// When it was interrupted.
+    pub(crate) fn make_references(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
+        make_once(&self.references, interrupt, || {
+            let of = |mesh: &TriMesh, pose: Isometry3<f64>| {
+                RefMesh::new_until(mesh, interrupt).map(|mesh| (mesh, pose)).ok_or(Interrupted)
+            };
+            if self.placed.len() > MANY {
+                return self.merged().iter().map(|mesh| of(mesh, Isometry3::identity())).collect();
+            }
+            let own = self.placed.iter().zip(&self.own);
+            own.map(|((id, in_world), (mesh, _))| match self.scene.body(*id) {
+                Some(body) => of(mesh, *body.pose()),
+                None => of(in_world, Isometry3::identity()),
+            })
+            .collect()
         })
     }
 

@@ -8,6 +8,7 @@ mod axis;
 pub mod exact;
 mod nested;
 mod pairs;
+mod parts;
 mod sweep;
 mod swept_triangle;
 mod triangle;
@@ -80,8 +81,12 @@ pub struct RefMesh {
     corners: Vec<Point3<f64>>,
     /// The triangles of each solid, and the box around them.
     solids: Vec<(Range<u32>, Aabb)>,
-    /// A vertex of each connected component, found at the first use.
+    /// A vertex of each connected component, by x, found at the first use.
     components: OnceLock<Vec<Point3<f64>>>,
+    /// A ball around the boxes of all solids, found at the first use.
+    around_solids: OnceLock<(Point3<f64>, f64)>,
+    /// Few balls around all of it, taken from the tree.
+    parts: Vec<(Point3<f64>, f64)>,
 }
 
 impl RefMesh {
@@ -119,6 +124,8 @@ impl RefMesh {
             corners: if mesh.balls().is_empty() { distinct(triangles().flatten()) } else { Vec::new() },
             solids: nested::solids(mesh),
             components: OnceLock::new(),
+            around_solids: OnceLock::new(),
+            parts: Vec::new(),
         };
         let mut order = std::mem::take(&mut tree.order);
         tree.sort(&mut order, go_on)?;
@@ -127,6 +134,7 @@ impl RefMesh {
         if few == 0 {
             tree.order = Vec::new();
         }
+        tree.parts = tree.balls_of_depth(parts::DEPTH);
         Ok(tree)
     }
 
@@ -328,6 +336,10 @@ impl Search<'_> {
             return bound;
         }
         if self.any {
+            let bound = self.parts_apart();
+            if bound >= self.best {
+                return bound;
+            }
             let (a, b) = (&self.a.corners, &self.b.corners);
             let bound = axis::separation(a, b, &self.pose_ab, self.best + self.touching) - self.touching;
             if bound >= self.best {

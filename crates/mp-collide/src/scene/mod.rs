@@ -1,5 +1,6 @@
 //! Scenes of many named bodies: what is in them. Queries are in `queries`, `motion` and `pairs`.
 
+mod boxes;
 mod merged;
 mod motion;
 mod pairs;
@@ -15,6 +16,7 @@ use thiserror::Error;
 use crate::broad::BroadPhase;
 use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::{LIMIT, Relative};
+use boxes::Around;
 use merged::Merged;
 
 /// The name of a body in one [`Scene`]; not reused after the body is removed.
@@ -64,6 +66,8 @@ pub struct Body {
     pose: Isometry3<f64>,
     movable: bool,
     bounds: Aabb,
+    /// What is around it in the world, turned as its mesh is.
+    around: Around,
     handle: usize,
 }
 
@@ -169,11 +173,11 @@ impl Scene {
     ) -> Result<BodyId, SceneError> {
         // A cloud has a tree of its own kind.
         let movable = movable || mesh.cloud.is_some();
-        let bounds = placed(&name, &mesh, &pose)?;
+        let (bounds, around) = placed(&name, &mesh, &pose)?;
         let index = u32::try_from(self.bodies.len()).map_err(|_| SceneError::Full)?;
         let handle = self.broad_phase(movable).insert(index, bounds);
         self.filled += usize::from(mesh.is_filled());
-        self.bodies.push(Some(Body { name, mesh, pose, movable, bounds, handle }));
+        self.bodies.push(Some(Body { name, mesh, pose, movable, bounds, around, handle }));
         self.changed(movable);
         Ok(BodyId(index))
     }
@@ -197,7 +201,7 @@ impl Scene {
         let Some(body) = self.bodies.get_mut(id.index()).and_then(Option::as_mut) else {
             return Err(SceneError::NoSuchBody { index: id.index() });
         };
-        body.bounds = placed(&body.name, &body.mesh, &pose_wb)?;
+        (body.bounds, body.around) = placed(&body.name, &body.mesh, &pose_wb)?;
         body.pose = pose_wb;
         let broad = if body.movable { &mut self.movable } else { &mut self.fixed };
         broad.remove(body.handle);
@@ -301,9 +305,11 @@ pub(crate) fn bounds(mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Option<Aabb
     Some(Aabb::new(obb.center - half, obb.center + half))
 }
 
-fn placed(name: &str, mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Result<Aabb, SceneError> {
+/// The boxes around a body: along the axes, and turned as its mesh is.
+fn placed(name: &str, mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Result<(Aabb, Around), SceneError> {
     if mesh.radius() > LIMIT {
         return Err(SceneError::TooLarge { name: name.into() });
     }
-    bounds(mesh, pose).ok_or_else(|| SceneError::BadPose { name: name.into() })
+    let both = bounds(mesh, pose).zip(Around::new(mesh, pose));
+    both.ok_or_else(|| SceneError::BadPose { name: name.into() })
 }

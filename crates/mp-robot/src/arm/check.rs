@@ -1,7 +1,7 @@
 //! The checks of an arm that planners use: validity, clearance and motions.
 
 use super::Arm;
-use super::robot::{LinkBody, are_nested};
+use super::robot::{LinkBody, Scratch, are_nested};
 use crate::kept::beyond;
 use mp_cspace::{
     Clearance, ClearanceSearch, Coordinates, IntervalClearance, LeastClearance, MotionClearance,
@@ -13,31 +13,44 @@ impl Arm {
     /// Whether `q` is in collision, or no configuration. Leaves the frames at `q` in the scratch memory.
     pub(super) fn collides(&mut self, q: &[f64]) -> bool {
         self.counters.collision_checks += 1;
-        let Self { robot, obstacles, query, scratch, .. } = self;
+        let Self { robot, obstacles, query, scratch, kept, .. } = self;
         if !robot.kinematics.is_configuration(q) {
             return true;
         }
-        let frames = &mut scratch.frames;
-        robot.kinematics.frames_into(q, frames);
-        for body in robot.moving() {
-            let (scene, tree, pose) = (&obstacles.scene, &body.tree, &frames[body.frame]);
-            let touches = match self.kept > 0.0 {
-                true => scene.within(query, tree, pose, self.kept),
-                false => scene.collides(query, tree, pose),
-            };
-            if touches {
-                return true;
+        robot.place(q, scratch);
+        let Scratch { frames, balls, covers, undecided, .. } = scratch;
+        let scene = &obstacles.scene;
+        // What covers decide costs less than any tree: all of that first.
+        let apart = if *kept > 0.0 { *kept * (1.0 + 1e-9) } else { f64::MIN_POSITIVE };
+        undecided.clear();
+        undecided.extend(robot.numbered_moving().filter_map(|(i, body)| {
+            let by_balls = scene.apart(&body.cover, &mut covers[i], apart).is_some();
+            // Outside of all boxes it is in no solid, but solids may be in it.
+            (!by_balls || body.tree.is_filled()).then_some((i, by_balls))
+        }));
+        let touches = undecided.iter().any(|&(i, by_balls)| {
+            let body = &robot.bodies[i];
+            let (tree, pose) = (&body.tree, &frames[body.frame]);
+            match (by_balls, *kept > 0.0) {
+                (true, _) => scene.nested(query, tree, pose).is_some(),
+                (false, true) => scene.within(query, tree, pose, *kept),
+                (false, false) => scene.collides(query, tree, pose),
             }
+        });
+        if touches {
+            return true;
         }
-        scratch.balls.clear();
-        scratch.balls.extend(robot.bodies.iter().map(|body| body.ball_at(frames)));
         robot.pairs.iter().any(|pair| {
-            let [i, j] = pair.bodies;
-            let ([a, b], [ball_a, ball_b]) =
-                ([i, j].map(|k| &robot.bodies[k]), [i, j].map(|k| &scratch.balls[k]));
-            let reach = ball_a.radius + ball_b.radius;
-            (ball_a.center - ball_b.center).norm_squared() <= reach * reach
-                && query.meets(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame])
+            let [a, b] = pair.bodies.map(|k| &robot.bodies[k]);
+            // With solids, only balls around all of them say that none is inside of the other.
+            let by_balls = match a.tree.is_filled() || b.tree.is_filled() {
+                true => {
+                    let [a, b] = pair.bodies.map(|k| &balls[k]);
+                    (a.center - b.center).norm() > a.radius + b.radius
+                }
+                false => robot.apart(pair, covers, f64::MIN_POSITIVE).is_some(),
+            };
+            !by_balls && query.meets(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame])
         })
     }
 }
@@ -98,13 +111,13 @@ struct ProvenPart {
 
 impl ProvenPart {
     /// Adds the distance of one link or pair. It changes by at most `near` over half the interval, proportionally less
-    /// over a smaller part of the interval, and by at most `far` over the whole motion. It is at least `known`; if that is
-    /// not enough, `clearance` computes it. Returns an answer if the remaining links and pairs need no test.
+    /// over a smaller part of the interval, and by at most `far` over the whole motion. `known` gives a bound on it if that
+    /// is enough, else `clearance` computes it. Both are given what is enough. Returns an answer if the remaining links and pairs need no test.
     fn add(
         &mut self,
         near: f64,
         far: f64,
-        known: f64,
+        known: impl FnOnce(f64) -> Option<f64>,
         clearance: impl FnOnce(f64) -> f64,
     ) -> Option<IntervalClearance> {
         let margin = self.margin;
@@ -112,7 +125,7 @@ impl ProvenPart {
         let wanted = self.half.min(self.part);
         let near = near * (wanted / self.half);
         let enough = near.max(margin) + margin;
-        let clearance = if known >= enough { known } else { clearance(enough) };
+        let clearance = known(enough).unwrap_or_else(|| clearance(enough));
         let part = if clearance <= 0.0 {
             return Some(IntervalClearance::Collision { at: 0.0 });
         } else if clearance >= near + margin {
@@ -171,28 +184,32 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         robot.place_over(middle, |i| travels(i) * interval.half, scratch);
         scratch.far.clear();
         robot.bodies.iter().for_each(|body| body.chain.far(travels, &mut scratch.far));
-        let frames = &scratch.frames;
         let mut proven = ProvenPart { margin: interval.margin, half: interval.half, part: f64::INFINITY };
-        for body in robot.moving() {
+        for (i, body) in robot.numbered_moving() {
             let near = body.near(&base, interval.half, scratch);
             let far = scratch.far[body.last()] + base.far(body.chain.from_base);
-            let scene = &obstacles.scene;
-            let clearance = |enough| {
-                beyond(*kept, enough, |limit| {
-                    scene.surface_clearance(query, &body.tree, &frames[body.frame], limit).0
-                })
+            let (scene, pose) = (&obstacles.scene, &scratch.frames[body.frame]);
+            let cover = &mut scratch.covers[i];
+            let known = |enough| {
+                let found = scene.apart(&body.cover, cover, enough + *kept);
+                found.map(|found| (found - *kept).max(enough))
             };
-            if let Some(answer) = proven.add(near, far, f64::NEG_INFINITY, clearance) {
+            let clearance = |enough| {
+                beyond(*kept, enough, |limit| scene.surface_clearance(query, &body.tree, pose, limit).0)
+            };
+            if let Some(answer) = proven.add(near, far, known, clearance) {
                 return answer;
             }
         }
         for pair in &robot.pairs {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
-            let apart = scratch.apart(pair);
             let sum = |of: &[f64]| of[a.first + pair.steps[0]] + of[b.first + pair.steps[1]];
+            let (near, far, frames) = (sum(&scratch.near), sum(&scratch.far), &scratch.frames);
+            let covers = &mut scratch.covers;
+            let known = |enough| robot.apart(pair, covers, enough);
             let clearance =
                 |limit| query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], limit);
-            if let Some(answer) = proven.add(sum(&scratch.near), sum(&scratch.far), apart, clearance) {
+            if let Some(answer) = proven.add(near, far, known, clearance) {
                 return answer;
             }
         }

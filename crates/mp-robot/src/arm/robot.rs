@@ -8,7 +8,7 @@ use super::{ArmError, ArmModel};
 use crate::CheckCounters;
 use crate::obstacles::{MAX_TRIANGLES, Obstacles, make_once, resolved_tolerance};
 use mp_collide::reference::RefMesh;
-use mp_collide::{BodyId, CollisionMesh, Query, Scene};
+use mp_collide::{BodyId, CollisionMesh, Cover, PlacedCover, Query, Scene};
 use mp_cspace::{Coordinates, FloatingJoints, Interrupt, Interrupted, Joints};
 use mp_geom::{Aabb, Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -29,6 +29,7 @@ pub(super) struct LinkBody {
     pub(super) mesh: TriMesh,
     pub(super) tree: CollisionMesh,
     pub(super) ball: Sphere,
+    pub(super) cover: Cover,
     pub(super) chain: Chain,
     /// The index of its first entry in [`Scratch::far`] and [`Scratch::near`].
     pub(super) first: usize,
@@ -106,7 +107,8 @@ impl SharedArm {
             let tree = CollisionMesh::new_until(&mesh, interrupt).ok_or(Interrupted)?;
             let ball = mesh.bounding_sphere();
             let ball = Sphere { radius: ball.radius * (1.0 + 1e-9), ..ball };
-            bodies.push(LinkBody { link: i, frame: place.frame, mesh, tree, ball, chain, first });
+            let (frame, cover) = (place.frame, Cover::new(&mesh));
+            bodies.push(LinkBody { link: i, frame, mesh, tree, ball, cover, chain, first });
             first += entries;
         }
         let (model, reference) = (model.clone(), OnceLock::new());
@@ -149,21 +151,48 @@ impl SharedArm {
     /// The links that can collide with obstacles: those that move. The last ones move most, so they come first.
     #[inline]
     pub(super) fn moving(&self) -> impl Iterator<Item = &LinkBody> {
+        self.numbered_moving().map(|(_, body)| body)
+    }
+
+    /// The same with their indices.
+    #[inline]
+    pub(super) fn numbered_moving(&self) -> impl Iterator<Item = (usize, &LinkBody)> {
         let floats = self.kinematics.floats();
-        self.bodies.iter().rev().filter(move |body| floats || body.frame > 0)
+        self.bodies.iter().enumerate().rev().filter(move |(_, body)| floats || body.frame > 0)
+    }
+
+    /// A lower bound (m) on the distance of the two links of a pair by their covers, if that is at least `enough` (m). Links are
+    /// [placed](Self::place).
+    #[inline]
+    pub(super) fn apart(&self, pair: &LinkPair, covers: &mut [PlacedCover], enough: f64) -> Option<f64> {
+        let [i, j] = pair.bodies;
+        let [a, b] = [i, j].map(|k| &self.bodies[k].cover);
+        match covers.get_disjoint_mut([i, j]) {
+            Ok([at_a, at_b]) => at_a.apart(a, at_b, b, enough),
+            Err(_) => None,
+        }
     }
 
     /// Places all links at the configuration `q`, and bounds how far joints that go as far as `travels` says move them.
     pub(super) fn place_over(&self, q: &[f64], travels: impl Fn(usize) -> f64, scratch: &mut Scratch) {
+        self.place(q, scratch);
         let Scratch { frames, axes, balls, near, .. } = scratch;
-        self.kinematics.frames_into(q, frames);
         axes_into(&self.kinematics, frames, axes);
-        balls.clear();
         near.clear();
-        for body in &self.bodies {
-            let ball = body.ball_at(frames);
-            body.chain.near(&travels, &ball, axes, near);
-            balls.push(ball);
+        for (body, ball) in self.bodies.iter().zip(balls) {
+            body.chain.near(&travels, ball, axes, near);
+        }
+    }
+
+    /// Places all links at the configuration `q`.
+    pub(super) fn place(&self, q: &[f64], scratch: &mut Scratch) {
+        let Scratch { frames, balls, covers, .. } = scratch;
+        self.kinematics.frames_into(q, frames);
+        balls.clear();
+        balls.extend(self.bodies.iter().map(|body| body.ball_at(frames)));
+        covers.resize_with(self.bodies.len(), PlacedCover::default);
+        for ((body, ball), cover) in self.bodies.iter().zip(balls).zip(covers) {
+            cover.place(*ball, &frames[body.frame]);
         }
     }
 
@@ -226,6 +255,10 @@ pub(super) struct Scratch {
     pub(super) frames: Vec<Isometry3<f64>>,
     pub(super) axes: Vec<(Point3<f64>, Vector3<f64>)>,
     pub(super) balls: Vec<Sphere>,
+    /// The covers of the links, for what balls around them leave undecided.
+    pub(super) covers: Vec<PlacedCover>,
+    /// Links that covers do not show free of obstacles, or that may have a solid inside; and whether their surfaces are shown free.
+    pub(super) undecided: Vec<(usize, bool)>,
     pub(super) far: Vec<f64>,
     pub(super) near: Vec<f64>,
     /// The ends of the last motion that has a state where no link is inside of anything: where it touches nothing, that holds for all
@@ -367,7 +400,7 @@ impl Arm {
             let tree = |mesh: &TriMesh| RefMesh::new_until(mesh, interrupt).ok_or(Interrupted);
             ReferenceArm::new(&robot.model, robot.checked_pairs(), tree, || asked.go_on()).map(Arc::new)
         })?;
-        self.obstacles.make_reference(interrupt)
+        self.obstacles.make_references(interrupt)
     }
 
     /// The arm as verifiers see it.

@@ -1,6 +1,7 @@
 //! The independent check of arm motions.
 
 use super::{Arm, ArmModel, JointKind, Link};
+use crate::obstacles::PlacedReference;
 use mp_collide::reference::RefMesh;
 use mp_cspace::{Coordinates, Curve, Interrupt, MotionCheck, MotionValidity, ParameterError, Space};
 use mp_geom::TriMesh;
@@ -292,7 +293,8 @@ struct CheckedPair {
 pub struct ArmVerifier<'c, C> {
     space: &'c C,
     tree: Arc<ReferenceArm>,
-    world: Option<Arc<RefMesh>>,
+    /// The obstacles and their poses.
+    world: Arc<[PlacedReference]>,
     pairs: Vec<CheckedPair>,
     tolerance: f64,
     /// The clearance (m) that the arm keeps from obstacles, to which the tolerance is added.
@@ -382,11 +384,11 @@ where
             return Err(ParameterError { name, expected, value: tolerance });
         }
         let tree = arm.reference();
-        let world = arm.obstacles.reference();
+        let world = arm.obstacles.references();
         let mut pairs = Vec::new();
         let solid = |i: &usize| tree.links[*i].mesh.is_some() && (tree.pose > 0 || tree.is_moved(*i));
         for link in (0..tree.links.len()).filter(solid) {
-            if world.is_some() {
+            if !world.is_empty() {
                 pairs.push(CheckedPair { link, other: None, meet: None });
             }
         }
@@ -439,26 +441,48 @@ where
     /// A lower bound on the distance of a pair that is at least `enough`; else, as an error, the distance of two of their
     /// triangles that is less.
     fn distance(&self, pair: &CheckedPair, poses: &[Matrix4<f64>], enough: f64) -> Result<f64, f64> {
-        self.meshes(pair, poses)
-            .map_or(Ok(f64::INFINITY), |[(a, pose_a), (b, pose_b)]| a.at_least(&pose_a, b, &pose_b, enough))
+        let Some((mesh, pose)) = self.mesh(pair.link, poses) else { return Ok(f64::INFINITY) };
+        if pair.other.is_some() {
+            let other = self.others(pair, poses).next();
+            return other.map_or(Ok(f64::INFINITY), |(other, at)| mesh.at_least(&pose, other, &at, enough));
+        }
+        // Most obstacles are far from the ball around a link.
+        let (center, radius) = mesh.around();
+        let center = pose * center;
+        let mut least = f64::INFINITY;
+        for (obstacle, at) in self.world.iter() {
+            let bound = obstacle.distance_bound(at, &center, radius);
+            let bound = if bound >= enough { bound } else { mesh.at_least(&pose, obstacle, at, enough)? };
+            least = least.min(bound);
+        }
+        Ok(least)
     }
 
-    /// The meshes of a pair, where they are; `None` when one of them has none.
-    fn meshes(&self, pair: &CheckedPair, poses: &[Matrix4<f64>]) -> Option<[(&RefMesh, Isometry3<f64>); 2]> {
-        let link = |i: usize| Some((self.tree.links[i].mesh.as_ref()?, isometry(&poses[i])));
-        let other = match pair.other {
-            None => (&**self.world.as_ref()?, Isometry3::identity()),
-            Some(other) => link(other)?,
-        };
-        Some([link(pair.link)?, other])
+    /// The mesh of a link, and where it is; `None` when it has none.
+    fn mesh(&self, link: usize, poses: &[Matrix4<f64>]) -> Option<(&RefMesh, Isometry3<f64>)> {
+        Some((self.tree.links[link].mesh.as_ref()?, isometry(&poses[link])))
+    }
+
+    /// What the link of a pair must not touch, where it is: another link, or all obstacles.
+    fn others<'a>(
+        &'a self,
+        pair: &CheckedPair,
+        poses: &[Matrix4<f64>],
+    ) -> impl Iterator<Item = (&'a RefMesh, Isometry3<f64>)> {
+        let world = if pair.other.is_none() { &*self.world } else { &[] };
+        let link = pair.other.and_then(|other| self.mesh(other, poses));
+        link.into_iter().chain(world.iter().map(|(mesh, pose)| (mesh, *pose)))
     }
 
     /// Whether of any pair one is inside of the other, which is solid, where their surfaces are apart.
     fn is_nested(&self, q: &C::State) -> bool {
         let mut poses = Vec::new();
         self.tree.poses_into(q.as_slice(), &mut poses);
-        let meshes = self.pairs.iter().filter_map(|pair| self.meshes(pair, &poses));
-        meshes.into_iter().any(|[(a, pose_a), (b, pose_b)]| a.is_nested(&pose_a, b, &pose_b))
+        self.pairs.iter().any(|pair| {
+            self.mesh(pair.link, &poses).is_some_and(|(mesh, pose)| {
+                self.others(pair, &poses).any(|(other, at)| mesh.is_nested(&pose, other, &at))
+            })
+        })
     }
 
     /// How much nearer to each other the two of a pair can come.
