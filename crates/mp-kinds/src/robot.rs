@@ -214,6 +214,11 @@ pub trait Motion: AnyMotion {
         "auto"
     }
 
+    /// How much work shortening puts into a path.
+    fn effort(&self) -> mp_cspace::shorten::Effort {
+        mp_cspace::shorten::Effort::default()
+    }
+
     /// The path made shorter, for robots that straight motions do not suit, as those moved by inputs; `None`, the default, where
     /// shortcuts can be straight. `check` says which motions are free. The same random numbers give the same path.
     fn shortened(

@@ -4,16 +4,13 @@ use crate::motion::{By, Counting, motions};
 use crate::possible::Possible;
 use crate::{Error, Robot};
 use mp_cspace::erased::{AnyCheck, AnySpace};
-use mp_cspace::shorten::{Effort, reduce, shortcut, simplify};
+use mp_cspace::shorten::{reduce, shortcut, simplify};
 use mp_cspace::{Configuration, Interrupt, MotionCheck, MotionValidity, Path, Rng};
 use std::collections::HashMap;
 use std::sync::atomic::AtomicU64;
 
 /// The stream of random numbers for shortening. Planning uses another one.
 const STREAM: u64 = 1;
-
-/// Half of what [`Effort::default`] says: the other half makes paths 1% to 2% shorter, and took longer than planning and proof together.
-const EFFORT: Effort = Effort { attempts: 100, patience: 30, rounds: 3 };
 
 /// In passages too narrow for the clearance of shortcuts they keep this part of it.
 const NARROW: f64 = 0.1;
@@ -56,12 +53,12 @@ pub fn shorten(
             }
         },
     );
-    let mut rng = Rng::stream(seed, STREAM);
-    if let Some(short) = kind.shortened(path, &mut check, EFFORT, &mut rng) {
+    let (effort, mut rng) = (kind.effort(), Rng::stream(seed, STREAM));
+    if let Some(short) = kind.shortened(path, &mut check, effort, &mut rng) {
         return Ok(short);
     }
     let factors = kind.any_space();
-    let short = simplify(&factors, &mut check, path, EFFORT, &mut rng);
+    let short = simplify(&factors, &mut check, path, effort, &mut rng);
     if !has_wide {
         return Ok(short);
     }
@@ -80,7 +77,7 @@ pub fn shorten(
         match passage[0] || passage.len() == 1 {
             true => states.extend_from_slice(&edges[1..]),
             false => {
-                let part = simplify(&factors, &mut narrow, &Path::straight(edges.to_vec()), EFFORT, &mut rng);
+                let part = simplify(&factors, &mut narrow, &Path::straight(edges.to_vec()), effort, &mut rng);
                 states.extend(part.states.into_iter().skip(1));
             }
         }
@@ -88,9 +85,9 @@ pub fn shorten(
     let short = Path::straight(states);
     // There are passages where little is kept: a far shorter way may lead through others.
     let other = reduce(&factors, &mut narrow, &short);
-    let other = shortcut(&factors, &mut narrow, &other, EFFORT, &mut rng);
+    let other = shortcut(&factors, &mut narrow, &other, effort, &mut rng);
     let is_far_shorter = other.length(&space) < FAR_SHORTER * short.length(&space);
-    Ok(if is_far_shorter { simplify(&factors, &mut narrow, &other, EFFORT, &mut rng) } else { short })
+    Ok(if is_far_shorter { simplify(&factors, &mut narrow, &other, effort, &mut rng) } else { short })
 }
 
 /// `check`, which finds no motion free that the robot cannot make, and is asked for each motion once.
