@@ -1,7 +1,7 @@
-//! Covers: few balls around a mesh, below the ball around all of it, that decide most questions about distance before trees are looked at.
+//! Covers: a few balls that together contain the surface of a mesh. They decide most questions about distance, before trees of triangles are
+//! looked at.
 //!
-//! A cover contains the surface of its mesh, so what keeps a distance from its balls keeps it from the mesh. It is no exact answer: what
-//! balls leave undecided is for [`Query`](crate::Query).
+//! What keeps a distance from all balls keeps it from the mesh. What balls leave undecided is for [`Query`](crate::Query).
 
 use crate::pose::rotation_matrix;
 use mp_geom::{Sphere, TriMesh, minimal_sphere};
@@ -29,7 +29,8 @@ const MOST_CORNERS: usize = 300_000;
 /// Balls are enlarged, and distances diminished, by this part of the coordinates, far more than their rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Few balls that cover the surface of a mesh together, below the ball around all of it: groups of them, each with a ball around it.
+/// Balls that together contain the surface of a mesh: a hierarchy of two levels, at most [`MOST_BALLS`] groups of at most [`MOST_BALLS`] balls,
+/// with a ball around each group.
 #[derive(Clone, Debug)]
 pub struct Cover {
     groups: Vec<Group>,

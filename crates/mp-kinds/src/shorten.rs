@@ -115,8 +115,8 @@ impl MotionValidity<Configuration> for Both<'_> {
     }
 }
 
-/// A check that remembers its answers: a third of the motions asked about while shortening were asked about before. A motion takes
-/// hundreds of times as long to check as to find again.
+/// A check that remembers its answers. A third of the motions that shortening asks about were asked about before, and a robot of one's own
+/// may take long to answer.
 struct Remembered<'a> {
     check: AnyCheck<'a, Configuration>,
     /// By the bits of both ends.

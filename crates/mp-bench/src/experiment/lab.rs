@@ -1,6 +1,6 @@
 //! Running the cases of experiments, and writing their results.
 
-use super::log::{self, Appender, CaseKey, Done, Log, RunRecord};
+use super::log::{self, Appender, CaseKey, Log, OnFinished, RunRecord};
 use super::provenance;
 use super::ranks;
 use super::table::Table;
@@ -165,7 +165,7 @@ impl Lab {
         });
         let groups: Vec<_> = groups.collect();
         let missing: Vec<bool> = cases.iter().map(|case| log.get(case).is_none()).collect();
-        let group = |group: &[usize], done: &Done<'_>| -> Result<()> {
+        let group = |group: &[usize], done: &OnFinished<'_>| -> Result<()> {
             let setup = set_up(&cases[group[0]])?;
             for &i in group {
                 if self.interrupted() {
@@ -199,7 +199,7 @@ impl Lab {
         groups: &[Range<usize>],
         missing: &[bool],
         case: &(dyn Fn(usize) -> Result<Value> + Sync),
-        group: &(dyn Fn(&[usize], &Done<'_>) -> Result<()> + Sync),
+        group: &(dyn Fn(&[usize], &OnFinished<'_>) -> Result<()> + Sync),
     ) -> Result<Vec<(usize, Value)>> {
         let mine =
             || (0..).zip(groups).filter(|(nth, _)| self.options.shard.has(*nth)).map(|(_, group)| group);

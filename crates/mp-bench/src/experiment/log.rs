@@ -68,8 +68,8 @@ impl<K: Clone + Eq + Hash + Ord + Serialize + DeserializeOwned + Send + Sync> Ca
 pub(crate) trait RunRecord: Clone + Serialize + DeserializeOwned + Send + Sync {}
 impl<R: Clone + Serialize + DeserializeOwned + Send + Sync> RunRecord for R {}
 
-/// What is told of each finished run: the number of its case, and its result.
-pub(crate) type Done<'a> = dyn Fn(usize, Value) -> Result<()> + Sync + 'a;
+/// Called for each finished run, with the number of its case and its result.
+pub(crate) type OnFinished<'a> = dyn Fn(usize, Value) -> Result<()> + Sync + 'a;
 
 /// As JSON.
 pub(crate) fn value(of: &impl Serialize) -> Result<Value> {

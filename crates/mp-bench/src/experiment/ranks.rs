@@ -1,7 +1,7 @@
 //! Experiments on several ranks: each comes to the same calls, the master keeps the log, and all learn what
 //! was measured.
 
-use super::log::Done;
+use super::log::OnFinished;
 use crate::clock;
 use crate::error::{IntoError, Result};
 use mp_cspace::Cancel;
@@ -59,7 +59,7 @@ pub(crate) fn measured(
     link: &dyn Link,
     options: &Options,
     groups: &[Vec<usize>],
-    group: &(dyn Fn(&[usize], &Done<'_>) -> Result<()> + Sync),
+    group: &(dyn Fn(&[usize], &OnFinished<'_>) -> Result<()> + Sync),
     mut took: impl FnMut(&[(usize, Value)]) -> Result<()>,
 ) -> Result<Vec<(usize, Value)>> {
     let work = |item: u64, context: &ItemContext| {

@@ -5,24 +5,21 @@ use crate::bvh::root_box::RootBox;
 use crate::cover::{Cover, PlacedCover};
 use crate::mesh::CollisionMesh;
 use crate::pose::Relative;
-use mp_geom::Sphere;
+use mp_geom::{Aabb, Sphere};
 use nalgebra::{Isometry3, Point3};
+use std::cell::Cell;
 
-/// What is around a body, in the world, a little enlarged so that rounding never cuts anything off: the box around its mesh, and a cylinder
-/// about the last axis of the box, which is as high as the box.
-#[derive(Clone, Debug)]
-pub(super) struct Around {
-    bounds: RootBox,
-    /// Of the cylinder.
+/// The cylinder of least volume around a mesh about an axis of its box; it is as high as the box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cylinder {
+    axis: usize,
     radius: f64,
 }
 
-impl Around {
-    /// Around a mesh at a pose; `None` when they are beyond the limits.
-    pub(super) fn new(mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Option<Self> {
-        let relative = Relative::between(&Isometry3::identity(), 0.0, pose, mesh.radius())?;
+impl Cylinder {
+    /// Around a mesh. O(n) for n triangles.
+    pub(super) fn around(mesh: &CollisionMesh) -> Self {
         let own = &mesh.tree().bounding;
-        let more = relative.slack + mesh.rounding();
         let radius = |axis: usize| {
             let from_axis = |p: &Point3<f64>| {
                 let d = p - own.center;
@@ -31,14 +28,34 @@ impl Around {
             mesh.tree().triangles.iter().flatten().map(from_axis).fold(0.0, f64::max).sqrt()
         };
         let radii = [0, 1, 2].map(radius);
-        // The cylinder of least volume.
         let volume = |axis: &usize| radii[*axis] * radii[*axis] * own.half[*axis];
         let axis = (0..3).min_by(|a, b| volume(a).total_cmp(&volume(b))).unwrap_or(0);
-        let mut bounds = relative.obb(own);
+        Self { axis, radius: radii[axis] }
+    }
+}
+
+/// What is around a body, in the world, a little enlarged so that rounding never cuts anything off: the box around its mesh, and the cylinder
+/// about the last axis of the box.
+#[derive(Clone, Debug)]
+pub(super) struct Around {
+    bounds: RootBox,
+    /// Of the cylinder.
+    radius: f64,
+    /// In the frame of the mesh.
+    pub(super) cylinder: Cylinder,
+}
+
+impl Around {
+    /// Around a mesh at a pose; `None` when they are beyond the limits.
+    pub(super) fn new(mesh: &CollisionMesh, cylinder: Cylinder, pose: &Isometry3<f64>) -> Option<Self> {
+        let relative = Relative::between(&Isometry3::identity(), 0.0, pose, mesh.radius())?;
+        let more = relative.slack + mesh.rounding();
+        let Cylinder { axis, radius } = cylinder;
+        let mut bounds = relative.obb(&mesh.tree().bounding);
         bounds.half.add_scalar_mut(more);
         bounds.axes.swap(axis, 2);
         bounds.half.swap_rows(axis, 2);
-        Some(Self { bounds, radius: radii[axis] + more })
+        Some(Self { bounds, radius: radius + more, cylinder })
     }
 
     /// A lower bound on the distance of a ball; negative where it overlaps both.
@@ -57,15 +74,31 @@ impl Scene {
     /// A lower bound (m) on the distance of the mesh of `cover` from all bodies, if that is at least `enough` (m), by balls against what is
     /// around bodies: by the ball around the mesh, else by the smaller balls. Infinite without bodies; `None` where balls leave it undecided.
     pub fn apart(&self, cover: &Cover, placed: &mut PlacedCover, enough: f64) -> Option<f64> {
-        let mut least = f64::INFINITY;
-        for body in self.bodies.iter().flatten() {
-            let around = &body.around;
-            let size = placed.around.center.coords.amax() + around.bounds.center.coords.amax();
-            let rounding = 1e-12 * (size + placed.around.radius + around.bounds.half.sum());
-            let bound = placed.apart_from(cover, enough + rounding, |ball| around.gap(ball))?;
-            least = least.min(bound - rounding);
-        }
-        Some(least)
+        let ball = placed.around;
+        let rounding = |size: f64| 1e-12 * (size + ball.center.coords.amax() + ball.radius);
+        let least = Cell::new(f64::INFINITY);
+        // Comparisons are written so that NaN is undecided.
+        let enter = |bounds: &Aabb| {
+            let size = bounds.min.coords.amax().max(bounds.max.coords.amax());
+            let bound = bounds.distance(&ball.center) - ball.radius - rounding(size);
+            let is_far = bound >= enough;
+            if is_far {
+                least.set(least.get().min(bound));
+            }
+            !is_far
+        };
+        let mut undecided = |index: u32| {
+            let around = &self.bodies[index as usize].as_ref()?.around;
+            let rounding = rounding(around.bounds.center.coords.amax() + around.bounds.half.sum());
+            match placed.apart_from(cover, enough + rounding, |ball| around.gap(ball)) {
+                Some(bound) => least.set(least.get().min(bound - rounding)),
+                None => return Some(()),
+            }
+            None
+        };
+        let both =
+            self.fixed.find(enter, &mut undecided).or_else(|| self.movable.find(enter, &mut undecided));
+        both.is_none().then(|| least.get())
     }
 }
 

@@ -1,4 +1,4 @@
-//! States as an index asks about them, by number: so that it is compiled once for all spaces.
+//! What an index asks about states, by their numbers. It does not know the type of the space, so it is compiled once for all spaces.
 
 use super::{Layout, NodeId};
 use crate::Space;
@@ -24,22 +24,22 @@ pub(super) trait EmbeddedStates: States {
     fn embed_query(&self, out: &mut [f64]);
 }
 
-/// The states `points` of a space.
+/// States of a space, and the one searched for or inserted.
 #[derive(Debug)]
-pub(super) struct Of<'a, C: Space> {
+pub(super) struct SpaceStates<'a, C: Space> {
     pub(super) space: &'a C,
     pub(super) points: &'a [C::State],
     pub(super) query: &'a C::State,
 }
 
-impl<C: Space> Of<'_, C> {
+impl<C: Space> SpaceStates<'_, C> {
     #[inline]
     fn at(&self, id: NodeId) -> &C::State {
         &self.points[id as usize]
     }
 }
 
-impl<C: Space> States for Of<'_, C> {
+impl<C: Space> States for SpaceStates<'_, C> {
     fn to_query(&self, id: NodeId) -> f64 {
         self.space.distance(self.at(id), self.query)
     }
@@ -53,7 +53,7 @@ impl<C: Space> States for Of<'_, C> {
     }
 }
 
-impl<C: Embed> EmbeddedStates for Of<'_, C> {
+impl<C: Embed> EmbeddedStates for SpaceStates<'_, C> {
     fn layout(&self) -> Layout {
         self.space.layout()
     }

@@ -406,7 +406,7 @@ impl<C: LinkedSpace> Motion for LinkedScene<C> {
     fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
         self.goal_parts.as_deref()
     }
-    /// Half: the other half makes paths 1% to 2% shorter, and takes longer than planning and proof together.
+    /// Half of the default: the second half shortens paths by another 1% to 2%, and takes longer than planning and proof together.
     fn effort(&self) -> Effort {
         Effort { attempts: 100, patience: 30, ..Effort::default() }
     }

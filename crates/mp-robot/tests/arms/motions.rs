@@ -299,12 +299,10 @@ fn a_wheel_that_turns_beside_another_costs_little() {
     let space: Joints<SVector<f64, 2>> = arm.space().unwrap();
     let path = Path::straight(vec![SVector::from([-1.0, 0.0]), SVector::from([1.0, 1.5])]);
     let least = least_clearance(&space, &mut arm, &path, 1e-5).unwrap();
-    // It is the same all along, so the bound is as sharp as the most states allow that are looked at.
-    assert!((least.found - 0.00235).abs() < 1e-9, "{least:?}");
-    assert!((0.00225..=0.00235).contains(&least.clearance), "{least:?}");
+    assert!((0.00234..=0.00235).contains(&least.clearance), "{least:?}");
     let work = arm.take_counters();
-    // Almost all by their boxes: all states of the motion together need fewer pairs of triangles than one state has.
-    assert!(work.work.triangle_tests < 128 * 128, "{work:?}");
+    // Almost all by their boxes: hardly a state of the motion needs triangles, of which there are 128 × 128 pairs.
+    assert!(work.work.triangle_tests < work.clearance_checks, "{work:?}");
     let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
     assert!(verifier.check_motion(&path.states[0], &path.states[1]).is_free());
     assert!(verifier.parts() < 500, "{}", verifier.parts());

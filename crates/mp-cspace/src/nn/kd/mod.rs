@@ -10,7 +10,7 @@ mod search;
 use super::collect::{KNearest, OneNearest, WithinRadius};
 use super::leaf::Leaves;
 use super::node::{Ref, Weight};
-use super::states::Of;
+use super::states::SpaceStates;
 use super::{Embed, Hit, NearestNeighbors, NodeId};
 use layout::TreeLayout;
 
@@ -91,7 +91,7 @@ impl<const K: usize> KdTree<K> {
 
 impl<C: Embed, const K: usize> NearestNeighbors<C> for KdTree<K> {
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId) {
-        self.insert(&Of { space, points, query: &points[id as usize] }, id);
+        self.insert(&SpaceStates { space, points, query: &points[id as usize] }, id);
     }
 
     fn clear(&mut self) {
@@ -100,12 +100,12 @@ impl<C: Embed, const K: usize> NearestNeighbors<C> for KdTree<K> {
 
     fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit> {
         OneNearest::of(|nearest| {
-            self.search(&Of { space, points, query: q }, nearest);
+            self.search(&SpaceStates { space, points, query: q }, nearest);
         })
     }
 
     fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
-        let states = Of { space, points, query: q };
+        let states = SpaceStates { space, points, query: q };
         if !self.k_nearest_by_bounds(&states, k, out) {
             KNearest::of(k, out, |nearest| {
                 self.search(&states, nearest);
@@ -115,7 +115,7 @@ impl<C: Embed, const K: usize> NearestNeighbors<C> for KdTree<K> {
 
     fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
         WithinRadius::of(radius, out, |within| {
-            self.search(&Of { space, points, query: q }, within);
+            self.search(&SpaceStates { space, points, query: q }, within);
         });
     }
 }

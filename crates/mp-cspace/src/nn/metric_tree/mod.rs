@@ -6,7 +6,7 @@ mod search;
 use super::collect::{KNearest, OneNearest, WithinRadius};
 use super::leaf::{CAP, Coincident, Leaves};
 use super::node::{Ref, Weight};
-use super::states::{Of, States};
+use super::states::{SpaceStates, States};
 use super::{Hit, NearestNeighbors, NodeId};
 use crate::{Space, TrueMetric};
 use build::Items;
@@ -162,7 +162,7 @@ where
     C: Space + TrueMetric,
 {
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId) {
-        self.insert(&Of { space, points, query: &points[id as usize] }, id);
+        self.insert(&SpaceStates { space, points, query: &points[id as usize] }, id);
     }
 
     fn clear(&mut self) {
@@ -170,14 +170,14 @@ where
     }
 
     fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit> {
-        OneNearest::of(|nearest| self.search(&Of { space, points, query: q }, nearest))
+        OneNearest::of(|nearest| self.search(&SpaceStates { space, points, query: q }, nearest))
     }
 
     fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
-        KNearest::of(k, out, |nearest| self.search(&Of { space, points, query: q }, nearest));
+        KNearest::of(k, out, |nearest| self.search(&SpaceStates { space, points, query: q }, nearest));
     }
 
     fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
-        WithinRadius::of(radius, out, |within| self.search(&Of { space, points, query: q }, within));
+        WithinRadius::of(radius, out, |within| self.search(&SpaceStates { space, points, query: q }, within));
     }
 }
