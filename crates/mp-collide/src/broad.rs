@@ -9,7 +9,7 @@ use mp_geom::Aabb;
 const STACK: usize = 96;
 
 /// The distance of two boxes, 0 when they overlap.
-fn distance(a: &Aabb, b: &Aabb) -> f64 {
+pub(crate) fn distance(a: &Aabb, b: &Aabb) -> f64 {
     let gap = |k: usize| (b.min[k] - a.max[k]).max(a.min[k] - b.max[k]).max(0.0);
     (0..3).map(|k| gap(k) * gap(k)).sum::<f64>().sqrt()
 }

@@ -77,6 +77,7 @@ macro_rules! three {
     };
 }
 
+mod around;
 mod broad;
 mod bvh;
 mod cloud;
@@ -94,9 +95,10 @@ mod simd;
 
 pub mod reference;
 pub mod triangle;
+pub mod wide;
 
 pub use counters::Counters;
-pub use cover::{Cover, MOST_BALLS, PlacedCover};
+pub use cover::{Cover, MOST_BALLS, PlacedCover, WideCover, wide_apart};
 pub use filled::FillError;
 pub use mesh::CollisionMesh;
 pub use query::Query;

@@ -168,6 +168,15 @@ pub trait MotionClearance<S>: Clearance<S> {
         IntervalClearance::of(self.clearance(interval.middle, enough), interval.margin)
     }
 
+    /// How many intervals of a motion it likes to know [ahead](Self::look_ahead).
+    fn intervals_at_once(&self) -> usize {
+        1
+    }
+
+    /// Says about which intervals of one motion it is likely asked next, in this order: at most
+    /// [`intervals_at_once`](Self::intervals_at_once). No answer depends on it.
+    fn look_ahead(&mut self, _intervals: &[MotionInterval<'_, S>]) {}
+
     /// The least clearance along a motion: what [`least_clearance`](crate::least_clearance) asks for each edge.
     ///
     /// The default assumes that some point travels as far as the [bound](Self::motion_bound), in every direction. Override it
@@ -190,6 +199,12 @@ impl<S, V: MotionClearance<S> + ?Sized> MotionClearance<S> for &mut V {
     }
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
         (**self).interval_clearance(interval)
+    }
+    fn intervals_at_once(&self) -> usize {
+        (**self).intervals_at_once()
+    }
+    fn look_ahead(&mut self, intervals: &[MotionInterval<'_, S>]) {
+        (**self).look_ahead(intervals);
     }
     fn least_along(&mut self, search: &ClearanceSearch<'_, S>) -> LeastClearance {
         (**self).least_along(search)

@@ -62,7 +62,7 @@ pub(crate) fn finish_given(
         });
     }
     let rest = left(control);
-    let relaxed = relax_if_requested(kind, request, given, control, rest)?;
+    let (relaxed, _) = relax_if_requested(kind, request, given, control, rest)?;
     let rest = left(control);
     let planned = control.clock.now().saturating_sub(began);
     let began = control.clock.now();

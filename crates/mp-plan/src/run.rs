@@ -14,7 +14,7 @@ pub(crate) mod runs;
 pub(crate) mod scene_roadmap;
 pub(crate) mod search;
 
-use crate::finish::relax::relax_if_requested;
+use crate::finish::relax::{Relaxing, relax_if_requested};
 use crate::run::auto::Auto;
 use crate::run::plan::{left, reported};
 use crate::run::planners::PlannerKind;
@@ -22,7 +22,7 @@ use crate::run::prepared::Prepared;
 use crate::run::roadmaps::{Due, GrowingFile, RoadmapPlanner};
 use crate::run::search::Search;
 use crate::watch::Events;
-use crate::{Control, Error, Finish, Report, Request, Robot, Stage, StoppedBy};
+use crate::{Control, Error, Report, Request, Robot, Stage, StoppedBy};
 use mp_cspace::erased::AnySpace;
 use mp_cspace::{Configuration, Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
 use mp_tree::improve;
@@ -298,18 +298,18 @@ impl<'p, 'k> RobotRun<'p, 'k> {
         let progress = self.progress();
         let (prepared, Found { best, first, over, .. }) = (self.prepared, self.found);
         let (kind, request) = (prepared.kind, &*prepared.request);
-        let began = control.clock.now();
+        let mut relaxing = Relaxing::default();
         let ended_by = over.unwrap_or(Some(StopReason::Cancelled));
         let outcome = match best {
             Some(path) => {
                 let left = prepared.time_left(control, 1.0, self.time);
-                Outcome::Solved(relax_if_requested(kind, request, path, control, left)?)
+                let (path, work) = relax_if_requested(kind, request, path, control, left)?;
+                relaxing = work;
+                Outcome::Solved(path)
             }
             None => Outcome::Stopped(ended_by.unwrap_or(StopReason::Cancelled)),
         };
-        let relaxes = request.finish == Finish::Relax && matches!(outcome, Outcome::Solved(_));
-        let relaxing = if relaxes { control.clock.now().saturating_sub(began) } else { Duration::ZERO };
-        let time = self.time + relaxing;
+        let time = self.time + relaxing.time;
         let won = match &self.made {
             Some(NamedPlanner::Auto(auto)) => auto.won(),
             _ => None,

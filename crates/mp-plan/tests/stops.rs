@@ -8,7 +8,7 @@
 mod counting;
 
 use counting::{Counting, WORK};
-use mp_plan::{Clock, Control, ErrorKind, Report, Request, RunStage, Scene, StoppedBy};
+use mp_plan::{Clock, Control, ErrorKind, Finish, Report, Request, RunStage, Scene, StoppedBy};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -265,6 +265,35 @@ fn what_is_unverified_had_all_of_the_time() {
         }
     }
     assert!(solved > 20, "{solved} solved, {unverified} unverified");
+}
+
+/// Where the clock ends relaxing the path is another one than with more time, and the report says what ended it.
+#[test]
+fn relaxing_that_the_clock_ends_is_said() {
+    let _alone = alone();
+    let (mut ended, mut whole) = (0, 0);
+    for name in ["rrs-low", "arm"] {
+        let scene = Scene::find(name).unwrap();
+        let mut request = Request::new("rrt-connect").seed(2);
+        request.finish = Finish::Relax;
+        let relaxed = scene.plan(&request).unwrap();
+        for readings in drawn(7, 30, 3000).chain(drawn(8, 20, 3_000_000)) {
+            let cut = within(&scene, &request, readings);
+            let relaxing = cut.stages.iter().find(|stage| stage.stage == RunStage::Relaxing);
+            match relaxing.map(|stage| stage.ended_by) {
+                Some(None) => {
+                    assert_eq!(cut.fingerprint, relaxed.fingerprint, "{name} {readings}: {:?}", cut.stages);
+                    whole += 1;
+                }
+                Some(by) => {
+                    assert_eq!(by, Some(StoppedBy::Time), "{name} {readings}");
+                    ended += 1;
+                }
+                None => assert!(!cut.solved, "{name} {readings}: {:?}", cut.stages),
+            }
+        }
+    }
+    assert!(ended > 5 && whole > 5, "{ended} ended, {whole} not");
 }
 
 /// A budget that is used up before planning begins.

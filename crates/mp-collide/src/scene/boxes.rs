@@ -1,81 +1,19 @@
-//! A box and a cylinder around each body of a scene, turned as its mesh is: a tight broad phase.
+//! Lower bounds on the distance of covers from the bodies of a scene, by the box and the cylinder around each: a tight broad phase.
 
-use super::Scene;
-use crate::bvh::root_box::RootBox;
-use crate::cover::{Cover, PlacedCover};
-use crate::mesh::CollisionMesh;
-use crate::pose::Relative;
-use mp_geom::{Aabb, Sphere};
-use nalgebra::{Isometry3, Point3};
+use super::{Body, Scene};
+use crate::broad;
+use crate::cover::{Cover, LARGEST, PlacedCover, ROUNDING, WideCover};
+use crate::wide::{LANES, Wide, WideKernel, on_widest};
+use mp_geom::Aabb;
+use nalgebra::Point3;
 use std::cell::Cell;
-
-/// The cylinder of least volume around a mesh about an axis of its box; it is as high as the box.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cylinder {
-    axis: usize,
-    radius: f64,
-}
-
-impl Cylinder {
-    /// Around a mesh. O(n) for n triangles.
-    pub(super) fn around(mesh: &CollisionMesh) -> Self {
-        let own = &mesh.tree().bounding;
-        let radius = |axis: usize| {
-            let from_axis = |p: &Point3<f64>| {
-                let d = p - own.center;
-                d.norm_squared() - own.axes[axis].dot(&d) * own.axes[axis].dot(&d)
-            };
-            mesh.tree().triangles.iter().flatten().map(from_axis).fold(0.0, f64::max).sqrt()
-        };
-        let radii = [0, 1, 2].map(radius);
-        let volume = |axis: &usize| radii[*axis] * radii[*axis] * own.half[*axis];
-        let axis = (0..3).min_by(|a, b| volume(a).total_cmp(&volume(b))).unwrap_or(0);
-        Self { axis, radius: radii[axis] }
-    }
-}
-
-/// What is around a body, in the world, a little enlarged so that rounding never cuts anything off: the box around its mesh, and the cylinder
-/// about the last axis of the box.
-#[derive(Clone, Debug)]
-pub(super) struct Around {
-    bounds: RootBox,
-    /// Of the cylinder.
-    radius: f64,
-    /// In the frame of the mesh.
-    pub(super) cylinder: Cylinder,
-}
-
-impl Around {
-    /// Around a mesh at a pose; `None` when they are beyond the limits.
-    pub(super) fn new(mesh: &CollisionMesh, cylinder: Cylinder, pose: &Isometry3<f64>) -> Option<Self> {
-        let relative = Relative::between(&Isometry3::identity(), 0.0, pose, mesh.radius())?;
-        let more = relative.slack + mesh.rounding();
-        let Cylinder { axis, radius } = cylinder;
-        let mut bounds = relative.obb(&mesh.tree().bounding);
-        bounds.half.add_scalar_mut(more);
-        bounds.axes.swap(axis, 2);
-        bounds.half.swap_rows(axis, 2);
-        Some(Self { bounds, radius: radius + more, cylinder })
-    }
-
-    /// A lower bound on the distance of a ball; negative where it overlaps both.
-    #[inline]
-    fn gap(&self, ball: &Sphere) -> f64 {
-        let d = ball.center - self.bounds.center;
-        let [x, y, z] = [0, 1, 2].map(|k| self.bounds.axes[k].dot(&d).abs());
-        let half = &self.bounds.half;
-        let [a, b, c] = [(x - half.x).max(0.0), (y - half.y).max(0.0), (z - half.z).max(0.0)];
-        let across = ((x * x + y * y).sqrt() - self.radius).max(0.0);
-        ((a * a + b * b).max(across * across) + c * c).sqrt() - ball.radius
-    }
-}
 
 impl Scene {
     /// A lower bound (m) on the distance of the mesh of `cover` from all bodies, if that is at least `enough` (m), by balls against what is
     /// around bodies: by the ball around the mesh, else by the smaller balls. Infinite without bodies; `None` where balls leave it undecided.
     pub fn apart(&self, cover: &Cover, placed: &mut PlacedCover, enough: f64) -> Option<f64> {
         let ball = placed.around;
-        let rounding = |size: f64| 1e-12 * (size + ball.center.coords.amax() + ball.radius);
+        let rounding = |size: f64| ROUNDING * (size + ball.center.coords.amax() + ball.radius);
         let least = Cell::new(f64::INFINITY);
         // Comparisons are written so that NaN is undecided.
         let enter = |bounds: &Aabb| {
@@ -89,7 +27,7 @@ impl Scene {
         };
         let mut undecided = |index: u32| {
             let around = &self.bodies[index as usize].as_ref()?.around;
-            let rounding = rounding(around.bounds.center.coords.amax() + around.bounds.half.sum());
+            let rounding = rounding(around.size());
             match placed.apart_from(cover, enough + rounding, |ball| around.gap(ball)) {
                 Some(bound) => least.set(least.get().min(bound - rounding)),
                 None => return Some(()),
@@ -100,14 +38,80 @@ impl Scene {
             self.fixed.find(enter, &mut undecided).or_else(|| self.movable.find(enter, &mut undecided));
         both.is_none().then(|| least.get())
     }
+
+    /// Lower bounds (m) on the distance of a mesh at eight places from all bodies: by the balls around it against what is around bodies,
+    /// and where that is less than `enough`, by smaller balls, until all of these are less than `some`.
+    pub fn wide_apart(&self, cover: &Cover, placed: &mut WideCover, enough: Wide, some: Wide) -> Wide {
+        let most = enough.largest() * (1.0 + 1e-9);
+        let at = |i: usize| Point3::from(placed.center().map(|x| x.0[i]));
+        let (low, high) = (1..LANES).fold((at(0), at(0)), |(l, h), i| (l.inf(&at(i)), h.sup(&at(i))));
+        let (own, least) = (Aabb { min: low, max: high }, Cell::new(f64::INFINITY));
+        let radius =
+            placed.radius() + ROUNDING * (own.min.coords.amax().max(own.max.coords.amax()) + placed.radius());
+        // Comparisons are written so that NaN is near.
+        let enter = |bounds: &Aabb| {
+            let size = bounds.min.coords.amax().max(bounds.max.coords.amax());
+            let bound = broad::distance(&own, bounds) - radius - ROUNDING * size;
+            let is_far = bound >= most;
+            if is_far {
+                least.set(least.get().min(bound));
+            }
+            !is_far
+        };
+        let mut near = std::mem::take(&mut placed.near);
+        near.clear();
+        for broad in [&self.fixed, &self.movable] {
+            let _: Option<()> = broad.find(enter, |index| {
+                near.push(index);
+                None
+            });
+        }
+        let found = on_widest(FromBodies { cover, placed, near: &near, bodies: &self.bodies, enough, some });
+        placed.near = near;
+        found.min(Wide::splat(least.get()))
+    }
+}
+
+/// Of several bodies.
+struct FromBodies<'a> {
+    cover: &'a Cover,
+    placed: &'a mut WideCover,
+    /// Which bodies.
+    near: &'a [u32],
+    bodies: &'a [Option<Body>],
+    enough: Wide,
+    some: Wide,
+}
+
+impl WideKernel for FromBodies<'_> {
+    type Output = Wide;
+    #[inline(always)]
+    fn run(self) -> Wide {
+        let own = self.placed.size;
+        let mut least = Wide::splat(f64::INFINITY);
+        for index in self.near {
+            let Some(body) = &self.bodies[*index as usize] else { continue };
+            let around = &body.around;
+            let rounding = ROUNDING * (own + around.size());
+            // Written so that NaN is refused.
+            let is_usual = own + around.size() < LARGEST;
+            if !is_usual {
+                return Wide::splat(f64::NEG_INFINITY);
+            }
+            let wanted = self.enough + rounding;
+            let apart = self.placed.apart_from(self.cover, around, wanted, self.some) - rounding;
+            least = apart.min(least);
+        }
+        least
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Query;
-    use mp_geom::{TriMesh, primitives};
-    use nalgebra::Vector3;
+    use crate::{CollisionMesh, Query};
+    use mp_geom::{Sphere, TriMesh, primitives};
+    use nalgebra::{Isometry3, Vector3};
 
     /// What balls decide, trees say too, at random places among boxes, cylinders and a cloud, all turned.
     #[test]

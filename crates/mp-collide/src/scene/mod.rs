@@ -13,10 +13,10 @@ use mp_stop::{Interrupt, Interrupted};
 use nalgebra::Isometry3;
 use thiserror::Error;
 
+use crate::around::{Around, Cylinder};
 use crate::broad::BroadPhase;
 use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::{LIMIT, Relative};
-use boxes::{Around, Cylinder};
 use merged::Merged;
 
 /// The name of a body in one [`Scene`]; not reused after the body is removed.

@@ -48,6 +48,18 @@ const MAX_TOLERANCES: f64 = 1e9;
 /// Uncovered parts shorter than this fraction of the motion come from rounding.
 const ROUNDING: f64 = 1e-15;
 
+/// Robots are told of at most this many intervals ahead.
+const MOST_AT_ONCE: usize = 8;
+
+/// A part of a motion from `a` to `b`, all fractions of it: the interval of `half` to either side of `at` is asked about.
+#[derive(Clone, Copy, Default)]
+struct Part {
+    a: f64,
+    b: f64,
+    at: f64,
+    half: f64,
+}
+
 impl<'c, C, V> Certified<'c, C, V>
 where
     C: Space,
@@ -100,58 +112,82 @@ where
         let margin = self.margin();
         let stride = self.stride.max(margin);
         let mut least = f64::INFINITY;
-        let mut q = from.clone();
+        let at_once = self.valid.intervals_at_once().min(MOST_AT_ONCE);
+        let mut middles = [const { None }; MOST_AT_ONCE];
+        let mut parts = [Part::default(); MOST_AT_ONCE];
         self.uncovered.clear();
         self.uncovered.push_back((0.0, 1.0));
-        while let Some((a, b)) = self.uncovered.pop_front() {
-            let at = 0.5 * (a + b);
-            // How many equal intervals of at most two strides it takes; an odd number has one in the middle.
-            let pieces = (0.5 * (b - a) * travel / stride).ceil().max(1.0);
-            if pieces % 2.0 == 0.0 {
-                self.uncovered.extend([(a, at), (at, b)]);
-                continue;
+        loop {
+            let mut count = 0;
+            while count < at_once
+                && let Some((a, b)) = self.uncovered.pop_front()
+            {
+                let at = 0.5 * (a + b);
+                // How many equal intervals of at most two strides it takes; an odd number has one in the middle.
+                let pieces = (0.5 * (b - a) * travel / stride).ceil().max(1.0);
+                if pieces % 2.0 == 0.0 {
+                    self.uncovered.extend([(a, at), (at, b)]);
+                    continue;
+                }
+                let middle = middles[count].get_or_insert_with(|| from.clone());
+                self.space.interpolate_into(from, to, at, middle);
+                parts[count] = Part { a, b, at, half: 0.5 * (b - a) / pieces };
+                count += 1;
             }
-            let half = 0.5 * (b - a) / pieces;
-            self.space.interpolate_into(from, to, at, &mut q);
-            let interval = MotionInterval { from, to, middle: &q, half, travel: half * travel, margin };
-            let covered = match self.valid.interval_clearance(&interval) {
-                IntervalClearance::Collision { at: offset } => {
-                    let at = at + half * offset;
-                    self.space.interpolate_into(from, to, at, &mut q);
-                    // This state may differ by rounding from the one the robot found in contact.
-                    let collides = offset == 0.0 || self.valid.in_contact(&q);
-                    return if collides {
-                        MotionCheck::Collision { at }
-                    } else {
-                        MotionCheck::Unproven { at }
-                    };
-                }
-                IntervalClearance::TooClose { at: offset } => {
-                    return MotionCheck::Unproven { at: at + half * offset };
-                }
-                IntervalClearance::Unproven if interval.travel <= margin => {
-                    return MotionCheck::Unproven { at };
-                }
-                IntervalClearance::Unproven => 0.0,
-                IntervalClearance::FreeOver { part } => {
-                    least = least.min(margin);
-                    part
-                }
-                IntervalClearance::Free { clearance } => {
-                    let reach = (clearance - margin) / travel;
-                    let covered = if clearance >= interval.travel + margin { reach.max(half) } else { reach };
-                    // The clearance at the ends of the covered part, as far as that is in this part.
-                    let farthest = covered.min(b - at) * travel;
-                    least = least.min((clearance - farthest).max(margin));
-                    covered
-                }
+            let interval = |k: usize| {
+                let Part { half, .. } = parts[k];
+                let middle = middles[k].as_ref().unwrap_or(from);
+                MotionInterval { from, to, middle, half, travel: half * travel, margin }
             };
-            // The uncovered rest on either side, unless it is rounding.
-            if at - covered > a + ROUNDING {
-                self.uncovered.push_back((a, at - covered));
+            if count == 0 {
+                break;
+            } else if count > 1 {
+                let all: [_; MOST_AT_ONCE] = std::array::from_fn(|k| interval(k.min(count - 1)));
+                self.valid.look_ahead(&all[..count]);
             }
-            if at + covered < b - ROUNDING {
-                self.uncovered.push_back((at + covered, b));
+            for (k, Part { a, b, at, half }) in parts[..count].iter().copied().enumerate() {
+                let interval = interval(k);
+                let covered = match self.valid.interval_clearance(&interval) {
+                    IntervalClearance::Collision { at: offset } => {
+                        let at = at + half * offset;
+                        let mut q = from.clone();
+                        self.space.interpolate_into(from, to, at, &mut q);
+                        // This state may differ by rounding from the one the robot found in contact.
+                        let collides = offset == 0.0 || self.valid.in_contact(&q);
+                        return if collides {
+                            MotionCheck::Collision { at }
+                        } else {
+                            MotionCheck::Unproven { at }
+                        };
+                    }
+                    IntervalClearance::TooClose { at: offset } => {
+                        return MotionCheck::Unproven { at: at + half * offset };
+                    }
+                    IntervalClearance::Unproven if interval.travel <= margin => {
+                        return MotionCheck::Unproven { at };
+                    }
+                    IntervalClearance::Unproven => 0.0,
+                    IntervalClearance::FreeOver { part } => {
+                        least = least.min(margin);
+                        part
+                    }
+                    IntervalClearance::Free { clearance } => {
+                        let reach = (clearance - margin) / travel;
+                        let covered =
+                            if clearance >= interval.travel + margin { reach.max(half) } else { reach };
+                        // The clearance at the ends of the covered part, as far as that is in this part.
+                        let farthest = covered.min(b - at) * travel;
+                        least = least.min((clearance - farthest).max(margin));
+                        covered
+                    }
+                };
+                // The uncovered rest on either side, unless it is rounding.
+                if at - covered > a + ROUNDING {
+                    self.uncovered.push_back((a, at - covered));
+                }
+                if at + covered < b - ROUNDING {
+                    self.uncovered.push_back((at + covered, b));
+                }
             }
         }
         MotionCheck::Free { clearance: least }

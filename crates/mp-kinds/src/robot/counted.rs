@@ -142,6 +142,12 @@ impl<S, R: MotionClearance<S> + Queries> MotionClearance<S> for Counted<'_, R> {
         let ended = IntervalClearance::Collision { at: 0.0 };
         self.query(ended, |checker| checker.interval_clearance(interval))
     }
+    fn intervals_at_once(&self) -> usize {
+        self.checker.intervals_at_once()
+    }
+    fn look_ahead(&mut self, intervals: &[MotionInterval<'_, S>]) {
+        self.checker.look_ahead(intervals);
+    }
     fn least_along(&mut self, search: &ClearanceSearch<'_, S>) -> LeastClearance {
         let ended = LeastClearance { bound: 0.0, found: search.known, at: None };
         self.query(ended, |checker| checker.least_along(search))

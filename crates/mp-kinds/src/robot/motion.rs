@@ -263,6 +263,12 @@ impl MotionClearance<Configuration> for AnyChecker {
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, Configuration>) -> IntervalClearance {
         self.0.interval_clearance(interval)
     }
+    fn intervals_at_once(&self) -> usize {
+        self.0.intervals_at_once()
+    }
+    fn look_ahead(&mut self, intervals: &[MotionInterval<'_, Configuration>]) {
+        self.0.look_ahead(intervals);
+    }
     fn least_along(&mut self, search: &ClearanceSearch<'_, Configuration>) -> LeastClearance {
         self.0.least_along(search)
     }

@@ -1,7 +1,7 @@
 //! Relaxing a path by a snake.
 
 use crate::{Control, Error, Finish, Request, Robot, Stage};
-use mp_cspace::{Configuration, Demand, Interrupt, Path};
+use mp_cspace::{Configuration, Demand, Interrupt, Path, StopReason};
 use mp_kinds::field;
 use mp_kinds::relax::{self, relaxed};
 use std::time::Duration;
@@ -22,6 +22,15 @@ pub(crate) fn check(kind: &dyn Robot, request: &Request) -> Result<(), Error> {
 /// The part of the time left that relaxing may take; the rest is for verifying.
 const RELAXING_PART: f64 = 0.5;
 
+/// The work of relaxing; nothing where none was asked for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Relaxing {
+    /// How long it took.
+    pub time: Duration,
+    /// What ended it before it was done.
+    pub ended_by: Option<StopReason>,
+}
+
 /// The path, [relaxed] if the request says so, within the time `left`.
 pub(crate) fn relax_if_requested(
     kind: &dyn Robot,
@@ -29,14 +38,17 @@ pub(crate) fn relax_if_requested(
     path: Path<Configuration>,
     control: &mut Control<'_>,
     left: Option<Duration>,
-) -> Result<Path<Configuration>, Error> {
+) -> Result<(Path<Configuration>, Relaxing), Error> {
     if request.finish != Finish::Relax {
-        return Ok(path);
+        return Ok((path, Relaxing::default()));
     }
+    let began = control.clock.now();
     control.stage(Stage::Relaxing);
     let interrupt = match left {
         None => Interrupt::new(control.cancel.clone()),
         Some(left) => control.interrupt_within(left.mul_f64(RELAXING_PART)),
     };
-    relaxed(kind, &request.field, path, &interrupt)
+    let path = relaxed(kind, &request.field, path, &interrupt)?;
+    let time = control.clock.now().saturating_sub(began);
+    Ok((path, Relaxing { time, ended_by: interrupt.raised() }))
 }

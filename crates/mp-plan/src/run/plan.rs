@@ -1,7 +1,7 @@
 //! Planning: runs a request, finishes the path and makes the report.
 
 use crate::explain::check_ends;
-use crate::finish::relax::relax_if_requested;
+use crate::finish::relax::{Relaxing, relax_if_requested};
 use crate::finish::{Proposed, finish};
 use crate::report::{RunStage, StageTime};
 use crate::run::FoundRun;
@@ -218,8 +218,7 @@ pub(crate) fn found_report(
     control: &mut Control<'_>,
 ) -> Result<Report, Error> {
     let FoundRun { progress, queries, map, path, ended_by } = found;
-    let began = control.clock.now();
-    let mut relaxing = Duration::ZERO;
+    let mut relaxing = Relaxing::default();
     let outcome = match path {
         Some(rows) => {
             if rows.iter().any(|row| row.len() != kind.start().len()) {
@@ -229,10 +228,8 @@ pub(crate) fn found_report(
             let states: Vec<Configuration> = rows.into_iter().map(Configuration::from).collect();
             let budget = request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
             let left = budget.map(|budget| budget.saturating_sub(control.spent).saturating_sub(time));
-            let path = relax_if_requested(kind, request, Path::straight(states), control, left)?;
-            if request.finish == crate::Finish::Relax {
-                relaxing = control.clock.now().saturating_sub(began);
-            }
+            let (path, work) = relax_if_requested(kind, request, Path::straight(states), control, left)?;
+            relaxing = work;
             Outcome::Solved(path)
         }
         None => Outcome::Stopped(ended_by.unwrap_or(StopReason::Cancelled)),
@@ -241,7 +238,7 @@ pub(crate) fn found_report(
         outcome,
         progress,
         queries,
-        time: time + relaxing,
+        time: time + relaxing.time,
         relaxing,
         ended_by,
         proved: true,
@@ -257,13 +254,14 @@ pub(crate) fn found_report(
 
 /// The stages up to the path found.
 fn stages(found: &Search, control: &Control<'_>) -> Vec<StageTime> {
-    let planning = found.time.saturating_sub(found.relaxing);
+    let planning = found.time.saturating_sub(found.relaxing.time);
     let mut stages = vec![StageTime::new(RunStage::Planning, planning, found.ended_by)];
     if !control.spent.is_zero() {
         stages.insert(0, StageTime::new(RunStage::Loading, control.spent, None));
     }
-    if !found.relaxing.is_zero() {
-        stages.push(StageTime::new(RunStage::Relaxing, found.relaxing, None));
+    let Relaxing { time, ended_by } = found.relaxing;
+    if !time.is_zero() || ended_by.is_some() {
+        stages.push(StageTime::new(RunStage::Relaxing, time, ended_by));
     }
     stages
 }

@@ -1,5 +1,6 @@
 //! Several routes of one scene: verified paths that are far apart.
 
+use crate::finish::relax::Relaxing;
 use crate::path::states;
 use crate::run::plan::reported;
 use crate::run::planners::PlannerKind;
@@ -60,7 +61,7 @@ pub(crate) fn routes(
         progress: listed.progress,
         queries,
         time: listed.time,
-        relaxing: Duration::ZERO,
+        relaxing: Relaxing::default(),
         ended_by: Some(listed.ended),
         proved: true,
         found_unverified: false,

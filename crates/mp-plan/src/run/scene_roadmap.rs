@@ -1,7 +1,7 @@
 //! A roadmap of a scene that answers many queries.
 
 use crate::explain::refused;
-use crate::finish::relax::relax_if_requested;
+use crate::finish::relax::{Relaxing, relax_if_requested};
 use crate::path::state;
 use crate::run::plan::reported;
 use crate::run::planners::PlannerKind;
@@ -15,7 +15,6 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
 
 /// A start or goal is connected to at most this many nearest nodes.
 const NEIGHBOURS: usize = 20;
@@ -206,8 +205,13 @@ impl RobotRoadmap {
         drop(checker);
         let queries = prepared.queries().load(Ordering::Relaxed);
         let map = Some([self.roadmap.map().edges(), self.roadmap.map_mut().components()]);
+        let mut relaxing = Relaxing::default();
         let (outcome, why) = match (answer, interrupt.raised()) {
-            (Ok(path), _) => (Outcome::Solved(relax_if_requested(kind, request, path, control, None)?), None),
+            (Ok(path), _) => {
+                let (path, work) = relax_if_requested(kind, request, path, control, None)?;
+                relaxing = work;
+                (Outcome::Solved(path), None)
+            }
             // What the query says about the roadmap means nothing when it was interrupted.
             (Err(_), Some(reason)) => (Outcome::Stopped(reason), None),
             (Err(why), None) => (Outcome::Stopped(StopReason::Exhausted), Some(why.to_string())),
@@ -216,8 +220,8 @@ impl RobotRoadmap {
             outcome,
             progress,
             queries,
-            time,
-            relaxing: Duration::ZERO,
+            time: time + relaxing.time,
+            relaxing,
             ended_by: interrupt.raised(),
             proved: true,
             found_unverified: false,

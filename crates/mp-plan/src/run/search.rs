@@ -1,5 +1,6 @@
 //! One run of a planner by name, for robots of all kinds.
 
+use crate::finish::relax::Relaxing;
 use crate::run::RobotRun;
 use crate::run::planners::PlannerKind;
 use crate::run::prepared::Prepared;
@@ -19,8 +20,8 @@ pub struct Search {
     pub queries: u64,
     /// How long it took.
     pub time: Duration,
-    /// How much of this went into relaxing the path.
-    pub relaxing: Duration,
+    /// How much of this went into relaxing the path, and what ended that.
+    pub relaxing: Relaxing,
     /// What ended the search, also where it has found a path; `None` where the planner ended with its path.
     pub ended_by: Option<StopReason>,
     /// Whether the planner has verified the path. The path of [`search`] always is.

@@ -2,7 +2,9 @@
 
 use super::Arm;
 use super::robot::{LinkBody, Scratch, are_nested};
+use super::wide::{COARSE, LEAST};
 use crate::kept::beyond;
+use mp_collide::wide::LANES;
 use mp_cspace::{
     Clearance, ClearanceSearch, Coordinates, IntervalClearance, LeastClearance, MotionClearance,
     MotionInterval, Rng, Validity, obstacles::ObstacleHints,
@@ -110,22 +112,20 @@ struct ProvenPart {
 }
 
 impl ProvenPart {
-    /// Adds the distance of one link or pair. It changes by at most `near` over half the interval, proportionally less
-    /// over a smaller part of the interval, and by at most `far` over the whole motion. `known` gives a bound on it if that
-    /// is enough, else `clearance` computes it. Both are given what is enough. Returns an answer if the remaining links and pairs need no test.
-    fn add(
-        &mut self,
-        near: f64,
-        far: f64,
-        known: impl FnOnce(f64) -> Option<f64>,
-        clearance: impl FnOnce(f64) -> f64,
-    ) -> Option<IntervalClearance> {
-        let margin = self.margin;
+    /// How far a link or pair moves by the part of the interval that matters, where it moves by at most `near` over half the interval and
+    /// proportionally less over a smaller part of it; and which distance is enough to prove that part free.
+    #[inline]
+    fn wanted(&self, near: f64) -> (f64, f64) {
         // No more than what earlier links and pairs allow.
-        let wanted = self.half.min(self.part);
-        let near = near * (wanted / self.half);
-        let enough = near.max(margin) + margin;
-        let clearance = known(enough).unwrap_or_else(|| clearance(enough));
+        let near = near * (self.half.min(self.part) / self.half);
+        (near, near.max(self.margin) + self.margin)
+    }
+
+    /// Adds a lower bound on the distance of one link or pair, which moves by at most [`near`](Self::wanted), and by at most `far` over
+    /// the whole motion. Returns an answer if the remaining links and pairs need no test.
+    #[inline]
+    fn add(&mut self, near: f64, far: f64, clearance: f64) -> Option<IntervalClearance> {
+        let (margin, wanted) = (self.margin, self.half.min(self.part));
         let part = if clearance <= 0.0 {
             return Some(IntervalClearance::Collision { at: 0.0 });
         } else if clearance >= near + margin {
@@ -139,6 +139,13 @@ impl ProvenPart {
         self.part = self.part.min(if far > 0.0 { part } else { f64::INFINITY });
         None
     }
+}
+
+/// Whether `known`, a lower bound on a distance by covers, says enough: at least `enough`, or so much of it that the exact distance would
+/// take longer than the intervals that it saves.
+#[inline]
+fn is_of_use(known: f64, enough: f64, margin: f64) -> bool {
+    known >= enough || known >= (COARSE * enough).max(LEAST * margin)
 }
 
 impl<Q: Coordinates> MotionClearance<Q> for Arm {
@@ -175,47 +182,47 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         self.counters.clearance_checks += 1;
         let [from, to, middle] = [interval.from, interval.to, interval.middle].map(Q::as_slice);
         let Self { robot, obstacles, query, scratch, kept, .. } = self;
-        let kinematics = &robot.kinematics;
-        if ![from, to, middle].into_iter().all(|q| kinematics.is_configuration(q)) {
+        if ![from, to, middle].into_iter().all(|q| robot.kinematics.is_configuration(q)) {
             return IntervalClearance::Collision { at: 0.0 };
         }
-        let travels = |i: usize| kinematics.travel(i, from, to);
-        let base = kinematics.base_travel(from, to);
-        robot.place_over(middle, |i| travels(i) * interval.half, scratch);
-        scratch.far.clear();
-        robot.bodies.iter().for_each(|body| body.chain.far(travels, &mut scratch.far));
+        let scene = &obstacles.scene;
+        let k = scratch.wide.find(robot, interval);
+        let mut is_placed = false;
         let mut proven = ProvenPart { margin: interval.margin, half: interval.half, part: f64::INFINITY };
         for (i, body) in robot.numbered_moving() {
-            let near = body.near(&base, interval.half, scratch);
-            let far = scratch.far[body.last()] + base.far(body.chain.from_base);
-            let (scene, pose) = (&obstacles.scene, &scratch.frames[body.frame]);
-            let cover = &mut scratch.covers[i];
-            let known = |enough| {
-                let found = scene.apart(&body.cover, cover, enough + *kept);
-                found.map(|found| (found - *kept).max(enough))
-            };
-            let clearance = |enough| {
-                beyond(*kept, enough, |limit| scene.surface_clearance(query, &body.tree, pose, limit).0)
-            };
-            if let Some(answer) = proven.add(near, far, known, clearance) {
+            let wide = &mut scratch.wide;
+            let (near, enough) = proven.wanted(wide.near(k, i, body));
+            let far = wide.far[body.last()] + wide.base.far(body.chain.from_base);
+            let mut clearance = wide.link_apart(robot, scene, *kept, i, k);
+            if !is_of_use(clearance, enough, interval.margin) {
+                robot.place_once(middle, scratch, &mut is_placed);
+                let pose = &scratch.frames[body.frame];
+                let found = |limit| scene.surface_clearance(query, &body.tree, pose, limit).0;
+                clearance = beyond(*kept, enough, found);
+            }
+            if let Some(answer) = proven.add(near, far, clearance) {
                 return answer;
             }
         }
-        for pair in &robot.pairs {
+        for (p, pair) in robot.pairs.iter().enumerate() {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
-            let sum = |of: &[f64]| of[a.first + pair.steps[0]] + of[b.first + pair.steps[1]];
-            let (near, far, frames) = (sum(&scratch.near), sum(&scratch.far), &scratch.frames);
-            let covers = &mut scratch.covers;
-            let known = |enough| robot.apart(pair, covers, enough);
-            let clearance =
-                |limit| query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], limit);
-            if let Some(answer) = proven.add(near, far, known, clearance) {
+            let wide = &mut scratch.wide;
+            let (near, enough) = proven.wanted(wide.near_pair(robot, p, k));
+            let far = wide.far[a.first + pair.steps[0]] + wide.far[b.first + pair.steps[1]];
+            let mut clearance = wide.pair_apart(robot, p, k);
+            if !is_of_use(clearance, enough, interval.margin) {
+                robot.place_once(middle, scratch, &mut is_placed);
+                let frames = &scratch.frames;
+                clearance = query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], enough);
+            }
+            if let Some(answer) = proven.add(near, far, clearance) {
                 return answer;
             }
         }
         // Nothing gets inside without meeting a surface: one state of a motion decides for all of it.
         let ends = || from.iter().chain(to).copied();
         if !scratch.apart.iter().copied().eq(ends()) {
+            robot.place_once(middle, scratch, &mut is_placed);
             let inside = |body: &LinkBody| {
                 obstacles.scene.nested(query, &body.tree, &scratch.frames[body.frame]).is_some()
             };
@@ -226,6 +233,16 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
             scratch.apart.extend(ends());
         }
         IntervalClearance::FreeOver { part: proven.part }
+    }
+    fn intervals_at_once(&self) -> usize {
+        LANES
+    }
+    fn look_ahead(&mut self, intervals: &[MotionInterval<'_, Q>]) {
+        let Self { robot, scratch, .. } = self;
+        let all = intervals.iter().flat_map(|i| [i.from, i.to, i.middle]);
+        if all.map(Q::as_slice).all(|q| robot.kinematics.is_configuration(q)) {
+            scratch.wide.prepare(robot, intervals);
+        }
     }
     /// Link by link and pair by pair, as [`interval_clearance`](Self::interval_clearance): what keeps enough clearance over a
     /// part of the motion is not looked at again in its halves.

@@ -289,10 +289,16 @@ pub(crate) struct BaseTravel {
     /// By which angle it turns, radians.
     pub(crate) turn: f64,
     /// The axis of the turn in the world, of any length; zero without a turn.
-    axis: Vector3<f64>,
+    pub(crate) axis: Vector3<f64>,
 }
 
 impl BaseTravel {
+    /// Whether it does not move.
+    #[inline]
+    pub(crate) fn is_still(&self) -> bool {
+        self.slide == 0.0 && self.turn == 0.0
+    }
+
     /// A bound (m) on how far a point of a link is moved by the base if it is never farther than `reach` from the origin of the
     /// base.
     #[inline]

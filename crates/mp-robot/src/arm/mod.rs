@@ -20,6 +20,7 @@ mod travel;
 #[cfg(feature = "urdf")]
 mod urdf;
 mod verify;
+mod wide;
 mod xml;
 
 pub use error::{ArmError, UrdfError};

@@ -4,6 +4,7 @@ use super::kinematics::{BaseTravel, Coordinate, Kinematics};
 use super::pairs::{LinkPair, pairs};
 use super::travel::{Chain, axes_into};
 use super::verify::ReferenceArm;
+use super::wide::{Turns, WideIntervals};
 use super::{ArmError, ArmModel};
 use crate::CheckCounters;
 use crate::obstacles::{MAX_TRIANGLES, Obstacles, make_once, resolved_tolerance};
@@ -65,6 +66,8 @@ pub(super) struct SharedArm {
     /// In the order of the links.
     pub(super) bodies: Vec<LinkBody>,
     pub(super) pairs: Vec<LinkPair>,
+    /// For each joint that moves.
+    pub(super) turns: Vec<Turns>,
     /// Which links are not compared, and why, unless the model says so: sentences.
     pub(super) not_compared: Vec<String>,
     /// An upper bound (m) on the distance of any of its points from the base in any configuration.
@@ -113,8 +116,9 @@ impl SharedArm {
         }
         let (model, reference) = (model.clone(), OnceLock::new());
         let (none, not_compared) = (Vec::new(), Vec::new());
+        let turns = kinematics.frames.iter().map(Turns::of).collect();
         let mut robot =
-            Self { kinematics, bodies, pairs: none, not_compared, reach, length, model, reference };
+            Self { kinematics, bodies, pairs: none, turns, not_compared, reach, length, model, reference };
         // Closer than this no motion can be certified.
         let close = 2.0 * robot.tolerance(0.0);
         let (pairs, notes) = pairs(&robot.kinematics, &robot.bodies, &robot.model, close, interrupt)?;
@@ -181,6 +185,14 @@ impl SharedArm {
         near.clear();
         for (body, ball) in self.bodies.iter().zip(balls) {
             body.chain.near(&travels, ball, axes, near);
+        }
+    }
+
+    /// [Places](Self::place) all links unless `is_placed`, and sets it.
+    #[inline]
+    pub(super) fn place_once(&self, q: &[f64], scratch: &mut Scratch, is_placed: &mut bool) {
+        if !std::mem::replace(is_placed, true) {
+            self.place(q, scratch);
         }
     }
 
@@ -259,7 +271,8 @@ pub(super) struct Scratch {
     pub(super) covers: Vec<PlacedCover>,
     /// Links that covers do not show free of obstacles, or that may have a solid inside; and whether their surfaces are shown free.
     pub(super) undecided: Vec<(usize, bool)>,
-    pub(super) far: Vec<f64>,
+    /// Intervals of the motion that is checked.
+    pub(super) wide: WideIntervals,
     pub(super) near: Vec<f64>,
     /// The ends of the last motion that has a state where no link is inside of anything: where it touches nothing, that holds for all
     /// of it.
@@ -347,7 +360,7 @@ impl Arm {
     /// clearances of obstacles are less by this much, and an [`ArmVerifier`](crate::ArmVerifier) of it proves that it is kept.
     #[must_use]
     pub fn keeping(mut self, kept: f64) -> Self {
-        self.scratch.apart.clear();
+        self.scratch = Scratch::default();
         Self { kept: kept.max(0.0), ..self }
     }
 

@@ -32,12 +32,12 @@ pub(super) struct Chain {
 pub(super) struct Step {
     /// The frame behind the joint.
     pub(super) frame: usize,
-    coordinate: usize,
+    pub(super) coordinate: usize,
     /// How far (rad or m) the joint moves for each unit of the coordinate.
-    rate: f64,
+    pub(super) rate: f64,
     /// An upper bound on the distance of a point of the link from the axis in any configuration; 1 for a prismatic joint.
-    reach: f64,
-    slides: bool,
+    pub(super) reach: f64,
+    pub(super) slides: bool,
 }
 
 impl Step {
@@ -146,7 +146,7 @@ pub(super) fn axes_into(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::{ArmModel, Joint, JointKind, Link};
     use mp_cspace::{Configuration, Joints, Rng, Space};
@@ -154,7 +154,7 @@ mod tests {
     use rand::RngExt;
 
     /// A chain of joints of all kinds, with boxes away from their axes.
-    fn chain(rng: &mut Rng) -> ArmModel {
+    pub(in crate::arm) fn chain(rng: &mut Rng) -> ArmModel {
         let mut next = move || rng.random_range(-1.0..1.0);
         let mut model = ArmModel { links: vec![Link::new("0")], ..ArmModel::default() };
         for i in 1..7 {

@@ -3,6 +3,11 @@
 //!
 //! What keeps a distance from all balls keeps it from the mesh. What balls leave undecided is for [`Query`](crate::Query).
 
+mod wide;
+
+pub(crate) use wide::LARGEST;
+pub use wide::{WideCover, wide_apart};
+
 use crate::pose::rotation_matrix;
 use mp_geom::{Sphere, TriMesh, minimal_sphere};
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
@@ -27,7 +32,7 @@ const LARGE: usize = 3000;
 const MOST_CORNERS: usize = 300_000;
 
 /// Balls are enlarged, and distances diminished, by this part of the coordinates, far more than their rounding.
-const ROUNDING: f64 = 1e-12;
+pub(crate) const ROUNDING: f64 = 1e-12;
 
 /// Balls that together contain the surface of a mesh: a hierarchy of two levels, at most [`MOST_BALLS`] groups of at most [`MOST_BALLS`] balls,
 /// with a ball around each group.

@@ -1,0 +1,205 @@
+//! Covers at eight places at a time.
+
+use super::{Cover, ROUNDING};
+use crate::around::Around;
+use crate::wide::{Wide, Wide3, WideFrame, WideKernel, on_widest, sub};
+use mp_geom::Sphere;
+
+/// Where coordinates are larger, products may overflow: nothing is decided then.
+pub(crate) const LARGEST: f64 = 1e100;
+
+/// A cover at eight places. Its balls are placed when they are first needed.
+#[derive(Clone, Debug)]
+pub struct WideCover {
+    /// The ball around the whole mesh.
+    pub(crate) center: Wide3,
+    pub(crate) radius: f64,
+    frame: WideFrame,
+    /// The centres of the balls around groups, none until they are needed; and of balls.
+    groups: Vec<Wide3>,
+    balls: Vec<Wide3>,
+    /// Bit i is set where the balls of group i are placed.
+    are_placed: u32,
+    /// The largest coordinate and the radius.
+    pub(crate) size: f64,
+    /// Bodies that are near: scratch memory.
+    pub(crate) near: Vec<u32>,
+}
+
+const NOWHERE: Wide3 = [Wide::splat(0.0); 3];
+
+impl Default for WideCover {
+    fn default() -> Self {
+        let frame = WideFrame { turn: [NOWHERE; 3], origin: NOWHERE };
+        let (groups, balls) = (Vec::new(), Vec::new());
+        Self {
+            center: NOWHERE,
+            radius: 0.0,
+            frame,
+            groups,
+            balls,
+            are_placed: 0,
+            size: f64::INFINITY,
+            near: Vec::new(),
+        }
+    }
+}
+
+#[inline(always)]
+fn array(ball: &Sphere) -> [f64; 3] {
+    [ball.center.x, ball.center.y, ball.center.z]
+}
+
+/// The distances of points; then of balls, less the radii.
+#[inline(always)]
+fn gap(a: &Wide3, b: &Wide3, radii: f64) -> Wide {
+    let d = sub(a, b);
+    (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt() - radii
+}
+
+impl WideCover {
+    /// Puts a mesh to eight places, where `around` is the ball around it in its own frame.
+    #[inline(always)]
+    pub fn place(&mut self, around: &Sphere, frame: &WideFrame) {
+        self.center = frame.point(&array(around));
+        (self.radius, self.frame, self.are_placed) = (around.radius, *frame, 0);
+        self.groups.clear();
+        let [x, y, z] = self.center.map(Wide::largest);
+        let size = if x >= y { x } else { y };
+        self.size = if size >= z { size } else { z } + around.radius;
+    }
+
+    /// The centres of the balls around the whole mesh.
+    #[must_use]
+    pub fn center(&self) -> &Wide3 {
+        &self.center
+    }
+
+    /// The radius of the ball around the whole mesh.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    #[inline(always)]
+    fn place_groups(&mut self, cover: &Cover) {
+        if self.groups.is_empty() {
+            for group in &cover.groups {
+                self.groups.push(self.frame.point(&array(&group.around)));
+            }
+            self.balls.resize(cover.balls.len(), NOWHERE);
+        }
+    }
+
+    #[inline(always)]
+    fn place_balls(&mut self, cover: &Cover, group: usize) {
+        if self.are_placed >> group & 1 == 0 {
+            for i in cover.groups[group].balls.clone() {
+                self.balls[i] = self.frame.point(&array(&cover.balls[i]));
+            }
+            self.are_placed |= 1 << group;
+        }
+    }
+
+    /// Lower bounds on the distance from what `around` is around: by the ball around the mesh; where that is less than `enough`, by those
+    /// around groups of balls; and where one of these is less, by its balls.
+    #[inline(always)]
+    pub(crate) fn apart_from(&mut self, cover: &Cover, around: &Around, enough: Wide, some: Wide) -> Wide {
+        let whole = around.wide_gap(&self.center, self.radius);
+        let open = whole.less(enough);
+        if open == 0 || cover.groups.is_empty() {
+            return whole;
+        }
+        self.place_groups(cover);
+        let mut least = Wide::splat(f64::INFINITY);
+        for k in 0..cover.groups.len() {
+            let group = around.wide_gap(&self.groups[k], cover.groups[k].around.radius);
+            let mut near = group;
+            if group.less(enough) & open != 0 {
+                self.place_balls(cover, k);
+                let mut balls = Wide::splat(f64::INFINITY);
+                for i in cover.groups[k].balls.clone() {
+                    balls = around.wide_gap(&self.balls[i], cover.balls[i].radius).min(balls);
+                }
+                near = balls.max(group);
+            }
+            least = near.min(least);
+            // Too little in all lanes that are open: the groups left would say no more.
+            if least.less(some) & open == open {
+                return whole;
+            }
+        }
+        least.max(whole)
+    }
+}
+
+/// Of two covers.
+struct FromEachOther<'a> {
+    own: (&'a Cover, &'a mut WideCover),
+    other: (&'a Cover, &'a mut WideCover),
+    enough: Wide,
+    some: Wide,
+}
+
+impl WideKernel for FromEachOther<'_> {
+    type Output = Wide;
+    #[inline(always)]
+    fn run(self) -> Wide {
+        let ((own, a), (others, b)) = (self.own, self.other);
+        let size = a.size + b.size;
+        let is_usual = size < LARGEST;
+        if !is_usual {
+            return Wide::splat(f64::NEG_INFINITY);
+        }
+        let rounding = ROUNDING * size;
+        let enough = self.enough + rounding;
+        let whole = gap(&a.center, &b.center, a.radius + b.radius);
+        let open = whole.less(enough);
+        if open == 0 || own.groups.is_empty() || others.groups.is_empty() {
+            return whole - rounding;
+        }
+        a.place_groups(own);
+        b.place_groups(others);
+        let mut least = Wide::splat(f64::INFINITY);
+        for i in 0..own.groups.len() {
+            let radius = own.groups[i].around.radius;
+            let group = gap(&a.groups[i], &b.center, radius + b.radius);
+            if group.less(enough) & open == 0 {
+                least = group.min(least);
+                continue;
+            }
+            for j in 0..others.groups.len() {
+                let groups = gap(&a.groups[i], &b.groups[j], radius + others.groups[j].around.radius);
+                let mut near = groups;
+                if groups.less(enough) & open != 0 {
+                    a.place_balls(own, i);
+                    b.place_balls(others, j);
+                    let mut balls = Wide::splat(f64::INFINITY);
+                    for k in own.groups[i].balls.clone() {
+                        for l in others.groups[j].balls.clone() {
+                            let radii = own.balls[k].radius + others.balls[l].radius;
+                            balls = gap(&a.balls[k], &b.balls[l], radii).min(balls);
+                        }
+                    }
+                    near = balls.max(groups);
+                }
+                least = near.min(least);
+            }
+            if least.less(self.some) & open == open {
+                return whole - rounding;
+            }
+        }
+        least.max(whole) - rounding
+    }
+}
+
+/// Lower bounds (m) on the distance of two meshes by their covers: by the balls around them, and where that is less than `enough`, by
+/// smaller balls, until all of these are less than `some`.
+pub fn wide_apart(
+    own: (&Cover, &mut WideCover),
+    other: (&Cover, &mut WideCover),
+    enough: Wide,
+    some: Wide,
+) -> Wide {
+    on_widest(FromEachOther { own, other, enough, some })
+}
