@@ -101,7 +101,7 @@ impl Wide {
         bits
     }
 
-    /// The greatest absolute value.
+    /// The greatest absolute value; not a number if any is none.
     #[inline(always)]
     #[must_use]
     pub fn largest(self) -> f64 {
@@ -110,7 +110,7 @@ impl Wide {
         while i < LANES {
             // `max` would drop NaN.
             let x = self.0[i].abs();
-            most = if most >= x { most } else { x };
+            most = if x <= most || most.is_nan() { most } else { x };
             i += 1;
         }
         most
@@ -278,7 +278,11 @@ mod tests {
     fn what_cannot_be_compared_is_not_less() {
         let nan = Wide::splat(f64::NAN);
         assert_eq!(nan.less(Wide::splat(1.0)) | Wide::splat(1.0).less(nan), 0);
-        assert!(nan.largest().is_nan());
+        for k in 0..LANES {
+            let one = Wide(std::array::from_fn(|i| if i == k { f64::NAN } else { -3.0 }));
+            assert!(one.largest().is_nan());
+        }
+        assert_eq!(Wide([1.0, -4.0, 3.0, 0.0, 0.0, 2.0, 0.0, -1.0]).largest(), 4.0);
         assert_eq!(nan.min(Wide::splat(1.0)).0, [1.0; LANES]);
     }
 }

@@ -168,13 +168,14 @@ pub trait MotionClearance<S>: Clearance<S> {
         IntervalClearance::of(self.clearance(interval.middle, enough), interval.margin)
     }
 
-    /// How many intervals of a motion it likes to know [ahead](Self::look_ahead).
+    /// How many intervals of a motion it computes together if it knows them [ahead](Self::look_ahead). 1, the default: none.
     fn intervals_at_once(&self) -> usize {
         1
     }
 
-    /// Says about which intervals of one motion it is likely asked next, in this order: at most
-    /// [`intervals_at_once`](Self::intervals_at_once). No answer depends on it.
+    /// Says which intervals of one motion are likely to be asked about next, in this order: at most
+    /// [`intervals_at_once`](Self::intervals_at_once), the rest is ignored. Answers hold without it too. How much they prove beyond an interval
+    /// may depend on it, so callers say the same each time.
     fn look_ahead(&mut self, _intervals: &[MotionInterval<'_, S>]) {}
 
     /// The least clearance along a motion: what [`least_clearance`](crate::least_clearance) asks for each edge.

@@ -20,7 +20,7 @@ pub struct WideCover {
     balls: Vec<Wide3>,
     /// Bit i is set where the balls of group i are placed.
     are_placed: u32,
-    /// The largest coordinate and the radius.
+    /// The largest coordinates and the radius.
     pub(crate) size: f64,
     /// Bodies that are near: scratch memory.
     pub(crate) near: Vec<u32>,
@@ -64,9 +64,9 @@ impl WideCover {
         self.center = frame.point(&array(around));
         (self.radius, self.frame, self.are_placed) = (around.radius, *frame, 0);
         self.groups.clear();
-        let [x, y, z] = self.center.map(Wide::largest);
-        let size = if x >= y { x } else { y };
-        self.size = if size >= z { size } else { z } + around.radius;
+        let [x, y, z] = &self.center;
+        // A sum keeps what is not a number.
+        self.size = x.largest() + y.largest() + z.largest() + around.radius;
     }
 
     /// The centres of the balls around the whole mesh.

@@ -42,12 +42,16 @@ impl Scene {
     /// Lower bounds (m) on the distance of a mesh at eight places from all bodies: by the balls around it against what is around bodies,
     /// and where that is less than `enough`, by smaller balls, until all of these are less than `some`.
     pub fn wide_apart(&self, cover: &Cover, placed: &mut WideCover, enough: Wide, some: Wide) -> Wide {
+        // Bodies are no larger. Written so that NaN is refused.
+        let is_usual = placed.size < LARGEST;
+        if !is_usual {
+            return Wide::splat(f64::NEG_INFINITY);
+        }
         let most = enough.largest() * (1.0 + 1e-9);
         let at = |i: usize| Point3::from(placed.center().map(|x| x.0[i]));
         let (low, high) = (1..LANES).fold((at(0), at(0)), |(l, h), i| (l.inf(&at(i)), h.sup(&at(i))));
         let (own, least) = (Aabb { min: low, max: high }, Cell::new(f64::INFINITY));
-        let radius =
-            placed.radius() + ROUNDING * (own.min.coords.amax().max(own.max.coords.amax()) + placed.radius());
+        let radius = placed.radius() + ROUNDING * placed.size;
         // Comparisons are written so that NaN is near.
         let enter = |bounds: &Aabb| {
             let size = bounds.min.coords.amax().max(bounds.max.coords.amax());
@@ -93,11 +97,6 @@ impl WideKernel for FromBodies<'_> {
             let Some(body) = &self.bodies[*index as usize] else { continue };
             let around = &body.around;
             let rounding = ROUNDING * (own + around.size());
-            // Written so that NaN is refused.
-            let is_usual = own + around.size() < LARGEST;
-            if !is_usual {
-                return Wide::splat(f64::NEG_INFINITY);
-            }
             let wanted = self.enough + rounding;
             let apart = self.placed.apart_from(self.cover, around, wanted, self.some) - rounding;
             least = apart.min(least);

@@ -106,81 +106,103 @@ where
         })
     }
 
+    /// Takes the next parts to ask about from those not yet covered, and puts the middles of their intervals into `middles`. Returns how many.
+    fn next_parts(
+        &mut self,
+        [from, to]: [&C::State; 2],
+        pieces: impl Fn(f64) -> f64,
+        parts: &mut [Part],
+        middles: &mut [Option<C::State>],
+    ) -> usize {
+        let mut count = 0;
+        while count < parts.len()
+            && let Some((a, b)) = self.uncovered.pop_front()
+        {
+            let at = 0.5 * (a + b);
+            // An odd number of pieces has one in the middle.
+            let pieces = pieces(b - a);
+            if pieces % 2.0 == 0.0 {
+                self.uncovered.extend([(a, at), (at, b)]);
+                continue;
+            }
+            let middle = middles[count].get_or_insert_with(|| from.clone());
+            self.space.interpolate_into(from, to, at, middle);
+            parts[count] = Part { a, b, at, half: 0.5 * (b - a) / pieces };
+            count += 1;
+        }
+        count
+    }
+
+    /// How far to either side of its middle the interval of `part` is shown free, as a fraction of the motion, on which no point travels farther
+    /// than `travel` (m); and a bound on the clearance there. An answer if the motion is not shown free.
+    fn covered(
+        &mut self,
+        interval: &MotionInterval<'_, C::State>,
+        part: &Part,
+        travel: f64,
+    ) -> Result<(f64, f64), MotionCheck> {
+        let MotionInterval { from, to, margin, half, .. } = *interval;
+        match self.valid.interval_clearance(interval) {
+            IntervalClearance::Collision { at: offset } => {
+                let at = part.at + half * offset;
+                let mut q = from.clone();
+                self.space.interpolate_into(from, to, at, &mut q);
+                // This state may differ by rounding from the one the robot found in contact.
+                let collides = offset == 0.0 || self.valid.in_contact(&q);
+                Err(if collides { MotionCheck::Collision { at } } else { MotionCheck::Unproven { at } })
+            }
+            IntervalClearance::TooClose { at: offset } => {
+                Err(MotionCheck::Unproven { at: part.at + half * offset })
+            }
+            IntervalClearance::Unproven if interval.travel <= margin => {
+                Err(MotionCheck::Unproven { at: part.at })
+            }
+            IntervalClearance::Unproven => Ok((0.0, f64::INFINITY)),
+            IntervalClearance::FreeOver { part } => Ok((part, margin)),
+            IntervalClearance::Free { clearance } => {
+                let reach = (clearance - margin) / travel;
+                let covered = if clearance >= interval.travel + margin { reach.max(half) } else { reach };
+                // The clearance at the ends of the covered part, as far as that is in this part.
+                let farthest = covered.min(part.b - part.at) * travel;
+                Ok((covered, (clearance - farthest).max(margin)))
+            }
+        }
+    }
+
     /// Covers the motion with intervals proved free. No point of the robot travels farther than `travel`
     /// (m) on it.
     fn cover(&mut self, from: &C::State, to: &C::State, travel: f64) -> MotionCheck {
         let margin = self.margin();
         let stride = self.stride.max(margin);
+        // How many equal intervals of at most two strides a part takes.
+        let pieces = |part: f64| (0.5 * part * travel / stride).ceil().max(1.0);
         let mut least = f64::INFINITY;
-        let at_once = self.valid.intervals_at_once().min(MOST_AT_ONCE);
+        let at_once = self.valid.intervals_at_once().clamp(1, MOST_AT_ONCE);
         let mut middles = [const { None }; MOST_AT_ONCE];
         let mut parts = [Part::default(); MOST_AT_ONCE];
         self.uncovered.clear();
         self.uncovered.push_back((0.0, 1.0));
         loop {
-            let mut count = 0;
-            while count < at_once
-                && let Some((a, b)) = self.uncovered.pop_front()
-            {
-                let at = 0.5 * (a + b);
-                // How many equal intervals of at most two strides it takes; an odd number has one in the middle.
-                let pieces = (0.5 * (b - a) * travel / stride).ceil().max(1.0);
-                if pieces % 2.0 == 0.0 {
-                    self.uncovered.extend([(a, at), (at, b)]);
-                    continue;
-                }
-                let middle = middles[count].get_or_insert_with(|| from.clone());
-                self.space.interpolate_into(from, to, at, middle);
-                parts[count] = Part { a, b, at, half: 0.5 * (b - a) / pieces };
-                count += 1;
+            let count = self.next_parts([from, to], pieces, &mut parts[..at_once], &mut middles);
+            if count == 0 {
+                return MotionCheck::Free { clearance: least };
             }
             let interval = |k: usize| {
-                let Part { half, .. } = parts[k];
+                let half = parts[k].half;
                 let middle = middles[k].as_ref().unwrap_or(from);
                 MotionInterval { from, to, middle, half, travel: half * travel, margin }
             };
-            if count == 0 {
-                break;
-            } else if count > 1 {
+            if count > 1 {
                 let all: [_; MOST_AT_ONCE] = std::array::from_fn(|k| interval(k.min(count - 1)));
                 self.valid.look_ahead(&all[..count]);
             }
-            for (k, Part { a, b, at, half }) in parts[..count].iter().copied().enumerate() {
-                let interval = interval(k);
-                let covered = match self.valid.interval_clearance(&interval) {
-                    IntervalClearance::Collision { at: offset } => {
-                        let at = at + half * offset;
-                        let mut q = from.clone();
-                        self.space.interpolate_into(from, to, at, &mut q);
-                        // This state may differ by rounding from the one the robot found in contact.
-                        let collides = offset == 0.0 || self.valid.in_contact(&q);
-                        return if collides {
-                            MotionCheck::Collision { at }
-                        } else {
-                            MotionCheck::Unproven { at }
-                        };
-                    }
-                    IntervalClearance::TooClose { at: offset } => {
-                        return MotionCheck::Unproven { at: at + half * offset };
-                    }
-                    IntervalClearance::Unproven if interval.travel <= margin => {
-                        return MotionCheck::Unproven { at };
-                    }
-                    IntervalClearance::Unproven => 0.0,
-                    IntervalClearance::FreeOver { part } => {
-                        least = least.min(margin);
-                        part
-                    }
-                    IntervalClearance::Free { clearance } => {
-                        let reach = (clearance - margin) / travel;
-                        let covered =
-                            if clearance >= interval.travel + margin { reach.max(half) } else { reach };
-                        // The clearance at the ends of the covered part, as far as that is in this part.
-                        let farthest = covered.min(b - at) * travel;
-                        least = least.min((clearance - farthest).max(margin));
-                        covered
-                    }
+            for (k, part) in parts[..count].iter().enumerate() {
+                let (covered, clearance) = match self.covered(&interval(k), part, travel) {
+                    Ok(found) => found,
+                    Err(answer) => return answer,
                 };
+                least = least.min(clearance);
+                let Part { a, b, at, .. } = *part;
                 // The uncovered rest on either side, unless it is rounding.
                 if at - covered > a + ROUNDING {
                     self.uncovered.push_back((a, at - covered));
@@ -190,7 +212,6 @@ where
                 }
             }
         }
-        MotionCheck::Free { clearance: least }
     }
 }
 
@@ -442,6 +463,58 @@ mod tests {
             let bound = 4.0 * (b - a).norm() / tolerance + 2.0;
             assert!(f64::from(check.valid.0.queries.get()) <= bound);
         }
+    }
+
+    /// The same whatever number of intervals a robot asks to know ahead, of which it is told all that follow.
+    #[test]
+    fn keeps_its_promises_when_it_looks_ahead() {
+        struct Ahead(Discs, usize, VecDeque<(Vector2<f64>, f64)>);
+        impl Clearance<Vector2<f64>> for Ahead {
+            fn clearance(&mut self, q: &Vector2<f64>, enough: f64) -> f64 {
+                self.0.clearance(q, enough)
+            }
+        }
+        impl MotionClearance<Vector2<f64>> for Ahead {
+            fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
+                self.0.motion_bound(from, to)
+            }
+            fn intervals_at_once(&self) -> usize {
+                self.1
+            }
+            fn look_ahead(&mut self, intervals: &[MotionInterval<'_, Vector2<f64>>]) {
+                assert!((2..=self.1).contains(&intervals.len()) && self.2.is_empty());
+                self.2.extend(intervals.iter().map(|i| (*i.middle, i.half)));
+            }
+            fn interval_clearance(
+                &mut self,
+                interval: &MotionInterval<'_, Vector2<f64>>,
+            ) -> IntervalClearance {
+                if let Some(told) = self.2.pop_front() {
+                    assert_eq!(told, (*interval.middle, interval.half));
+                }
+                self.0.interval_clearance(interval)
+            }
+        }
+        let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0]).unwrap();
+        let mut rng = Rng::seed(13);
+        let tolerance = 0.01;
+        let (mut free, mut refused) = (0, 0);
+        for round in 0..4000 {
+            let discs = (0..3).map(|_| (space.sample_uniform(&mut rng), 0.1)).collect();
+            let discs = Discs { discs, ..Discs::default() };
+            let (a, b) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
+            let exact = discs.along(&a, &b);
+            let ahead = Ahead(discs, [0, 1, 2, 7, 100][round % 5], VecDeque::new());
+            let mut check = Certified::new(&space, ahead, tolerance).unwrap();
+            if check.check_motion(&a, &b).is_free() {
+                assert!(exact >= tolerance / 2.0);
+                free += 1;
+            } else {
+                assert!(exact < tolerance);
+                refused += 1;
+            }
+        }
+        assert!(free > 500 && refused > 500, "{free} {refused}");
     }
 
     /// Motions never pass walls of thickness 0.1 to 1e-12, from either side.

@@ -79,6 +79,7 @@ impl WideIntervals {
 
     /// Prepares up to eight intervals of one motion, between configurations.
     pub(super) fn prepare<Q: Coordinates>(&mut self, robot: &SharedArm, intervals: &[MotionInterval<'_, Q>]) {
+        let intervals = &intervals[..intervals.len().min(LANES)];
         let Some(first) = intervals.first() else { return };
         let kinematics = &robot.kinematics;
         let [from, to] = [first.from, first.to].map(Q::as_slice);
