@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The version of the form in which tallies are written.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Counts of problems.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -33,6 +33,8 @@ pub struct Counts {
     pub out_of_time: u64,
     /// Damaged paths that the oracle refused, and that the verifier was asked to refuse too.
     pub damaged: u64,
+    /// Paths whose certificate was made and replayed.
+    pub certified: u64,
     /// What was found wrong with the program, or with the oracle.
     pub findings: u64,
     /// The least distance of two bodies that the oracle saw on a path, as a part of the size of the world.
@@ -53,6 +55,7 @@ impl Counts {
         }
         self.requests_refused += trial.refused_requests;
         self.damaged += trial.damaged;
+        self.certified += u64::from(trial.certified);
         self.out_of_time += u64::from(trial.out_of_time);
         self.findings += trial.findings.len() as u64;
         self.seconds += seconds;
@@ -68,10 +71,10 @@ impl Counts {
     }
 
     fn row(&self, name: &str) -> String {
-        let Self { problems, solved, unsolved, ends_refused, edges, damaged, findings, .. } = self;
+        let Self { problems, solved, unsolved, ends_refused, edges, damaged, certified, findings, .. } = self;
         let least = self.least.map_or("–".to_owned(), |least| format!("{least:.0e}"));
         let numbers =
-            [*problems, *solved, *unsolved, *ends_refused, *edges, *damaged, *findings].map(grouped);
+            [*problems, *solved, *unsolved, *ends_refused, *edges, *damaged, *certified, *findings].map(grouped);
         format!("| {name} | {} | {least} |\n", numbers.join(" | "))
     }
 }
@@ -91,8 +94,8 @@ pub fn grouped(number: u64) -> String {
 }
 
 /// The head of a table.
-const HEAD: &str = "problems | solved | unsolved | ends refused | edges shown free | damaged paths refused | findings | least distance / size |
-|---|---|---|---|---|---|---|---|---|";
+const HEAD: &str = "problems | solved | unsolved | ends refused | edges shown free | damaged paths refused | certificates replayed | findings | least distance / size |
+|---|---|---|---|---|---|---|---|---|---|";
 
 /// The counts of a run, and where it goes on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -5,7 +5,7 @@ use crate::oracle::{Fault, Judged, rows_of};
 use crate::request::request;
 use crate::worlds::{Kind, World};
 use mp_io::InMemory;
-use mp_plan::{Finish, MetricName, PathFileKind, PathRows, RelaxField, Report, Request, Scene, StoppedBy};
+use mp_plan::{Finish, Interrupt, MetricName, PathFileKind, PathRows, RelaxField, Report, Request, Scene, StoppedBy};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -56,6 +56,8 @@ pub struct Trial {
     pub judged: Option<Judged>,
     /// Damaged paths that the oracle refused, and that the verifier was asked to refuse too.
     pub damaged: u64,
+    /// Whether a certificate of the path was made, and replayed by the program that shares no code with what made it.
+    pub certified: bool,
     /// Requests that were refused before one suited the robot.
     pub refused_requests: u64,
     /// Whether the clock ended the run, which it should not.
@@ -127,6 +129,7 @@ impl Problem {
             outcome: Outcome::Refused,
             judged: None,
             damaged: 0,
+            certified: false,
             refused_requests: 0,
             out_of_time: false,
             request: None,
@@ -189,8 +192,31 @@ impl Problem {
                 PathRows { format: scene.path_format(), columns: report.columns.clone(), rows: rows.clone() };
             let scene = scene.keeping(request.clearance).unwrap_or(scene);
             self.judge_path(&scene, &path, &mut rest, &mut trial);
+            Self::certify(&scene, &path, report.clearance.unwrap_or(0.0), &mut trial);
         }
         trial
+    }
+
+    /// The certificate of a path can be made and replayed, and is about this path in this scene.
+    fn certify(scene: &Scene, path: &PathRows, clearance: f64, trial: &mut Trial) {
+        let certificate = match scene.certificate(path, clearance, &Interrupt::never()) {
+            Ok(certificate) => certificate,
+            Err(error) => {
+                trial.find("no certificate", error.report());
+                return;
+            }
+        };
+        let text = certificate.to_json();
+        let replayed = mp_verify_certificate::verify(text)
+            .and_then(|_| mp_verify_certificate::is_of_path(text, &path.to_text()));
+        if let Err(why) = replayed {
+            trial.find("certificate refused", why);
+        }
+        match scene.certificate_differences(text) {
+            Ok(differences) if differences.is_empty() => trial.certified = true,
+            Ok(differences) => trial.find("certificate of another scene", differences.join("; ")),
+            Err(error) => trial.find("certificate of another scene", error.report()),
+        }
     }
 
     /// A clearance (m) to keep, in one problem of five: less than start and goals have.
