@@ -124,10 +124,10 @@ fn still(model: &MotionModel, frame: usize) -> Option<Isometry3<f64>> {
     }
 }
 
-/// Whether a body is balls around points, each of which is a piece.
+/// Whether a body is balls around points, each of which is a piece: a triangle of three times the point.
 fn is_cloud(body: &ModelBody) -> bool {
-    let is_point = |piece: &Vec<u32>| piece.iter().all(|corner| *corner == piece[0]);
-    body.radius > 0.0 && body.pieces.len() > 1 && body.pieces.iter().all(is_point)
+    let is_point = |piece: &Vec<u32>| piece.len() == 3 && piece.iter().all(|corner| *corner == piece[0]);
+    body.radius > 0.0 && !body.pieces.is_empty() && body.pieces.iter().all(is_point)
 }
 
 /// The pieces of bodies as triangles, of which some have no area; in the world, or in the frame of the only one.

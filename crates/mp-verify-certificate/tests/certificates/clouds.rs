@@ -51,6 +51,20 @@ fn a_body_passes_a_window_in_a_cloud() {
     );
 }
 
+/// A cloud of one point is as large as its ball, and what else stands still is no larger for it.
+#[test]
+fn a_cloud_of_one_point_is_one_ball() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "[robot]\nbox = [0.1, 0.1, 0.1]\nbounds = [[-1, -1, -1], [1, 1, 1]]\n[motion]\nstart = [-0.7, 0, 0, 0, 0, 0]\ngoal = [0.7, 0, 0, 0, 0, 0]\n\
+        [[obstacle]]\nname = \"point\"\npoints = { radius = 0.3, at = [[0, 0, 0.9]] }\n\
+        [[obstacle]]\nname = \"floor\"\nbox = [1.9, 1.9, 0.1]\npose = [0, 0, -0.3, 0, 0, 0]\n";
+    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    let scene = Scene::find(folder.path().join("scene.toml").to_str().unwrap()).unwrap();
+    // The floor is 0.2 m below the robot: less than the radius of the point.
+    let proved = verify(&certified_in(&scene).1).unwrap();
+    assert!(proved.clearance > Some(0.0), "{proved:?}");
+}
+
 /// A camera sees the arm too.
 #[test]
 fn points_on_the_robot_are_left_out() {
