@@ -197,6 +197,13 @@ pub fn sub(a: &Wide3, b: &Wide3) -> Wide3 {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
+/// `a + times · b`.
+#[inline(always)]
+#[must_use]
+pub fn add(a: &Wide3, b: &Wide3, times: f64) -> Wide3 {
+    [a[0] + b[0] * times, a[1] + b[1] * times, a[2] + b[2] * times]
+}
+
 /// Eight poses: the rows of the rotation matrices, and the origins.
 #[derive(Clone, Copy, Debug)]
 pub struct WideFrame {

@@ -73,8 +73,8 @@ impl Counts {
     fn row(&self, name: &str) -> String {
         let Self { problems, solved, unsolved, ends_refused, edges, damaged, certified, findings, .. } = self;
         let least = self.least.map_or("–".to_owned(), |least| format!("{least:.0e}"));
-        let numbers =
-            [*problems, *solved, *unsolved, *ends_refused, *edges, *damaged, *certified, *findings].map(grouped);
+        let numbers = [*problems, *solved, *unsolved, *ends_refused, *edges, *damaged, *certified, *findings]
+            .map(grouped);
         format!("| {name} | {} | {least} |\n", numbers.join(" | "))
     }
 }

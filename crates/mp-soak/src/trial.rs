@@ -5,7 +5,9 @@ use crate::oracle::{Fault, Judged, rows_of};
 use crate::request::request;
 use crate::worlds::{Kind, World};
 use mp_io::InMemory;
-use mp_plan::{Finish, Interrupt, MetricName, PathFileKind, PathRows, RelaxField, Report, Request, Scene, StoppedBy};
+use mp_plan::{
+    Finish, Interrupt, MetricName, PathFileKind, PathRows, RelaxField, Report, Request, Scene, StoppedBy,
+};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -333,7 +335,8 @@ impl Problem {
         for _ in 0..3 {
             let mut damaged = rows.to_vec();
             damage(&mut damaged, case.extent, rest);
-            let judged = case.judge_keeping(&damaged, scene.clearance_kept());
+            let read: Vec<Vec<f64>> = damaged.iter().map(|row| case.at_limits(row)).collect();
+            let judged = case.judge_keeping(&read, scene.clearance_kept());
             // The verifier is asked about ends a little off too; it allows more.
             let Some(fault @ (Fault::Contact { .. } | Fault::Invalid(_))) = &judged.fault else { continue };
             trial.damaged += 1;

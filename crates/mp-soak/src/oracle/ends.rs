@@ -42,6 +42,25 @@ impl Case {
         Ok(())
     }
 
+    /// A row as `mp check` reads it: joints that are no more than a millionth (rad or m) beyond a limit are at it.
+    pub fn at_limits(&self, row: &[f64]) -> Vec<f64> {
+        const HAIR: f64 = 1e-6;
+        let first = match &self.moves {
+            Moves::Tree(tree) if tree.floats => 6,
+            Moves::Tree(_) => 0,
+            _ => return row.to_vec(),
+        };
+        let mut row = row.to_vec();
+        for (x, limits) in row.iter_mut().zip(&self.limits).skip(first) {
+            if let Some([low, high]) = limits
+                && (*x - x.clamp(*low, *high)).abs() <= HAIR
+            {
+                *x = x.clamp(*low, *high);
+            }
+        }
+        row
+    }
+
     /// Whether a row is within its limits, but for the input that leads there.
     pub(super) fn check_limits(&self, row: &Row<'_>) -> Result<(), String> {
         self.check_numbers(&row.moment)?;
