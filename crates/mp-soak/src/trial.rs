@@ -213,6 +213,7 @@ impl Problem {
             .and_then(|_| mp_verify_certificate::is_of_path(text, &path.to_text()));
         if let Err(why) = replayed {
             trial.find("certificate refused", why);
+            return;
         }
         match scene.certificate_differences(text) {
             Ok(differences) if differences.is_empty() => trial.certified = true,
