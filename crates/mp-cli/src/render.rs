@@ -24,7 +24,7 @@ pub(crate) fn run(args: &Render) -> Result<bool, Error> {
         if let Some(fault) = verdict.faults.first() {
             // The place is in the warning.
             let what = fault.split(" between ").next().unwrap_or(fault);
-            caption += &format!("; NOT A VALID PATH: {}", mp_io::shortened(what, 80));
+            caption += &format!(", NOT A VALID PATH: {}", mp_io::shortened(what, 80));
         }
     }
     let (path, verdict) = judged.as_ref().map(|(path, verdict)| (path, verdict)).unzip();
