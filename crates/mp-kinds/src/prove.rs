@@ -23,8 +23,6 @@ struct Shapes {
     others: Rc<RefMesh>,
     /// The frame of the other, if it moves.
     frame: Option<usize>,
-    /// The sum of the radii of both.
-    radius: f64,
 }
 
 /// Proves the edges of a path, each pair of bodies by itself.
@@ -53,7 +51,6 @@ impl<'m> Prover<'m> {
             meshes.push((bodies.to_vec(), Rc::clone(&mesh)));
             Ok(mesh)
         };
-        let radius = |i: &usize| if is_cloud(&model.bodies[*i]) { 0.0 } else { model.bodies[*i].radius };
         let shapes = model.pairs.iter().map(|pair| {
             let frame = pair.others.first().map(|i| model.bodies[*i].frame);
             let frame = frame.filter(|frame| still(model, *frame).is_none());
@@ -61,7 +58,6 @@ impl<'m> Prover<'m> {
                 body: mesh(&[pair.body], false)?,
                 others: mesh(&pair.others, frame.is_none())?,
                 frame,
-                radius: radius(&pair.body) + pair.others.iter().map(radius).fold(0.0, f64::max),
             })
         });
         let shapes = shapes.collect::<Result<_, String>>()?;
@@ -95,14 +91,13 @@ impl<'m> Prover<'m> {
             // A little more than is asked for: other programs round in other ways.
             let needed = (moved.fold(0.0, f64::max) + self.margin) * (1.0 + 1e-9);
             let pose = shapes.frame.map_or_else(Isometry3::identity, |frame| frames[frame]);
-            let enough = (needed + shapes.radius) * (1.0 + 1e-9);
-            match shapes.body.at_least(&frames[body.frame], &shapes.others, &pose, enough) {
+            match shapes.body.at_least(&frames[body.frame], &shapes.others, &pose, needed * (1.0 + 1e-9)) {
                 Ok(_) => parts.push([end, needed]),
-                Err(found) if found - shapes.radius <= 0.0 => {
+                Err(found) if found <= 0.0 => {
                     let names: Vec<&str> = others().map(|other| other.name.as_str()).take(4).collect();
                     return Err(format!("{} hits something of {}", body.name, names.join(", ")));
                 }
-                Err(found) if found - shapes.radius < self.margin || end - begin < SHORTEST => {
+                Err(found) if found < self.margin || end - begin < SHORTEST => {
                     return Err(format!("{} comes too near to contact", body.name));
                 }
                 Err(_) => open.extend([[at, end], [begin, at]]),
@@ -124,13 +119,10 @@ fn still(model: &MotionModel, frame: usize) -> Option<Isometry3<f64>> {
     }
 }
 
-/// Whether a body is balls around points, each of which is a piece: a triangle of three times the point.
-fn is_cloud(body: &ModelBody) -> bool {
-    let is_point = |piece: &Vec<u32>| piece.len() == 3 && piece.iter().all(|corner| *corner == piece[0]);
-    body.radius > 0.0 && !body.pieces.is_empty() && body.pieces.iter().all(is_point)
-}
-
-/// The pieces of bodies as triangles, of which some have no area; in the world, or in the frame of the only one.
+/// The pieces of bodies as triangles, of which some have no area, and as balls; in the world, or in the frame of the only one.
+///
+/// # Errors
+/// Where that makes no mesh, or a body with a radius has other pieces than points.
 fn merged<'b>(
     model: &MotionModel,
     bodies: impl Iterator<Item = &'b ModelBody>,
@@ -139,7 +131,11 @@ fn merged<'b>(
     let (mut vertices, mut triangles, mut clouds) = (Vec::new(), Vec::new(), Vec::new());
     for body in bodies {
         let pose = still(model, body.frame).filter(|_| in_world).unwrap_or_else(Isometry3::identity);
-        if is_cloud(body) {
+        if body.radius > 0.0 {
+            let is_point = |piece: &Vec<u32>| piece.iter().all(|corner| *corner == piece[0]);
+            if !body.pieces.iter().all(is_point) {
+                return Err(format!("{} is rounded, but no balls", body.name));
+            }
             let center = |piece: &Vec<u32>| pose * Point3::from(body.vertices[piece[0] as usize]);
             let points = body.pieces.iter().map(center).collect();
             clouds.push(TriMesh::of_balls(points, body.radius).map_err(|e| e.to_string())?);

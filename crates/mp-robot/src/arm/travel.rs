@@ -7,8 +7,8 @@
 //! - near one configuration, by the distance there plus how far the joints between have moved the point since:
 //!   [`Chain::near`].
 //!
-//! The second is smaller where the arm is folded. The smaller of the two is used. Where eight intervals are looked at together, how far all
-//! joints together move the link away is bounded too: see `near` in the file `wide.rs`.
+//! The second is smaller where the arm is folded. The smaller of the two is used. Where eight intervals are looked at together, a third bound
+//! adds the velocities of all joints as vectors: `near` in `wide.rs`.
 //!
 //! A base that floats moves all links, as one more joint above all others would:
 //! [`BaseTravel`](super::kinematics::BaseTravel).

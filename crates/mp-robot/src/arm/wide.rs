@@ -45,7 +45,7 @@ pub(super) struct WideIntervals {
     /// For each joint, sines and cosines; of those that slide, how far.
     values: Vec<[Wide; 2]>,
     /// How far each coordinate goes, with its sign.
-    travels: Vec<f64>,
+    displacements: Vec<f64>,
 }
 
 impl WideIntervals {
@@ -126,12 +126,13 @@ impl WideIntervals {
         };
         self.values.clear();
         self.values.extend(kinematics.frames.iter().map(value));
-        self.travels.clear();
-        self.travels.extend((0..kinematics.coordinates.len()).map(|i| kinematics.displacement(i, from, to)));
+        self.displacements.clear();
+        self.displacements
+            .extend((0..kinematics.coordinates.len()).map(|i| kinematics.displacement(i, from, to)));
         on_widest(Place {
             robot,
             values: &self.values,
-            travels: &self.travels,
+            displacements: &self.displacements,
             halves: Wide(self.halves),
             base: &self.base,
             frames: &mut self.frames,
@@ -221,7 +222,7 @@ struct Place<'a> {
     robot: &'a SharedArm,
     /// For each joint, sines and cosines; of those that slide, how far.
     values: &'a [[Wide; 2]],
-    travels: &'a [f64],
+    displacements: &'a [f64],
     halves: Wide,
     base: &'a BaseTravel,
     frames: &'a mut Vec<WideFrame>,
@@ -275,22 +276,29 @@ impl WideKernel for Place<'_> {
 }
 
 impl Place<'_> {
-    /// For each number of joints of the chain of body `i`, a bound on how far they move its points away from where they are in the middle of
-    /// the interval; returns the last. It is that of [`Chain::near`], a sum of what each joint does, or this one where it is less: what joints do
-    /// to a point is a sum of vectors, which are partly opposite, so the speed in the middle is less than the sum of their lengths. At a time t
-    /// from there a point has moved by at most t · speed + t²/2 · acceleration. The ball around the body turns with all joints together; and a
-    /// joint that turns at u adds `2·u·s + u²·r` to the acceleration of a point at most `r` from its axis that the joints below move at `s`.
+    /// Bounds (m) how far the joints move the points of body `i` from where they are in the middle of the interval: the first joint of its
+    /// chain, the first two, and so on. Returns the bound for all of them. Two bounds are computed, and the lesser is taken:
+    ///
+    /// - that of [`Chain::near`]: the sum of how far each joint alone moves them;
+    /// - by Taylor's theorem: a point moves no farther than `h·v + h²/2·a` over half the interval, `h` of the motion, where `v` is its speed in
+    ///   the middle and `a` bounds its acceleration. Velocities add as vectors, so that joints that move the body in opposite directions cancel.
+    ///
+    /// For the second, `v` is at most the speed of the middle of the ball around the body, and its radius times the angular speed. A joint
+    /// that turns by `u` over the motion adds at most `2·u·s` (Coriolis) and `u²·r` (centripetal) to the acceleration of a point at most `r`
+    /// from its axis, which the joints nearer to the body move at a speed of at most `s`.
     #[inline(always)]
     fn near(&mut self, chain: &Chain, i: usize) -> Wide {
         let (center, radius) = (*self.covers[i].center(), self.covers[i].radius());
         let zero = Wide::splat(0.0);
         let mut sum = zero;
         self.near.push(sum);
-        // Of the middle of the ball, and of its turn, at the middle of the interval, over the whole motion; and the most of any point.
-        let (mut velocity, mut turn) = ([zero; 3], [zero; 3]);
+        // Of the ball, in the middle of the interval. The unit of time is the whole motion.
+        let (mut velocity, mut angular) = ([zero; 3], [zero; 3]);
+        // Bounds for every point, all over the interval.
         let (mut speed, mut acceleration) = (zero, zero);
         for step in &chain.steps {
-            let rate = self.travels[step.coordinate] * self.robot.kinematics.frames[step.frame - 1].scale;
+            let rate =
+                self.displacements[step.coordinate] * self.robot.kinematics.frames[step.frame - 1].scale;
             if rate != 0.0 {
                 let (axis, by) = (self.axes[step.frame - 1], rate.abs());
                 let reach = if step.slides {
@@ -299,7 +307,7 @@ impl Place<'_> {
                 } else {
                     let across = cross(&axis, &sub(&center, &self.frames[step.frame].origin));
                     velocity = add(&velocity, &across, rate);
-                    turn = add(&turn, &axis, rate);
+                    angular = add(&angular, &axis, rate);
                     (dot(&across, &across).sqrt() + radius + sum).min(Wide::splat(step.reach))
                 };
                 let own = reach * by;
@@ -307,9 +315,9 @@ impl Place<'_> {
                     acceleration = acceleration + (speed * 2.0 + own) * by;
                 }
                 speed = speed + own;
-                let first = dot(&velocity, &velocity).sqrt() + dot(&turn, &turn).sqrt() * radius;
-                // Vectors that are nearly opposite leave little more than their rounding.
-                let curved = first + self.halves * acceleration * 0.5 + speed * (ROUND_UP - 1.0);
+                let in_middle = dot(&velocity, &velocity).sqrt() + dot(&angular, &angular).sqrt() * radius;
+                // Velocities that cancel leave the rounding of their parts.
+                let curved = in_middle + self.halves * acceleration * 0.5 + speed * (ROUND_UP - 1.0);
                 sum = (sum + self.halves * own * ROUND_UP).min(self.halves * curved * ROUND_UP);
             }
             self.near.push(sum);
