@@ -100,10 +100,12 @@ class InScene:
         """
         self._of_scene().save(file, self._itself())
 
-    def trajectory(self, *, velocity: float = 1.0, acceleration: float = 1.0, deviation: float = 0.1) -> Trajectory:
+    def trajectory(
+        self, *, velocity: float = 1.0, acceleration: float = 1.0, jerk: float = 1.0, deviation: float = 0.1
+    ) -> Trajectory:
         """Give the path of an arm times, and prove the curve that a controller runs: see :meth:`Scene.trajectory`."""
-        scene = self._of_scene()
-        return scene.trajectory(self._itself(), velocity=velocity, acceleration=acceleration, deviation=deviation)
+        pace = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk, "deviation": deviation}
+        return self._of_scene().trajectory(self._itself(), **pace)
 
     def _itself(self) -> Report | Finished:
         assert isinstance(self, Report | Finished)
@@ -317,8 +319,10 @@ class Trajectory:
         Seconds.
     positions, velocities : ndarray, shape (n, joints)
         Radians or metres, and these per second.
+    accelerations : ndarray, shape (n, joints), or (0, joints) where jerk is not limited
+        Radians or metres per second squared.
     curve : str
-        The curve between the points: ``cubic``, with the positions and velocities of both.
+        The curve between the points, which has all that both have: ``cubic``, or ``quintic`` with accelerations.
     clearance : float
         A lower bound along the curve from its proof, metres; ``inf`` where there is nothing to hit.
     tightened : tuple of TightCorner
@@ -331,6 +335,7 @@ class Trajectory:
     times: Array
     positions: Array
     velocities: Array
+    accelerations: Array
     curve: str
     clearance: float
     tightened: tuple[TightCorner, ...]
@@ -347,12 +352,16 @@ class Trajectory:
         self._scene._save_trajectory(file, self)
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return it as a table: the time, then the positions and the velocities of the joints, named with units."""
+        """Return it as a table: the time, then positions, velocities and accelerations of joints, named with units."""
         import pandas as pd
 
         names = [f"{c.name} ({c.unit})" for c in self.columns]
         names += [f"{c.name}_velocity ({c.unit}/s)" for c in self.columns]
-        table = pd.DataFrame(np.hstack([self.positions, self.velocities]), columns=names)
+        rows = [self.positions, self.velocities]
+        if len(self.accelerations):
+            names += [f"{c.name}_acceleration ({c.unit}/s²)" for c in self.columns]
+            rows.append(self.accelerations)
+        table = pd.DataFrame(np.hstack(rows), columns=names)
         table.insert(0, "time (s)", self.times)
         return table
 
@@ -360,7 +369,9 @@ class Trajectory:
 def trajectory(text: str, scene: Scene) -> Trajectory:
     """Make a trajectory of its JSON form."""
     m: dict[str, Any] = json.loads(text)
-    rows = {name: np.array(m[name], dtype=np.float64) for name in ("times", "positions", "velocities")}
+    names = ("times", "positions", "velocities", "accelerations")
+    rows = {name: np.array(m[name], dtype=np.float64) for name in names}
+    rows["accelerations"] = rows["accelerations"].reshape(-1, len(scene.columns))
     return Trajectory(
         columns=tuple(scene.columns),
         **rows,

@@ -938,7 +938,13 @@ class Scene:
         return verdict(self._native.check_trajectory(os.fspath(file), curve))
 
     def trajectory(
-        self, path: PathRows, *, velocity: float = 1.0, acceleration: float = 1.0, deviation: float = 0.1
+        self,
+        path: PathRows,
+        *,
+        velocity: float = 1.0,
+        acceleration: float = 1.0,
+        jerk: float = 1.0,
+        deviation: float = 0.1,
     ) -> Trajectory:
         """Give a path of an arm times: as fast as the limits of its joints allow, with rounded corners; and prove the curve.
 
@@ -946,8 +952,8 @@ class Scene:
         ----------
         path : array_like, shape (n, columns), or Report or Finished
             A path that is free.
-        velocity, acceleration : float
-            The part of the limits that is used.
+        velocity, acceleration, jerk : float
+            The part of the limits that is used. Jerk is not limited where the robot has no limits of it.
         deviation : float
             How far from corners it may pass, in radians and metres of all joints together, where that is free; 0: it stops
             at each.
@@ -958,11 +964,13 @@ class Scene:
         >>> bool(made.duration > 1), bool(abs(made.velocities).max() <= 0.5 * 3.1416)
         (True, True)
         """
-        return trajectory(self._native.time(self._path(path), velocity, acceleration, deviation), self)
+        scales = (velocity, acceleration, jerk)
+        return trajectory(self._native.time(self._path(path), scales, deviation), self)
 
     def _save_trajectory(self, file: File, made: Trajectory) -> None:
         name = os.fspath(file)
-        text = self._native.trajectory_text(name, made.times.tolist(), made.positions, made.velocities)
+        rows = (made.positions, made.velocities, made.accelerations)
+        text = self._native.trajectory_text(name, made.times.tolist(), *rows)
         self._native.write(name, text.encode())
 
     def explain(self, configuration: ArrayLike) -> Explanation:

@@ -398,24 +398,25 @@ impl Scene {
         &self,
         py: Python<'_>,
         path: PyReadonlyArray2<'_, f64>,
-        velocity: f64,
-        acceleration: f64,
+        scales: [f64; 3],
         deviation: f64,
     ) -> PyResult<String> {
         let path = self.rows(rows(&path));
         let cancel = mp_plan::Cancel::new();
         let interrupt = Interrupt::new(cancel.clone());
-        let pace = Pace { velocity, acceleration, deviation };
+        let [velocity, acceleration, jerk] = scales;
+        let pace = Pace { velocity, acceleration, jerk, deviation };
         let (timed, raised) = self.work(py, &cancel, None, |_| self.scene.time(&path, &pace, &interrupt))?;
         raised.map_or(Ok(()), Err)?;
         let TimedPath { trajectory, tightened, clearance, notes, .. } = timed.to_python()?;
-        let Knots { times, positions, velocities, .. } = trajectory.knots();
+        let Knots { times, positions, velocities, accelerations } = trajectory.knots();
         // Infinity, where there is nothing to hit, is no number in JSON.
         let clearance = clearance.is_finite().then_some(clearance);
         json(&serde_json::json!({
             "times": times,
             "positions": positions,
             "velocities": velocities,
+            "accelerations": accelerations,
             "curve": trajectory.interpolation().to_string(),
             "clearance": clearance,
             "tightened": tightened,
@@ -430,6 +431,7 @@ impl Scene {
         times: Vec<f64>,
         positions: PyReadonlyArray2<'_, f64>,
         velocities: PyReadonlyArray2<'_, f64>,
+        accelerations: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<String> {
         let Some(kind) = TrajectoryKind::of(&file) else {
             let message = format!("{}: name a file that ends in .csv, .json or .yaml", file.display());
@@ -437,8 +439,8 @@ impl Scene {
         };
         let columns = self.scene.columns();
         let joints = columns.iter().map(|column| (column.name.as_str(), column.unit.as_str()));
-        let (positions, velocities) = (rows(&positions), rows(&velocities));
-        let knots = Knots { times, positions, velocities, ..Knots::default() };
+        let [positions, velocities, accelerations] = [&positions, &velocities, &accelerations].map(rows);
+        let knots = Knots { times, positions, velocities, accelerations };
         let made = Trajectory::of_controller(joints, knots);
         let made = made.map_err(|e| PyValueError::new_err(e.to_string()))?;
         Ok(mp_plan::trajectory_text(&made, kind))

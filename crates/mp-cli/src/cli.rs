@@ -294,6 +294,9 @@ pub(crate) struct PaceOptions {
     /// The part of the limits of acceleration that it uses.
     #[arg(long, value_name = "PART", default_value = "1", value_parser = positive_number)]
     pub(crate) acceleration_scale: f64,
+    /// The part of the limits of jerk that it uses; where the robot has none, jerk is not limited.
+    #[arg(long, value_name = "PART", default_value = "1", value_parser = positive_number)]
+    pub(crate) jerk_scale: f64,
     /// How far from corners of the path it may pass, in radians and metres of all joints together, where that is free; 0: it stops at each.
     #[arg(long, value_name = "DISTANCE", default_value = "0.1")]
     pub(crate) deviation: f64,
@@ -302,8 +305,8 @@ pub(crate) struct PaceOptions {
 impl PaceOptions {
     /// As libraries take them.
     pub(crate) fn pace(&self) -> Pace {
-        let Self { velocity_scale: velocity, acceleration_scale: acceleration, deviation } = *self;
-        Pace { velocity, acceleration, deviation }
+        let Self { velocity_scale, acceleration_scale, jerk_scale, deviation } = *self;
+        Pace { velocity: velocity_scale, acceleration: acceleration_scale, jerk: jerk_scale, deviation }
     }
 }
 

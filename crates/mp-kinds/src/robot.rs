@@ -347,9 +347,9 @@ pub trait Description: Motion {
     /// The least and the largest value of each number, in the order of the columns; `None` for an angle without limits.
     fn limits(&self) -> Vec<Option<[f64; 2]>>;
 
-    /// How fast each number may change (rad/s or m/s), and how fast its velocity may (rad/s² or m/s²), where that is known. `None`, the default, if
+    /// The limits of velocity (rad/s or m/s), acceleration (per s²) and jerk (per s³) of each number, where they are known. `None`, the default, if
     /// there are no [trajectories](mp_time::Trajectory) of the robot: then its numbers are not joints that move by themselves.
-    fn rates(&self) -> Option<Vec<[Option<f64>; 2]>> {
+    fn rates(&self) -> Option<Vec<[Option<f64>; 3]>> {
         None
     }
 

@@ -14,7 +14,7 @@ impl Scene {
         self.robot.rates().is_some()
     }
 
-    /// Gives a path times: goes along it as fast as the limits of velocity and acceleration allow, with rounded corners (TOPP-RA), and proves the
+    /// Gives a path times: goes along it as fast as the limits of velocity, acceleration and jerk allow, with rounded corners (TOPP-RA), and proves the
     /// curve that a controller runs between the points of the trajectory. The same path and pace give the same trajectory.
     ///
     /// ```
@@ -34,8 +34,8 @@ impl Scene {
         time(&*self.robot, path, pace, interrupt)
     }
 
-    /// Verifies the curve of a trajectory from the start to a goal: that it is free, and within the limits of position, velocity and acceleration
-    /// that are known. Its joints must be those of [`columns`](Self::columns), in this order.
+    /// Verifies the curve of a trajectory from the start to a goal: that it is free, and within the limits of position, velocity, acceleration
+    /// and jerk that are known. Its joints must be those of [`columns`](Self::columns), in this order.
     ///
     /// # Errors
     /// When the trajectory is of another robot, or the robot has none. One that is not free is no error: see [`Verdict::free`].

@@ -60,7 +60,7 @@ mod verify;
 pub use arm::{
     Arm, ArmContact, ArmError, ArmGap, ArmModel, ArmVerifier, AttachedLink, Coordinate, FreeTurn,
     IK_PRECISION, InverseKinematics, Joint, JointFrame, JointKind, Kinematics, Link, Mimic, NamedState,
-    PLANAR_NUMBERS, PoseGoal, SampledPair, SampledPairs, SrdfGroups, TouchReason, UrdfError,
+    PLANAR_NUMBERS, PoseGoal, Rate, SampledPair, SampledPairs, SrdfGroups, TouchReason, UrdfError,
 };
 pub use counters::CheckCounters;
 pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};

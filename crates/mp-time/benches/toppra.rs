@@ -15,7 +15,7 @@ const JOINTS: usize = 7;
 
 /// The least and the middle of the times (µs) of a function.
 fn microseconds(mut work: impl FnMut()) -> [f64; 2] {
-    let mut times: Vec<f64> = (0..2001)
+    let mut times: Vec<f64> = (0..501)
         .map(|_| {
             let began = Instant::now();
             work();
@@ -56,4 +56,9 @@ fn main() {
         black_box(timed(black_box(&path), &limits, (0..JOINTS).map(|_| ("j", "rad"))).ok());
     });
     println!("the timing of a path with five corners: {least:.1} µs at best, {middle:.1} µs in the middle");
+    let limits = limits.with_jerk(numbers(10.0, 100.0)).expect("they are above zero");
+    let [least, middle] = microseconds(|| {
+        black_box(timed(black_box(&path), &limits, (0..JOINTS).map(|_| ("j", "rad"))).ok());
+    });
+    println!("the same within jerk: {least:.1} µs at best, {middle:.1} µs in the middle");
 }

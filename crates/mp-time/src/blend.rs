@@ -16,6 +16,8 @@ pub struct BlendedPath {
     lengths: Vec<f64>,
     /// How far before and behind each corner its parabola begins and ends; zero where the robot stops.
     reaches: Vec<f64>,
+    /// How far corners may be cut.
+    allowed: f64,
 }
 
 /// A corner whose directions differ by less is none: the robot need not slow down there.
@@ -73,7 +75,7 @@ impl BlendedPath {
             (0.5 * lengths[i].min(lengths[i + 1])).min(4.0 * deviation.max(0.0) / turn.max(STRAIGHT))
         };
         let reaches = (0..kept.len() - 2).map(reach).collect();
-        Ok(Self { points: kept, directions, lengths, reaches })
+        Ok(Self { points: kept, directions, lengths, reaches, allowed: deviation.max(0.0) })
     }
 
     /// How many corners there are: all points but the ends.
@@ -86,6 +88,11 @@ impl BlendedPath {
     #[must_use]
     pub fn corner(&self, corner: usize) -> &[f64] {
         &self.points[corner + 1]
+    }
+
+    /// By how much corners may be cut (the Euclidean norm of all joints).
+    pub(crate) fn allowed(&self) -> f64 {
+        self.allowed
     }
 
     /// Whether the robot stops at a corner.

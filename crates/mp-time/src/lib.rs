@@ -2,7 +2,7 @@
 //!
 //! A [`Trajectory`] has times, positions and, where known, velocities and accelerations, and says which [curve](Interpolation) a controller
 //! runs between them. A [`BlendedPath`] is a path with its corners rounded within a bound, and [`timed`] goes along it as fast as
-//! [`Limits`] of velocity and acceleration allow, by [`toppra`].
+//! [`Limits`] of velocity, acceleration and jerk allow, by [`toppra`] and a mean over a window of time.
 //!
 //! ```
 //! use mp_time::{BlendedPath, Limits, timed};
@@ -15,10 +15,11 @@
 //! # Ok::<(), mp_time::TimeError>(())
 //! ```
 //!
-//! Robots moved by torques, and limits of jerk, are not here.
+//! Robots moved by torques are not here.
 
 mod blend;
 mod error;
+mod jerk;
 mod polynomial;
 mod timing;
 pub mod toppra;

@@ -150,6 +150,11 @@ impl Trajectory {
         &self.knots
     }
 
+    /// The points, and nothing else.
+    pub(crate) fn into_knots(self) -> Knots {
+        self.knots
+    }
+
     /// The curve between points.
     #[must_use]
     pub fn interpolation(&self) -> Interpolation {
@@ -213,14 +218,15 @@ impl Trajectory {
         let time = time.clamp(first, last);
         let piece = self.piece(time);
         let x = time - self.knots.times[piece];
-        let numbers = |derivatives: usize| {
-            let number = |joint| {
-                let c = (0..derivatives).fold(self.seconds(piece, joint), |c, _| derivative(&c));
-                value(&c, x)
-            };
-            (0..self.joints.len()).map(number).collect()
-        };
-        Sample { position: numbers(0), velocity: numbers(1), acceleration: numbers(2) }
+        let mut sample = Sample { position: Vec::new(), velocity: Vec::new(), acceleration: Vec::new() };
+        for joint in 0..self.joints.len() {
+            let c = self.seconds(piece, joint);
+            let v = derivative(&c);
+            sample.position.push(value(&c, x));
+            sample.velocity.push(value(&v, x));
+            sample.acceleration.push(value(&derivative(&v), x));
+        }
+        sample
     }
 
     /// Between which values a joint stays from one time (s) to another: exact but for rounding, which is allowed for.
@@ -265,6 +271,40 @@ impl Trajectory {
         self.largest(joint, 2)
     }
 
+    /// The largest change of the acceleration of a joint within a millisecond, per second (rad/s³ or m/s³), and when: the jerk that a controller
+    /// sees at 1 kHz, where jumps of the acceleration count too. Before and behind the trajectory the robot stands still.
+    #[must_use]
+    pub fn jerkiest(&self, joint: usize) -> Extreme {
+        const WINDOW: f64 = 1e-3;
+        let [first, last] = self.span();
+        let of = |time: f64| match time >= first && time < last {
+            true => self.acceleration(joint, time),
+            false => 0.0,
+        };
+        let mut most = Extreme { amount: 0.0, time: first };
+        let mut look = |from: f64| {
+            let amount = (of(from + WINDOW) - of(from)).abs() / WINDOW;
+            if amount > most.amount {
+                most = Extreme { amount, time: (from + 0.5 * WINDOW).clamp(first, last) };
+            }
+        };
+        self.knots.times.iter().flat_map(|t| [*t, t - 0.5 * WINDOW, t - WINDOW]).for_each(&mut look);
+        (0..=(self.duration() / WINDOW) as usize).for_each(|i| look(first + WINDOW * i as f64));
+        most
+    }
+
+    /// The acceleration of a joint at a time (s); at a point that of the piece behind it.
+    pub(crate) fn acceleration(&self, joint: usize, time: f64) -> f64 {
+        let piece = self.piece(time);
+        value(&derivative(&derivative(&self.seconds(piece, joint))), time - self.knots.times[piece])
+    }
+
+    /// The acceleration of a joint just before a point that is not the first.
+    pub(crate) fn acceleration_before(&self, joint: usize, point: usize) -> f64 {
+        let length = self.knots.times[point] - self.knots.times[point - 1];
+        value(&derivative(&derivative(&self.seconds(point - 1, joint))), length)
+    }
+
     fn largest(&self, joint: usize, derivatives: usize) -> Extreme {
         let mut most = Extreme { amount: 0.0, time: self.knots.times[0] };
         for (piece, times) in self.knots.times.windows(2).enumerate() {
@@ -291,13 +331,22 @@ impl Trajectory {
         if !(rate > 0.0 && count < MOST) {
             return Err(TimeError::Limit { what: "the rate", joint: 0, limit: rate });
         }
-        let mut knots = Knots {
-            times: (0..count as usize).map(|i| first + i as f64 / rate).collect(),
-            ..Knots::default()
-        };
-        knots.times.push(last);
-        for time in knots.times.clone() {
-            let sample = self.at(time);
+        self.with_points((0..count as usize).map(|i| first + i as f64 / rate).chain([last]))
+    }
+
+    /// The same curve with points at whole nanoseconds, as messages of ROS have them.
+    ///
+    /// # Errors
+    /// When points are nearer to each other than that.
+    pub fn in_nanoseconds(&self) -> Result<Self, TimeError> {
+        self.with_points(self.knots.times.iter().map(|t| (*t * 1e9).round() / 1e9))
+    }
+
+    /// The curve through what this one has at other times (s).
+    fn with_points(&self, times: impl Iterator<Item = f64>) -> Result<Self, TimeError> {
+        let mut knots = Knots { times: times.collect(), ..Knots::default() };
+        for time in &knots.times {
+            let sample = self.at(*time);
             knots.positions.push(sample.position);
             if self.interpolation != Interpolation::Linear {
                 knots.velocities.push(sample.velocity);
@@ -307,15 +356,6 @@ impl Trajectory {
             }
         }
         Self::new(self.joints(), knots, self.interpolation)
-    }
-
-    /// The same with times in whole nanoseconds, as messages of ROS have them.
-    ///
-    /// # Errors
-    /// When points are nearer to each other than that.
-    pub fn in_nanoseconds(mut self) -> Result<Self, TimeError> {
-        self.knots.times.iter_mut().for_each(|t| *t = (*t * 1e9).round() / 1e9);
-        Self::new(self.joints(), self.knots.clone(), self.interpolation)
     }
 
     /// The same curve in space, `factor` times as slow.

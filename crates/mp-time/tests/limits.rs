@@ -32,6 +32,35 @@ fn sampled(trajectory: &Trajectory, joint: usize) -> Vec<f64> {
     unreachable!()
 }
 
+/// Positions of a quintic trajectory at 1 kHz, by Hermite's basis of degree five, and where it ends for a moment before and behind it.
+fn sampled_quintic(trajectory: &Trajectory, joint: usize) -> Vec<f64> {
+    let knots = trajectory.knots();
+    let (times, [first, last]) = (&knots.times, trajectory.span());
+    let mut positions = vec![knots.positions[0][joint]; 5];
+    let mut piece = 0;
+    for i in 0..=((last - first) * 1e3) as usize {
+        let t = first + i as f64 * 1e-3;
+        while piece + 2 < times.len() && times[piece + 1] < t {
+            piece += 1;
+        }
+        let h = times[piece + 1] - times[piece];
+        let u = (t - times[piece]) / h;
+        let (u3, w) = (u * u * u, 1.0 - u);
+        let w3 = w * w * w;
+        let side = |point: usize, a: f64, b: f64, sign: f64| {
+            let [q, v, acc] =
+                [&knots.positions, &knots.velocities, &knots.accelerations].map(|rows| rows[point][joint]);
+            // `a` is how far from the point, as a part of the piece, and `b` the third power of the rest.
+            b * (q * (1.0 + 3.0 * a + 6.0 * a * a)
+                + sign * h * v * a * (1.0 + 3.0 * a)
+                + 0.5 * h * h * acc * a * a)
+        };
+        positions.push(side(piece, u, w3, 1.0) + side(piece + 1, w, u3, -1.0));
+    }
+    positions.extend([knots.positions[times.len() - 1][joint]; 5]);
+    positions
+}
+
 /// A path as planners make it: some lines of very different lengths, at times with a point twice, in a line, or back the same way.
 fn path(rng: &mut Rng, joints: usize) -> Vec<Vec<f64>> {
     let mut points = vec![(0..joints).map(|_| rng.random_range(-2.0..2.0)).collect::<Vec<f64>>()];
@@ -112,6 +141,89 @@ fn limits_hold_at_1_khz() {
 }
 
 #[test]
+fn limits_of_jerk_hold_at_1_khz() {
+    let mut rng = Rng::seed(45);
+    let mut timed_paths = 0;
+    for case in 0..200 {
+        let joints = rng.random_range(1..8);
+        let points = path(&mut rng, joints);
+        let Ok(mut blended) = BlendedPath::new(&points, rng.random_range(0.0..0.2)) else { continue };
+        for corner in 0..blended.corners() {
+            blended.tighten(corner, [1.0, 0.1, 0.0][rng.random_range(0..3)]);
+        }
+        let mut drawn = |low: f64, high: f64| -> Vec<f64> {
+            (0..joints).map(|_| mp_math::exp(rng.random_range(mp_math::ln(low)..mp_math::ln(high)))).collect()
+        };
+        let (velocity, acceleration, mut jerk) = (drawn(0.5, 3.0), drawn(0.5, 15.0), drawn(1.0, 8000.0));
+        if joints > 1 {
+            jerk[0] = f64::INFINITY;
+        }
+        let limits =
+            Limits::new(velocity.clone(), acceleration.clone()).unwrap().with_jerk(jerk.clone()).unwrap();
+        let timing = timed(&blended, &limits, (0..joints).map(|_| ("j", "rad"))).unwrap();
+        let made = timing.trajectory.in_nanoseconds().unwrap();
+        for joint in 0..joints {
+            let q = sampled_quintic(&made, joint);
+            let of = |f: &dyn Fn(&[f64]) -> f64| q.windows(4).map(|w| f(w).abs()).fold(0.0, f64::max);
+            // Differences round to 1e-16 · 8 / 1e-9.
+            for (what, most, limit, rounding) in [
+                ("velocity", of(&|w| (w[1] - w[0]) / 1e-3), velocity[joint], 1e-12),
+                ("acceleration", of(&|w| (w[2] - 2.0 * w[1] + w[0]) / 1e-6), acceleration[joint], 1e-8),
+                ("jerk", of(&|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]) / 1e-9), jerk[joint], 1e-5),
+            ] {
+                assert!(most <= limit * (1.0 + 1e-3) + rounding, "{case} {joint}: {what} {most} of {limit}");
+            }
+            let ends = [made.at(0.0).position[joint], made.at(made.duration()).position[joint]];
+            assert!((ends[0] - points[0][joint]).abs() < 1e-12);
+            assert!((ends[1] - points[points.len() - 1][joint]).abs() < 1e-9);
+        }
+        for (corner, time) in timing.corners.iter().enumerate() {
+            let at = made.at(*time).position;
+            let off =
+                at.iter().zip(blended.corner(corner)).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+            assert!((off - timing.deviations[corner]).abs() < 1e-3 && off < 0.211, "{case}: {off}");
+        }
+        timed_paths += 1;
+    }
+    assert!(timed_paths > 190, "{timed_paths}");
+}
+
+/// How long a motion of one joint takes at least, from standing still to standing still.
+fn least_seconds(far: f64, v: f64, a: f64, j: f64) -> f64 {
+    // The largest acceleration that is reached on the way to full speed, and how far that takes.
+    let full = |a: f64, v: f64| v * (v / a + a / j);
+    let a = a.min((v * j).sqrt());
+    if full(a, v) <= far {
+        return far / v + v / a + a / j;
+    }
+    // Without full speed: v · (v / a + a / j) = far, or without full acceleration.
+    let slower = 0.5 * (-a * a / j + (a * a * a * a / (j * j) + 4.0 * a * far).sqrt());
+    match slower >= a * a / j {
+        true => 2.0 * (slower / a + a / j),
+        false => 4.0 * mp_math::cbrt(0.5 * far / j),
+    }
+}
+
+#[test]
+fn straight_motions_within_jerk_are_not_much_longer_than_the_shortest() {
+    let (mut rng, mut ratios) = (Rng::seed(46), Vec::new());
+    for _ in 0..300 {
+        let mut drawn =
+            |low: f64, high: f64| mp_math::exp(rng.random_range(mp_math::ln(low)..mp_math::ln(high)));
+        let (far, v, a, j) = (drawn(0.01, 5.0), drawn(0.3, 3.0), drawn(0.5, 15.0), drawn(1.0, 8000.0));
+        let limits = Limits::new(vec![v], vec![a]).unwrap().with_jerk(vec![j]).unwrap();
+        let path = BlendedPath::new(&[vec![0.0], vec![far]], 0.1).unwrap();
+        let made = timed(&path, &limits, [("a", "rad")]).unwrap().trajectory;
+        ratios.push(made.duration() / least_seconds(far, v, a, j));
+    }
+    ratios.sort_by(f64::total_cmp);
+    let (least, middle, most) = (ratios[0], ratios[ratios.len() / 2], ratios[ratios.len() - 1]);
+    assert!(least > 0.999 && middle < 1.02 && most < 1.25, "{least} {middle} {most}");
+    assert!(Limits::new(vec![1.0], vec![1.0]).unwrap().with_jerk(vec![0.0]).is_err());
+    assert!(Limits::new(vec![1.0], vec![1.0]).unwrap().with_jerk(vec![1.0; 2]).is_err());
+}
+
+#[test]
 fn a_straight_motion_takes_what_the_formula_says() {
     // 1 rad at 1 rad/s and 2 rad/s²: half a second up, half a second down, and the rest at full speed. The grid has the switch a little late.
     let path = BlendedPath::new(&[vec![0.0], vec![1.0]], 0.1).unwrap();
@@ -120,7 +232,7 @@ fn a_straight_motion_takes_what_the_formula_says() {
     assert!((timing.trajectory.duration() - 1.5).abs() < 2e-3, "{}", timing.trajectory.duration());
     // Three pieces are exact.
     assert!(timing.trajectory.knots().times.len() <= 6);
-    let half = limits.scaled(0.5, 0.25).unwrap();
+    let half = limits.scaled(0.5, 0.25, 1.0).unwrap();
     let slow = timed(&path, &half, [("a", "rad")]).unwrap().trajectory;
     assert!((slow.duration() - 3.0).abs() < 4e-3, "{}", slow.duration());
     let errors = [(0.0, 1.0), (1.0, 0.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)];

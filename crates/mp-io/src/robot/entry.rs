@@ -51,10 +51,9 @@ pub struct RobotEntry {
     pub moving: Option<MovingJoints>,
     /// How far (rad or m) the start may be beyond a limit; 0 when it is not given.
     pub limit_tolerance: f64,
-    /// How fast joints may move (rad/s or m/s), in place of what the URDF says: of all joints where there is no name. Later ones count.
-    pub max_velocity: Vec<(Option<String>, f64)>,
-    /// How fast velocities of joints may change (rad/s² or m/s²).
-    pub max_acceleration: Vec<(Option<String>, f64)>,
+    /// Limits of velocity (rad/s or m/s), acceleration (per s²) and jerk (per s³), in place of what the URDF says: of all joints where there is no
+    /// name. Later ones count.
+    pub max_rates: [Vec<(Option<String>, f64)>; 3],
     /// How the robot moves, if it moves by inputs.
     pub driven: Option<Driven>,
     pub(super) places: RobotPlaces,
@@ -78,8 +77,7 @@ pub(super) struct RobotPlaces {
     pub(super) limits: Vec<Range<usize>>,
     pub(super) hold: Vec<Range<usize>>,
     pub(super) moving: Range<usize>,
-    pub(super) velocity: Range<usize>,
-    pub(super) acceleration: Range<usize>,
+    pub(super) rates: [Range<usize>; 3],
 }
 
 impl RobotPlaces {
@@ -90,8 +88,7 @@ impl RobotPlaces {
             RobotPart::Robot => &self.robot,
             RobotPart::Base => &self.base,
             RobotPart::Moving => &self.moving,
-            RobotPart::Velocity => &self.velocity,
-            RobotPart::Acceleration => &self.acceleration,
+            RobotPart::Rates(i) => self.rates.get(i).unwrap_or(&self.urdf),
             RobotPart::Limits(i) => self.limits.get(i).unwrap_or(&self.urdf),
             RobotPart::Hold(i) => self.hold.get(i).unwrap_or(&self.urdf),
             RobotPart::Urdf => &self.urdf,
@@ -116,10 +113,8 @@ pub enum RobotPart {
     Hold(usize),
     /// Which joints move.
     Moving,
-    /// The limits of velocity.
-    Velocity,
-    /// The limits of acceleration.
-    Acceleration,
+    /// The limits of velocity (0), of acceleration (1) or of jerk (2).
+    Rates(usize),
 }
 
 #[derive(Deserialize)]
@@ -143,6 +138,7 @@ pub(super) struct RobotTable {
     limit_tolerance: Option<Spanned<f64>>,
     max_velocity: Option<Spanned<RateEntry>>,
     max_acceleration: Option<Spanned<RateEntry>>,
+    max_jerk: Option<Spanned<RateEntry>>,
     kind: Option<Spanned<String>>,
     duration: Option<Spanned<f64>>,
     speeds: Option<Spanned<Vec<f64>>>,
@@ -157,7 +153,7 @@ enum SrdfEntry {
     Is(bool),
 }
 
-/// A limit of velocity or acceleration: one for all joints, or for some of them.
+/// A limit of velocity, acceleration or jerk: one for all joints, or for some of them.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected a number, or one for each joint: `{ joint1 = 1.5 }`")]
 enum RateEntry {
@@ -436,9 +432,11 @@ fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) 
             return Err(source.error(&spanned.span(), message).expected(expected));
         }
     }
-    let (max_velocity, velocity) = rates_of(source, "the limit of velocity", robot.max_velocity)?;
-    let (max_acceleration, acceleration) =
-        rates_of(source, "the limit of acceleration", robot.max_acceleration)?;
+    let (mut max_rates, mut places_of_rates) = <([Rates; 3], [Range<usize>; 3])>::default();
+    let rates = [robot.max_velocity, robot.max_acceleration, robot.max_jerk];
+    for (i, (entry, what)) in rates.into_iter().zip(["velocity", "acceleration", "jerk"]).enumerate() {
+        (max_rates[i], places_of_rates[i]) = rates_of(source, &format!("the limit of {what}"), entry)?;
+    }
     let places = RobotPlaces {
         urdf: robot.urdf.span(),
         srdf: srdf_span,
@@ -447,8 +445,7 @@ fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) 
         limits: places_of_limits,
         hold: places_of_hold,
         moving: moving_span,
-        velocity,
-        acceleration,
+        rates: places_of_rates,
     };
     Ok(RobotEntry {
         name: robot.name,
@@ -464,8 +461,7 @@ fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) 
         hold,
         moving,
         limit_tolerance,
-        max_velocity,
-        max_acceleration,
+        max_rates,
         driven,
         places,
     })

@@ -8,8 +8,8 @@ use std::path::Path;
 /// The name of the file.
 const NAME: &str = "joint_limits.yaml";
 
-/// Limits of velocity (rad/s or m/s) and acceleration (rad/s² or m/s²) of joints, by name.
-pub type JointRates = Vec<(String, [Option<f64>; 2])>;
+/// Limits of velocity (rad/s or m/s), acceleration (per s²) and jerk (per s³) of joints, by name.
+pub type JointRates = Vec<(String, [Option<f64>; 3])>;
 
 /// What the file beside an SRDF says; nothing if there is none, or it cannot be read.
 pub(super) fn beside(files: &dyn Files, srdf: &Path) -> JointRates {
@@ -36,7 +36,7 @@ fn rates(file: &Value) -> JointRates {
         limit.filter(|limit| is_there && *limit > 0.0)
     };
     let each = |(name, joint): (&String, &Value)| {
-        (name.clone(), [rate(joint, "velocity"), rate(joint, "acceleration")])
+        (name.clone(), ["velocity", "acceleration", "jerk"].map(|what| rate(joint, what)))
     };
     joints.into_iter().flatten().map(each).collect()
 }
@@ -48,11 +48,11 @@ mod tests {
     #[test]
     fn limits_that_are_there_are_read() {
         let text = "default_velocity_scaling_factor: 0.1\njoint_limits:\n  lift:\n    has_velocity_limits: true\n    max_velocity: 2\n    \
-                    has_acceleration_limits: true\n    max_acceleration: 3.75\n  elbow:\n    has_velocity_limits: false\n    max_velocity: 1.5\n";
+                    has_acceleration_limits: true\n    max_acceleration: 3.75\n    has_jerk_limits: true\n    max_jerk: 50\n  elbow:\n    has_velocity_limits: false\n    max_velocity: 1.5\n";
         let value = yaml::value("l", text).unwrap();
         assert_eq!(
             rates(&value),
-            [("elbow".to_owned(), [None, None]), ("lift".to_owned(), [Some(2.0), Some(3.75)])]
+            [("elbow".to_owned(), [None; 3]), ("lift".to_owned(), [Some(2.0), Some(3.75), Some(50.0)])]
         );
         // Degrees by a tag that not all readers know are no radians.
         assert!(yaml::value("l", &text.replace("max_velocity: 2", "max_velocity: !degrees 120")).is_err());

@@ -57,7 +57,7 @@ impl RobotProblem {
         let same = |(a, b): (&RobotEntry, &RobotEntry)| {
             (&a.name, a.base, a.floating, a.planar) == (&b.name, b.base, b.floating, b.planar)
                 && (&a.limits, &a.hold, &a.driven) == (&b.limits, &b.hold, &b.driven)
-                && (&a.max_velocity, &a.max_acceleration) == (&b.max_velocity, &b.max_acceleration)
+                && a.max_rates == b.max_rates
                 && (a.limit_tolerance, b.limit_tolerance) == (0.0, 0.0)
                 // Where not all joints move, the start may say where the others are held.
                 && (&a.moving, &b.moving) == (&None, &None)

@@ -161,12 +161,13 @@ fn faults_have_their_place() {
 }
 
 #[test]
-fn velocities_and_accelerations_have_limits() {
-    let text = "max_velocity = 1.5\nmax_acceleration = { elbow = 4, wrist = 2 }\nlimits = ";
+fn velocities_accelerations_and_jerk_have_limits() {
+    let text = "max_velocity = 1.5\nmax_acceleration = { elbow = 4, wrist = 2 }\nmax_jerk = 50\nlimits = ";
     let (_dir, path) = folder(&GOOD.replace("limits = ", text));
     let robot = RobotProblem::load(&path).unwrap().file.robots.remove(0);
-    assert_eq!(robot.max_velocity, [(None, 1.5)]);
-    assert_eq!(robot.max_acceleration, [(Some("elbow".to_owned()), 4.0), (Some("wrist".to_owned()), 2.0)]);
+    let [velocity, acceleration, jerk] = robot.max_rates;
+    assert_eq!((velocity, jerk), (vec![(None, 1.5)], vec![(None, 50.0)]));
+    assert_eq!(acceleration, [(Some("elbow".to_owned()), 4.0), (Some("wrist".to_owned()), 2.0)]);
 }
 
 #[test]

@@ -539,7 +539,7 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         });
         base.chain(self.arm.coordinates().iter().map(|c| limits(c.range))).collect()
     }
-    fn rates(&self) -> Option<Vec<[Option<f64>; 2]>> {
+    fn rates(&self) -> Option<Vec<[Option<f64>; 3]>> {
         let rates = || self.arm.coordinates().iter().map(|c| self.arm.model().rates(&c.name)).collect();
         C::BASE.is_empty().then(rates)
     }

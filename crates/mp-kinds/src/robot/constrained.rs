@@ -287,7 +287,7 @@ impl Description for Constrained {
         fn end_error(&self, end: End, message: String, help: String) -> Error;
         fn columns(&self) -> Vec<Column>;
         fn limits(&self) -> Vec<Option<[f64; 2]>>;
-        fn rates(&self) -> Option<Vec<[Option<f64>; 2]>>;
+        fn rates(&self) -> Option<Vec<[Option<f64>; 3]>>;
         fn path_format(&self) -> PathFormat;
         fn row(&self, q: &Configuration) -> Vec<f64>;
         fn state(&self, row: &[f64]) -> Configuration;

@@ -15,7 +15,7 @@ use mp_cspace::{
 use mp_kinds::counted::Counted;
 use mp_kinds::proof::verified;
 use mp_kinds::turns::turning;
-use mp_time::{BlendedPath, Interpolation, Knots, Limits, TimeError, Trajectory, timed};
+use mp_time::{BlendedPath, Extreme, Interpolation, Knots, Limits, TimeError, Trajectory, timed};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicU64;
@@ -27,6 +27,8 @@ pub struct Pace {
     pub velocity: f64,
     /// The part of the limits of acceleration that is used, above 0.
     pub acceleration: f64,
+    /// The part of the limits of jerk that is used, above 0. Without such limits jerk is not limited.
+    pub jerk: f64,
     /// How far from a corner of the path the trajectory may pass (rad and m: the Euclidean norm of all joints). Zero: it stops at each corner.
     pub deviation: f64,
 }
@@ -34,7 +36,7 @@ pub struct Pace {
 impl Default for Pace {
     /// All of the limits; corners are cut by 0.1, as `path_tolerance` of MoveIt has it.
     fn default() -> Self {
-        Self { velocity: 1.0, acceleration: 1.0, deviation: 0.1 }
+        Self { velocity: 1.0, acceleration: 1.0, jerk: 1.0, deviation: 0.1 }
     }
 }
 
@@ -63,6 +65,9 @@ pub struct TimedPath {
     /// Which limits were taken where none are known, in sentences.
     pub notes: Vec<String>,
 }
+
+/// What has limits, in the order of [`Robot::rates`].
+const RATES: [&str; 3] = ["velocity", "acceleration", "jerk"];
 
 /// The limits that are taken where none is known (rad/s or m/s, and these per s): those of MoveIt.
 const UNKNOWN: f64 = 1.0;
@@ -134,7 +139,7 @@ pub(crate) fn time(
                 let tightened = (0..blended.corners()).filter(tight).map(|corner| TightCorner {
                     configuration: turns[corner],
                     time: timing.corners[corner],
-                    deviation: blended.deviation(corner),
+                    deviation: timing.deviations[corner],
                 });
                 let (tightened, corners) = (tightened.collect(), blended.corners());
                 return Ok(TimedPath { trajectory, corners, tightened, clearance, notes });
@@ -207,8 +212,8 @@ fn no_curves(kind: &dyn Robot) -> Error {
         .help("arms have them whose base stands still or moves in the plane, and that do not move by inputs")
 }
 
-/// How fast each number may change, and how fast its velocity may, where that is known.
-pub(crate) fn rates(kind: &dyn Robot) -> Result<Vec<[Option<f64>; 2]>, Error> {
+/// The limits of velocity, acceleration and jerk of each number, where they are known.
+pub(crate) fn rates(kind: &dyn Robot) -> Result<Vec<[Option<f64>; 3]>, Error> {
     kind.rates().ok_or_else(|| no_curves(kind))
 }
 
@@ -233,12 +238,15 @@ fn limits(kind: &dyn Robot, pace: &Pace) -> Result<(Limits, Vec<String>), Error>
         Error::new(format!("the part of the limits of {what} is {part}"))
             .help("give a number above 0, such as 0.5")
     };
-    for (what, part) in [("velocity", pace.velocity), ("acceleration", pace.acceleration)] {
+    let parts = [pace.velocity, pace.acceleration, pace.jerk];
+    for (what, part) in RATES.into_iter().zip(parts) {
         if !(part > 0.0 && part.is_finite()) {
             return Err(wrong(what, part));
         }
     }
-    Ok((Limits::new(velocity, acceleration)?.scaled(pace.velocity, pace.acceleration)?, notes))
+    let jerk = rates.iter().map(|rate| rate[2].unwrap_or(f64::INFINITY)).collect();
+    let limits = Limits::new(velocity, acceleration)?.with_jerk(jerk)?;
+    Ok((limits.scaled(pace.velocity, pace.acceleration, pace.jerk)?, notes))
 }
 
 /// The least clearance along a trajectory.
@@ -326,9 +334,9 @@ pub struct TrajectoryVerdict {
 pub struct LimitFault {
     /// The joint.
     pub joint: String,
-    /// `position`, `velocity` or `acceleration`.
+    /// `position`, `velocity`, `acceleration` or `jerk`: the change of the acceleration in a millisecond.
     pub of: String,
-    /// The limit (rad or m, and these per s and s²).
+    /// The limit (rad or m, and these per s, s² and s³).
     pub limit: f64,
     /// The farthest that it goes.
     pub reached: f64,
@@ -341,6 +349,7 @@ impl LimitFault {
         let per = match self.of.as_str() {
             "velocity" => "/s",
             "acceleration" => "/s²",
+            "jerk" => "/s³",
             _ => "",
         };
         let [reached, limit, beyond] =
@@ -353,7 +362,7 @@ impl LimitFault {
     }
 }
 
-/// A velocity or an acceleration may be greater than its limit by this part: files have rounded numbers.
+/// A velocity, an acceleration or jerk may be greater than its limit by this part: files have rounded numbers.
 const ROUNDED: f64 = 1e-3;
 /// A position may be so far beyond its limit (rad or m), as for states of paths.
 const HAIR: f64 = 1e-6;
@@ -451,8 +460,12 @@ fn moving_ends(trajectory: &Trajectory) -> Option<String> {
     Some(format!("the trajectory {when} while {name} moves: what the robot does there was not looked at"))
 }
 
+/// What a trajectory reaches of each that has limits.
+const REACHED: [fn(&Trajectory, usize) -> Extreme; 3] =
+    [Trajectory::fastest, Trajectory::hardest, Trajectory::jerkiest];
+
 /// The limits that a trajectory exceeds.
-fn limit_faults(kind: &dyn Robot, trajectory: &Trajectory, rates: &[[Option<f64>; 2]]) -> Vec<LimitFault> {
+fn limit_faults(kind: &dyn Robot, trajectory: &Trajectory, rates: &[[Option<f64>; 3]]) -> Vec<LimitFault> {
     let mut faults = Vec::new();
     let limits = kind.limits();
     for (joint, (name, _)) in trajectory.joints().enumerate() {
@@ -467,11 +480,10 @@ fn limit_faults(kind: &dyn Robot, trajectory: &Trajectory, rates: &[[Option<f64>
                 }
             }
         }
-        let reached = [trajectory.fastest(joint), trajectory.hardest(joint)];
-        for ((limit, of), at) in rates[joint].iter().zip(["velocity", "acceleration"]).zip(reached) {
-            if let Some(limit) = limit
-                && at.amount > limit * (1.0 + ROUNDED)
-            {
+        for ((limit, of), reached) in rates[joint].iter().zip(RATES).zip(REACHED) {
+            let Some(limit) = limit else { continue };
+            let at = reached(trajectory, joint);
+            if at.amount > limit * (1.0 + ROUNDED) {
                 add(of, *limit, at.amount, at.time);
             }
         }

@@ -2,7 +2,8 @@
 
 use mp_cspace::{Clearance, Configuration, Length, Rng, Validity};
 use mp_plan::{
-    ArmScene, Constraint, Interrupt, Knots, Pace, PathRows, Request, Scene, TimedPath, Trajectory,
+    ArmScene, Constraint, Interpolation, Interrupt, Knots, Pace, PathRows, Request, Scene, TimedPath,
+    Trajectory,
 };
 use rand::RngExt;
 
@@ -110,6 +111,11 @@ fn rates(scene: &str, joint: &str) -> [f64; 2] {
 
 /// An arm of one joint that slides and one that turns past posts.
 fn posts(posts: &str) -> Scene {
+    crane("max_acceleration = { x = 2, y = 4 }", posts)
+}
+
+/// The same with limits as its problem says them.
+fn crane(limits: &str, posts: &str) -> Scene {
     let urdf = "<robot name='crane'><link name='rail'/><link name='cart'/>\
         <link name='tip'><collision><geometry><box size='0.1 0.1 0.1'/></geometry></collision></link>\
         <joint name='x' type='prismatic'><parent link='rail'/><child link='cart'/><axis xyz='1 0 0'/>\
@@ -119,7 +125,7 @@ fn posts(posts: &str) -> Scene {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("crane.urdf"), urdf).unwrap();
     let text = format!(
-        "[robot]\nurdf = \"crane.urdf\"\nmax_acceleration = {{ x = 2, y = 4 }}\n\n\
+        "[robot]\nurdf = \"crane.urdf\"\n{limits}\n\n\
          [motion]\nstart = [0, 0]\ngoal = [1, 1]\n\n{posts}"
     );
     let file = folder.path().join("posts.toml");
@@ -196,6 +202,33 @@ fn corners_are_rounded_only_as_far_as_is_free() {
         Constraint::new("along", Length::Fraction(0.001), |row: &[f64]| row[1] < 1e-6 || row[0] > 1.0 - 1e-6);
     let along = timed(&open.under(constraint).unwrap(), &corner(&open), &pace);
     assert_eq!(along.tightened[0].deviation, 0.0);
+}
+
+#[test]
+fn jerk_is_limited_where_the_robot_says_so() {
+    let beside = "[[obstacle]]\nname = \"post\"\nbox = [0.1, 0.1, 1]\nat = [0.8499, 0.17, 0]\n";
+    let [free, soft] = ["", "\nmax_jerk = { x = 10, y = 20 }"]
+        .map(|jerk| crane(&format!("max_acceleration = {{ x = 2, y = 4 }}{jerk}"), beside));
+    let made = timed(&soft, &corner(&soft), &Pace::default());
+    assert_eq!(made.trajectory.interpolation(), Interpolation::Quintic);
+    for (joint, limit) in [(0, 10.0), (1, 20.0)] {
+        // By differences of positions, a thousand a second.
+        let at = |i: usize| made.trajectory.at(i as f64 * 1e-3).position[joint];
+        let jerk = |i: usize| (at(i + 3) - 3.0 * at(i + 2) + 3.0 * at(i + 1) - at(i)).abs() / 1e-9;
+        let most = (0..(made.trajectory.duration() * 1e3) as usize).map(jerk).fold(0.0, f64::max);
+        assert!(most < 1.001 * limit && most > 0.5 * limit, "{joint}: {most}");
+    }
+    let verdict = soft.check_trajectory(&made.trajectory, &Interrupt::never()).unwrap();
+    assert!(verdict.free, "{:?}", verdict.faults);
+    // It takes longer, and longer still with half of it. What is fast is too rough.
+    let fast = timed(&free, &corner(&free), &Pace::default());
+    let gentle = timed(&soft, &corner(&soft), &Pace { jerk: 0.5, ..Pace::default() });
+    let durations = [&fast, &made, &gentle].map(|made| made.trajectory.duration());
+    assert!(durations[0] < durations[1] && durations[1] < durations[2], "{durations:?}");
+    let verdict = soft.check_trajectory(&fast.trajectory, &Interrupt::never()).unwrap();
+    let of: Vec<_> = verdict.trajectory.unwrap().limits.into_iter().map(|fault| fault.of).collect();
+    assert_eq!(of, ["jerk", "jerk"], "{:?}", verdict.faults);
+    assert!(verdict.faults[0].contains("/s³ at "), "{:?}", verdict.faults);
 }
 
 #[test]

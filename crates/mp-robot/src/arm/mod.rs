@@ -28,7 +28,7 @@ pub use explain::{ArmContact, ArmGap};
 pub use groups::{NamedState, SrdfGroups};
 pub use ik::{FreeTurn, IK_PRECISION, InverseKinematics, PoseGoal};
 pub use kinematics::{AttachedLink, Coordinate, JointFrame, Kinematics};
-pub use model::{ArmModel, Joint, JointKind, Link, Mimic};
+pub use model::{ArmModel, Joint, JointKind, Link, Mimic, Rate};
 pub use planar_base::PLANAR_NUMBERS;
 pub use robot::Arm;
 pub use sampled::{SampledPair, SampledPairs, TouchReason};

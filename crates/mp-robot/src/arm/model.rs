@@ -99,6 +99,24 @@ pub struct Joint {
     pub max_velocity: Option<f64>,
     /// How fast its velocity may change (rad/s² or m/s²), if that is known.
     pub max_acceleration: Option<f64>,
+    /// How fast its acceleration may change (rad/s³ or m/s³), if that is limited.
+    pub max_jerk: Option<f64>,
+}
+
+/// What the rate of a joint is: how fast its position changes, its velocity, or its acceleration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Rate {
+    /// Of positions (rad/s or m/s).
+    Velocity,
+    /// Of velocities (rad/s² or m/s²).
+    Acceleration,
+    /// Of accelerations (rad/s³ or m/s³).
+    Jerk,
+}
+
+impl Rate {
+    /// All, in the order in which limits have them.
+    pub const ALL: [Self; 3] = [Self::Velocity, Self::Acceleration, Self::Jerk];
 }
 
 impl Joint {
@@ -120,6 +138,7 @@ impl Joint {
             mimic: None,
             max_velocity: None,
             max_acceleration: None,
+            max_jerk: None,
         }
     }
 
@@ -209,18 +228,18 @@ impl Default for ArmModel {
 }
 
 impl ArmModel {
-    /// How fast the joint of that name may move (rad/s or m/s), and how fast its velocity may change (rad/s² or m/s²): its own limits, and
-    /// those of the joints that mimic it. `None` where nothing is known.
+    /// The limits of velocity, acceleration and jerk of the joint of that name: its own, and those of the joints that mimic it. `None` where nothing
+    /// is known.
     #[must_use]
-    pub fn rates(&self, joint: &str) -> [Option<f64>; 2] {
+    pub fn rates(&self, joint: &str) -> [Option<f64>; 3] {
         let own = self.joints.iter().filter(|j| j.name == joint).map(|j| (j, 1.0));
         let followers = self.joints.iter().filter_map(|j| {
             let mimic = j.mimic.as_ref().filter(|mimic| mimic.joint == joint && mimic.multiplier != 0.0)?;
             Some((j, mimic.multiplier.abs()))
         });
-        own.chain(followers).fold([None; 2], |least, (joint, factor)| {
-            let all =
-                [joint.max_velocity, joint.max_acceleration].map(|limit| limit.map(|limit| limit / factor));
+        own.chain(followers).fold([None; 3], |least, (joint, factor)| {
+            let all = [joint.max_velocity, joint.max_acceleration, joint.max_jerk]
+                .map(|limit| limit.map(|limit| limit / factor));
             std::array::from_fn(|i| match (least[i], all[i]) {
                 (Some(a), Some(b)) => Some(f64::min(a, b)),
                 (a, b) => a.or(b),
@@ -228,17 +247,11 @@ impl ArmModel {
         })
     }
 
-    /// Sets how fast joints may move (rad/s or m/s), or, with `accelerations`, how fast their velocities may change: of the joint of that
-    /// name, or of all joints.
+    /// Sets a limit of the joint of that name, or of all joints.
     ///
     /// # Errors
     /// [`ArmError::NoSuchCoordinate`] when there is no such joint, or it is fixed.
-    pub fn with_rate(
-        mut self,
-        joint: Option<&str>,
-        rate: f64,
-        accelerations: bool,
-    ) -> Result<Self, ArmError> {
+    pub fn with_rate(mut self, joint: Option<&str>, rate: Rate, limit: f64) -> Result<Self, ArmError> {
         let is_it = |j: &Joint| j.kind != JointKind::Fixed && joint.is_none_or(|name| j.name == name);
         if let Some(name) = joint
             && !self.joints.iter().any(is_it)
@@ -249,8 +262,12 @@ impl ArmModel {
             return Err(ArmError::NoSuchCoordinate { joint: name.to_owned(), why });
         }
         for joint in self.joints.iter_mut().filter(|j| is_it(j)) {
-            let place = if accelerations { &mut joint.max_acceleration } else { &mut joint.max_velocity };
-            *place = Some(rate);
+            let place = match rate {
+                Rate::Velocity => &mut joint.max_velocity,
+                Rate::Acceleration => &mut joint.max_acceleration,
+                Rate::Jerk => &mut joint.max_jerk,
+            };
+            *place = Some(limit);
         }
         Ok(self)
     }

@@ -3,7 +3,7 @@
 use crate::common::cases_of;
 use mp_cspace::{Configuration, JointRange};
 use mp_geom::{TriMesh, primitives::cuboid};
-use mp_robot::{Arm, ArmModel, JointKind, UrdfError};
+use mp_robot::{Arm, ArmModel, JointKind, Rate, UrdfError};
 use nalgebra::{Point3, Vector3};
 
 const GRIPPER: &str = r#"<?xml version="1.0"?>
@@ -96,15 +96,19 @@ fn velocities_are_read_and_those_of_followers_count() {
     let text = text.replace("upper=\"1\" velocity=\"1\"", "upper=\"1\" velocity=\"0.75\"");
     let model = read(&text.replace("multiplier=\"-1\"", "multiplier=\"-1.5\"")).unwrap();
     let rates = ["lift", "open", "turn", "close"].map(|joint| model.rates(joint));
-    assert_eq!(rates, [[Some(1.0), None], [Some(0.5), None], [Some(2.5), None], [Some(0.75), None]]);
-    let slow = model.with_rate(None, 3.0, true).unwrap().with_rate(Some("turn"), 0.1, false).unwrap();
-    assert_eq!(slow.rates("turn"), [Some(0.1), Some(3.0)]);
-    assert_eq!(slow.rates("open"), [Some(0.5), Some(2.0)]);
-    let error = slow.with_rate(Some("up"), 1.0, false).unwrap_err().to_string();
+    assert_eq!(rates, [1.0, 0.5, 2.5, 0.75].map(|velocity| [Some(velocity), None, None]));
+    let slow = model
+        .with_rate(None, Rate::Acceleration, 3.0)
+        .unwrap()
+        .with_rate(Some("turn"), Rate::Velocity, 0.1)
+        .unwrap();
+    assert_eq!(slow.rates("turn"), [Some(0.1), Some(3.0), None]);
+    assert_eq!(slow.rates("open"), [Some(0.5), Some(2.0), None]);
+    let error = slow.with_rate(Some("up"), Rate::Jerk, 1.0).unwrap_err().to_string();
     assert!(error.contains("\"up\"") && error.contains("\"lift\""), "{error}");
     for none in ["0", "-1", "inf", "NaN", "", "fast"] {
         let text = GRIPPER.replacen("velocity=\"1\"", &format!("velocity=\"{none}\""), 1);
-        assert_eq!(read(&text).unwrap().rates("lift"), [None, None], "{none}");
+        assert_eq!(read(&text).unwrap().rates("lift"), [None; 3], "{none}");
     }
 }
 

@@ -6,7 +6,7 @@ use crate::{Error, brief, count, plain};
 use mp_cspace::{FloatingJoints, JointRange};
 use mp_geom::Aabb;
 use mp_io::{DescribedRobot, Files, MovingJoints, RobotEntry, RobotFilePart, RobotPart, RobotProblem};
-use mp_robot::{Arm, ArmError, ArmModel, JointKind, Kinematics, UrdfError};
+use mp_robot::{Arm, ArmError, ArmModel, JointKind, Kinematics, Rate, UrdfError};
 
 /// One robot of a problem.
 #[derive(Clone, Copy)]
@@ -59,19 +59,19 @@ fn described(files: &dyn Files, robot: One<'_>) -> Result<ArmModel, Error> {
     }
     // Of joints that the robot does not have nothing is said: the file may be of more of it.
     for (joint, rates) in &described.rates {
-        for (rate, accelerations) in rates.iter().zip([false, true]) {
-            if let Some(rate) = rate
+        for (limit, rate) in rates.iter().zip(Rate::ALL) {
+            if let Some(limit) = limit
                 && model.joints.iter().any(|j| j.name == *joint && j.kind != JointKind::Fixed)
             {
-                model = model.with_rate(Some(joint), *rate, accelerations)?;
+                model = model.with_rate(Some(joint), rate, *limit)?;
             }
         }
     }
-    let velocities = entry.max_velocity.iter().map(|(joint, rate)| (joint, *rate, RobotPart::Velocity));
-    let all = entry.max_acceleration.iter().map(|(joint, rate)| (joint, *rate, RobotPart::Acceleration));
-    for (joint, rate, part) in velocities.chain(all) {
-        let limited = model.with_rate(joint.as_deref(), rate, part == RobotPart::Acceleration);
-        model = limited.map_err(|e| robot.fault(part, e, NAMES))?;
+    for (i, (limits, rate)) in entry.max_rates.iter().zip(Rate::ALL).enumerate() {
+        for (joint, limit) in limits {
+            let limited = model.with_rate(joint.as_deref(), rate, *limit);
+            model = limited.map_err(|e| robot.fault(RobotPart::Rates(i), e, NAMES))?;
+        }
     }
     Ok(model)
 }
