@@ -925,7 +925,7 @@ class Scene:
         Parameters
         ----------
         file : str or path
-            ``.csv`` with times, or JointTrajectory of ROS as ``.json`` or ``.yaml``, also in messages of MoveIt.
+            ``.csv`` with times, or JointTrajectory of ROS as ``.json`` or ``.yaml``, also in messages of MoveIt, or ``.mcap``.
         curve : str
             What a controller runs between points: ``controller``, as joint_trajectory_controller of ROS does, ``linear``,
             ``cubic`` or ``quintic``.
@@ -970,8 +970,7 @@ class Scene:
     def _save_trajectory(self, file: File, made: Trajectory) -> None:
         name = os.fspath(file)
         rows = (made.positions, made.velocities, made.accelerations)
-        text = self._native.trajectory_text(name, made.times.tolist(), *rows)
-        self._native.write(name, text.encode())
+        self._native.write(name, self._native.trajectory_bytes(name, made.times.tolist(), *rows))
 
     def explain(self, configuration: ArrayLike) -> Explanation:
         """Explain a configuration: whether it is free, how near to contact, what touches, where it would be free.

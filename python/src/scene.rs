@@ -425,16 +425,17 @@ impl Scene {
     }
 
     /// A trajectory as the content of a file of this name.
-    fn trajectory_text(
+    fn trajectory_bytes<'py>(
         &self,
+        py: Python<'py>,
         file: PathBuf,
         times: Vec<f64>,
         positions: PyReadonlyArray2<'_, f64>,
         velocities: PyReadonlyArray2<'_, f64>,
         accelerations: PyReadonlyArray2<'_, f64>,
-    ) -> PyResult<String> {
+    ) -> PyResult<Bound<'py, PyBytes>> {
         let Some(kind) = TrajectoryKind::of(&file) else {
-            let message = format!("{}: name a file that ends in .csv, .json or .yaml", file.display());
+            let message = format!("{}: name a file that ends in .csv, .json, .yaml or .mcap", file.display());
             return Err(PyValueError::new_err(message));
         };
         let columns = self.scene.columns();
@@ -443,7 +444,7 @@ impl Scene {
         let knots = Knots { times, positions, velocities, accelerations };
         let made = Trajectory::of_controller(joints, knots);
         let made = made.map_err(|e| PyValueError::new_err(e.to_string()))?;
-        Ok(mp_plan::trajectory_text(&made, kind))
+        Ok(PyBytes::new(py, &self.scene.trajectory_bytes(&made, kind).to_python()?))
     }
 
     /// Checks the trajectory in a file, as JSON. `curve` is that between its points, or `controller`.

@@ -456,3 +456,89 @@ def test_paths_of_arms_get_times(tmp_path: Path) -> None:
     assert next(iter(made.to_pandas().columns)) == "time (s)"
     with pytest.raises(mp.Error, match="no trajectories"):
         mp.Scene("easy").plan().trajectory()
+
+
+#: An arm of one joint, which jerk limits.
+SLIDE = """<robot name="slide"><link name="rail"/><link name="cart"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+<joint name="x" type="prismatic"><parent link="rail"/><child link="cart"/><axis xyz="1 0 0"/>
+<limit lower="-3" upper="3" effort="1" velocity="1"/></joint></robot>"""
+
+
+def test_jerk_is_limited(tmp_path: Path) -> None:
+    (tmp_path / "slide.urdf").write_text(SLIDE)
+    task = '[robot]\nurdf = "slide.urdf"\nmax_acceleration = 2\nmax_jerk = 5\n[motion]\nstart = [0]\ngoal = [1]\n'
+    (tmp_path / "slide.toml").write_text(task)
+    scene = mp.Scene(tmp_path / "slide.toml")
+    path = [[0.0], [1.0]]
+    made = scene.trajectory(path)
+    # d / v + v / a + a / j.
+    assert made.curve == "quintic" and abs(made.duration - (1 + 0.5 + 0.4)) < 1e-3
+    assert made.accelerations.shape == made.positions.shape and scene.trajectory(path, jerk=0.5).duration > made.duration
+    assert list(made.to_pandas().columns)[-1] == "x_acceleration (m/s²)"
+    made.save(tmp_path / "t.csv")
+    assert scene.check_trajectory(tmp_path / "t.csv")
+
+
+def test_recordings_are_those_of_other_programs(tmp_path: Path) -> None:
+    from mcap.reader import make_reader
+    from mcap.writer import CompressionType
+    from mcap_ros2.reader import read_ros2_messages
+    from mcap_ros2.writer import Writer
+    from rosbags.typesys import Stores, get_typestore
+    from ruamel.yaml import YAML
+
+    scene = mp.Scene("arm-6")
+    made = scene.plan().trajectory()
+    names = [c.name for c in scene.columns]
+    file = tmp_path / "t.mcap"
+    made.save(file)
+    # By the package that brings the definitions of messages from the file.
+    read = [(m.channel.topic, m.ros_msg) for m in read_ros2_messages(str(file))]
+    (message,) = [m for topic, m in read if topic == "/joint_trajectory"]
+    assert message.joint_names == names
+    assert [p.positions for p in message.points] == made.positions.tolist()
+    times = [p.time_from_start.sec + p.time_from_start.nanosec / 1e9 for p in message.points]
+    assert np.allclose(times, made.times, atol=1e-12, rtol=0)
+    states = [m for topic, m in read if topic == "/joint_states"]
+    frames = [m for topic, m in read if topic == "/tf"]
+    assert len(states) == len(frames) == int(np.ceil(made.duration * 50 - 1e-9)) + 1
+    assert states[-1].position == made.positions[-1].tolist()
+    # And by one that has its own: the same bytes come back.
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    with file.open("rb") as opened:
+        for schema, _, raw in make_reader(opened).iter_messages():
+            assert schema is not None
+            decoded = store.deserialize_cdr(raw.data, schema.name)
+            assert bytes(store.serialize_cdr(decoded, schema.name)) == raw.data, schema.name
+    # The text forms have the members of the message, and no others.
+    for name in ("t.json", "t.yaml"):
+        made.save(tmp_path / name)
+        told = YAML(typ="safe").load(tmp_path / name)
+        kinds = ["trajectory_msgs/msg/JointTrajectory", "trajectory_msgs/msg/JointTrajectoryPoint", "std_msgs/msg/Header"]
+        trajectory, point, head = (store.types[kind] for kind in kinds)
+        time, duration = (store.types[f"builtin_interfaces/msg/{kind}"] for kind in ("Time", "Duration"))
+        points = [
+            point(**{k: duration(**v) if k == "time_from_start" else np.array(v, dtype=np.float64) for k, v in p.items()})
+            for p in told["points"]
+        ]
+        header = head(stamp=time(sec=0, nanosec=0), frame_id="")
+        whole = trajectory(header=header, joint_names=told["joint_names"], points=points)
+        again = store.deserialize_cdr(store.serialize_cdr(whole, trajectory.__msgtype__), trajectory.__msgtype__)
+        assert [p.positions.tolist() for p in again.points] == made.positions.tolist()
+    # States of joints as others record them, packed or not, in another order.
+    definition = "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n" + "=" * 80
+    definition += "\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n" + "=" * 80
+    definition += "\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
+    for compression in (CompressionType.NONE, CompressionType.LZ4, CompressionType.ZSTD):
+        with (tmp_path / "states.mcap").open("wb") as opened:
+            writer = Writer(opened, compression=compression)
+            schema_of_states = writer.register_msgdef("sensor_msgs/msg/JointState", definition)
+            for state in states:
+                nanoseconds = 1_700_000_000_000_000_000 + state.header.stamp.sec * 10**9 + state.header.stamp.nanosec
+                stamp = {"sec": nanoseconds // 10**9, "nanosec": nanoseconds % 10**9}
+                body = {"header": {"stamp": stamp, "frame_id": ""}, "name": names[::-1], "position": state.position[::-1]}
+                writer.write_message("/joint_states", schema_of_states, {**body, "velocity": [], "effort": []}, nanoseconds)
+            writer.finish()
+        verdict = scene.check_trajectory(tmp_path / "states.mcap")
+        assert verdict.trajectory is not None and verdict.trajectory["collides_at"] is None
+        assert verdict.trajectory["curve"] == "linear" and abs(verdict.trajectory["duration"] - made.duration) < 1e-6

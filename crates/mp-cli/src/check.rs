@@ -58,12 +58,12 @@ fn one(args: &Check, scene: &Scene, (file, read): (&Path, &Given)) -> Result<boo
         Given::Path(rows) => scene.check(rows)?,
         Given::Timed(trajectory) => scene.check_trajectory(trajectory, &Interrupt::new(interrupt::flag()))?,
     };
-    if let (Some(_), Given::Timed(_)) = (&args.certificate, read) {
-        return Err(Error::new("--certificate: there are none of trajectories")
-            .help("certify the path, whose motions are straight"));
-    }
-    if let (Some(file), Given::Path(rows), true) = (&args.certificate, read, verdict.free) {
-        let certificate = scene.certificate(rows, verdict.clearance, &Interrupt::new(interrupt::flag()))?;
+    if let (Some(file), true) = (&args.certificate, verdict.free) {
+        let (clearance, interrupt) = (verdict.clearance, Interrupt::new(interrupt::flag()));
+        let certificate = match read {
+            Given::Path(rows) => scene.certificate(rows, clearance, &interrupt)?,
+            Given::Timed(trajectory) => scene.certificate_of_trajectory(trajectory, clearance, &interrupt)?,
+        };
         write(file, certificate.to_json().as_bytes())?;
     }
     (verdict.scene, verdict.path) = (shown(scene, &args.scene), file.display().to_string());

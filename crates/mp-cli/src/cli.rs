@@ -186,7 +186,7 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "FILE", conflicts_with = "routes")]
     pub(crate) certificate: Option<PathBuf>,
     /// The file for the trajectory of an arm: the path with times, as fast as the limits of its joints allow, whose curve is proved free. `.csv`, or
-    /// JointTrajectory of ROS as `.json` or `.yaml`. `{scene}` and `{seed}` are replaced by scene and seed.
+    /// JointTrajectory of ROS as `.json` or `.yaml`, or a recording of ROS 2 that shows it all as `.mcap`. `{scene}` and `{seed}` are replaced by scene and seed.
     #[arg(long, value_name = "FILE", conflicts_with = "routes")]
     pub(crate) trajectory: Option<PathBuf>,
     #[command(flatten)]
@@ -316,7 +316,7 @@ pub(crate) struct Time {
     pub(crate) scene: PathBuf,
     /// A path that is free: text, `.json` or `.csv`; `-` for standard input.
     pub(crate) path: PathBuf,
-    /// The file for the trajectory: `.csv`, or JointTrajectory of ROS as `.json` or `.yaml` [default: CSV on standard output].
+    /// The file for the trajectory: `.csv`, JointTrajectory of ROS as `.json` or `.yaml`, or a recording as `.mcap` [default: CSV on standard output].
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Write points this many times a second, and prove the curve between those. Without it there are as few points as the curve needs.
@@ -332,7 +332,7 @@ pub(crate) struct Time {
 pub(crate) struct Check {
     /// A scene file, or the name of a shipped scene; `-` for standard input.
     pub(crate) scene: PathBuf,
-    /// A path: text, `.json` or `.csv`; or a trajectory of an arm: `.csv` with times, `.json` or `.yaml` as ROS and MoveIt write them; `-` for
+    /// A path: text, `.json` or `.csv`; or a trajectory of an arm: `.csv` with times, `.json` or `.yaml` as ROS and MoveIt write them, `.mcap`; `-` for
     /// standard input. Of a motion of several parts, the paths of its parts in order.
     #[arg(required_unless_present = "at")]
     pub(crate) paths: Vec<PathBuf>,

@@ -14,7 +14,7 @@ use mp_batch::{Portfolio, PortfolioOptions};
 use mp_io::ProblemChanges;
 use mp_plan::{
     Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Report, Request, Runs,
-    Scene, StopReason, StoppedBy, in_parallel, make_folder, trajectory_text,
+    Scene, StopReason, StoppedBy, in_parallel, make_folder,
 };
 use mp_view::GrownTrees;
 use std::path::{Path, PathBuf};
@@ -356,8 +356,7 @@ fn one(
         line.say("timing the path");
         let interrupt = time_limit(&request, cancel, began.saturating_sub(spent));
         let timed = scene.time(&path, &settings.args.pace.pace(), &interrupt)?;
-        let text = trajectory_text(&timed.trajectory, kind_of(&file)?);
-        write(&file, text.as_bytes())?;
+        write(&file, &scene.trajectory_bytes(&timed.trajectory, kind_of(&file)?)?)?;
         say(&timed);
     }
     if let Some((picture, file)) = &picture {

@@ -3,7 +3,7 @@
 use crate::input::{path, refuse_two_standard_inputs, scene};
 use crate::output::{Claims, note, print, write};
 use crate::{cli, interrupt};
-use mp_plan::{Error, Interrupt, TimedPath, TrajectoryKind, trajectory_text};
+use mp_plan::{Error, Interrupt, TimedPath, TrajectoryKind};
 use std::path::Path;
 
 /// Times a path. Always true, as one that cannot be timed is an error.
@@ -35,10 +35,10 @@ pub(crate) fn run(args: &cli::Time) -> Result<bool, Error> {
             sampled
         }
     };
-    let text = trajectory_text(&trajectory, kind);
+    let bytes = scene.trajectory_bytes(&trajectory, kind)?;
     match &args.out {
-        Some(out) => write(out, text.as_bytes())?,
-        None => print(text.trim_end())?,
+        Some(out) => write(out, &bytes)?,
+        None => print(String::from_utf8_lossy(&bytes).trim_end())?,
     }
     say(&timed);
     Ok(true)
@@ -48,7 +48,7 @@ pub(crate) fn run(args: &cli::Time) -> Result<bool, Error> {
 pub(crate) fn kind_of(file: &Path) -> Result<TrajectoryKind, Error> {
     TrajectoryKind::of(file).ok_or_else(|| {
         Error::new(format!("{}: no format for trajectories is called so", file.display()))
-            .help("name a file that ends in .csv, .json or .yaml")
+            .help("name a file that ends in .csv, .json, .yaml or .mcap")
     })
 }
 

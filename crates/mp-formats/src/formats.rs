@@ -71,6 +71,7 @@ formats! {
     TextPath, "path as text of the robot", ["txt", "path"], true, true, None;
     JsonPath, "path as JSON", ["json"], true, true, None;
     CsvPath, "path as comma-separated values", ["csv"], true, true, None;
+    Recording, "trajectory as a recording of ROS 2 in MCAP", ["mcap"], true, true, None;
     Png, "picture in pixels", ["png"], false, true, None;
     Svg, "picture in lines and areas", ["svg"], false, true, None;
     Gif, "film in few colours", ["gif"], false, true, None;

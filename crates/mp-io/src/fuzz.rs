@@ -269,13 +269,13 @@ pub fn csv_path(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are a trajectory in none of them, and are refused by one.
 pub fn trajectory(bytes: &[u8]) -> Result<(), Error> {
-    use TrajectoryKind::{Csv, Json, Yaml};
+    use TrajectoryKind::{Csv, Json, Mcap, Yaml};
     let columns = [Column::new("lift", "m"), Column::new("elbow", "rad")];
     let parse = |bytes: &[u8], kind| TrajectoryFile::parse("f", bytes, kind, &columns);
-    let all = [Csv, Json, Yaml].map(|kind| parse(bytes, kind).map(|read| (read, kind)));
+    let all = [Csv, Json, Yaml, Mcap].map(|kind| parse(bytes, kind).map(|read| (read, kind)));
     for (read, kind) in all.iter().flatten() {
         let Some(read) = read else { continue };
-        match (parse(read.to_text(*kind).as_bytes(), *kind), kind) {
+        match (parse(&read.to_bytes(*kind), *kind), kind) {
             (again, Csv) => assert_eq!(again.ok().flatten().as_ref(), Some(read)),
             // Times that are no whole nanoseconds may meet.
             (again, _) => assert!(again.ok().flatten().is_none_or(|again| again.positions == read.positions)),

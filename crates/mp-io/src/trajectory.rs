@@ -1,9 +1,12 @@
-//! Trajectories in files: comma-separated values with a column of times, and `JointTrajectory` of ROS as JSON and YAML, alone or in messages
-//! of MoveIt. docs/formats/trajectory.md describes them.
+//! Trajectories in files: comma-separated values with a column of times, `JointTrajectory` of ROS as JSON and YAML, alone or in messages
+//! of MoveIt, and recordings in MCAP. docs/formats/trajectory.md describes them.
 
 mod csv;
 mod ros;
 
+pub(crate) use ros::{Message, Point, Time, made};
+
+use crate::mcap::Recording;
 use mp_formats::columns::Column;
 use mp_formats::error::{Error, ErrorKind};
 use mp_formats::formats::Content;
@@ -33,6 +36,8 @@ pub enum TrajectoryKind {
     Json,
     /// The same as YAML.
     Yaml,
+    /// A recording of ROS 2 in MCAP.
+    Mcap,
 }
 
 /// The page that describes the formats.
@@ -46,6 +51,7 @@ impl TrajectoryKind {
             Content::CsvPath => Some(Self::Csv),
             Content::JsonPath => Some(Self::Json),
             Content::Map => Some(Self::Yaml),
+            Content::Recording => Some(Self::Mcap),
             _ => None,
         })
     }
@@ -68,6 +74,7 @@ impl TrajectoryFile {
             TrajectoryKind::Csv => csv::parse(file, bytes, wanted)?,
             TrajectoryKind::Json => ros::parse_json(file, bytes, wanted)?,
             TrajectoryKind::Yaml => ros::parse_yaml(file, bytes, wanted)?,
+            TrajectoryKind::Mcap => Some(crate::mcap::parse(file, bytes, wanted)?),
         };
         let Some(read) = read else { return Ok(None) };
         if let Some(i) = read.times.windows(2).position(|t| t[1] <= t[0]) {
@@ -79,15 +86,17 @@ impl TrajectoryFile {
         Ok(Some(read))
     }
 
-    /// The content of a file of this kind. Numbers have the digits that read back to the same bits; times in JSON and YAML are whole
-    /// nanoseconds.
+    /// The content of a file of this kind. Numbers have the digits that read back to the same bits; times are whole nanoseconds but in CSV. In MCAP
+    /// there is the trajectory alone: a [`Recording`] shows it too.
     #[must_use]
-    pub fn to_text(&self, kind: TrajectoryKind) -> String {
-        match kind {
+    pub fn to_bytes(&self, kind: TrajectoryKind) -> Vec<u8> {
+        let text = match kind {
             TrajectoryKind::Csv => csv::text(self),
             TrajectoryKind::Json => ros::json_text(self),
             TrajectoryKind::Yaml => ros::yaml_text(self),
-        }
+            TrajectoryKind::Mcap => return Recording::of(self.clone()).to_mcap(),
+        };
+        text.into_bytes()
     }
 }
 
@@ -123,14 +132,17 @@ mod tests {
         let full = TrajectoryFile { accelerations: vec![vec![1.0, 2.0]; 3], ..sample() };
         for kind in KINDS {
             for made in [&plain, &bare, &full] {
-                let text = made.to_text(kind);
+                let text = String::from_utf8(made.to_bytes(kind)).unwrap();
                 assert_eq!(read(&text, kind).unwrap().as_ref(), Some(made), "{text}");
                 // Lines of Windows.
                 assert_eq!(read(&text.replace('\n', "\r\n"), kind).unwrap().as_ref(), Some(made), "{text}");
             }
         }
-        assert_eq!(bare.to_text(TrajectoryKind::Csv).lines().next(), Some("time [s],lift [m],elbow [rad]"));
-        let yaml = plain.to_text(TrajectoryKind::Yaml);
+        assert_eq!(
+            bare.to_bytes(TrajectoryKind::Csv).split(|b| *b == b'\n').next(),
+            Some(&b"time [s],lift [m],elbow [rad]"[..])
+        );
+        let yaml = String::from_utf8(plain.to_bytes(TrajectoryKind::Yaml)).unwrap();
         assert!(yaml.contains("time_from_start: {sec: 12, nanosec: 1}"), "{yaml}");
         // Numbers that YAML 1.1 takes for numbers too.
         assert!(yaml.contains("0.000000001") && !yaml.contains("e-"), "{yaml}");

@@ -69,8 +69,19 @@ impl<'m> Prover<'m> {
     /// # Errors
     /// Why the edge is not proved.
     pub fn edge(&mut self, from: &[f64], to: &[f64]) -> Result<Vec<Vec<[f64; 2]>>, String> {
-        let motion = Motion::new(self.model, from, to)?;
-        (0..self.shapes.len()).map(|pair| self.pair(&motion, pair)).collect()
+        self.motion(&Motion::new(self.model, from, to)?)
+    }
+
+    /// The same of a curve: for each column the coefficients of its polynomial from 0 to 1, the constant first.
+    ///
+    /// # Errors
+    /// Why it is not proved; also when the robot has degrees of freedom that are no single numbers, moves by inputs or with time.
+    pub fn curve(&mut self, from: &[f64], curve: &[[f64; 6]]) -> Result<Vec<Vec<[f64; 2]>>, String> {
+        self.motion(&Motion::along(self.model, from, curve)?)
+    }
+
+    fn motion(&mut self, motion: &Motion<'_>) -> Result<Vec<Vec<[f64; 2]>>, String> {
+        (0..self.shapes.len()).map(|pair| self.pair(motion, pair)).collect()
     }
 
     fn pair(&mut self, motion: &Motion<'_>, index: usize) -> Result<Vec<[f64; 2]>, String> {

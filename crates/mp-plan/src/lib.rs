@@ -45,7 +45,7 @@
 //! | shorten a path from elsewhere | [`Scene::finish`] |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
 //! | give a path times, and prove the curve that a controller runs | [`Scene::time`], [`TimedPath`], [`Pace`] |
-//! | read, check and write trajectories | [`Scene::read_trajectory`], [`Scene::check_trajectory`], [`trajectory_text`] |
+//! | read, check and write trajectories | [`Scene::read_trajectory`], [`Scene::check_trajectory`], [`Scene::trajectory_bytes`] |
 //! | give others the means to prove it again | [`Scene::certificate`], [`Certificate`] |
 //! | find out why a configuration is not free | [`Scene::explain`] |
 //! | find out what is odd about a scene | [`Scene::lint`] |
@@ -108,7 +108,7 @@ pub use run::search::{Search, search};
 pub use run::{FoundRun, PreparedRun, Run};
 pub use scene::{EditedScene, Scene};
 pub use sweep::{Sweep, Track};
-pub use trajectory::trajectory_text;
+pub use trajectory::MOMENTS;
 pub use watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
 
 #[cfg(feature = "pictures")]

@@ -596,7 +596,7 @@ impl Scene {
         clearance: f64,
         interrupt: &Interrupt,
     ) -> Result<Certificate, Error> {
-        certificate(&*self.robot, path, clearance, interrupt)
+        certificate(&*self.robot, path, None, clearance, interrupt)
     }
 
     /// In what a certificate differs from this scene, a sentence for each difference; nothing if it is about this scene. Compared are the numbers

@@ -1,10 +1,12 @@
 //! Trajectories of a scene: paths that get times, the check of curves, and their files.
 
+use crate::finish::certificate::certificate;
 use crate::finish::trajectory::{check, time};
-use crate::{Error, Pace, PathRows, Scene, TimedPath, Verdict};
+use crate::{Body, BodyShape, Certificate, Error, Pace, PathRows, Scene, TimedPath, Verdict};
 use mp_cspace::Interrupt;
-use mp_io::{Column, TrajectoryFile, TrajectoryKind};
+use mp_io::{Column, RecordedBody, RecordedShape, Recording, TrajectoryFile, TrajectoryKind};
 use mp_time::{Interpolation, Knots, Trajectory};
+use nalgebra::Point2;
 use std::path::Path;
 
 impl Scene {
@@ -43,7 +45,22 @@ impl Scene {
         check(&*self.robot, trajectory, interrupt)
     }
 
-    /// Reads a trajectory of the robot from a file: `.csv`, `.json` or `.yaml`. The curve between its points is `curve`, or what
+    /// The certificate of a trajectory, of the curve between its points: as that [of a path](Self::certificate).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn certificate_of_trajectory(
+        &self,
+        trajectory: &Trajectory,
+        clearance: f64,
+        interrupt: &Interrupt,
+    ) -> Result<Certificate, Error> {
+        let rows = trajectory.knots().positions.clone();
+        let path = PathRows { format: self.path_format(), columns: self.columns(), rows };
+        certificate(&*self.robot, &path, Some(trajectory), clearance, interrupt)
+    }
+
+    /// Reads a trajectory of the robot from a file: `.csv`, `.json`, `.yaml` or `.mcap`. The curve between its points is `curve`, or what
     /// `joint_trajectory_controller` of ROS runs. `None` if the file has no times: then it is a path, or something else.
     ///
     /// # Errors
@@ -82,13 +99,52 @@ impl Scene {
         };
         made.map(Some).map_err(|e| Error::from(e).context(name.to_owned()))
     }
+
+    /// The content of a file of this kind with a trajectory of the robot: as it reads back, its curve is the same to the last bit if its times are [whole
+    /// nanoseconds](Trajectory::in_nanoseconds). A recording shows the robot among its obstacles too, [`MOMENTS`] times a second.
+    ///
+    /// # Errors
+    /// When the trajectory is of another robot.
+    pub fn trajectory_bytes(&self, trajectory: &Trajectory, kind: TrajectoryKind) -> Result<Vec<u8>, Error> {
+        let file = of_knots(trajectory, trajectory.knots().clone());
+        if kind != TrajectoryKind::Mcap {
+            return Ok(file.to_bytes(kind));
+        }
+        let moments = trajectory.resampled(MOMENTS)?.in_nanoseconds()?;
+        let sampled = of_knots(trajectory, Knots { accelerations: Vec::new(), ..moments.knots().clone() });
+        let poses = sampled.positions.iter().map(|row| self.poses(row)).collect::<Result<_, _>>()?;
+        let bodies = self.bodies().into_iter().map(recorded).collect();
+        Ok(Recording { trajectory: file, sampled, bodies, poses }.to_mcap())
+    }
 }
 
-/// The content of a file of this kind with a trajectory: as it reads back, its curve is the same to the last bit if its times are [whole
-/// nanoseconds](Trajectory::in_nanoseconds).
-#[must_use]
-pub fn trajectory_text(trajectory: &Trajectory, kind: TrajectoryKind) -> String {
-    let Knots { times, positions, velocities, accelerations } = trajectory.knots().clone();
+/// How many times a second recordings have the joints and the bodies.
+pub const MOMENTS: f64 = 50.0;
+
+fn of_knots(trajectory: &Trajectory, knots: Knots) -> TrajectoryFile {
+    let Knots { times, positions, velocities, accelerations } = knots;
     let joints = trajectory.joints().map(|(name, unit)| Column::new(name, unit)).collect();
-    TrajectoryFile { joints, times, positions, velocities, accelerations }.to_text(kind)
+    TrajectoryFile { joints, times, positions, velocities, accelerations }
+}
+
+/// A body as recordings have it: the robot blue, obstacles grey.
+fn recorded(body: Body) -> RecordedBody {
+    let color = if body.pose.is_some() { [0.6, 0.6, 0.6, 1.0] } else { [0.27, 0.47, 0.67, 1.0] };
+    let flat = |p: &Point2<f64>| [p.x, p.y, 0.0];
+    let ends = |all: &[Vec<Point2<f64>>], closed: bool| {
+        let line = |line: &Vec<Point2<f64>>| {
+            let next = line.iter().skip(1).chain(line.iter().take(usize::from(closed)));
+            line.iter().zip(next).flat_map(|(a, b)| [flat(a), flat(b)]).collect::<Vec<_>>()
+        };
+        RecordedShape::Lines(all.iter().flat_map(line).collect())
+    };
+    let shape = match &body.shape {
+        BodyShape::Mesh(mesh) => {
+            let corners = mesh.triangles().iter().flatten().map(|i| mesh.vertices()[*i as usize].into());
+            RecordedShape::Triangles(corners.collect())
+        }
+        BodyShape::Area(rings) => ends(rings, true),
+        BodyShape::Lines(lines) => ends(lines, false),
+    };
+    RecordedBody { name: body.name, shape, pose: body.pose.unwrap_or_default(), color }
 }

@@ -219,12 +219,22 @@ impl Trajectory {
         let piece = self.piece(time);
         let x = time - self.knots.times[piece];
         let mut sample = Sample { position: Vec::new(), velocity: Vec::new(), acceleration: Vec::new() };
+        let of_last = |rows: &[Vec<f64>]| rows.last().filter(|_| time == last).cloned();
         for joint in 0..self.joints.len() {
             let c = self.seconds(piece, joint);
             let v = derivative(&c);
             sample.position.push(value(&c, x));
             sample.velocity.push(value(&v, x));
             sample.acceleration.push(value(&derivative(&v), x));
+        }
+        // Rounding is no motion: what stands still at the end does so exactly.
+        let Knots { positions, velocities, accelerations, .. } = &self.knots;
+        sample.position = of_last(positions).unwrap_or(sample.position);
+        if self.interpolation != Interpolation::Linear {
+            sample.velocity = of_last(velocities).unwrap_or(sample.velocity);
+        }
+        if self.interpolation == Interpolation::Quintic {
+            sample.acceleration = of_last(accelerations).unwrap_or(sample.acceleration);
         }
         sample
     }
@@ -375,7 +385,8 @@ impl Curve for Trajectory {
     }
 
     fn polynomial(&self, piece: usize, coordinate: usize) -> [f64; 6] {
-        let h = self.knots.times[piece + 1] - self.knots.times[piece];
+        let end = self.knots.times.get(piece + 1);
+        let h = end.map_or(0.0, |end| end - self.knots.times[piece]);
         let mut scale = 1.0;
         self.seconds(piece, coordinate).map(|c| {
             let scaled = c * scale;

@@ -7,11 +7,13 @@ use xxhash_rust::xxh3::xxh3_128;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Certificate {
     #[serde(rename = "certificate")]
-    _version: u32,
+    version: u32,
     pub(crate) scene: String,
     pub(crate) columns: Vec<String>,
     pub(crate) model: Model,
     pub(crate) path: Vec<Vec<f64>>,
+    /// For each edge the polynomial of each column from 0 to 1, the constant first; without them edges are straight.
+    pub(crate) curves: Option<Vec<Vec<[f64; 6]>>>,
     pub(crate) clearance: Option<f64>,
     /// For each edge, for each pair: where each part ends, and the distance in its middle.
     pub(crate) edges: Vec<Vec<Vec<[f64; 2]>>>,
@@ -148,16 +150,19 @@ pub(crate) fn read(text: &str) -> Result<Certificate, String> {
     }
     let unread = |e: serde_json::Error| format!("it cannot be read: {e}");
     match serde_json::from_str(text).map_err(unread)? {
-        Version { certificate: 2 } => {}
+        Version { certificate: 2 | 3 } => {}
         Version { certificate: 1 } => {
             let old = "it is of version 1, which does not say which bodies are solid, so that one may be inside of another: write it anew";
             return Err(old.to_owned());
         }
         Version { certificate } => {
-            return Err(format!("it is of version {certificate}, and this program knows version 2"));
+            return Err(format!("it is of version {certificate}, and this program knows versions 2 and 3"));
         }
     }
     let file: Certificate = serde_json::from_str(text).map_err(unread)?;
+    if (file.version == 3) != file.curves.is_some() {
+        return Err("curves are what version 3 has, and version 2 has not".to_owned());
+    }
     file.check().map(|()| file)
 }
 
@@ -280,6 +285,17 @@ impl Certificate {
         let once = each.into_iter().all(|[a, b]| a != b && seen.insert([a.min(b), a.max(b)]));
         sound(once, "a pair is there twice, or is of one body")?;
         sound(self.edges.len() == (self.path.len() - 1).max(1), "there is not a proof for each edge")?;
+        if let Some(curves) = &self.curves {
+            let alone = model.drive.is_none() && model.time.is_none();
+            let single = model.steps.iter().all(|step| !matches!(step, Step::Pose(_)));
+            sound(alone && single, "there are no curves of such robots")?;
+            sound(curves.len() == self.edges.len(), "there is not a curve for each edge")?;
+            for (i, curve) in curves.iter().enumerate() {
+                sound(curve.len() == columns && curve.iter().all(|c| finite(c)), "a curve is odd")?;
+                let begins = curve.iter().zip(&self.path[i]).all(|(c, x)| c[0] == *x);
+                sound(begins, &format!("curve {} does not begin where configuration {} is", i + 1, i + 1))?;
+            }
+        }
         let proved = self.edges.iter().all(|edge| edge.len() == model.pairs.len());
         sound(proved, "there is not a proof for each pair of bodies")
     }

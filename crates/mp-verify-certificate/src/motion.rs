@@ -9,6 +9,8 @@ pub(crate) struct Edge<'c> {
     model: &'c Model,
     from: &'c [f64],
     to: &'c [f64],
+    /// The polynomial of each column, if the edge is not straight.
+    curve: Option<&'c [[f64; 6]]>,
     /// How long it takes (s), if the rows say so.
     duration: f64,
     /// How far each frame goes in its parent over the whole edge, at most.
@@ -23,7 +25,12 @@ struct Way {
 }
 
 impl<'c> Edge<'c> {
-    pub(crate) fn new(model: &'c Model, from: &'c [f64], to: &'c [f64]) -> Result<Self, String> {
+    pub(crate) fn new(
+        model: &'c Model,
+        from: &'c [f64],
+        to: &'c [f64],
+        curve: Option<&'c [[f64; 6]]>,
+    ) -> Result<Self, String> {
         let duration = match (&model.drive, model.time) {
             (Some(drive), _) => to[drive.duration],
             (None, Some(time)) => to[time] - from[time],
@@ -32,9 +39,36 @@ impl<'c> Edge<'c> {
         if duration < 0.0 || (duration == 0.0 && model.time.is_some() && from != to) {
             return Err("time does not go forward".to_owned());
         }
-        let mut edge = Self { model, from, to, duration, ways: Vec::new() };
+        let mut edge = Self { model, from, to, curve, duration, ways: Vec::new() };
+        if curve.is_some() {
+            return Ok(edge);
+        }
         edge.ways = model.frames.iter().map(|frame| edge.way(frame)).collect::<Result<_, _>>()?;
         Ok(edge)
+    }
+
+    /// How far a frame goes in its parent from the middle of a part of the edge to anywhere in it.
+    fn way_in(&self, frame: usize, [begin, end]: [f64; 2]) -> Way {
+        let half = 0.5 * (end - begin);
+        let Some(curve) = self.curve else {
+            let Way { slide, turn } = self.ways[frame];
+            return Way { slide: half * slide, turn: half * turn };
+        };
+        let far = |column: usize| swing(&curve[column], 0.5 * (begin + end), half);
+        match &self.model.frames[frame] {
+            Frame::Fixed { .. } | Frame::Joint { column: None, .. } => Way::default(),
+            Frame::Joint { slides: true, column: Some(column), factor, .. } => {
+                Way { slide: far(*column) * factor.abs(), turn: 0.0 }
+            }
+            Frame::Joint { column: Some(column), factor, .. } => {
+                Way { slide: 0.0, turn: far(*column) * factor.abs() }
+            }
+            Frame::Plane { first, yaw } => {
+                Way { slide: far(*first).hypot(far(first + 1)), turn: yaw.map_or(0.0, far) }
+            }
+            // Such frames have no curves.
+            Frame::Pose { .. } | Frame::Track { .. } => Way { slide: f64::INFINITY, turn: f64::INFINITY },
+        }
     }
 
     fn way(&self, frame: &Frame) -> Result<Way, String> {
@@ -92,6 +126,10 @@ impl<'c> Edge<'c> {
     fn moment(&self, t: f64) -> (Vec<f64>, Vec<(usize, Pose)>) {
         let (model, from, to) = (self.model, self.from, self.to);
         let (mut row, mut poses) = (from.to_vec(), Vec::new());
+        if let Some(curve) = self.curve {
+            let value = |[a, b, c, d, e, f]: &[f64; 6]| a + t * (b + t * (c + t * (d + t * (e + t * f))));
+            return (curve.iter().map(value).collect(), poses);
+        }
         let after = t * self.duration;
         if let Some(time) = model.time {
             row[time] += after;
@@ -194,7 +232,7 @@ impl<'c> Edge<'c> {
         let center = frames[ball.frame].transform_point(ball.center);
         let mut strayed = 0.0;
         for &i in frames_above {
-            let Way { slide, turn } = self.ways[i];
+            let Way { slide, turn } = self.way_in(i, [begin, end]);
             let to_center = center - frames[i].translation;
             let lever = match &self.model.frames[i] {
                 Frame::Fixed { .. } => 0.0,
@@ -209,7 +247,7 @@ impl<'c> Edge<'c> {
                     continue;
                 }
             };
-            strayed += half * (slide + turn * (lever + ball.radius + strayed));
+            strayed += slide + turn * (lever + ball.radius + strayed);
         }
         strayed
     }
@@ -221,7 +259,7 @@ impl<'c> Edge<'c> {
         if let Some(drive) = &self.model.drive {
             start[drive.duration] = 0.0;
         }
-        let Ok(there) = Edge::new(self.model, &start, &start) else { return f64::INFINITY };
+        let Ok(there) = Edge::new(self.model, &start, &start, None) else { return f64::INFINITY };
         let there = there.frames(0.0);
         let off = self.model.bodies.iter().filter(|body| body.of_robot).flat_map(|body| {
             let [a, b] = [&arrived, &there].map(|frames| frames[body.frame]);
@@ -282,6 +320,19 @@ fn shortest(a: &Pose, b: &Pose) -> Result<Vec3, String> {
     let angle = 2.0 * sine.length().atan2(by.w);
     around(angle)?;
     Ok(sine.try_normalize().map_or(Vec3::ZERO, |axis| axis * angle))
+}
+
+/// How far a polynomial is from its value at `middle` within `half`, at most: its derivatives there, each times the power of `half`
+/// over the factorial that it has in Taylor's formula.
+fn swing(coefficients: &[f64; 6], middle: f64, half: f64) -> f64 {
+    let mut derivative = coefficients.to_vec();
+    let (mut sum, mut weight) = (0.0, 1.0);
+    for order in 1..6 {
+        derivative = derivative.iter().enumerate().skip(1).map(|(i, c)| i as f64 * c).collect();
+        weight *= half / f64::from(order);
+        sum += weight * derivative.iter().rev().fold(0.0, |sum, c| sum * middle + c).abs();
+    }
+    sum
 }
 
 /// The shorter way round a circle.

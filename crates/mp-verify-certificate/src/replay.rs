@@ -38,7 +38,8 @@ pub(crate) fn replay(file: &Certificate) -> Result<Proved, String> {
     for (i, proof) in file.edges.iter().enumerate() {
         let (from, to) = (&file.path[i], &file.path[(i + 1).min(file.path.len() - 1)]);
         let place = |why: String| format!("between configurations {} and {}: {why}", i + 1, i + 2);
-        let edge = Edge::new(model, from, to).map_err(place)?;
+        let curve = file.curves.as_ref().map(|curves| curves[i].as_slice());
+        let edge = Edge::new(model, from, to, curve).map_err(place)?;
         if i == 0 {
             begins_outside(model, &inside, &edge)?;
         }

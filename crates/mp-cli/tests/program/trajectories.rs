@@ -27,7 +27,7 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
 #[test]
 fn a_trajectory_is_planned_timed_and_checked_in_every_format() {
     let dir = dir();
-    for file in ["t.csv", "t.json", "t.yaml"] {
+    for file in ["t.csv", "t.json", "t.yaml", "t.mcap"] {
         let run = mp(&dir, &["plan", "crane.toml", "--out", "p.csv", "--trajectory", file]);
         assert_eq!(run.code, 0, "{run:?}");
         assert!(
@@ -43,9 +43,13 @@ fn a_trajectory_is_planned_timed_and_checked_in_every_format() {
         assert!(
             verdict["clearance"].as_f64().unwrap() > 0.0 && verdict["trajectory"]["least_at"].is_number()
         );
+        let check = mp(&dir, &["check", "crane.toml", file, "--certificate", "c.json"]);
+        assert_eq!(check.code, 0, "{check:?}");
+        let replayed = mp(&dir, &["verify-certificate", "c.json", "--scene", "crane.toml"]);
+        assert!(replayed.code == 0 && replayed.stdout.contains("proved free in crane"), "{replayed:?}");
         let timed = mp(&dir, &["time", "crane.toml", "p.csv", "--out", &format!("again-{file}")]);
         assert_eq!(timed.code, 0, "{timed:?}");
-        assert_eq!(dir.read(&format!("again-{file}")), dir.read(file));
+        assert_eq!(dir.bytes(&format!("again-{file}")), dir.bytes(file));
     }
     // One metre at 1 m/s and 2 m/s²: half a second up, half a second down.
     let all = rows(&dir.read("t.csv"));

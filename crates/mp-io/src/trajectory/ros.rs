@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 
 /// Any of the messages. Other members are skipped.
 #[derive(Deserialize)]
-struct Message {
+pub(crate) struct Message {
     joint_names: Option<Vec<String>>,
     points: Option<Vec<Point>>,
     joint_trajectory: Option<Box<Message>>,
@@ -35,20 +35,44 @@ struct Joints {
 }
 
 #[derive(Deserialize)]
-struct Point {
+pub(crate) struct Point {
     #[serde(default)]
-    positions: Vec<f64>,
+    pub(crate) positions: Vec<f64>,
     #[serde(default)]
-    velocities: Vec<f64>,
+    pub(crate) velocities: Vec<f64>,
     #[serde(default)]
-    accelerations: Vec<f64>,
-    time_from_start: Time,
+    pub(crate) accelerations: Vec<f64>,
+    pub(crate) time_from_start: Time,
+}
+
+impl Message {
+    /// A `JointTrajectory`.
+    pub(crate) fn of_joints(names: Vec<String>, points: Vec<Point>) -> Self {
+        Self {
+            joint_names: Some(names),
+            points: Some(points),
+            joint_trajectory: None,
+            multi_dof_joint_trajectory: None,
+            trajectory: None,
+        }
+    }
+
+    /// A `RobotTrajectory` of a `JointTrajectory`, beside one of these joints of several degrees of freedom.
+    pub(crate) fn beside(self, joint_names: Vec<String>) -> Self {
+        Self {
+            joint_names: None,
+            points: None,
+            joint_trajectory: Some(Box::new(self)),
+            multi_dof_joint_trajectory: Some(Joints { joint_names }),
+            trajectory: None,
+        }
+    }
 }
 
 /// Seconds, or a duration of ROS 2 or of ROS.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected a duration: `{\"sec\": 1, \"nanosec\": 500000000}`")]
-enum Time {
+pub(crate) enum Time {
     Seconds(f64),
     Duration {
         #[serde(alias = "secs")]
@@ -113,7 +137,7 @@ pub(super) fn parse_yaml(
 }
 
 /// The trajectory of a message.
-fn made(file: &str, message: Message, wanted: &[Column]) -> Result<TrajectoryFile, Error> {
+pub(crate) fn made(file: &str, message: Message, wanted: &[Column]) -> Result<TrajectoryFile, Error> {
     let error = |message: String| Error::new(ErrorKind::Content, file, message).help(guide());
     let several = message.multi_dof_joint_trajectory.is_some_and(|joints| !joints.joint_names.is_empty());
     if several {

@@ -18,6 +18,8 @@ pub(super) struct Motion<'m> {
     model: &'m MotionModel,
     from: &'m [f64],
     to: &'m [f64],
+    /// The polynomial of each column, if it is no straight motion.
+    curve: Option<&'m [[f64; 6]]>,
     /// How far (m) each frame slides in its parent over the whole motion at most, and how far (rad) it turns.
     travels: Vec<[f64; 2]>,
     /// Of each frame that is a track.
@@ -36,27 +38,41 @@ impl<'m> Motion<'m> {
             _ => Ok(None),
         };
         let tracks = model.frames.iter().map(track).collect::<Result<_, _>>()?;
-        let mut motion = Self { model, from, to, travels: Vec::new(), tracks };
+        let mut motion = Self { model, from, to, curve: None, travels: Vec::new(), tracks };
         let rates = motion.rates()?;
-        let travel = |frame: &ModelFrame| match frame {
-            ModelFrame::Fixed { .. } | ModelFrame::Track { .. } => [0.0; 2],
-            ModelFrame::Pose { first } => {
-                let norm = |i: usize| rates[i..i + 3].iter().map(|r| r * r).sum::<f64>().sqrt();
-                [norm(*first), norm(first + 3)]
-            }
-            ModelFrame::Plane { first, yaw } => {
-                [mp_math::hypot(rates[*first], rates[first + 1]), yaw.map_or(0.0, |yaw| rates[yaw])]
-            }
-            ModelFrame::Joint { slides, column, factor, .. } => {
-                let travel = column.map_or(0.0, |column| rates[column] * factor.abs());
-                if *slides { [travel, 0.0] } else { [0.0, travel] }
-            }
-        };
-        motion.travels = model.frames.iter().map(travel).collect();
+        motion.travels = model.frames.iter().map(|frame| travel(frame, &rates)).collect();
         match motion.travels.iter().flatten().all(|x| x.is_finite()) {
             true => Ok(motion),
             false => Err("a number is not finite".to_owned()),
         }
+    }
+
+    /// The motion along the polynomials of a curve.
+    ///
+    /// # Errors
+    /// When the robot has degrees of freedom that are no single numbers, moves by inputs or with time, or a number is not finite.
+    pub(super) fn along(
+        model: &'m MotionModel,
+        from: &'m [f64],
+        curve: &'m [[f64; 6]],
+    ) -> Result<Self, String> {
+        let single = model.steps.iter().all(|step| !matches!(step, Step::Pose(_)));
+        if !single || model.drive.is_some() || model.time.is_some() || curve.len() != from.len() {
+            return Err("there are no curves of such robots".to_owned());
+        }
+        if !curve.iter().flatten().all(|x| x.is_finite()) {
+            return Err("a number is not finite".to_owned());
+        }
+        let tracks = model.frames.iter().map(|_| None).collect();
+        Ok(Self { model, from, to: from, curve: Some(curve), travels: Vec::new(), tracks })
+    }
+
+    /// How far (m) a frame slides in its parent, and how far (rad) it turns, from the middle of a part of the motion to anywhere in it, at most.
+    fn travelled(&self, frame: usize, [begin, end]: [f64; 2]) -> [f64; 2] {
+        let half = 0.5 * (end - begin);
+        let Some(curve) = self.curve else { return self.travels[frame].map(|travel| half * travel) };
+        let rates: Vec<f64> = curve.iter().map(|c| strayed(c, 0.5 * (begin + end), half)).collect();
+        travel(&self.model.frames[frame], &rates)
     }
 
     /// How long the motion takes, seconds; 0 if the rows do not say.
@@ -128,6 +144,10 @@ impl<'m> Motion<'m> {
     fn row(&self, t: f64) -> (Vec<f64>, Vec<(usize, Isometry3<f64>)>) {
         let (from, to) = (self.from, self.to);
         let (mut row, mut poses) = (from.to_vec(), Vec::new());
+        if let Some(curve) = self.curve {
+            let value = |c: &[f64; 6]| c.iter().rev().fold(0.0, |sum, c| sum * t + c);
+            return (curve.iter().map(value).collect(), poses);
+        }
         if let Some(time) = self.model.time {
             row[time] = from[time] + t * self.duration();
         }
@@ -258,7 +278,7 @@ impl<'m> Motion<'m> {
         let center = frames[body.frame] * center;
         let mut moved = 0.0;
         for i in self.above(body.frame).take_while(|frame| Some(*frame) != stop) {
-            let [slide, turn] = self.travels[i].map(|travel| half * travel);
+            let [slide, turn] = self.travelled(i, [begin, end]);
             let origin = Point3::from(frames[i].translation.vector);
             let from_axis = match &self.model.frames[i] {
                 ModelFrame::Fixed { .. } => continue,
@@ -281,6 +301,40 @@ impl<'m> Motion<'m> {
         }
         moved
     }
+}
+
+/// How far (m) a frame slides in its parent and how far (rad) it turns, where each column goes so far.
+fn travel(frame: &ModelFrame, rates: &[f64]) -> [f64; 2] {
+    match frame {
+        ModelFrame::Fixed { .. } | ModelFrame::Track { .. } => [0.0; 2],
+        ModelFrame::Pose { first } => {
+            let norm = |i: usize| rates[i..i + 3].iter().map(|r| r * r).sum::<f64>().sqrt();
+            [norm(*first), norm(first + 3)]
+        }
+        ModelFrame::Plane { first, yaw } => {
+            [mp_math::hypot(rates[*first], rates[first + 1]), yaw.map_or(0.0, |yaw| rates[yaw])]
+        }
+        ModelFrame::Joint { slides, column, factor, .. } => {
+            let travel = column.map_or(0.0, |column| rates[column] * factor.abs());
+            if *slides { [travel, 0.0] } else { [0.0, travel] }
+        }
+    }
+}
+
+/// How far a polynomial goes from its value at `middle` within `half`, at most: the sum of the terms of its Taylor series there.
+fn strayed(c: &[f64; 6], middle: f64, half: f64) -> f64 {
+    let (mut shifted, mut sum, mut power) = (*c, 0.0, 1.0);
+    // Each round of Horner's scheme leaves one more coefficient at the middle.
+    for k in 0..6 {
+        for i in (k..5).rev() {
+            shifted[i] += middle * shifted[i + 1];
+        }
+        if k > 0 {
+            power *= half;
+            sum += shifted[k].abs() * power;
+        }
+    }
+    sum
 }
 
 /// What is wrong with half a turn.

@@ -8,14 +8,15 @@ mod compare;
 
 use crate::path::states;
 use crate::{Error, MotionModel, PathRows, Robot};
-use mp_cspace::Interrupt;
+use mp_cspace::{Curve, Interrupt};
 use mp_kinds::prove::{Prover, agrees};
+use mp_time::Trajectory;
 use serde::Serialize;
 use xxhash_rust::xxh3::xxh3_128;
 
 pub(crate) use compare::differences;
 
-/// The version of the file.
+/// The version of the file; with curves it is the next one.
 const VERSION: u32 = 2;
 
 /// The member that ends a certificate: a hash of all bytes before it.
@@ -37,6 +38,8 @@ struct File<'a> {
     columns: Vec<String>,
     model: &'a MotionModel,
     path: &'a [Vec<f64>],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    curves: Option<Vec<Vec<[f64; 6]>>>,
     clearance: Option<f64>,
     edges: &'a [Vec<Vec<[f64; 2]>>],
 }
@@ -67,7 +70,7 @@ impl Certificate {
     }
 }
 
-/// The certificate of a path. `clearance` (m) is a lower bound on the clearance along it, 0 if none is known: the certificate proves
+/// The certificate of a path, or of a trajectory through its configurations. `clearance` (m) is a lower bound on the clearance along it, 0 if none is known: the certificate proves
 /// half of it, and what the robot keeps at least, or a twentieth of its tolerance where that is more.
 ///
 /// # Errors
@@ -76,6 +79,7 @@ impl Certificate {
 pub(crate) fn certificate(
     kind: &dyn Robot,
     path: &PathRows,
+    trajectory: Option<&Trajectory>,
     clearance: f64,
     interrupt: &Interrupt,
 ) -> Result<Certificate, Error> {
@@ -91,21 +95,31 @@ pub(crate) fn certificate(
     let kept = if clearance > kind.kept() { kind.kept() } else { 0.0 };
     let margin = (0.5 * (clearance + kept)).max(0.05 * kind.tolerance());
     let mut prover = Prover::new(&model, margin, interrupt).map_err(|e| Error::new(e).context(what()))?;
+    let number = (path.rows.len() - 1).max(1);
+    let curves: Option<Vec<Vec<_>>> = trajectory.map(|trajectory| {
+        let piece = |i| (0..path.columns.len()).map(|column| trajectory.polynomial(i, column)).collect();
+        (0..number).map(piece).collect()
+    });
     // A path of one configuration is an edge from there to itself.
     let ends = path.rows.iter().zip(path.rows.iter().skip(1).chain(path.rows.last()));
-    let edges = ends.take((path.rows.len() - 1).max(1)).enumerate();
+    let edges = ends.take(number).enumerate();
     let edges = edges.map(|(i, (from, to))| {
         let fault = |why| Error::new(format!("between configurations {} and {}: {why}", i + 1, i + 2));
-        prover.edge(from, to).map_err(|why| fault(why).help("check the path with `mp check`"))
+        let made = match &curves {
+            Some(curves) => prover.curve(from, &curves[i]),
+            None => prover.edge(from, to),
+        };
+        made.map_err(|why| fault(why).help("check the path with `mp check`"))
     });
     let edges: Vec<_> = edges.collect::<Result<_, _>>().map_err(|e| e.context(what()))?;
     let proved = (!model.pairs.is_empty()).then_some(margin);
     let file = File {
-        certificate: VERSION,
+        certificate: VERSION + u32::from(curves.is_some()),
         scene: kind.name(),
         columns: columns(kind),
         model: &model,
         path: &path.rows,
+        curves,
         clearance: proved,
         edges: &edges,
     };

@@ -3,7 +3,7 @@
 use mp_cspace::{Clearance, Configuration, Length, Rng, Validity};
 use mp_plan::{
     ArmScene, Constraint, Interpolation, Interrupt, Knots, Pace, PathRows, Request, Scene, TimedPath,
-    Trajectory,
+    Trajectory, TrajectoryKind,
 };
 use rand::RngExt;
 
@@ -261,6 +261,16 @@ fn what_controllers_run_is_what_is_checked() {
         verdict.faults
     );
     let quintic = made(rows([0.0; 2], [0.0; 2]), rows([0.0, 9.0], [0.0, 0.0]));
+    // Whatever file it comes from, a curve that collides between free points is refused.
+    for kind in [TrajectoryKind::Csv, TrajectoryKind::Json, TrajectoryKind::Yaml, TrajectoryKind::Mcap] {
+        for (curve, free) in [(&smooth, true), (&bent, false)] {
+            let bytes = scene.trajectory_bytes(curve, kind).unwrap();
+            let read = scene.parse_trajectory("t", &bytes, kind, None).unwrap().unwrap();
+            assert_eq!(&read, curve, "{kind:?}");
+            let verdict = check(&read).trajectory.unwrap();
+            assert_eq!(verdict.collides_at.is_none(), free, "{kind:?} {verdict:?}");
+        }
+    }
     let verdict = check(&quintic);
     assert_eq!(verdict.trajectory.as_ref().unwrap().curve, "quintic");
     // Beyond the limits of velocity and acceleration, each with its time.

@@ -2,6 +2,7 @@
 
 mod changed;
 mod clouds;
+mod curves;
 mod look;
 
 use mp_plan::{Interrupt, PathRows, Request, Scene};

@@ -29,9 +29,11 @@ struct Version {
 pub(crate) fn differences(kind: &dyn Robot, text: &str) -> Result<Vec<String>, Error> {
     let unread = |e: serde_json::Error| Error::new(format!("the certificate cannot be read: {e}"));
     let Version { certificate } = serde_json::from_str(text).map_err(unread)?;
-    if certificate != VERSION {
-        let what =
-            format!("the certificate is of version {certificate}, and this program knows version {VERSION}");
+    if !(VERSION..=VERSION + 1).contains(&certificate) {
+        let what = format!(
+            "the certificate is of version {certificate}, and this program knows versions {VERSION} and {}",
+            VERSION + 1
+        );
         return Err(Error::new(what).help("write it anew: `mp check SCENE PATH --certificate FILE`"));
     }
     let claims: Claims = serde_json::from_str(text).map_err(unread)?;
