@@ -4,8 +4,10 @@ use crate::path::states;
 use crate::{Error, ErrorKind, PathRows, Robot};
 use mp_cspace::{Clearance, Configuration, MotionClearance, Space};
 use mp_geom::evenly;
+use mp_kinds::motion::AnyChecker;
 use mp_kinds::turns::continued;
 use mp_kinds::turns::turning;
+use mp_time::Trajectory;
 use nalgebra::{Isometry3, Point3};
 
 /// The poses of the moving bodies along a path, as pictures need them.
@@ -131,6 +133,15 @@ pub struct Track {
 }
 
 impl Track {
+    /// Adds a configuration.
+    fn add(&mut self, kind: &dyn Robot, checker: &mut AnyChecker, q: &Configuration, travel: f64) {
+        self.rows.push(kind.row(q));
+        self.poses.push(kind.poses(q));
+        self.trace.push(kind.traced(q));
+        self.clearance.push(checker.clearance(q, f64::INFINITY).max(0.0));
+        self.travel.push(travel);
+    }
+
     /// The poses of the robot's bodies and the drawn point at a fraction of the way, 0 to 1, at even speed, or of the time for
     /// robots whose states say when they are there. `None` without
     /// configurations.
@@ -159,13 +170,7 @@ pub(crate) fn track(kind: &dyn Robot, path: &PathRows) -> Result<Track, Error> {
     let total: f64 = lengths.iter().sum();
     let spacing = (0.1 * kind.picture_spacing()).max(total / MAX_BETWEEN);
     let mut track = Track::default();
-    let mut add = |q: &Configuration, travel: f64| {
-        track.rows.push(kind.row(q));
-        track.poses.push(kind.poses(q));
-        track.trace.push(kind.traced(q));
-        track.clearance.push(checker.clearance(q, f64::INFINITY).max(0.0));
-        track.travel.push(travel);
-    };
+    let mut add = |q: &Configuration, travel: f64| track.add(kind, &mut checker, q, travel);
     let mut way = 0.0;
     for (edge, length) in lengths.iter().enumerate() {
         let parts = (length / spacing).ceil().clamp(1.0, MAX_BETWEEN) as u32;
@@ -180,4 +185,17 @@ pub(crate) fn track(kind: &dyn Robot, path: &PathRows) -> Result<Track, Error> {
         add(last, way);
     }
     Ok(track)
+}
+
+/// Configurations of a trajectory at equal times, `rate` in a second, or as many as a path may have between two of its own.
+pub(crate) fn track_in_time(kind: &dyn Robot, trajectory: &Trajectory, rate: f64) -> Track {
+    let (first, duration) = (trajectory.span()[0], trajectory.duration());
+    let parts = (duration * rate).ceil().clamp(0.0, MAX_BETWEEN) as u32;
+    let (mut checker, mut track) = (kind.any_measure(), Track::default());
+    for k in 0..=parts {
+        let time = duration * f64::from(k) / f64::from(parts.max(1));
+        let q = kind.state(&trajectory.at(first + time).position);
+        track.add(kind, &mut checker, &q, time);
+    }
+    track
 }

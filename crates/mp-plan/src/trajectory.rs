@@ -1,8 +1,9 @@
 //! Trajectories of a scene: paths that get times, the check of curves, and their files.
 
 use crate::finish::certificate::certificate;
-use crate::finish::trajectory::{check, time};
-use crate::{Body, BodyShape, Certificate, Error, Pace, PathRows, Scene, TimedPath, Verdict};
+use crate::finish::trajectory::{UNKNOWN, check, time};
+use crate::sweep::track_in_time;
+use crate::{Body, BodyShape, Certificate, Error, Pace, PathRows, Scene, TimedPath, Track, Verdict};
 use mp_cspace::Interrupt;
 use mp_io::{Column, RecordedBody, RecordedShape, Recording, TrajectoryFile, TrajectoryKind};
 use mp_time::{Interpolation, Knots, Trajectory};
@@ -14,6 +15,21 @@ impl Scene {
     #[must_use]
     pub fn has_trajectories(&self) -> bool {
         self.robot.rates().is_some()
+    }
+
+    /// The limits of velocity (rad/s or m/s) and acceleration (per s²) of each column that [`time`](Self::time) keeps to: 1 where none is known.
+    /// `None` for robots without [trajectories](Self::has_trajectories).
+    #[must_use]
+    pub fn rate_limits(&self) -> Option<Vec<[f64; 2]>> {
+        let known = self.robot.rates()?;
+        Some(known.into_iter().map(|[v, a, _]| [v, a].map(|limit| limit.unwrap_or(UNKNOWN))).collect())
+    }
+
+    /// A trajectory sampled at equal times for an animation, so many times a second, or less often where that would be thousands;
+    /// [`travel`](Track::travel) has the seconds from its first point.
+    #[must_use]
+    pub fn track_in_time(&self, trajectory: &Trajectory, rate: f64) -> Track {
+        track_in_time(&*self.robot, trajectory, rate)
     }
 
     /// Gives a path times: goes along it as fast as the limits of velocity, acceleration and jerk allow, with rounded corners (TOPP-RA), and proves the

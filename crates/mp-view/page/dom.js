@@ -64,6 +64,17 @@ export function slider({ low, high, step, value }, change, properties = {}) {
   return input;
 }
 
+/** Calls `go` where a pointer is pressed and dragged in an element: 0 is its left side, 1 its right. @param {HTMLElement | SVGElement} element
+ * @param {(part: number) => void} go */
+export function whileHeld(element, go) {
+  const at = (/** @type {PointerEvent} */ e) => {
+    const box = element.getBoundingClientRect();
+    go(Math.max(0, Math.min(1, (e.clientX - box.left) / box.width)));
+  };
+  element.addEventListener("pointerdown", (/** @type {any} */ e) => (element.setPointerCapture(e.pointerId), at(e)));
+  element.addEventListener("pointermove", (/** @type {any} */ e) => element.hasPointerCapture(e.pointerId) && at(e));
+}
+
 /** A list of names and values. @param {[string, string][]} facts */
 export const factList = (facts) => el("dl", {}, ...facts.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
 

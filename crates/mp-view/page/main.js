@@ -13,6 +13,7 @@ import { PlanningPanel } from "mp/planning.js";
 import { SaveDialog } from "mp/saving.js";
 import { readScene } from "mp/scene.js";
 import { sessionOfPage } from "mp/session.js";
+import { TimingPanel } from "mp/timing.js";
 import { Viewer } from "mp/viewer.js";
 import { Workbench } from "mp/workbench.js";
 
@@ -51,9 +52,11 @@ async function connect(session, viewer) {
   const editor = new Editor(workbench);
   const opening = new Opening(editor);
   const gallery = new Gallery(workbench);
-  opening.saveBy(new SaveDialog(workbench));
+  const saving = new SaveDialog(workbench);
+  opening.saveBy(saving);
   new Inspector(editor, () => opening.chooseMesh());
   new PlanningPanel(workbench);
+  new TimingPanel(workbench, () => saving.show("save_trajectory"));
   new EndsPanel(workbench);
   new FieldLayer(workbench);
   const { opened } = workbench.hello;

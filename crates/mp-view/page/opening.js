@@ -115,7 +115,7 @@ export class Opening {
     for (const file of files) {
       const reply = await this.session.request({ do: "path", files: [file] });
       const path = readPath(reply.path, scene.columns.length, scene.robot);
-      this.viewer.choosePath(this.viewer.addPath(path));
+      this.viewer.choosePath(this.viewer.addPath({ ...path, written: reply.written }));
       faults.push(...(reply.faults ?? []).map((/** @type {string} */ fault) => `${file.name}: ${fault}`));
     }
     showError(faults.join(" "));

@@ -222,7 +222,7 @@ export class Panels {
 }
 
 function pathWords(/** @type {Path} */ path) {
-  const words = [`${brief(path.count)} configurations`];
+  const words = [path.trajectory ? `${brief(path.trajectory.duration)} s` : `${brief(path.count)} configurations`];
   if (Number.isFinite(path.length)) words.push(`length ${brief(path.length)}`);
   if (path.clearance?.length) words.push(`least clearance shown ${brief(path.clearance.reduce((a, b) => Math.min(a, b)))} m`);
   words.push(path.verified ? "verified" : "not verified");

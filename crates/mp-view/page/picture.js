@@ -66,6 +66,11 @@ export class PictureMaker {
   }
   addPath(/** @type {Path} */ path) { this.traces.push(this.traceLines(path)); }
 
+  /** Another path takes the place of one. @param {number} i @param {Path} path */
+  setPath(i, path) {
+    this.traces[i].free();
+    this.traces[i] = this.traceLines(path);
+  }
   /** Frees the memory on the graphics card. */
   free() {
     for (const set of [...this.trees, ...this.traces, this.marker]) set.free();

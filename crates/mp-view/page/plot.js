@@ -1,7 +1,8 @@
 // A quantity along the path as a small plot: clearance, a number of the configurations, or how the path bends. Press or drag in it to
 // go to a configuration.
 
-import { brief, select } from "mp/dom.js";
+import { brief, select, whileHeld } from "mp/dom.js";
+import { JointPlots, OF_JOINTS } from "mp/jointplots.js";
 
 /** @import { Path, Scene } from "mp/scene.js" */
 /** @typedef {ArrayLike<number>} Values  one for each configuration of a path */
@@ -52,8 +53,9 @@ export function curvatureOf({ trace, count }) {
 }
 
 /** How far the robot moves from each configuration to the next, metres. @param {Path} path @returns {Values | null} */
-function stepsOf({ travel, count }) {
-  return travel && Float64Array.from({ length: count }, (_, i) => (i + 1 < count ? travel[i + 1] - travel[i] : travel[i] - (travel[i - 1] ?? travel[i])));
+function stepsOf({ travel, count, trajectory }) {
+  // Of a trajectory it has seconds.
+  return trajectory ? null : travel && Float64Array.from({ length: count }, (_, i) => (i + 1 < count ? travel[i + 1] - travel[i] : travel[i] - (travel[i - 1] ?? travel[i])));
 }
 
 /** What can be plotted of the paths of a scene. @param {Scene} scene @returns {Quantity[]} */
@@ -88,13 +90,8 @@ export class PathPlot {
     /** @type {Quantity | null} */ this.quantity = null;
     /** Of the chosen path and of the one compared. @type {Curve[]} */ this.curves = [];
     this.control = select([], "", (key) => this.choose(key), { "aria-label": "Plot along the path" });
-    const go = (/** @type {PointerEvent} */ e) => {
-      const box = canvas.getBoundingClientRect();
-      const part = Math.max(0, Math.min(1, (e.clientX - box.left) / box.width));
-      if (this.curves[0]) scrub(timeAt(this.curves[0].way, part));
-    };
-    canvas.addEventListener("pointerdown", (e) => (canvas.setPointerCapture(e.pointerId), go(e)));
-    canvas.addEventListener("pointermove", (e) => canvas.hasPointerCapture(e.pointerId) && go(e));
+    this.joints = new JointPlots(scrub);
+    whileHeld(canvas, (part) => { if (this.curves[0]) scrub(timeAt(this.curves[0].way, part)); });
   }
   /** @param {Scene | null} scene @param {(Path | null | undefined)[]} paths the chosen one, and the one compared */
   show(scene, paths) {
@@ -105,9 +102,11 @@ export class PathPlot {
     this.paths = paths.filter((path) => path?.count);
     const first = paths[0];
     const known = first?.count ? this.quantities.filter(({ of }) => of(first) !== null) : [];
-    this.control.replaceChildren(...known.map(({ key, name, unit }) => new Option(unit ? `${name} (${unit})` : name, key)));
-    this.quantity = known.find(({ key }) => key === this.wanted) ?? known[0] ?? null;
-    this.control.value = this.quantity?.key ?? "";
+    const ofJoints = first?.trajectory ? OF_JOINTS.map(([key, name]) => new Option(name, key)) : [];
+    this.control.replaceChildren(...ofJoints, ...known.map(({ key, name, unit }) => new Option(unit ? `${name} (${unit})` : name, key)));
+    const together = ofJoints.some(({ value }) => value === this.wanted);
+    this.quantity = together ? null : (known.find(({ key }) => key === this.wanted) ?? known[0] ?? null);
+    this.control.value = together ? this.wanted : (this.quantity?.key ?? "");
     this.control.hidden = !known.length;
     // Without a path its place is kept, so that the picture does not move.
     this.canvas.style.visibility = known.length ? "" : "hidden";
@@ -122,7 +121,12 @@ export class PathPlot {
   }
   /** Computes the curves. */
   fill() {
-    const { quantity } = this;
+    const { quantity, scene, joints, canvas } = this;
+    const [first] = this.paths ?? [];
+    const order = first?.trajectory ? OF_JOINTS.findIndex(([key]) => key === this.wanted) : -1;
+    canvas.hidden = order >= 0;
+    joints.element.hidden = order < 0;
+    if (first && scene && order >= 0) joints.show(scene, first, order);
     this.curves = (this.paths ?? []).flatMap((path) => {
       const values = path && quantity?.of(path);
       return values ? [{ path, values, way: wayOf(path) }] : [];
@@ -133,6 +137,7 @@ export class PathPlot {
     this.canvas.setAttribute("aria-label", words.charAt(0).toUpperCase() + words.slice(1));
   }
   draw(/** @type {number} */ time) {
+    if (!this.joints.element.hidden) return this.joints.draw(time);
     const context = this.canvas.getContext("2d");
     const [curve] = this.curves;
     const { quantity, range, own } = this;

@@ -6,7 +6,7 @@ import { button, checkbox, el, labelled, select } from "mp/dom.js";
 /** @import { Path } from "mp/scene.js" */
 /** @import { Workbench } from "mp/workbench.js" */
 
-/** @typedef {"save" | "save_path" | "export"} Saving */
+/** @typedef {"save" | "save_path" | "save_trajectory" | "export"} Saving */
 /** What can be saved: label, request, format. @type {[label: string, request: Saving, format: string][]} */
 const KINDS = [
   ["the environment, to edit again (.mp.json)", "save", "own"],
@@ -14,6 +14,10 @@ const KINDS = [
   ["the path, as text", "save_path", "txt"],
   ["the path, as JSON", "save_path", "json"],
   ["the path, as CSV", "save_path", "csv"],
+  ["the trajectory, as CSV", "save_trajectory", "csv"],
+  ["the trajectory for ROS, as JSON", "save_trajectory", "json"],
+  ["the trajectory for ROS, as YAML", "save_trajectory", "yaml"],
+  ["the trajectory with what it moves, for Foxglove (MCAP)", "save_trajectory", "mcap"],
   ["this page, to send (HTML)", "export", "html"],
   ["the scene for the viewer (MPV)", "export", "mpv"],
 ];
@@ -52,15 +56,18 @@ export class SaveDialog {
     workbench.onopened.push(() => (this.opener.disabled = false));
     workbench.onleft.push(() => (this.opener.disabled = true));
   }
-  show() {
+  /** @param {Saving | ""} [wanted] what is chosen at first */
+  show(wanted = "") {
     const { viewer } = this.workbench;
     if (this.opener.disabled) return;
     const path = viewer.scene.paths[viewer.settings.path];
     const edited = this.document();
     /** @type {[string, string][]} */
     const options = KINDS.map(([label], i) => [String(i), label]);
-    const possible = options.filter((_, i) => (KINDS[i][1] === "save" ? edited : KINDS[i][1] === "export" || path));
-    const kind = select(possible, possible[0][0], () => {});
+    const can = { save: edited, save_path: path, save_trajectory: path?.trajectory, export: true };
+    const possible = options.filter((_, i) => can[KINDS[i][1]]);
+    const first = possible.find(([i]) => KINDS[Number(i)][1] === wanted) ?? possible[0];
+    const kind = select(possible, first[0], () => {});
     const name = el("input", { type: "text", value: fileName(String(edited?.name ?? viewer.scene.name)), required: true });
     const note = el("p", { role: "status" });
     const dialog = el("dialog", { "aria-label": "Save" });
@@ -93,6 +100,7 @@ export class SaveDialog {
     const what = {
       save: { document: edited },
       save_path: { rows: path ? rowsOf(path, columns) : [] },
+      save_trajectory: { knots: path?.trajectory?.knots },
       export: { paths: scene.paths.map((p) => ({ name: p.name, rows: rowsOf(p, columns) })), ...ends.request() },
     }[request];
     const reply = await session.request({ do: request, format, name, ...what, ...(overwrite ? { overwrite } : {}) });

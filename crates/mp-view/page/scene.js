@@ -13,10 +13,12 @@ import { decode } from "mp/message.js";
  *  color: Color | null, stretch: Vec3}} Body
  *  `mesh` and `area` are -1 where the body has none. `stretch` is 1, 1, 1 but while handles scale the body. */
 /** @typedef {{row: number[], poses: number[], refused?: boolean}} Configuration  `refused`: the planner said that it is not free */
+/** @typedef {{duration: number, velocities: Float64Array, accelerations: Float64Array, limits: [number, number][], curve: string, knots: object,
+ *  words: string[]}} Trajectory  configurations are at equal times; `limits`: of velocity and acceleration of each column */
 /** @typedef {{name: string, count: number, rows: Float64Array, poses: Float32Array, trace: Float32Array,
  *  clearance: Float32Array | null, travel: Float32Array | null, verified: boolean, length: number, ofRun: boolean,
- *  written: number[][] | null}} Path  `ofRun`: made by a run of this page; `written`: the path's own configurations, where they are
- *  known: `rows` are more, for the animation; `travel`: how far the robot has moved until each, metres */
+ *  written: number[][] | null, trajectory: Trajectory | null}} Path  `ofRun`: made by a run of this page; `written`: the path's own configurations, where they are
+ *  known: `rows` are more, for the animation; `travel`: how far the robot has moved until each, metres, or of a `trajectory` seconds */
 /** @typedef {{name: string, nodes: Float32Array, parents: Int32Array, bends: Bends | null}} Tree */
 /** @typedef {{nodes: Float32Array, edges: Uint32Array, component: Uint32Array, kind: Uint8Array}} Roadmap */
 /** @typedef {{name: string, space: string, planar: boolean, columns: Column[], limits: ([number, number] | null)[],
@@ -148,7 +150,7 @@ export function readPath(entry, columns, robot) {
   const equal = rows.length === count * columns && poses.length === count * robot * 7 && [clearance, travel].every((known) => !known || known.length === count);
   check(equal, `In the scene file, the arrays of the path “${name}” do not have the same number of configurations.`);
   const length = typeof path.length === "number" ? path.length : NaN;
-  return { name, count, rows, poses, trace, clearance, travel, verified: path.verified === true, length, ofRun: false, written: null };
+  return { name, count, rows, poses, trace, clearance, travel, verified: path.verified === true, length, ofRun: false, written: null, trajectory: null };
 }
 
 /** @param {unknown} entry @returns {Tree} */

@@ -14,6 +14,8 @@ import { PlannerWorker } from "mp/worker.js";
 const PATIENCE = 90;
 /** Requests about one run. */
 const OF_RUN = ["pause", "resume", "step", "cancel"];
+/** Events that end a run. */
+const ENDS = ["done", "timed", "failed"];
 
 /** Why a request failed, and what to do. */
 export class SessionError extends Error {
@@ -131,7 +133,7 @@ class WorkerLink {
   }
   /** @param {Uint8Array} bytes @param {Message} request @returns {Promise<Uint8Array>} */
   async send(bytes, request) {
-    if (request.do === "plan") return this.plan(bytes, request.run);
+    if (request.do === "plan" || request.do === "time") return this.plan(bytes, request.run);
     if (OF_RUN.includes(request.do)) return this.toRun(bytes, request);
     // A worker that stopped by a fault is replaced by the next request.
     this.main ??= this.worker(() => {}, () => (this.main = null), () => {});
@@ -150,7 +152,7 @@ class WorkerLink {
     };
     const onevent = (/** @type {Uint8Array} */ message) => {
       const event = decode(message, "message");
-      if (event.event !== "done" && event.event !== "failed") return this.owner.onevent(event);
+      if (!ENDS.includes(String(event.event))) return this.owner.onevent(event);
       this.runs.get(run)?.end("The run has ended.");
       end(event);
     };

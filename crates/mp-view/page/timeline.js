@@ -58,7 +58,7 @@ export class Timeline {
           button("›", () => this.step(1), { "aria-label": "Next configuration", title: "Next (→)" }),
           button("»", () => this.scrub(this.last), { "aria-label": "Last configuration", title: "Last (End)" })),
         this.autoControls, this.allControls, this.plot.control, this.output),
-      this.slider, this.plot.canvas);
+      this.slider, this.plot.canvas, this.plot.joints.element);
   }
   set(/** @type {() => void} */ change) {
     change();
@@ -82,8 +82,10 @@ export class Timeline {
     if (!this.slider) return;
     this.slider.step = animation === "step" ? "1" : "any";
     this.slider.valueAsNumber = time;
-    const words = this.path ? `${brief(Math.round(time) + 1)} of ${brief(this.last + 1)}` : "no path";
-    this.slider.setAttribute("aria-valuetext", `Configuration ${words}`);
+    const { duration = 0 } = this.path?.trajectory ?? {};
+    const seconds = this.path?.trajectory && `${((time / (this.last || 1)) * duration).toFixed(2)} of ${duration.toFixed(2)} s`;
+    const words = seconds ?? (this.path ? `${brief(Math.round(time) + 1)} of ${brief(this.last + 1)}` : "no path");
+    this.slider.setAttribute("aria-valuetext", seconds ?? `Configuration ${words}`);
     if (this.output) this.output.textContent = this.path && animation === "all" ? `${words} · ${Math.min(copies, this.last + 1)} shown` : words;
     if (this.playButton) this.playButton.textContent = this.playing ? "Pause" : "Play";
     // The planner has a button “Pause”, too.
@@ -124,10 +126,11 @@ export class Timeline {
   /** Moves on while it plays; returns whether it plays. @param {number} now milliseconds */
   advance(now) {
     if (!this.playing || !this.last) return false;
-    const seconds = this.lastTime ? Math.min(0.1, (now - this.lastTime) / 1000) : 0;
+    const { duration = 0 } = this.path?.trajectory ?? {};
+    const seconds = this.lastTime ? Math.min(duration ? 1 : 0.1, (now - this.lastTime) / 1000) : 0;
     this.lastTime = now;
-    // The whole path takes 4 to 16 seconds.
-    const rate = this.last / Math.max(4, Math.min(16, this.last / 25));
+    // A path without times takes 4 to 16 seconds.
+    const rate = this.last / (duration || Math.max(4, Math.min(16, this.last / 25)));
     const time = this.settings.time + seconds * rate * this.speed * this.direction;
     if (time < 0 || time > this.last) this.turn(time);
     else this.settings.time = time;

@@ -124,6 +124,13 @@ export class Viewer {
     this.panels?.showPaths();
     return this.scene.paths.length - 1;
   }
+  /** Puts a path in the place of another one. @param {number} i @param {Path} path */
+  setPath(i, path) {
+    this.scene.paths[i] = path;
+    this.pictures?.setPath(i, path);
+    this.panels?.showPaths();
+    if (i === this.settings.path) this.choosePath(i);
+  }
   /** Brings the scene to the graphics card; what was there of another scene is freed. */
   prepare() {
     const { shapes, ofBody } = shapesOf(this.scene, this.shapes);

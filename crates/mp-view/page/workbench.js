@@ -19,6 +19,7 @@ export class Workbench {
     /** What can be edited, or null. @type {Message | null} */ this.document = null;
     /** Whether the session has a scene open. */ this.open = false;
     /** Whether bodies of the robot can be put to places: docs/formats/session.md. */ this.links = false;
+    /** Whether paths of the robot get times. */ this.trajectories = false;
     /** How many parts of the motion come after this one. */ this.partsLeft = 0;
     /** Called after a scene was opened (“open”), or came back changed from the planner (“edit”).
      * @type {((reply: Message, how: "open" | "edit") => void)[]} */ this.onopened = [];
@@ -49,6 +50,7 @@ export class Workbench {
    * @param {{paths: Path[], report: Scene["report"]}} [known] what is shown with it */
   take(reply, how, known = { paths: [], report: null }) {
     const scene = readScene(reply.scene);
+    if (reply.written) scene.paths[0].written = reply.written;
     scene.paths.push(...known.paths);
     scene.report ??= known.report;
     this.open = true;
@@ -59,7 +61,7 @@ export class Workbench {
     for (const listener of this.onopened) listener(reply, how);
   }
   /** What the session says of its scene. @param {Message} reply */
-  describe({ document = null, links = false, parts_left: partsLeft = 0 }) { Object.assign(this, { document, links, partsLeft }); }
+  describe({ document = null, links = false, trajectories = false, parts_left: partsLeft = 0 }) { Object.assign(this, { document, links, trajectories, partsLeft }); }
 
   /** Opens the next part of the motion. @param {number[]} row where this one ends @returns {Promise<boolean>} */
   nextPart(row) {

@@ -56,7 +56,15 @@ impl Message {
     pub(crate) fn bytes(&self, value: &Value, what: &str) -> Result<Vec<u8>, ViewError> {
         let array: ArrayRef = serde_json::from_value(value.clone())
             .map_err(|_| ViewError::Array { what: what.to_owned(), problem: "is missing" })?;
-        extract(&self.data, &array, what)
+        self.entries(&array, what)
+    }
+
+    /// The entries of an array. `what` is its name in errors.
+    ///
+    /// # Errors
+    /// When it has entries of another type, or is not within the message.
+    pub(crate) fn entries<T: Entry>(&self, array: &ArrayRef, what: &str) -> Result<Vec<T>, ViewError> {
+        extract(&self.data, array, what)
     }
 }
 

@@ -16,7 +16,7 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 43] = modules!(
+const MODULES: [(&str, &str); 45] = modules!(
     "buffers",
     "camera",
     "colors",
@@ -35,6 +35,7 @@ const MODULES: [(&str, &str); 43] = modules!(
     "growing",
     "handles",
     "inspector",
+    "jointplots",
     "live",
     "main",
     "math",
@@ -55,6 +56,7 @@ const MODULES: [(&str, &str); 43] = modules!(
     "shaders",
     "shapes",
     "timeline",
+    "timing",
     "triangulate",
     "unsaved",
     "viewer",

@@ -8,6 +8,7 @@ mod run;
 mod tests;
 #[cfg(not(target_family = "wasm"))]
 mod threads;
+mod times;
 mod worker;
 mod workspace;
 
@@ -28,6 +29,8 @@ use serde_json::Value;
 pub(crate) enum RunRequest {
     /// To begin it: with this request, paused or not.
     Plan { request: Box<Request>, paused: bool },
+    /// To give a path times.
+    Time(times::Timing),
     /// To change what it does.
     Order(run::Order),
     /// To end it.
@@ -51,6 +54,7 @@ impl RunRequest {
                 let paused = head.get("paused").and_then(Value::as_bool).unwrap_or(false);
                 Self::Plan { request: Box::new(request), paused }
             }
+            "time" => Self::Time(times::Timing::of(head)?),
             "pause" => Self::Order(run::Order::Pause),
             "resume" => Self::Order(run::Order::Go),
             "step" => Self::Order(run::Order::Step(number_of(head, "iterations")?.max(1))),

@@ -70,7 +70,7 @@ pub struct TimedPath {
 const RATES: [&str; 3] = ["velocity", "acceleration", "jerk"];
 
 /// The limits that are taken where none is known (rad/s or m/s, and these per s): those of MoveIt.
-const UNKNOWN: f64 = 1.0;
+pub(crate) const UNKNOWN: f64 = 1.0;
 
 /// A corner is rounded half as far so many times, then not at all.
 const HALVINGS: u32 = 6;

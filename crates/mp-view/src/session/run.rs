@@ -63,6 +63,17 @@ impl Outbox {
         state.or_else(|| self.rest.pop_front())
     }
 
+    /// Tells of the end of the run: what it led to, or that it failed.
+    pub(crate) fn close(&mut self, told: Result<Message, Error>) {
+        match told {
+            Ok(message) => {
+                self.ready = true;
+                self.rest.push_back(message);
+            }
+            Err(error) => self.fail(&error),
+        }
+    }
+
     /// Tells that the run failed.
     pub(crate) fn fail(&mut self, error: &Error) {
         let failed = Message::event("failed", self.run);

@@ -354,6 +354,79 @@ fn paths_as_found_are_told_and_checked() {
     }
 }
 
+/// A path gets times as in the library, with or without threads, and its trajectory is written as it is.
+#[test]
+fn paths_get_times() {
+    let scene = Scene::find("arm-6").unwrap();
+    let rows = scene.plan(&mp_plan::Request::default()).unwrap().path.unwrap();
+    let path = mp_plan::PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+    let page = opened("arm-6");
+    let mut durations = Vec::new();
+    for (run, part) in [(7, 1.0), (8, 0.25)] {
+        let request = json!({"do": "time", "run": run, "rows": path.rows, "velocity": part});
+        let pace = mp_plan::Pace { velocity: part, ..mp_plan::Pace::default() };
+        let trajectory = scene.time(&path, &pace, &mp_plan::Interrupt::never()).unwrap().trajectory;
+        page.ask(request.clone());
+        let timed = page.until("timed").pop().unwrap();
+        let mut worker = Worker::new(Clock::default());
+        worker.send(&message(json!({"do": "open", "scene": "arm-6"})).to_bytes());
+        worker.send(&message(request).to_bytes());
+        assert!(!worker.advance(Duration::from_millis(5)));
+        let told: Vec<_> = std::iter::from_fn(|| worker.take()).collect();
+        assert_eq!(Message::parse(told.last().unwrap()).unwrap(), timed);
+
+        let knots = &timed.head["knots"];
+        assert_eq!(numbers_of::<f64>(&timed, &knots["times"]), trajectory.knots().times);
+        assert_eq!(numbers_of::<f64>(&timed, &knots["positions"]), trajectory.knots().positions.concat());
+        let duration = timed.head["duration"].as_f64().unwrap();
+        assert_eq!((duration, &timed.head["curve"]), (trajectory.duration(), &json!("cubic")));
+        // Fifty times a second, within limits, and as fast as one of them allows.
+        let velocities: Vec<f64> = numbers_of(&timed, &timed.head["velocities"]);
+        assert_eq!(velocities.len(), 6 * ((duration * 50.0).ceil() as usize + 1));
+        assert_eq!(numbers_of::<f64>(&timed, &timed.head["path"]["rows"]).len(), velocities.len());
+        let limits: Vec<[f64; 2]> = serde_json::from_value(timed.head["limits"].clone()).unwrap();
+        let accelerations: Vec<f64> = numbers_of(&timed, &timed.head["accelerations"]);
+        let most = |all: &[f64], of: usize| {
+            (0..all.len()).map(|i| all[i].abs() / limits[i % 6][of]).fold(0.0, f64::max)
+        };
+        let [fastest, hardest] = [most(&velocities, 0) / part, most(&accelerations, 1)];
+        assert!(fastest.max(hardest) <= 1.001 && fastest.max(hardest) > 0.9, "{fastest} {hardest}");
+        durations.push(duration);
+
+        for format in ["csv", "json", "yaml", "mcap"] {
+            let request = json!({"do": "save_trajectory", "format": format, "name": "t", "knots": knots});
+            let Value::Object(head) = request else { unreachable!() };
+            let saved = files_of(&page.reply(Message { head, data: timed.data.clone() }));
+            let (name, bytes) = &saved[0];
+            let kind = mp_plan::TrajectoryKind::of(std::path::Path::new(name)).unwrap();
+            assert_eq!(scene.parse_trajectory(name, bytes, kind, None).unwrap().as_ref(), Some(&trajectory));
+        }
+    }
+    assert!(durations[1] > 1.2 * durations[0], "{durations:?}");
+
+    // What cannot be timed is said by an event, as of other runs.
+    let mut run = 10;
+    let mut failed = |page: &Page, rows: Value, part: f64| {
+        run += 1;
+        page.ask(json!({"do": "time", "run": run, "rows": rows, "velocity": part}));
+        page.until("failed").pop().unwrap().head["message"].as_str().unwrap().to_owned()
+    };
+    assert!(failed(&page, json!([]), 1.0).contains("no configurations"));
+    assert!(failed(&page, json!([[1.0]]), 1.0).contains("1 number"));
+    assert!(failed(&page, json!(path.rows), 0.0).contains("velocity"));
+    let through = failed(&page, json!([scene.start(), scene.goals()[0]]), 1.0);
+    assert!(through.contains("not free"), "{through}");
+    let easy = Scene::find("easy").unwrap();
+    assert!(failed(&opened("easy"), json!([easy.start()]), 1.0).contains("no trajectories"));
+    let none = page.refused(json!({"do": "save_trajectory", "format": "csv", "name": "t"}));
+    assert!(none.contains("no array `times`"), "{none}");
+    // A cancel ends it, if it has not ended.
+    page.ask(json!({"do": "time", "run": 2, "rows": path.rows}));
+    page.ask(json!({"do": "cancel", "run": 2}));
+    let last = page.event().head;
+    assert!(last["event"] == "timed" || last["message"].as_str().unwrap().contains("in time"), "{last:?}");
+}
+
 /// The field is that of the library.
 #[test]
 fn fields_are_sent() {

@@ -5,7 +5,7 @@ use super::workspace::{Opening, Workspace};
 use super::{RunRequest, first_order, refusal};
 use crate::message::Message;
 use mp_cspace::{Cancel, Clock, Progress, Stop, StopReason};
-use mp_plan::{Control, Error, Request, Scene};
+use mp_plan::{Control, Error, Interrupt, Request, Scene};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -122,23 +122,38 @@ impl Session {
         };
         let scene = match &about {
             RunRequest::Plan { .. } => Some(unpoisoned(&self.workspace).scene_to_plan(message)?),
+            RunRequest::Time(_) => Some(unpoisoned(&self.workspace).opened()?.scene.clone()),
             _ => None,
         };
         let mut runs = unpoisoned(&self.runs);
+        if scene.is_some() && runs.contains_key(&run) {
+            return Err(Error::new(format!("run {run} goes on already")));
+        }
+        let wake = Arc::clone(&self.wake);
         match (about, scene) {
             (RunRequest::Plan { request, paused }, Some(scene)) => {
-                if runs.contains_key(&run) {
-                    return Err(Error::new(format!("run {run} goes on already")));
-                }
                 // What is wrong with start, goal and request is the reply, not an event.
                 let scene = scene.for_request(&request)?;
                 scene.prepare(&request)?;
-                runs.insert(run, begin(run, scene, *request, paused, Arc::clone(&self.wake)));
+                let outbox = Outbox::new(run, scene.clone(), &request);
+                let work = move |orders: &Orders, outbox: &SharedOutbox, wake: &dyn Fn()| {
+                    drive(&scene, &request, orders, outbox, wake)
+                };
+                runs.insert(run, begin(outbox, first_order(paused), wake, work));
+            }
+            (RunRequest::Time(timing), Some(scene)) => {
+                let outbox = Outbox::new(run, scene.clone(), &Request::default());
+                let work = move |orders: &Orders, outbox: &SharedOutbox, _: &dyn Fn()| {
+                    let told = timing.timed(&scene, &Interrupt::new(orders.cancel.clone()));
+                    locked(outbox).close(told);
+                    Ok(())
+                };
+                runs.insert(run, begin(outbox, Order::Go, wake, work));
             }
             // A run that has ended meanwhile needs no order.
             (RunRequest::Order(order), _) => runs.get(&run).iter().for_each(|run| run.orders.give(order)),
             (RunRequest::Cancel, _) => runs.get(&run).iter().for_each(|run| run.orders.cancel()),
-            (RunRequest::Plan { .. }, None) => {}
+            (RunRequest::Plan { .. } | RunRequest::Time(_), None) => {}
         }
         Ok(Message::default())
     }
@@ -177,16 +192,14 @@ impl Drop for Session {
     }
 }
 
-/// Begins a run in a thread of its own.
+/// Begins a run in a thread of its own, which does this work.
 fn begin(
-    run: u64,
-    scene: Scene,
-    request: Request,
-    paused: bool,
+    outbox: SharedOutbox,
+    order: Order,
     wake: Arc<dyn Fn() + Send + Sync>,
+    work: impl FnOnce(&Orders, &SharedOutbox, &dyn Fn()) -> Result<(), Error> + Send + 'static,
 ) -> RunThread {
-    let outbox = Outbox::new(run, scene.clone(), &request);
-    let order = Mutex::new(first_order(paused));
+    let order = Mutex::new(order);
     let orders = Arc::new(Orders {
         order,
         changed: Condvar::new(),
@@ -196,7 +209,7 @@ fn begin(
     let own = (Arc::clone(&orders), Arc::clone(&outbox));
     let thread = std::thread::spawn(move || {
         let (orders, outbox) = own;
-        if let Err(error) = drive(&scene, &request, &orders, &outbox, &*wake) {
+        if let Err(error) = work(&orders, &outbox, &*wake) {
             locked(&outbox).fail(&error);
         }
         wake();

@@ -1,11 +1,12 @@
 //! A session without threads: its runs are advanced by calls, as a worker of a page needs it.
 
 use super::run::{Driver, Order, Outbox, SharedOutbox, locked};
+use super::times::Timing;
 use super::workspace::{Opening, Workspace};
 use super::{RunRequest, first_order, refusal};
 use crate::message::Message;
 use mp_cspace::{Cancel, Clock, Deadline};
-use mp_plan::{Control, Error};
+use mp_plan::{Control, Error, Interrupt, Request, Scene};
 use std::collections::VecDeque;
 use std::fmt;
 use std::time::Duration;
@@ -16,6 +17,8 @@ use std::time::Duration;
 pub struct Worker {
     workspace: Workspace,
     run: Option<Planning>,
+    /// What gets times next.
+    timing: Option<(Scene, Timing)>,
     replies: VecDeque<Message>,
     last: Option<SharedOutbox>,
     clock: Clock,
@@ -41,7 +44,7 @@ impl Worker {
     #[must_use]
     pub fn new(clock: Clock) -> Self {
         let workspace = Workspace::new(Opening::default());
-        Self { workspace, run: None, replies: VecDeque::new(), last: None, clock }
+        Self { workspace, run: None, timing: None, replies: VecDeque::new(), last: None, clock }
     }
 
     /// Handles a request. [`take`](Self::take) gives its reply.
@@ -78,6 +81,14 @@ impl Worker {
                 self.run = Some(Planning { number, driver, order: first_order(paused), cancel, over: false });
                 self.last = Some(outbox);
             }
+            (RunRequest::Time(timing), _) => {
+                if self.run.is_some() || self.timing.is_some() {
+                    return Err(Error::new("a run goes on already").help("one worker has one run"));
+                }
+                let scene = self.workspace.opened()?.scene.clone();
+                self.last = Some(Outbox::new(number, scene.clone(), &Request::default()));
+                self.timing = Some((scene, timing));
+            }
             (RunRequest::Order(order), Some(run)) => {
                 run.order = order;
                 if order == Order::Pause {
@@ -96,6 +107,12 @@ impl Worker {
 
     /// Plans for about this long, or finishes a path that was found. Returns whether a run goes on that is not paused.
     pub fn advance(&mut self, time: Duration) -> bool {
+        if let (Some((scene, timing)), Some(outbox)) = (self.timing.take(), &self.last) {
+            // One call, maybe a long one: a page that cancels it ends its worker.
+            let told = timing.timed(&scene, &Interrupt::never());
+            locked(outbox).close(told);
+            return false;
+        }
         let Some(run) = &mut self.run else { return false };
         if run.order == Order::Pause {
             return false;

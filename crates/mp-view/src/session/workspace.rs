@@ -2,13 +2,16 @@
 
 use super::files::{Named, endings, format_of, plain_name};
 use super::mesh::{is_mesh, scene_of_mesh};
+use super::times::trajectory_of;
 use super::{number_of, text_of};
 use crate::bytes::{path_head, rgb};
 use crate::message::{Message, json};
 use crate::{PathTrack, SceneFile};
 use mp_geom::TriMesh;
 use mp_io::{Content, DocumentShape, FORMATS, SceneDocument};
-use mp_plan::{EditedScene, Error, Interrupt, MetricName, PathFileKind, PathRows, Request, Scene};
+use mp_plan::{
+    EditedScene, Error, Interrupt, MetricName, PathFileKind, PathRows, Request, Scene, TrajectoryKind,
+};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -80,6 +83,7 @@ impl Workspace {
             "field" => self.field(request),
             "save" => self.save(request),
             "save_path" => self.save_path(request),
+            "save_trajectory" => self.save_trajectory(request),
             "export" => self.export(request),
             other => Err(Error::new(format!("there is no request `{other}`"))
                 .help("docs/formats/session.md lists them: is the page of another version?")),
@@ -231,6 +235,7 @@ impl Workspace {
             file.add_path(&open.scene, "path", path)?;
         }
         let mut members = serde_json::Map::new();
+        members.insert("written".to_owned(), json(&open.path.as_ref().map(|path| &path.rows)));
         members.insert("scene".to_owned(), message.array(&file.to_bytes()));
         members.insert("document".to_owned(), json(&open.document));
         let notes: Vec<String> = open.scene.notes().iter().cloned().chain(open.scene.lint()).collect();
@@ -238,6 +243,7 @@ impl Workspace {
         members.insert("planner".to_owned(), open.scene.default_planner().into());
         members.insert("cannot".to_owned(), json(&open.scene.planners_that_cannot()));
         members.insert("links".to_owned(), open.scene.has_links().into());
+        members.insert("trajectories".to_owned(), open.scene.has_trajectories().into());
         members.insert("parts_left".to_owned(), open.scene.parts_left().into());
         Ok(members)
     }
@@ -385,6 +391,15 @@ impl Workspace {
         self.written(request, vec![(file, path.to_file(kind).into_bytes())])
     }
 
+    fn save_trajectory(&self, request: &Message) -> Answer {
+        let format = format_of(request, &["csv", "json", "yaml", "mcap"], "trajectories")?;
+        let file = format!("{}.{format}", plain_name(request)?);
+        let kind = TrajectoryKind::of(Path::new(&file)).unwrap_or(TrajectoryKind::Csv);
+        let scene = &self.opened()?.scene;
+        let bytes = scene.trajectory_bytes(&trajectory_of(scene, request)?, kind)?;
+        self.written(request, vec![(file, bytes)])
+    }
+
     fn export(&self, request: &Message) -> Answer {
         let open = &Open { scene: self.scene_to_plan(request)?, ..self.opened()?.clone() };
         let name = plain_name(request)?;
@@ -463,7 +478,7 @@ fn row_of(head: &serde_json::Map<String, Value>, name: &str) -> Result<Vec<f64>,
 }
 
 /// Configurations in a request.
-fn rows_of(head: &serde_json::Map<String, Value>, name: &str) -> Result<Vec<Vec<f64>>, Error> {
+pub(crate) fn rows_of(head: &serde_json::Map<String, Value>, name: &str) -> Result<Vec<Vec<f64>>, Error> {
     serde_json::from_value(head.get(name).cloned().unwrap_or_default()).map_err(|_| {
         Error::new(format!("the request has no configurations `{name}`: a list of lists of numbers"))
     })

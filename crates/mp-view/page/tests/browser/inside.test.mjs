@@ -94,6 +94,21 @@ browserTest("a cancel while planning keeps the best path so far", (t) => withIns
   assert.ok(Math.min(...times) < LATEST_CANCEL, `${times} ms`);
 }), withoutPlanner);
 
+browserTest("a path gets times, and its planner ends with that", () => withInside("arm", async (driver) => {
+  await driver.press("Plan");
+  await driver.untilResult(/verified path/, 1);
+  const trajectory = () => driver.until(async () => {
+    const { viewer } = await window.mpView.planner;
+    return viewer.scene.paths[viewer.settings.path].trajectory?.duration;
+  });
+  await driver.press("Give it times");
+  const duration = await trajectory();
+  await driver.fill("spinbutton", "Velocity scale", 0);
+  await driver.press("Give it times");
+  await driver.untilAlert(/velocity is 0/);
+  assert.equal(await trajectory(), duration);
+}), withoutPlanner);
+
 /** A scene of each kind of robot. */
 const SCENES = ["arm", "rrs-high", "parking", "warehouse", "wrench", "crossing", "easy", "cubicles"];
 /** Sine and cosine of the C library differ in the last digits from those in a page. */
