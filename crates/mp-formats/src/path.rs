@@ -1,6 +1,6 @@
 //! Paths as text and JSON: poses of a rigid body as in GEMPA configuration files, and joint values of an arm.
 
-use crate::columns::{Column, matched};
+use crate::columns::{Column, Fault, Matching, matched};
 use crate::error::{Error, ErrorKind};
 use crate::files::{decode, read_text};
 use crate::formats::Content;
@@ -43,7 +43,8 @@ impl PathFile {
         read(path.as_ref(), Self::parse, |file, bytes| Self::parse_json(file, bytes, &Column::of_pose()))
     }
 
-    /// Reads `bytes`, the content of a GEMPA configuration file that errors call `file`.
+    /// Reads `bytes`, the content of a GEMPA configuration file that errors call `file`; or a matrix as OMPL prints it, with x y z qx qy qz qw on
+    /// each line.
     ///
     /// # Errors
     /// [`Error`] when it is not a configuration file, with the line and column.
@@ -52,6 +53,19 @@ impl PathFile {
         let what = "the number of configurations, alone on the first line";
         let mut lines = text.lines();
         let first = lines.next().ok_or_else(|| text.error_at_end(what))?;
+        if first.words().count() == OMPL_POSE.len() {
+            let fault =
+                |line: Token<'_>, fault: Fault| text.error(line, fault.message).expected(fault.expected);
+            let matching = Matching::new(&OMPL_POSE.map(str::to_owned), &Column::of_pose());
+            let matching = matching.map_err(|e| fault(first, e))?;
+            let six = |(line, row): (Token<'_>, Vec<f64>)| {
+                let row = matching.configuration(&row).map_err(|e| fault(line, e))?;
+                Ok::<[f64; 6], Error>(std::array::from_fn(|i| row[i]))
+            };
+            let configurations = matrix(&text)?.into_iter().map(six).collect::<Result<Vec<_>, _>>()?;
+            crate::trace::path(file, configurations.len());
+            return Ok(Self { configurations });
+        }
         if first.words().count() != 1 {
             return Err(text.error(first, "the file does not begin with a count").expected(what));
         }
@@ -128,7 +142,7 @@ impl JointPath {
     }
 
     /// Reads `bytes`, the content of a text that errors call `file`: the numbers of configurations and of joints
-    /// on the first line, then one configuration on each line.
+    /// on the first line, then one configuration on each line; or, of three joints and more, the configurations alone, as OMPL prints them.
     ///
     /// # Errors
     /// [`Error`] with the line and column.
@@ -138,6 +152,11 @@ impl JointPath {
         let mut lines = text.lines();
         let first = lines.next().ok_or_else(|| text.error_at_end(what))?;
         let words: Vec<_> = first.words().take(3).collect();
+        if words.len() > 2 {
+            let configurations: Vec<_> = matrix(&text)?.into_iter().map(|(_, row)| row).collect();
+            crate::trace::path(file, configurations.len());
+            return Ok(Self { configurations });
+        }
         let [count, joints] = words[..] else {
             return Err(text.error(first, "the file does not begin with two counts").expected(what));
         };
@@ -218,6 +237,27 @@ fn read<P>(
 ) -> Result<P, Error> {
     let (file, bytes) = read_text(path)?;
     if is_json(path) { parse_json(&file, &bytes) } else { parse_text(&file, &bytes) }
+}
+
+/// What OMPL prints of a pose.
+const OMPL_POSE: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
+
+/// Lines of numbers, all with as many as the first.
+fn matrix<'a>(text: &Text<'a>) -> Result<Vec<(Token<'a>, Vec<f64>)>, Error> {
+    let mut rows: Vec<(Token<'a>, Vec<f64>)> = Vec::new();
+    for line in text.lines() {
+        let width = rows.first().map(|(_, row)| row.len());
+        let expected = width.map_or("numbers".to_owned(), |width| {
+            format!("{width} numbers, as on the first line; or the number of configurations alone on that")
+        });
+        let row = line.words().map(|word| text.number(word, &expected)).collect::<Result<Vec<_>, _>>()?;
+        if width.is_some_and(|width| width != row.len()) {
+            let message = format!("configuration {} has {} numbers", rows.len() + 1, row.len());
+            return Err(text.error(line, message).expected(expected));
+        }
+        rows.push((line, row));
+    }
+    Ok(rows)
 }
 
 /// The `count` configurations in `lines`, one on each, with nothing after them. `numbers` says what is on a line;
@@ -302,6 +342,30 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_ompl_prints_is_read() {
+        let read = |text: &str| PathFile::parse("p", text.as_bytes()).map_err(|e| e.report());
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let path = read(&format!("0 0 0 0 0 0 1 \n1 2 3 0 0 {half} {half} \n\n")).unwrap();
+        let [x, y, z, yaw, pitch, roll] = path.configurations[1];
+        assert_eq!(([x, y, z], path.configurations[0]), ([1.0, 2.0, 3.0], [0.0; 6]));
+        assert!((yaw - std::f64::consts::FRAC_PI_2).abs() < 1e-12 && [pitch, roll] == [0.0, 0.0], "{yaw}");
+        for (text, words) in [
+            ("0 0 0 0 0 0 2\n", "p:1:1: the quaternion has the length 2"),
+            ("0 0 0 0 0 0 1\n1 2 3\n", "p:2:1: configuration 2 has 3 numbers"),
+            ("0 0 0 0 0 0 1\n1 2 3 0 0 x 1\n", "p:2:11"),
+        ] {
+            let error = read(text).unwrap_err();
+            assert!(error.contains(words), "{error}");
+        }
+        let read = |text: &str| JointPath::parse("p", text.as_bytes()).map_err(|e| e.report());
+        assert_eq!(
+            read("0 1 2 \n3 4 5 \n").unwrap().configurations,
+            [vec![0.0, 1.0, 2.0], vec![3.0, 4.0, 5.0]]
+        );
+        assert!(read("0 1 2\n3 4\n").unwrap_err().contains("configuration 2 has 2 numbers"));
+    }
+
+    #[test]
     fn poses_round_trip_as_text_and_json() {
         let dir = tempfile::tempdir().unwrap();
         let path = PathFile { configurations: vec![[0.1, 2.0, -0.0, 1e-9, 0.25, 3.0], [1.0; 6]] };
@@ -372,7 +436,7 @@ mod tests {
         for (text, line, words) in [
             ("", None, "empty"),
             ("2\n0 0\n", Some(1), "two counts"),
-            ("2 2 2\n0 0\n", Some(1), "two counts"),
+            ("2 2 2\n0 0\n", Some(2), "as on the first line"),
             ("0 2\n", Some(1), "without"),
             ("2 2\n0 0\n", Some(2), "configuration 2 of 2"),
             ("1 2\n0 0\n1 1\n", Some(3), "follows"),
