@@ -348,7 +348,7 @@ class Trajectory:
         return float(self.times[-1] - self.times[0])
 
     def save(self, file: File) -> None:
-        """Write it as ``.csv``, as JointTrajectory of ROS in ``.json`` or ``.yaml``, or as a recording of ROS 2 in ``.mcap``."""
+        """Write it as ``.csv``, as JointTrajectory of ROS in ``.json`` or ``.yaml``, or as a recording in ``.mcap``."""
         self._scene._save_trajectory(file, self)
 
     def to_pandas(self) -> pd.DataFrame:

@@ -459,7 +459,8 @@ def test_paths_of_arms_get_times(tmp_path: Path) -> None:
 
 
 #: An arm of one joint, which jerk limits.
-SLIDE = """<robot name="slide"><link name="rail"/><link name="cart"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+SLIDE = """<robot name="slide"><link name="rail"/>
+<link name="cart"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
 <joint name="x" type="prismatic"><parent link="rail"/><child link="cart"/><axis xyz="1 0 0"/>
 <limit lower="-3" upper="3" effort="1" velocity="1"/></joint></robot>"""
 
@@ -523,7 +524,7 @@ def test_recordings_are_those_of_other_programs(tmp_path: Path) -> None:
         ]
         header = head(stamp=time(sec=0, nanosec=0), frame_id="")
         whole = trajectory(header=header, joint_names=told["joint_names"], points=points)
-        again = store.deserialize_cdr(store.serialize_cdr(whole, trajectory.__msgtype__), trajectory.__msgtype__)
+        again: Any = store.deserialize_cdr(store.serialize_cdr(whole, trajectory.__msgtype__), trajectory.__msgtype__)
         assert [p.positions.tolist() for p in again.points] == made.positions.tolist()
     # States of joints as others record them, packed or not, in another order.
     definition = "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n" + "=" * 80
@@ -531,7 +532,7 @@ def test_recordings_are_those_of_other_programs(tmp_path: Path) -> None:
     definition += "\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
     for compression in (CompressionType.NONE, CompressionType.LZ4, CompressionType.ZSTD):
         with (tmp_path / "states.mcap").open("wb") as opened:
-            writer = Writer(opened, compression=compression)
+            writer: Any = Writer(opened, compression=compression)
             schema_of_states = writer.register_msgdef("sensor_msgs/msg/JointState", definition)
             for state in states:
                 nanoseconds = 1_700_000_000_000_000_000 + state.header.stamp.sec * 10**9 + state.header.stamp.nanosec

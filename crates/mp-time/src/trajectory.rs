@@ -286,20 +286,43 @@ impl Trajectory {
     #[must_use]
     pub fn jerkiest(&self, joint: usize) -> Extreme {
         const WINDOW: f64 = 1e-3;
+        let times = &self.knots.times;
         let [first, last] = self.span();
-        let of = |time: f64| match time >= first && time < last {
-            true => self.acceleration(joint, time),
-            false => 0.0,
-        };
+        // Between two of these the change is a cubic polynomial of the beginning of the millisecond.
+        let mut ends: Vec<f64> = times.iter().flat_map(|t| [t - WINDOW, *t]).collect();
+        ends.sort_by(f64::total_cmp);
         let mut most = Extreme { amount: 0.0, time: first };
-        let mut look = |from: f64| {
-            let amount = (of(from + WINDOW) - of(from)).abs() / WINDOW;
-            if amount > most.amount {
-                most = Extreme { amount, time: (from + 0.5 * WINDOW).clamp(first, last) };
+        for w in ends.windows(2).filter(|w| w[1] > w[0]) {
+            let middle = 0.5 * (w[0] + w[1]);
+            let [from, to] = [middle, middle + WINDOW].map(|time| {
+                let piece = (time > first && time < last).then(|| self.piece(time))?;
+                Some((derivative(&derivative(&self.seconds(piece, joint))), times[piece]))
+            });
+            let of = |piece: &Option<(Polynomial, f64)>, time: f64| {
+                piece.as_ref().map_or(0.0, |(c, begin)| value(c, time - begin))
+            };
+            let at = |u: f64| w[0] + u * (w[1] - w[0]);
+            let [a, b, c, d] =
+                [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(|u| of(&to, at(u) + WINDOW) - of(&from, at(u)));
+            let cubic = [
+                a,
+                0.5 * (-11.0 * a + 18.0 * b - 9.0 * c + 2.0 * d),
+                4.5 * (2.0 * a - 5.0 * b + 4.0 * c - d),
+                4.5 * (3.0 * b - a - 3.0 * c + d),
+                0.0,
+                0.0,
+            ];
+            let bound: f64 = cubic.iter().map(|c| c.abs()).sum();
+            if bound <= most.amount * WINDOW {
+                continue;
             }
-        };
-        self.knots.times.iter().flat_map(|t| [*t, t - 0.5 * WINDOW, t - WINDOW]).for_each(&mut look);
-        (0..=(self.duration() / WINDOW) as usize).for_each(|i| look(first + WINDOW * i as f64));
+            for (change, u) in extremes(&cubic, 0.0, 1.0) {
+                let amount = change.abs() / WINDOW;
+                if amount > most.amount {
+                    most = Extreme { amount, time: (at(u) + 0.5 * WINDOW).clamp(first, last) };
+                }
+            }
+        }
         most
     }
 
@@ -462,6 +485,21 @@ mod tests {
         }
         assert_eq!(made.resampled(3.0).unwrap().span(), made.span());
         assert!(made.resampled(0.0).is_err() && made.resampled(f64::NAN).is_err());
+    }
+
+    #[test]
+    fn jerk_is_that_of_samples() {
+        let made =
+            Trajectory::of_controller([("j", "rad")], knots(&[0.5, -1.0, 2.0], &[3.0, -2.0, 1.0])).unwrap();
+        let of = |t: f64| if (0.5..3.0).contains(&t) { made.at(t).acceleration[0] } else { 0.0 };
+        let jerk = |i: i32| {
+            let t = 0.4 + f64::from(i) * 1e-5;
+            (of(t + 1e-3) - of(t)).abs() / 1e-3
+        };
+        let (samples, most) = ((0..270_000).map(jerk).fold(0.0, f64::max), made.jerkiest(0));
+        assert!(samples <= most.amount * (1.0 + 1e-9) && most.amount < samples * 1.01, "{samples} {most:?}");
+        // The acceleration begins with 3 rad/s² at once, which is the most.
+        assert!((most.amount - 3e3).abs() < 100.0 && (most.time - 0.5).abs() < 1e-3, "{most:?}");
     }
 
     #[test]

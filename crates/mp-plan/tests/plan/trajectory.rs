@@ -444,50 +444,78 @@ fn a_thousand_changed_curves_are_judged_as_dense_samples_judge_them() {
     }
 }
 
-/// How long the proof of curves takes beside planning, and how often corners have to be rounded less, between random free ends:
-/// `cargo test --release -p mp-plan --test plan random_arm_problems -- --ignored --nocapture`.
+/// A shipped scene whose robot has this limit of jerk.
+fn with_jerk(name: &str, jerk: f64) -> Scene {
+    let assets = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../mp-scenes/assets");
+    let folder = tempfile::tempdir().unwrap();
+    let own = |path: &str| folder.path().join(path);
+    std::fs::create_dir_all(own("robots")).unwrap();
+    std::fs::create_dir_all(own("scenes")).unwrap();
+    for entry in std::fs::read_dir(assets.join("robots")).unwrap() {
+        let entry = entry.unwrap();
+        std::fs::copy(entry.path(), own("robots").join(entry.file_name())).unwrap();
+    }
+    let text = std::fs::read_to_string(assets.join(format!("scenes/{name}.toml"))).unwrap();
+    let text = text.replacen("[robot]\n", &format!("[robot]\nmax_jerk = {jerk}\n"), 1);
+    std::fs::write(own("scenes/task.toml"), text).unwrap();
+    Scene::load(own("scenes/task.toml")).unwrap()
+}
+
+/// How long the proof of curves takes beside planning, and how often corners have to be rounded less, between random free ends, without and with limits of
+/// jerk: `cargo test --release -p mp-plan --test plan random_arm_problems -- --ignored --nocapture`.
 #[test]
 #[ignore = "minutes: a measurement"]
 #[allow(clippy::print_stdout, reason = "it is a measurement")]
 fn random_arm_problems_are_timed() {
-    let mut rng = Rng::seed(44);
     for name in ["arm", "arm-6", "arm-7", "humanoid", "mobile-arm"] {
-        let scene = Scene::find(name).unwrap();
-        let limits = scene.limits();
-        let mut free = || loop {
-            let number = |limits: &Option<[f64; 2]>| {
-                let [low, high] = limits.unwrap_or([-3.0, 3.0]);
-                rng.random_range(low..high)
-            };
-            let row: Vec<f64> = limits.iter().map(number).collect();
-            if scene.explain(&row).unwrap().clearance > 0.005 {
-                return row;
-            }
-        };
-        let (mut solved, mut corners, mut tightened, mut stretched) = (0, 0, 0, 0);
-        let [mut planning, mut timing, mut seconds] = [0.0; 3];
-        for seed in 0..20 {
-            let problem = scene.with_ends(&free(), &[free()]).unwrap();
-            let began = std::time::Instant::now();
-            let report = problem.plan(&Request::default().seed(seed).iterations(20_000)).unwrap();
-            let Some(rows) = report.path else { continue };
-            planning += began.elapsed().as_secs_f64();
-            let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
-            let began = std::time::Instant::now();
-            let made = timed(&problem, &path, &Pace::default());
-            timing += began.elapsed().as_secs_f64();
-            (solved, corners, tightened) =
-                (solved + 1, corners + made.corners, tightened + made.tightened.len());
-            stretched += usize::from(!made.tightened.is_empty());
-            seconds += made.trajectory.duration();
+        for jerk in [f64::INFINITY, 10.0] {
+            let scene = if jerk.is_finite() { with_jerk(name, jerk) } else { Scene::find(name).unwrap() };
+            measured(name, &scene, jerk);
         }
-        let each = 1e3 / f64::from(solved);
-        println!(
-            "{name}: {solved} solved, {corners} corners, {tightened} rounded less, in {stretched} trajectories; in the mean {:.0} ms \
-             planning, {:.0} ms timing with both proofs, {:.2} s long",
-            planning * each,
-            timing * each,
-            seconds * each / 1e3
-        );
     }
+}
+
+#[allow(clippy::print_stdout, reason = "it is a measurement")]
+fn measured(name: &str, scene: &Scene, jerk: f64) {
+    let mut rng = Rng::seed(44);
+    let limits = scene.limits();
+    let mut free = || loop {
+        let number = |limits: &Option<[f64; 2]>| {
+            let [low, high] = limits.unwrap_or([-3.0, 3.0]);
+            rng.random_range(low..high)
+        };
+        let row: Vec<f64> = limits.iter().map(number).collect();
+        if scene.explain(&row).unwrap().clearance > 0.005 {
+            return row;
+        }
+    };
+    let (mut solved, mut corners, mut tightened, mut stretched) = (0, 0, 0, 0);
+    let [mut planning, mut timing, mut checking, mut seconds] = [0.0; 4];
+    for seed in 0..20 {
+        let problem = scene.with_ends(&free(), &[free()]).unwrap();
+        let began = std::time::Instant::now();
+        let report = problem.plan(&Request::default().seed(seed).iterations(20_000)).unwrap();
+        let Some(rows) = report.path else { continue };
+        planning += began.elapsed().as_secs_f64();
+        let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+        let began = std::time::Instant::now();
+        let made = timed(&problem, &path, &Pace::default());
+        timing += began.elapsed().as_secs_f64();
+        let began = std::time::Instant::now();
+        let verdict = problem.check_trajectory(&made.trajectory, &Interrupt::never()).unwrap();
+        checking += began.elapsed().as_secs_f64();
+        assert!(verdict.free, "{name} {seed}: {:?}", verdict.faults);
+        (solved, corners, tightened) = (solved + 1, corners + made.corners, tightened + made.tightened.len());
+        stretched += usize::from(!made.tightened.is_empty());
+        seconds += made.trajectory.duration();
+    }
+    let each = 1e3 / f64::from(solved);
+    println!(
+        "{name}, jerk {jerk}: {solved} solved, {corners} corners, {tightened} rounded less, in {stretched} trajectories; in the mean \
+         {:.0} ms planning, {:.0} ms timing with both proofs, {:.0} ms checking, {:.2} s long",
+        planning * each,
+        timing * each,
+        checking * each,
+        seconds * each / 1e3
+    );
 }
