@@ -2,11 +2,11 @@
 //! of MoveIt, and recordings in MCAP. docs/formats/trajectory.md describes them.
 
 mod csv;
+mod mcap;
 mod ros;
 
-pub(crate) use ros::{Message, Point, Time, made};
+pub use mcap::{RecordedBody, RecordedShape, Recording};
 
-use crate::mcap::Recording;
 use mp_formats::columns::Column;
 use mp_formats::error::{Error, ErrorKind};
 use mp_formats::formats::Content;
@@ -74,7 +74,7 @@ impl TrajectoryFile {
             TrajectoryKind::Csv => csv::parse(file, bytes, wanted)?,
             TrajectoryKind::Json => ros::parse_json(file, bytes, wanted)?,
             TrajectoryKind::Yaml => ros::parse_yaml(file, bytes, wanted)?,
-            TrajectoryKind::Mcap => Some(crate::mcap::parse(file, bytes, wanted)?),
+            TrajectoryKind::Mcap => Some(mcap::parse(file, bytes, wanted)?),
         };
         let Some(read) = read else { return Ok(None) };
         if let Some(i) = read.times.windows(2).position(|t| t[1] <= t[0]) {

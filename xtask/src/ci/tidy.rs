@@ -17,7 +17,7 @@ const VAGUE_NAMES: [&str; 8] = ["common", "helper", "helpers", "misc", "shared",
 const ALONE: &str = "crates/mp-verify-certificate";
 
 /// It must be small enough to be read: so many lines of code, without tests, comments and blank lines.
-const ALONE_LINES: usize = 1150;
+const ALONE_LINES: usize = 1220;
 
 /// Calls that only `mp-store` makes: what it reads has a limit, and what it writes is whole.
 const FILE_CALLS: [&str; 7] = [
@@ -319,8 +319,8 @@ mod tests {
                 [(&src, &text), (&tests, &other), (&PathBuf::from("crates/mp-io/src/x.rs"), &other)];
             alone_lines(sources.into_iter().map(|(path, text)| (path.as_path(), text.as_str())))
         };
-        assert_eq!(of(574), None);
-        assert!(of(575).unwrap().contains("1150 lines of code"));
+        assert_eq!(of(609), None);
+        assert!(of(610).unwrap().contains("1220 lines of code"));
     }
 
     #[test]

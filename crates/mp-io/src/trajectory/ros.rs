@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 
 /// Any of the messages. Other members are skipped.
 #[derive(Deserialize)]
-pub(crate) struct Message {
+pub(super) struct Message {
     joint_names: Option<Vec<String>>,
     points: Option<Vec<Point>>,
     joint_trajectory: Option<Box<Message>>,
@@ -35,19 +35,19 @@ struct Joints {
 }
 
 #[derive(Deserialize)]
-pub(crate) struct Point {
+pub(super) struct Point {
     #[serde(default)]
-    pub(crate) positions: Vec<f64>,
+    pub(super) positions: Vec<f64>,
     #[serde(default)]
-    pub(crate) velocities: Vec<f64>,
+    pub(super) velocities: Vec<f64>,
     #[serde(default)]
-    pub(crate) accelerations: Vec<f64>,
-    pub(crate) time_from_start: Time,
+    pub(super) accelerations: Vec<f64>,
+    pub(super) time_from_start: Time,
 }
 
 impl Message {
     /// A `JointTrajectory`.
-    pub(crate) fn of_joints(names: Vec<String>, points: Vec<Point>) -> Self {
+    pub(super) fn of_joints(names: Vec<String>, points: Vec<Point>) -> Self {
         Self {
             joint_names: Some(names),
             points: Some(points),
@@ -58,7 +58,7 @@ impl Message {
     }
 
     /// A `RobotTrajectory` of a `JointTrajectory`, beside one of these joints of several degrees of freedom.
-    pub(crate) fn beside(self, joint_names: Vec<String>) -> Self {
+    pub(super) fn beside(self, joint_names: Vec<String>) -> Self {
         Self {
             joint_names: None,
             points: None,
@@ -72,7 +72,7 @@ impl Message {
 /// Seconds, or a duration of ROS 2 or of ROS.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected a duration: `{\"sec\": 1, \"nanosec\": 500000000}`")]
-pub(crate) enum Time {
+pub(super) enum Time {
     Seconds(f64),
     Duration {
         #[serde(alias = "secs")]
@@ -137,7 +137,7 @@ pub(super) fn parse_yaml(
 }
 
 /// The trajectory of a message.
-pub(crate) fn made(file: &str, message: Message, wanted: &[Column]) -> Result<TrajectoryFile, Error> {
+pub(super) fn made(file: &str, message: Message, wanted: &[Column]) -> Result<TrajectoryFile, Error> {
     let error = |message: String| Error::new(ErrorKind::Content, file, message).help(guide());
     let several = message.multi_dof_joint_trajectory.is_some_and(|joints| !joints.joint_names.is_empty());
     if several {

@@ -3,7 +3,7 @@
 use super::cdr::{Reader, Writer};
 use super::{RecordedBody, RecordedShape, Recording};
 use crate::TrajectoryFile;
-use crate::trajectory::{Message, Point, Time};
+use crate::trajectory::ros::{Message, Point, Time};
 use nalgebra::Isometry3;
 
 /// Between the definitions of a message and of those that it has.

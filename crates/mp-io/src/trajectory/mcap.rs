@@ -5,8 +5,8 @@ mod cdr;
 mod container;
 mod messages;
 
+use super::ros::{Message, Point, Time, made};
 use crate::TrajectoryFile;
-use crate::trajectory::{Message, Point, Time, made};
 use container::{Recorded, Topic, messages as read_messages};
 use messages::{
     JOINT_STATE, JOINT_TRAJECTORY, MARKERS, TRANSFORMS, joint_state, joint_trajectory, markers,
@@ -126,7 +126,7 @@ impl Recording {
 ///
 /// # Errors
 /// As [`TrajectoryFile::parse`], and when there are several trajectories, or none.
-pub(crate) fn parse(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<TrajectoryFile, Error> {
+pub(super) fn parse(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<TrajectoryFile, Error> {
     let same = |schema: &str, name: &str| schema == name || schema == name.replace("/msg/", "/");
     let all = read_messages(file, bytes, |schema| {
         let known = [JOINT_TRAJECTORY.name, ROBOT_TRAJECTORY, JOINT_STATE.name];
