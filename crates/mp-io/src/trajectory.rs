@@ -253,6 +253,16 @@ mod tests {
                 Ok(_) => assert!(words.is_empty(), "{to}"),
             }
         }
+        // Where the robot is comes first.
+        for (lift, words) in [("0.255", ""), ("0.3", "lift is 0.3 there and 0.25 at the first point")] {
+            let state =
+                format!(r#"{{"joint_state": {{"name": ["finger", "lift"], "position": [9, {lift}]}}}}"#);
+            let text = format!(r#"{{"trajectory": [{inside}], "trajectory_start": {state}}}"#);
+            match read(&text, TrajectoryKind::Json) {
+                Ok(_) => assert!(words.is_empty(), "{lift}"),
+                Err(error) => assert!(!words.is_empty() && error.contains(words), "{error}"),
+            }
+        }
         let two = format!(r#"{{"trajectory": [{inside}, {inside}]}}"#);
         assert!(read(&two, TrajectoryKind::Json).unwrap_err().contains("2 trajectories"));
         let base = r#"{"joint_trajectory": {"joint_names": [], "points": []}, "multi_dof_joint_trajectory": {"joint_names": ["base"], "points": []}}"#;

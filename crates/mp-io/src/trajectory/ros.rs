@@ -18,7 +18,25 @@ pub(super) struct Message {
     joint_trajectory: Option<Box<Message>>,
     multi_dof_joint_trajectory: Option<Joints>,
     trajectory: Option<Several>,
+    trajectory_start: Option<State>,
 }
+
+/// Where the robot is before, in messages of MoveIt.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct State {
+    joint_state: JointState,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct JointState {
+    name: Vec<String>,
+    position: Vec<f64>,
+}
+
+/// A trajectory may begin so far (rad or m) from where the robot is: `allowed_start_tolerance` of MoveIt.
+const START: f64 = 0.01;
 
 /// What `trajectory` is: a list in DisplayTrajectory, one in answers of MoveIt's services.
 #[derive(Deserialize)]
@@ -54,6 +72,7 @@ impl Message {
             joint_trajectory: None,
             multi_dof_joint_trajectory: None,
             trajectory: None,
+            trajectory_start: None,
         }
     }
 
@@ -65,6 +84,7 @@ impl Message {
             joint_trajectory: Some(Box::new(self)),
             multi_dof_joint_trajectory: Some(Joints { joint_names }),
             trajectory: None,
+            trajectory_start: None,
         }
     }
 }
@@ -143,12 +163,29 @@ pub(super) fn made(file: &str, message: Message, wanted: &[Column]) -> Result<Tr
     if several {
         return Err(error("a joint of several degrees of freedom moves, such as a base".to_owned()));
     }
+    let start = message.trajectory_start.unwrap_or_default().joint_state;
+    let begins = |read: TrajectoryFile| {
+        let off = |(column, first): (&Column, &f64)| {
+            let at = start.name.iter().position(|name| *name == column.name)?;
+            let state = start.position.get(at)?;
+            let there = (state - first).abs() <= START;
+            (!there).then(|| format!("{} is {state} there and {first} at the first point", column.name))
+        };
+        let first = read.positions.first().into_iter().flatten();
+        match read.joints.iter().zip(first).find_map(off) {
+            None => Ok(read),
+            Some(off) => Err(error(format!("it does not begin at `trajectory_start`: {off}"))
+                .expected(format!("at most {START} between them, as MoveIt has it"))),
+        }
+    };
     match (message.joint_trajectory, message.trajectory) {
-        (Some(inner), _) | (None, Some(Several::One(inner))) => return made(file, *inner, wanted),
+        (Some(inner), _) | (None, Some(Several::One(inner))) => {
+            return made(file, *inner, wanted).and_then(begins);
+        }
         (None, Some(Several::List(mut all))) => {
             let count = all.len();
             return match (all.pop(), count) {
-                (Some(only), 1) => made(file, only, wanted),
+                (Some(only), 1) => made(file, only, wanted).and_then(begins),
                 _ => Err(error(format!("there are {count} trajectories")).expected("one")),
             };
         }
