@@ -115,26 +115,27 @@ pub fn timed<'n>(
 ) -> Result<Timing, TimeError> {
     let joints: Vec<_> = joints.into_iter().collect();
     let (mut path, mut tried) = (path.clone(), vec![0; path.corners()]);
+    let allowed = path.allowed();
     loop {
         let timing = timed_once(&path, limits, &joints)?;
-        let cut = |corner: &usize| {
-            path.blend(*corner).is_some() && timing.deviations[*corner] > path.allowed() * (1.0 + WITHIN)
-        };
-        let cut: Vec<_> = (0..path.corners()).filter(cut).collect();
+        let is_cut =
+            |corner: &usize| path.blend(*corner).is_some() && timing.deviations[*corner] > allowed * ROUNDED;
+        let cut: Vec<_> = (0..path.corners()).filter(is_cut).collect();
         if cut.is_empty() {
             return Ok(timing);
         }
         for corner in cut {
             tried[corner] += 1;
-            path.tighten(corner, if tried[corner] > HALVINGS { 0.0 } else { 0.5 });
+            let less = (0.98 * allowed / timing.deviations[corner]).clamp(0.25, 0.95);
+            path.tighten(corner, if tried[corner] > TRIES { 0.0 } else { less });
         }
     }
 }
 
-/// Corners may be cut by so much more than is allowed, as a part of it.
-const WITHIN: f64 = 0.05;
-/// A parabola is made half as long so many times; then the robot stops at the corner.
-const HALVINGS: u32 = 8;
+/// Rounding may add so much to how far a corner is cut.
+const ROUNDED: f64 = 1.0 + 1e-9;
+/// A parabola is made shorter so many times; then the robot stops at the corner.
+const TRIES: u32 = 12;
 
 /// Times the sections of a path between which the robot stops, one after another.
 fn timed_once(path: &BlendedPath, limits: &Limits, joints: &[(&str, &str)]) -> Result<Timing, TimeError> {

@@ -147,7 +147,8 @@ fn limits_of_jerk_hold_at_1_khz() {
     for case in 0..200 {
         let joints = rng.random_range(1..8);
         let points = path(&mut rng, joints);
-        let Ok(mut blended) = BlendedPath::new(&points, rng.random_range(0.0..0.2)) else { continue };
+        let allowed = rng.random_range(0.0..0.2);
+        let Ok(mut blended) = BlendedPath::new(&points, allowed) else { continue };
         for corner in 0..blended.corners() {
             blended.tighten(corner, [1.0, 0.1, 0.0][rng.random_range(0..3)]);
         }
@@ -181,7 +182,7 @@ fn limits_of_jerk_hold_at_1_khz() {
             let at = made.at(*time).position;
             let off =
                 at.iter().zip(blended.corner(corner)).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
-            assert!((off - timing.deviations[corner]).abs() < 1e-3 && off < 0.211, "{case}: {off}");
+            assert!((off - timing.deviations[corner]).abs() < 1e-3 && off < allowed + 1e-6, "{case}: {off}");
         }
         timed_paths += 1;
     }
