@@ -514,11 +514,12 @@ def test_recordings_are_those_of_other_programs(tmp_path: Path) -> None:
     # The text forms have the members of the message, and no others.
     for name in ("t.json", "t.yaml"):
         made.save(tmp_path / name)
-        told = YAML(typ="safe").load(tmp_path / name)
+        reader: Any = YAML(typ="safe")
+        told = reader.load(tmp_path / name)
         kinds = ["trajectory_msgs/msg/JointTrajectory", "trajectory_msgs/msg/JointTrajectoryPoint", "std_msgs/msg/Header"]
         trajectory, point, head = (store.types[kind] for kind in kinds)
         time, duration = (store.types[f"builtin_interfaces/msg/{kind}"] for kind in ("Time", "Duration"))
-        points = [
+        points: Any = [
             point(**{k: duration(**v) if k == "time_from_start" else np.array(v, dtype=np.float64) for k, v in p.items()})
             for p in told["points"]
         ]

@@ -94,7 +94,9 @@ impl Matching {
                 .contains(&normal(name))
         };
         let in_order = names.len() == wanted.len() && names.iter().zip(wanted).all(written);
-        if in_order || nameless(names) && names.iter().all(|name| find(name, wanted).is_none()) {
+        if in_order
+            || !names.is_empty() && nameless(names) && names.iter().all(|name| find(name, wanted).is_none())
+        {
             let sources = (0..names.len()).map(|at| Some((at, 1.0, 1.0))).collect();
             return Ok(Self { sources, quaternion: None });
         }

@@ -175,6 +175,8 @@ mod tests {
         for (text, words) in [
             ("time,lift,elbow,elbow\n0,1,2,3\n", "the same number"),
             ("time,lift\n0,1\n", "no column for elbow"),
+            ("time\n0\n", "no column for lift"),
+            ("t\t\t\t\r\r 1", "no column for lift"),
             ("time,lift,wrist\n0,1,2\n", "t:1:11"),
             ("time,t,lift,elbow\n0,1,2,3\n", "time"),
             ("time,lift,elbow,elbow_velocity\n0,1,2,3\n", "no column for lift"),
