@@ -5,6 +5,7 @@ use crate::input::{Given, refuse_two_standard_inputs, scene};
 use crate::output::{Claims, note, print, print_json, write};
 use crate::{input, interrupt};
 use mp_plan::{Error, Interrupt, Scene, brief, plain};
+use std::cell::LazyCell;
 use std::path::Path;
 
 /// Verifies paths, or explains a configuration. True when the paths or the configuration are free.
@@ -32,16 +33,18 @@ pub(crate) fn run(args: &Check) -> Result<bool, Error> {
         claims.output("--certificate", certificate)?;
     }
     let (mut scene, mut free) = (scene, true);
+    // Ctrl-C is only listened to by what hears of it.
+    let stop = LazyCell::new((|| Interrupt::new(interrupt::flag())) as fn() -> Interrupt);
     for (i, file) in args.paths.iter().enumerate() {
         let read = input::given(&scene, file, args.curve)?;
-        free &= one(args, &scene, (file, &read))?;
+        free &= one(args, &scene, (file, &read), &stop)?;
         let rows = match &read {
             Given::Path(path) => &path.rows,
             Given::Timed(trajectory) => &trajectory.knots().positions,
         };
         if i + 1 < given
             && let Some(end) = rows.last()
-            && let Some(next) = scene.next_part(end, &Interrupt::new(interrupt::flag()))?
+            && let Some(next) = scene.next_part(end, &stop)?
         {
             scene = next;
         }
@@ -53,16 +56,16 @@ pub(crate) fn run(args: &Check) -> Result<bool, Error> {
 }
 
 /// Verifies one path or trajectory. True when it is free.
-fn one(args: &Check, scene: &Scene, (file, read): (&Path, &Given)) -> Result<bool, Error> {
+fn one(args: &Check, scene: &Scene, (file, read): (&Path, &Given), stop: &Interrupt) -> Result<bool, Error> {
     let mut verdict = match read {
         Given::Path(rows) => scene.check(rows)?,
-        Given::Timed(trajectory) => scene.check_trajectory(trajectory, &Interrupt::new(interrupt::flag()))?,
+        Given::Timed(trajectory) => scene.check_trajectory(trajectory, stop)?,
     };
     if let (Some(file), true) = (&args.certificate, verdict.free) {
-        let (clearance, interrupt) = (verdict.clearance, Interrupt::new(interrupt::flag()));
+        let clearance = verdict.clearance;
         let certificate = match read {
-            Given::Path(rows) => scene.certificate(rows, clearance, &interrupt)?,
-            Given::Timed(trajectory) => scene.certificate_of_trajectory(trajectory, clearance, &interrupt)?,
+            Given::Path(rows) => scene.certificate(rows, clearance, stop)?,
+            Given::Timed(trajectory) => scene.certificate_of_trajectory(trajectory, clearance, stop)?,
         };
         write(file, certificate.to_json().as_bytes())?;
     }
