@@ -81,7 +81,9 @@ impl TrajectoryFile {
             let (before, time) = (read.times[i], read.times[i + 1]);
             let message =
                 format!("the time of point {} is {time} s, and that of the point before {before} s", i + 2);
-            return Err(Error::new(ErrorKind::Content, file, message).expected("times that increase"));
+            return Err(Error::new(ErrorKind::Content, file, message)
+                .expected("times that increase")
+                .help("sort the points by their times, and keep one of those that are equal"));
         }
         Ok(Some(read))
     }
