@@ -116,8 +116,8 @@ impl Scene {
         made.map(Some).map_err(|e| Error::from(e).context(name.to_owned()))
     }
 
-    /// The content of a file of this kind with a trajectory of the robot: as it reads back, its curve is the same to the last bit if its times are [whole
-    /// nanoseconds](Trajectory::in_nanoseconds). A recording shows the robot among its obstacles too, [`MOMENTS`] times a second.
+    /// The content of a file of this kind with a trajectory of the robot. Its curve reads back to the same bits if its times are
+    /// [whole nanoseconds](Trajectory::in_nanoseconds). A recording shows the robot among its obstacles too, [`MOMENTS`] times a second.
     ///
     /// # Errors
     /// When the trajectory is of another robot.
@@ -134,7 +134,7 @@ impl Scene {
     }
 }
 
-/// How many times a second recordings have the joints and the bodies.
+/// How many times a second recordings and the page have the joints and the bodies.
 pub const MOMENTS: f64 = 50.0;
 
 fn of_knots(trajectory: &Trajectory, knots: Knots) -> TrajectoryFile {

@@ -47,8 +47,8 @@ fn jump(trajectory: &Trajectory, joint: usize, window: f64) -> f64 {
     times.iter().flat_map(|t| [*t, t + window]).map(change).fold(0.0, f64::max)
 }
 
-/// The mean of a cubic trajectory over the last `window` seconds, which begins and ends standing still: quintic, and exact but where points are so near to each
-/// other (by `apart` seconds) that one of them is left out.
+/// The mean over the last `window` seconds of a cubic trajectory that begins and ends standing still. It is quintic. It is exact, unless two points are
+/// nearer to each other than `apart` seconds: one of them is left out.
 ///
 /// # Errors
 /// When numbers are too large to stay finite.

@@ -34,14 +34,14 @@ impl Limits {
     fn valid(self) -> Result<Self, TimeError> {
         let infinite = f64::INFINITY;
         let all = [
-            ("velocity", &self.velocity, infinite),
-            ("acceleration", &self.acceleration, f64::MAX),
-            ("jerk", &self.jerk, infinite),
+            (["velocity", "limits of velocity"], &self.velocity, infinite),
+            (["acceleration", "limits of acceleration"], &self.acceleration, f64::MAX),
+            (["jerk", "limits of jerk"], &self.jerk, infinite),
         ];
         let expected = self.velocity.len();
-        for (what, limits, most) in all {
+        for ([what, several], limits, most) in all {
             if limits.len() != expected {
-                return Err(TimeError::Count { what: "limits of a kind", expected, found: limits.len() });
+                return Err(TimeError::Count { what: several, expected, found: limits.len() });
             }
             if let Some(joint) = limits.iter().position(|limit| !(*limit > 0.0 && *limit <= most)) {
                 return Err(TimeError::Limit { what, joint, limit: limits[joint] });

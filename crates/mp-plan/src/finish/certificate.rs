@@ -70,7 +70,8 @@ impl Certificate {
     }
 }
 
-/// The certificate of a path, or of a trajectory through its configurations. `clearance` (m) is a lower bound on the clearance along it, 0 if none is known: the certificate proves
+/// The certificate of a path, or of a trajectory through its configurations. `clearance` (m) is a lower bound on the clearance
+/// along it, 0 if none is known: the certificate proves
 /// half of it, and what the robot keeps at least, or a twentieth of its tolerance where that is more.
 ///
 /// # Errors

@@ -6,11 +6,8 @@ use crate::PathTrack;
 use crate::arrays::ArrayRef;
 use crate::bytes::path_head;
 use crate::message::{Message, json};
-use mp_plan::{Error, Interrupt, Knots, Pace, PathRows, Scene, Trajectory};
+use mp_plan::{Error, Interrupt, Knots, MOMENTS, Pace, PathRows, Scene, Trajectory};
 use serde_json::{Map, Value, json};
-
-/// Configurations that the page plays in a second.
-const RATE: f64 = 50.0;
 
 /// A path that gets times.
 pub(crate) struct Timing {
@@ -34,7 +31,7 @@ impl Timing {
         let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
         let timed = scene.time(&path, &pace, interrupt)?;
         let trajectory = &timed.trajectory;
-        let track = scene.track_in_time(trajectory, RATE);
+        let track = scene.track_in_time(trajectory, MOMENTS);
         let first = trajectory.span()[0];
         let (mut velocities, mut accelerations) = (Vec::new(), Vec::new());
         for time in &track.travel {
