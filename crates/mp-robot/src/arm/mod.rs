@@ -17,7 +17,6 @@ mod sampled;
 mod srdf;
 mod together;
 mod travel;
-#[cfg(feature = "urdf")]
 mod urdf;
 mod verify;
 mod wide;

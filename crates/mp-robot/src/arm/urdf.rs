@@ -1,16 +1,16 @@
 //! Arms from URDF text.
 
-mod extract;
+mod read;
 
 use super::compile::MAX_LENGTH;
-use super::xml::some;
+use super::xml::{Text, some};
 use super::{ArmModel, Joint, JointKind, Link, UrdfError};
-use extract::{Extract, extract};
 use mp_cspace::Interrupt;
 use mp_geom::{Shape, TriMesh};
-use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
+use read::{Geometry, LeftOut, Reader, attribute, child, is_own};
+use roxmltree::Node;
 use std::collections::HashMap;
-use urdf_rs::{Geometry, JointType};
 
 /// How far (m) a planar joint goes from its origin along x and along y.
 const PLANAR_ROOM: f64 = 10.0;
@@ -19,10 +19,10 @@ const PLANAR_ROOM: f64 = 10.0;
 const SEGMENTS: u32 = 32;
 
 impl ArmModel {
-    /// Reads a URDF, with the crate `urdf-rs`. It takes links, their collision shapes (box, cylinder, capsule,
-    /// sphere, mesh; each with its origin) and joints (revolute, continuous, prismatic, fixed; limits and mimics).
-    /// A link without collision shapes cannot collide, whatever its visual shapes are. Everything else is left out before the
-    /// text is parsed, so that errors in it do not matter.
+    /// Reads a URDF. It takes links, their collision shapes (box, cylinder, capsule, sphere, mesh; each with its origin) and joints
+    /// (revolute, continuous, prismatic, fixed, planar; limits and mimics). A link without collision shapes cannot collide, whatever
+    /// its visual shapes are. Everything else is left out, so that errors in it do not matter. Of what versions 1.1 and 1.2 added, it
+    /// knows quaternions of origins, capsules, and that a limit that is not written is none.
     ///
     /// [`ArmModel::notes`] says what was left out although it is incomplete or of another name space, and also:
     ///
@@ -58,81 +58,60 @@ impl ArmModel {
     ) -> Result<Self, UrdfError> {
         let _span = tracing::debug_span!("urdf", bytes = text.len()).entered();
         let mut interrupt = interrupt.clone();
-        let Extract { parts, links, joints, notes } = extract(text, &mut interrupt)?;
-        let (mut read_links, mut read_joints) = (Vec::new(), Vec::new());
-        for part in parts {
-            if interrupt.ask() {
-                return Err(UrdfError::Interrupted);
-            }
-            let part = urdf_rs::read_from_string(&part).map_err(|error| UrdfError::Syntax {
-                what: "a URDF",
-                line: None,
-                message: error.to_string(),
-            })?;
-            read_links.extend(part.links);
-            read_joints.extend(part.joints);
+        let mut ask = || if interrupt.ask() { Err(UrdfError::Interrupted) } else { Ok(()) };
+        let text = Text::new("a URDF", text)?;
+        let document = text.parse()?;
+        let reader = Reader::new(&text, &document);
+        let elements = document.root_element();
+        let elements = elements.children().filter(Node::is_element);
+        let mut left_out = LeftOut::default();
+        for node in elements.clone() {
+            ask()?;
+            left_out.look_at(&node, &reader)?;
         }
-        let mut model = Self { notes, ..Self::default() };
+        // Materials, transmissions and the elements of simulators are left out.
+        let called = |name| elements.clone().filter(move |n| is_own(n) && n.tag_name().name() == name);
+        let mut model = Self::default();
         let mut empty: Vec<String> = Vec::new();
-        for (link, lines) in read_links.iter().zip(&links) {
-            let mut made = Link::new(&link.name);
-            for (i, (collision, &line)) in link.collision.iter().zip(lines).enumerate() {
-                if interrupt.ask() {
-                    return Err(UrdfError::Interrupted);
-                }
+        for node in called("link") {
+            let mut link = Link::new(reader.word(&node, "name")?);
+            let inner = node.children().filter(|c| c.is_element() && is_own(c));
+            for (i, collision) in inner.filter(|c| c.tag_name().name() == "collision").enumerate() {
+                ask()?;
                 let fail = |message: String| UrdfError::Shape {
-                    line,
+                    line: reader.line(&collision),
                     link: link.name.clone(),
                     number: i + 1,
                     message,
                 };
-                let made_shape = match without_volume(&collision.geometry) {
+                let origin = reader.origin(&collision)?;
+                let geometry = reader.geometry(&collision)?;
+                let made = match without_volume(&geometry) {
                     Some(thin) => thin,
-                    None => shape(&collision.geometry, &mut mesh).map(Some),
+                    None => shape(&geometry, &mut mesh).map(Some),
                 };
-                let Some(shape) = made_shape.map_err(fail)? else {
+                let Some(shape) = made.map_err(fail)? else {
                     empty.extend((empty.last() != Some(&link.name)).then(|| link.name.clone()));
                     continue;
                 };
-                let origin = pose(&collision.origin);
                 if !super::kinematics::is_pose(&origin, MAX_LENGTH) {
                     return Err(fail("its origin is no pose: numbers must be finite".to_owned()));
                 }
-                made = made.with(&shape, &origin);
+                link = link.with(&shape, &origin);
             }
-            model.links.push(made);
+            model.links.push(link);
         }
+        for node in called("joint") {
+            ask()?;
+            model.add_joint(&node, &reader)?;
+        }
+        let mut notes = left_out.notes();
+        notes.extend(reader.surplus.into_inner());
         if !empty.is_empty() {
-            let note =
-                format!("shapes of size 0 are left out, for there is nothing to touch, in {}", some(&empty));
-            model.notes.push(note);
+            let note = "shapes of size 0 are left out, for there is nothing to touch, in";
+            notes.push(format!("{note} {}", some(&empty)));
         }
-        for (joint, &line) in read_joints.iter().zip(&joints) {
-            let limits = (joint.limit.lower, joint.limit.upper);
-            if joint.joint_type == JointType::Planar {
-                model.add_planar(joint);
-                continue;
-            }
-            let refused = |kind| Err(UrdfError::Kind { line, joint: joint.name.clone(), kind });
-            let kind = match joint.joint_type {
-                JointType::Fixed => JointKind::Fixed,
-                JointType::Continuous => JointKind::Continuous,
-                JointType::Revolute => JointKind::Revolute { low: limits.0, high: limits.1 },
-                JointType::Prismatic => JointKind::Prismatic { low: limits.0, high: limits.1 },
-                JointType::Floating => return refused("floating"),
-                JointType::Planar | JointType::Spherical => return refused("spherical"),
-            };
-            let mut made = Joint::new(&joint.name, &joint.parent.link, &joint.child.link, kind)
-                .at(pose(&joint.origin))
-                .axis(Vector3::from(joint.axis.xyz.0));
-            let velocity = joint.limit.velocity;
-            made.max_velocity = (velocity > 0.0 && velocity.is_finite()).then_some(velocity);
-            if let Some(mimic) = &joint.mimic {
-                let (multiplier, offset) = (mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0));
-                made = made.mimic(&mimic.joint, multiplier, offset);
-            }
-            model.joints.push(made);
-        }
+        model.notes.splice(0..0, notes);
         model.drop_conflicting_limits();
         let held = model.joints.iter().filter(|j| j.kind.held().is_some() && j.mimic.is_none());
         let held: Vec<_> = held.map(|j| j.name.clone()).collect();
@@ -143,22 +122,63 @@ impl ArmModel {
         Ok(model)
     }
 
+    /// Adds a joint as it is written.
+    fn add_joint(&mut self, node: &Node<'_, '_>, reader: &Reader<'_, '_>) -> Result<(), UrdfError> {
+        let written = reader.joint_type(node)?;
+        let name = reader.word(node, "name")?;
+        let origin = reader.origin(node)?;
+        let parent = reader.word(&reader.needed(node, "parent")?, "link")?;
+        let end = reader.word(&reader.needed(node, "child")?, "link")?;
+        let limits = || reader.limits(node);
+        let kind = match written {
+            "fixed" => JointKind::Fixed,
+            "continuous" => JointKind::Continuous,
+            "revolute" => limits().map(|[low, high]| JointKind::Revolute { low, high })?,
+            "prismatic" => limits().map(|[low, high]| JointKind::Prismatic { low, high })?,
+            "planar" => {
+                self.add_planar(name, [parent, end], origin);
+                return Ok(());
+            }
+            written => {
+                let kind = if written == "floating" { "floating" } else { "spherical" };
+                return Err(UrdfError::Kind { line: reader.line(node), joint: name.to_owned(), kind });
+            }
+        };
+        let mut joint = Joint::new(name, parent, end, kind).at(origin);
+        if kind == JointKind::Fixed {
+            self.joints.push(joint);
+            return Ok(());
+        }
+        if let Some(axis) = child(node, "axis") {
+            joint = joint.axis(Vector3::from(reader.needed_numbers(&axis, "xyz")?));
+        }
+        let velocity = child(node, "limit").and_then(|limit| attribute(&limit, "velocity"));
+        let velocity = velocity.and_then(|v| v.trim().parse::<f64>().ok());
+        joint.max_velocity = velocity.filter(|v| *v > 0.0 && v.is_finite());
+        if let Some(mimic) = child(node, "mimic") {
+            let multiplier = reader.number(&mimic, "multiplier")?.unwrap_or(1.0);
+            let offset = reader.number(&mimic, "offset")?.unwrap_or(0.0);
+            joint = joint.mimic(reader.word(&mimic, "joint")?, multiplier, offset);
+        }
+        self.joints.push(joint);
+        Ok(())
+    }
+
     /// Adds three joints in place of one that is planar, called as MoveIt calls them: `NAME/x` and `NAME/y`, which slide in the plane of
     /// its frame, and `NAME/theta`, which turns about z. A URDF has no limits for them: see [`PLANAR_ROOM`].
-    fn add_planar(&mut self, joint: &urdf_rs::Joint) {
-        let part = |axis: &str| format!("{}/{axis}", joint.name);
+    fn add_planar(&mut self, name: &str, [parent, child]: [&str; 2], origin: Isometry3<f64>) {
+        let part = |axis: &str| format!("{name}/{axis}");
         let (x, y, turn) = (part("x"), part("y"), part("theta"));
         let slide = JointKind::Prismatic { low: -PLANAR_ROOM, high: PLANAR_ROOM };
         self.links.extend([Link::new(&x), Link::new(&y)]);
         self.joints.extend([
-            Joint::new(&x, &joint.parent.link, &x, slide).at(pose(&joint.origin)).axis(Vector3::x()),
+            Joint::new(&x, parent, &x, slide).at(origin).axis(Vector3::x()),
             Joint::new(&y, &x, &y, slide).axis(Vector3::y()),
-            Joint::new(&turn, &y, &joint.child.link, JointKind::Continuous).axis(Vector3::z()),
+            Joint::new(&turn, &y, child, JointKind::Continuous).axis(Vector3::z()),
         ]);
         self.notes.push(format!(
-            "\"{}\" is planar: \"{x}\" and \"{y}\" slide from -{PLANAR_ROOM} to {PLANAR_ROOM} m, unless `limits` of a robot problem \
-             say how far, and \"{turn}\" turns",
-            joint.name
+            "\"{name}\" is planar: \"{x}\" and \"{y}\" slide from -{PLANAR_ROOM} to {PLANAR_ROOM} m, unless `limits` of a robot \
+             problem say how far, and \"{turn}\" turns"
         ));
     }
 
@@ -198,35 +218,29 @@ impl ArmModel {
     }
 }
 
-fn pose(pose: &urdf_rs::Pose) -> Isometry3<f64> {
-    let [roll, pitch, yaw] = pose.rpy.0;
-    let turn = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
-    Isometry3::from_parts(Translation3::from(Vector3::from(pose.xyz.0)), turn)
-}
-
 /// What there is of a shape with lengths of zero, in its own frame: a sheet or a line, for these can be hit, or `None` for a
 /// point. The whole is `None` for all other shapes.
-fn without_volume(geometry: &Geometry) -> Option<Result<Option<TriMesh>, String>> {
-    let sides = match geometry {
-        Geometry::Box { size } => size.0,
-        Geometry::Sphere { radius } => [2.0 * radius; 3],
-        Geometry::Cylinder { radius, length } => [2.0 * radius, 2.0 * radius, *length],
+fn without_volume(geometry: &Geometry<'_>) -> Option<Result<Option<TriMesh>, String>> {
+    let Geometry::Primitive(name, lengths) = geometry else { return None };
+    let sides = match (*name, lengths.as_slice()) {
+        ("box", &[x, y, z]) => [x, y, z],
+        ("sphere", &[radius]) => [2.0 * radius; 3],
         // A ball.
-        Geometry::Capsule { radius, length } if *length == 0.0 && *radius > 0.0 => return None,
-        Geometry::Capsule { radius, length } => [2.0 * radius, 2.0 * radius, *length],
-        Geometry::Mesh { .. } => return None,
+        ("capsule", &[radius, 0.0]) if radius > 0.0 => return None,
+        (_, &[radius, length]) => [2.0 * radius, 2.0 * radius, length],
+        _ => return None,
     };
     if !sides.contains(&0.0) || sides.iter().any(|side| !side.is_finite() || *side < 0.0) {
         return None;
     }
     let axes: Vec<usize> = (0..3).filter(|&axis| sides[axis] > 0.0).collect();
-    let corners: Vec<Point3<f64>> = match (axes.as_slice(), geometry) {
+    let corners: Vec<Point3<f64>> = match (axes.as_slice(), *name) {
         ([], _) => return Some(Ok(None)),
-        (&[x, y], Geometry::Cylinder { radius, .. }) => (0..SEGMENTS)
+        (&[x, y], "cylinder") => (0..SEGMENTS)
             .map(|i| {
                 let turn = std::f64::consts::TAU / f64::from(SEGMENTS);
                 let (sin, cos) = mp_math::sin_cos(turn * f64::from(i));
-                let around = radius / mp_math::cos(0.5 * turn);
+                let around = lengths[0] / mp_math::cos(0.5 * turn);
                 let mut corner = Point3::origin();
                 (corner[x], corner[y]) = (around * cos, around * sin);
                 corner
@@ -251,24 +265,21 @@ fn without_volume(geometry: &Geometry) -> Option<Result<Option<TriMesh>, String>
 
 /// The shape as a mesh, in its own frame.
 fn shape(
-    geometry: &Geometry,
+    geometry: &Geometry<'_>,
     mesh: &mut impl FnMut(&str) -> Result<TriMesh, String>,
 ) -> Result<TriMesh, String> {
     let shape = match geometry {
-        Geometry::Box { size } => Shape::primitive("box", &size.0),
-        Geometry::Cylinder { radius, length } => Shape::primitive("cylinder", &[*radius, *length]),
-        Geometry::Sphere { radius } => Shape::primitive("sphere", &[*radius]),
-        Geometry::Capsule { radius, length } if *length == 0.0 => Shape::primitive("sphere", &[*radius]),
-        Geometry::Capsule { radius, length } => Shape::primitive("capsule", &[*radius, *length]),
-        Geometry::Mesh { filename, scale } => {
-            let read = mesh(filename)?;
-            let [x, y, z] = scale.map_or([1.0; 3], |scale| scale.0);
-            if ![x, y, z].iter().all(|s| s.is_finite() && *s != 0.0) {
-                return Err(format!(
-                    "the scale of {filename} is {x} {y} {z}: it must be finite and not zero"
-                ));
+        Geometry::Primitive("capsule", lengths) if lengths[1] == 0.0 => {
+            Shape::primitive("sphere", &lengths[..1])
+        }
+        Geometry::Primitive(name, lengths) => Shape::primitive(name, lengths),
+        Geometry::Mesh(file, scale) => {
+            let read = mesh(file)?;
+            let [x, y, z] = *scale;
+            if !scale.iter().all(|s| s.is_finite() && *s != 0.0) {
+                return Err(format!("the scale of {file} is {x} {y} {z}: it must be finite and not zero"));
             }
-            Some(read.scaled([x, y, z]).map_err(|error| error.to_string())?.into())
+            Some(read.scaled(*scale).map_err(|error| error.to_string())?.into())
         }
     };
     let made = shape.map(|shape| shape.mesh()).transpose().map_err(|error| error.to_string())?;

@@ -7,6 +7,5 @@ mod ik;
 mod kinematics;
 mod motions;
 mod pairs;
-#[cfg(feature = "urdf")]
 mod urdf;
 mod verifier;

@@ -451,6 +451,23 @@ fn later_versions_mean_what_they_say() {
         read(&text.replace('V', version)).unwrap().joints[0].origin.rotation.angle()
     };
     assert!(turned("1.0") == 0.0 && (turned("1.1") - std::f64::consts::PI).abs() < 1e-9);
+    let slide = |version: &str, limit: &str, origin: &str| {
+        read(&format!(
+            r#"<robot name="r" version="{version}"><link name="a"/><link name="b"/><joint name="j" type="prismatic">
+            <parent link="a"/><child link="b"/>
+            {origin}<limit {limit}/></joint></robot>"#
+        ))
+    };
+    // A limit that is not written is zero, and none from 1.2 on.
+    for (version, limits) in [("1.0", [0.0, 2.0]), ("1.2", [f64::NEG_INFINITY, 2.0])] {
+        let [low, high] = limits;
+        let kind = &slide(version, r#"upper="2""#, "").unwrap().joints[0].kind;
+        assert_eq!(*kind, JointKind::Prismatic { low, high });
+    }
+    let both = slide("1.1", r#"upper="2""#, r#"<origin rpy="0 0 1" quat_xyzw="0 0 0 1"/>"#).unwrap_err();
+    assert!(both.to_string().contains("line 3") && both.to_string().contains("leave one out"), "{both}");
+    let bad = slide("1.1", r#"upper="2""#, r#"<origin quat_xyzw="0 0 1"/>"#).unwrap_err();
+    assert!(bad.to_string().contains("quat_xyzw of <origin> is \"0 0 1\", not 4 numbers"), "{bad}");
 }
 
 #[test]
