@@ -163,6 +163,8 @@ class Report(InScene):
         Whether the path was shortened.
     fingerprint : str or None
         A hash of the numbers of the path: with the same hash two paths are the same, to the bit.
+    calls : int or None
+        Of a robot of your own, how often its functions were called, shortening and verifying included. Not in the JSON form.
     """
 
     scene: str
@@ -202,15 +204,18 @@ class Report(InScene):
     certificate_file: str | None = None
     clearance_kept: float = 0.0
     won: str | None = None
+    calls: int | None = None
     _scene: Scene | None = field(default=None)
 
     @classmethod
-    def _of(cls, text: str, path: Array | None, first_path: Array | None, scene: Scene | None) -> Report:
+    def _of(
+        cls, text: str, path: Array | None, first_path: Array | None, scene: Scene | None, calls: int | None = None
+    ) -> Report:
         members: dict[str, Any] = json.loads(text)
         members["columns"] = tuple(Column(**column) for column in members["columns"])
         members["stages"] = tuple(StageTime(**stage) for stage in members["stages"])
         members["path"], members["first_path"] = path, first_path
-        return cls(**members, _scene=scene)
+        return cls(**members, calls=calls, _scene=scene)
 
     @classmethod
     def from_json(cls, text: str) -> Report:
@@ -222,7 +227,7 @@ class Report(InScene):
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, with lists in place of arrays: what ``mp plan --json`` prints."""
-        members: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "_scene"}
+        members: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("_scene", "calls")}
         if self.clearance_kept == 0.0:
             del members["clearance_kept"]
         if self.won is None:

@@ -763,9 +763,11 @@ class Scene:
         cancel: Cancel | None = None,
     ) -> Report:
         """Plan as :meth:`plan` does, with options that are kept."""
+        before = self._native.function_calls()
         with reporter(progress) as tell:
             parts, raised = self._native.plan(options.to_json(self), cancel, tell)
-        report = Report._of(*parts, scene=self)
+        calls = self._native.function_calls() - before
+        report = Report._of(*parts, scene=self, calls=None if self._robot is None else calls)
         if raised is None:
             return report
         if isinstance(raised, KeyboardInterrupt):

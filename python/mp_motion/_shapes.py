@@ -7,7 +7,7 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias, cast
+from typing import Any, Protocol, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -341,7 +341,19 @@ class HeightField:
     bottom: float | None = None
 
 
-Shape: TypeAlias = Mesh | Box | Sphere | Cylinder | Capsule | Cone | Hull | Points | HeightField
+class OtherMesh(Protocol):
+    """A mesh of another library, such as ``trimesh.Trimesh``: a surface, as files of meshes are."""
+
+    @property
+    def vertices(self) -> Any:
+        """Array_like, shape (n, 3), metres."""
+
+    @property
+    def faces(self) -> Any:
+        """Array_like of int, shape (m, 3): triangles."""
+
+
+Shape: TypeAlias = Mesh | OtherMesh | Box | Sphere | Cylinder | Capsule | Cone | Hull | Points | HeightField
 
 
 @dataclass(frozen=True, eq=False)
@@ -350,7 +362,7 @@ class Body:
 
     Parameters
     ----------
-    shape : Mesh, Box, Sphere, Cylinder, Capsule, Cone, Hull, Points or HeightField
+    shape : Mesh, Box, Sphere, Cylinder, Capsule, Cone, Hull, Points, HeightField or trimesh.Trimesh
         Its shape.
     pose : array_like, shape (6,) or (4, 4)
         Where it is: ``x y z α β γ`` (m, rad) or a matrix. By default the origin.
@@ -369,7 +381,7 @@ class Attached:
 
     Parameters
     ----------
-    shape : Mesh, Box, Sphere, Cylinder, Capsule, Cone, Hull, Points or HeightField
+    shape : Mesh, Box, Sphere, Cylinder, Capsule, Cone, Hull, Points, HeightField or trimesh.Trimesh
         Its shape.
     link : str
         The link that carries it.
@@ -480,6 +492,8 @@ def shape_members(shape: Shape, files: dict[str, bytes]) -> dict[str, Any]:
             name = f"mesh-{len(files) + 1}.off"
             files[name] = _mp.mesh_off(shape.vertices, shape.triangles)
             return {"mesh": name} | ({"solid": True} if shape.solid else {})
+        case object(vertices=vertices, faces=faces):
+            return shape_members(Mesh(vertices, faces), files)
     raise Error(
         f"{shape!r} is no shape",
         remedy="give a Mesh, a Box, a Sphere, a Cylinder, a Capsule, a Cone, a Hull, Points or a HeightField",

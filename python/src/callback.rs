@@ -2,20 +2,26 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The exception that a function raised, until the work that called it ends with it.
+/// The calls of a robot's functions: how many there were, and the exception that one raised, until the work that called it ends with it.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Failure(Arc<Raised>);
+pub(crate) struct Calls(Arc<Counted>);
 
 #[derive(Debug, Default)]
-struct Raised {
+struct Counted {
+    count: AtomicU64,
     raised: AtomicBool,
     error: Mutex<Option<PyErr>>,
 }
 
-impl Failure {
+impl Calls {
+    /// How many there were.
+    pub(crate) fn count(&self) -> u64 {
+        self.0.count.load(Ordering::Relaxed)
+    }
+
     /// Whether a function has raised an exception. Then no function is called any more.
     pub(crate) fn is_raised(&self) -> bool {
         self.0.raised.load(Ordering::Acquire)
@@ -54,12 +60,12 @@ pub(crate) fn known_to_python<T: Send>(job: impl FnOnce() -> T + Send) -> T {
 #[derive(Debug)]
 pub(crate) struct Callback {
     function: Py<PyAny>,
-    failure: Failure,
+    calls: Calls,
 }
 
 impl Callback {
-    pub(crate) fn new(function: Py<PyAny>, failure: &Failure) -> Self {
-        Self { function, failure: failure.clone() }
+    pub(crate) fn new(function: Py<PyAny>, calls: &Calls) -> Self {
+        Self { function, calls: calls.clone() }
     }
 
     /// What the function returns, read by `read`; `None` when it raises an exception, or has raised one.
@@ -68,12 +74,13 @@ impl Callback {
         arguments: impl for<'py> FnOnce(Python<'py>) -> PyResult<Bound<'py, PyTuple>>,
         read: impl FnOnce(&Bound<'_, PyAny>) -> PyResult<T>,
     ) -> Option<T> {
-        if self.failure.is_raised() {
+        if self.calls.is_raised() {
             return None;
         }
+        self.calls.0.count.fetch_add(1, Ordering::Relaxed);
         Python::attach(|py| {
             let result = arguments(py).and_then(|arguments| self.function.bind(py).call1(arguments));
-            result.and_then(|result| read(&result)).map_err(|e| self.failure.raise(e)).ok()
+            result.and_then(|result| read(&result)).map_err(|e| self.calls.raise(e)).ok()
         })
     }
 }

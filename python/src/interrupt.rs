@@ -3,7 +3,7 @@
 //! Python runs the handlers of signals in its main thread only, between its own instructions. So the work is done in a thread of its own,
 //! and the calling thread looks for signals meanwhile, and passes on reports of progress.
 
-use crate::callback::{Failure, known_to_python};
+use crate::callback::{Calls, known_to_python};
 use crate::error::internal;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -74,12 +74,12 @@ impl mp_plan::Watch for Reporter {
 /// does, `cancel` is raised; the job ends soon, and the exception comes with its result.
 ///
 /// # Errors
-/// When the job panics, or a function of an own robot raises an exception, which is kept in `failure` and ends the job as well.
+/// When the job panics, or a function of an own robot raises an exception, which is kept in `calls` and ends the job as well.
 pub(crate) fn work<T: Send>(
     py: Python<'_>,
     cancel: &mp_plan::Cancel,
     progress: Option<&Py<PyAny>>,
-    failure: Option<&Failure>,
+    calls: Option<&Calls>,
     job: impl FnOnce(Reporter) -> T + Send,
 ) -> PyResult<(T, Option<PyErr>)> {
     let (sender, receiver) = channel();
@@ -89,7 +89,7 @@ pub(crate) fn work<T: Send>(
     let done = py.detach(|| {
         std::thread::scope(|scope| {
             let worker = scope.spawn(move || {
-                let result = catch_unwind(AssertUnwindSafe(|| match failure {
+                let result = catch_unwind(AssertUnwindSafe(|| match calls {
                     Some(_) => known_to_python(|| job(Reporter(sender))),
                     None => job(Reporter(sender)),
                 }));
@@ -97,12 +97,12 @@ pub(crate) fn work<T: Send>(
                 result
             });
             let raised =
-                attend(&receiver.lock().unwrap_or_else(PoisonError::into_inner), cancel, progress, failure);
+                attend(&receiver.lock().unwrap_or_else(PoisonError::into_inner), cancel, progress, calls);
             (worker.join().unwrap_or_else(|panic| resume_unwind(panic)), raised)
         })
     });
     match done {
-        (Ok(result), raised) => match failure.and_then(Failure::take) {
+        (Ok(result), raised) => match calls.and_then(Calls::take) {
             Some(e) => Err(e),
             None => Ok((result, raised)),
         },
@@ -121,7 +121,7 @@ fn attend(
     news: &Receiver<News>,
     cancel: &mp_plan::Cancel,
     progress: Option<&Py<PyAny>>,
-    failure: Option<&Failure>,
+    calls: Option<&Calls>,
 ) -> Option<PyErr> {
     let mut raised = None;
     let mut now = Shown::default();
@@ -132,7 +132,7 @@ fn attend(
             _ if raised.is_some() => continue,
             _ => {}
         }
-        if failure.is_some_and(Failure::is_raised) {
+        if calls.is_some_and(Calls::is_raised) {
             cancel.cancel();
             continue;
         }

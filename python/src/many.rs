@@ -1,6 +1,6 @@
 //! Many problems at once, as an iterator.
 
-use crate::callback::{Failure, known_to_python};
+use crate::callback::{Calls, known_to_python};
 use crate::error::{internal, to_python};
 use crate::interrupt::{Cancel, INTERVAL};
 use crate::report::parts;
@@ -40,7 +40,7 @@ struct Failures(Arc<Mutex<Raised>>);
 #[derive(Debug, Default)]
 struct Raised {
     error: Option<PyErr>,
-    robots: Vec<Failure>,
+    robots: Vec<Calls>,
 }
 
 impl Failures {
@@ -49,11 +49,11 @@ impl Failures {
     }
 
     fn of_robots(&self) -> bool {
-        self.with(|raised| raised.robots.iter().any(Failure::is_raised))
+        self.with(|raised| raised.robots.iter().any(Calls::is_raised))
     }
 
     fn take(&self) -> Option<PyErr> {
-        self.with(|raised| raised.robots.iter().find_map(Failure::take).or_else(|| raised.error.take()))
+        self.with(|raised| raised.robots.iter().find_map(Calls::take).or_else(|| raised.error.take()))
     }
 }
 
@@ -71,10 +71,10 @@ impl Iterator for Drawn {
             let mut iterator = self.iterator.bind(py).try_iter()?;
             let Some(item) = iterator.next() else { return Ok(None) };
             let (scene, json): (PyRef<'_, Scene>, String) = item?.extract()?;
-            if let Some(failure) = scene.failure() {
+            if let Some(calls) = scene.calls() {
                 self.failures.with(|raised| {
-                    if !raised.robots.iter().any(|known| known.is(failure)) {
-                        raised.robots.push(failure.clone());
+                    if !raised.robots.iter().any(|known| known.is(calls)) {
+                        raised.robots.push(calls.clone());
                     }
                 });
             }

@@ -3,7 +3,7 @@
 mod check;
 mod verifier;
 
-use crate::callback::{Callback, Failure};
+use crate::callback::{Callback, Calls};
 use check::{Check, Functions};
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::{
@@ -96,9 +96,9 @@ pub(crate) struct Own {
 
 impl Own {
     /// The robot with these ends, and where exceptions of its functions are kept.
-    pub(crate) fn new(given: Given, start: &[f64], goals: &[Vec<f64>]) -> Result<(Self, Failure), Error> {
-        let failure = Failure::default();
-        let one = |function: Option<Py<PyAny>>| function.map(|f| Arc::new(Callback::new(f, &failure)));
+    pub(crate) fn new(given: Given, start: &[f64], goals: &[Vec<f64>]) -> Result<(Self, Calls), Error> {
+        let calls = Calls::default();
+        let one = |function: Option<Py<PyAny>>| function.map(|f| Arc::new(Callback::new(f, &calls)));
         let numbers = Numbers { low: given.low, high: given.high, periodic: given.periodic };
         let range = |i: usize| match numbers.periodic[i] {
             true => JointRange::Circle,
@@ -111,11 +111,11 @@ impl Own {
         let numbers = Arc::new(numbers);
         let functions = match (given.clearance, given.displacement, given.valid_many, given.valid) {
             (Some(clearance), Some(displacement), ..) => Functions::Clearance {
-                clearance: Callback::new(clearance, &failure),
-                displacement: Callback::new(displacement, &failure),
+                clearance: Callback::new(clearance, &calls),
+                displacement: Callback::new(displacement, &calls),
             },
-            (_, _, Some(many), _) => Functions::Many(Callback::new(many, &failure)),
-            (_, _, _, Some(one)) => Functions::One(Callback::new(one, &failure)),
+            (_, _, Some(many), _) => Functions::Many(Callback::new(many, &calls)),
+            (_, _, _, Some(one)) => Functions::One(Callback::new(one, &calls)),
             _ => {
                 return Err(Error::new("the robot has no check")
                     .help("give `valid`, `valid_many`, or `clearance` and `displacement`"));
@@ -143,7 +143,7 @@ impl Own {
             start,
             goals,
         };
-        Ok((own, failure))
+        Ok((own, calls))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Roadmaps that answer many queries.
 
-use crate::callback::Failure;
+use crate::callback::Calls;
 use crate::error::{ToPython, to_python};
 use crate::interrupt::{Cancel, work};
 use crate::report::{ReportParts, parts};
@@ -15,12 +15,12 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Debug)]
 pub(crate) struct Roadmap {
     roadmap: Mutex<SceneRoadmap>,
-    failure: Option<Failure>,
+    calls: Option<Calls>,
 }
 
 impl Roadmap {
-    pub(crate) fn new(roadmap: SceneRoadmap, failure: Option<Failure>) -> Self {
-        Self { roadmap: Mutex::new(roadmap), failure }
+    pub(crate) fn new(roadmap: SceneRoadmap, calls: Option<Calls>) -> Self {
+        Self { roadmap: Mutex::new(roadmap), calls }
     }
 
     /// Does something with the roadmap, without the lock of the interpreter.
@@ -33,7 +33,7 @@ impl Roadmap {
     ) -> PyResult<(T, Option<PyErr>)> {
         let cancel = cancel.map(|c| c.0.clone()).unwrap_or_default();
         let raised = cancel.clone();
-        work(py, &cancel, progress, self.failure.as_ref(), move |mut reporter| {
+        work(py, &cancel, progress, self.calls.as_ref(), move |mut reporter| {
             let mut roadmap = self.roadmap.lock().unwrap_or_else(PoisonError::into_inner);
             job(&mut roadmap, &mut Control::new(raised, &mut reporter))
         })

@@ -1,6 +1,6 @@
 //! Scenes: loading, planning, checking.
 
-use crate::callback::Failure;
+use crate::callback::Calls;
 use crate::error::{ToPython, to_python};
 use crate::interrupt::{Cancel, Reporter, work};
 use crate::own::{self, Own};
@@ -60,7 +60,7 @@ pub(crate) struct Scene {
     /// Start and goals in place of those of the files, as they were given.
     ends: Option<Ends>,
     /// Of an own robot, the exception that one of its functions raised.
-    failure: Option<Failure>,
+    calls: Option<Calls>,
 }
 
 /// Start and goals.
@@ -107,11 +107,11 @@ impl Scene {
         progress: Option<&Py<PyAny>>,
         job: impl FnOnce(Reporter) -> T + Send,
     ) -> PyResult<(T, Option<PyErr>)> {
-        work(py, cancel, progress, self.failure.as_ref(), job)
+        work(py, cancel, progress, self.calls.as_ref(), job)
     }
 
-    pub(crate) fn failure(&self) -> Option<&Failure> {
-        self.failure.as_ref()
+    pub(crate) fn calls(&self) -> Option<&Calls> {
+        self.calls.as_ref()
     }
 }
 
@@ -129,7 +129,7 @@ impl Scene {
             shipped,
             parts: Vec::new(),
             ends: None,
-            failure: None,
+            calls: None,
         })
     }
 
@@ -146,13 +146,13 @@ impl Scene {
             let scene = mp_plan::Scene::load_from(&Until { files: &given, interrupt }, &main)?;
             Ok(scene)
         })?;
-        Ok(Self { scene, given, shipped: None, parts: Vec::new(), ends: None, failure: None })
+        Ok(Self { scene, given, shipped: None, parts: Vec::new(), ends: None, calls: None })
     }
 
     /// The scene of an own robot.
     #[staticmethod]
     fn own(robot: own::Given, start: Vec<f64>, goals: Vec<Vec<f64>>) -> PyResult<Self> {
-        let (robot, failure) = Own::new(robot, &start, &goals).to_python()?;
+        let (robot, calls) = Own::new(robot, &start, &goals).to_python()?;
         let scene = mp_plan::Scene::new(robot);
         Ok(Self {
             scene,
@@ -160,7 +160,7 @@ impl Scene {
             shipped: None,
             parts: Vec::new(),
             ends: None,
-            failure: Some(failure),
+            calls: Some(calls),
         })
     }
 
@@ -301,6 +301,11 @@ impl Scene {
         PyArray3::from_vec3(py, &matrices).map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
+    /// How often the functions of an own robot were called; zero of other robots.
+    fn function_calls(&self) -> u64 {
+        self.calls.as_ref().map_or(0, Calls::count)
+    }
+
     /// Plans: a report in parts, and the exception that ended it, if one did.
     #[pyo3(signature = (json, cancel=None, progress=None))]
     fn plan<'py>(
@@ -357,7 +362,7 @@ impl Scene {
             self.scene.roadmap_with(&request, &mut Control::new(raised, &mut reporter))
         })?;
         error.map_or(Ok(()), Err)?;
-        roadmap.to_python().map(|roadmap| Roadmap::new(roadmap, self.failure.clone()))
+        roadmap.to_python().map(|roadmap| Roadmap::new(roadmap, self.calls.clone()))
     }
 
     /// Finishes a path from elsewhere: the path, its length, its clearance, whether it was shortened; and the exception that ended it.

@@ -94,6 +94,22 @@ def test_one_and_many_give_the_same_path() -> None:
     assert one.fingerprint == many.fingerprint is not None
 
 
+def test_all_calls_are_reported() -> None:
+    calls = 0
+
+    def counted(q: Array) -> bool:
+        nonlocal calls
+        calls += 1
+        return free(q)
+
+    scene = scene_of(mp.Robot(SPACE, valid=counted))
+    for seed in (1, 2):
+        before = calls
+        report = scene.plan(seed=seed)
+        assert report.calls == calls - before > report.collision_checks > 0
+    assert mp.Scene("easy").plan().calls is None
+
+
 def test_the_same_on_any_number_of_threads() -> None:
     scene = scene_of(ROBOTS["valid"])
     assert scene.plan("or-rrt", threads=1).fingerprint == scene.plan("or-rrt", threads=3).fingerprint

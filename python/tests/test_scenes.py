@@ -9,6 +9,7 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from urllib.parse import unquote, urlparse
 
@@ -71,6 +72,10 @@ def test_meshes_have_the_same_bits() -> None:
     report = scene.plan(seed=4)
     assert report.solved and scene.check(report)
     again = mp.Scene.rigid(mp.Mesh(mesh.vertices, mesh.triangles), start, goal, [mp.Body(mesh, np.eye(4), "rock")])
+    assert again.plan(seed=4).fingerprint == report.fingerprint
+    # As those of trimesh are.
+    other = SimpleNamespace(vertices=mesh.vertices, faces=mesh.triangles)
+    again = mp.Scene.rigid(other, start, goal, [mp.Body(other, np.eye(4), "rock")])
     assert again.plan(seed=4).fingerprint == report.fingerprint
 
 
