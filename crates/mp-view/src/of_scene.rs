@@ -55,10 +55,14 @@ impl SceneFile {
                 }
             }
             let (name, pose) = (body.name, body.pose.as_ref().map(seven));
-            let role = if pose.is_some() { Role::Obstacle } else { Role::Robot };
+            let role = match pose {
+                Some(_) => Role::Obstacle,
+                None if robots > own => Role::Moving,
+                None => Role::Robot,
+            };
             let shape = file.add_shape(&body.shape);
-            let moves = pose.is_none() && robots > own;
-            file.bodies.push(Body { name, role, shape, pose, color: moves.then_some(MOVING) });
+            let color = (role == Role::Moving).then_some(MOVING);
+            file.bodies.push(Body { name, role, shape, pose, color });
         }
         file.bounds = bounds.get();
         Ok(file)
@@ -171,6 +175,7 @@ impl PathTrack {
             trace: track.trace.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32]).collect(),
             clearance: Some(track.clearance.into_iter().map(|c| c as f32).collect()),
             travel: Some(track.travel.into_iter().map(|s| s as f32).collect()),
+            corners: (!track.corners.is_empty()).then(|| track.corners.iter().map(|&i| i as u32).collect()),
         }
     }
 }

@@ -4,13 +4,13 @@
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { gunzipSync } from "node:zlib";
+import { unlzma } from "../../lzma.js";
 
 const RUNS = 9;
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
 /** A part of a page by its id, unpacked. */
-const part = (html, id) => gunzipSync(Buffer.from(html.match(new RegExp(`id="${id}"[^>]*>([^<]*)<`))[1], "base64"));
+const part = (html, id) => unlzma(Buffer.from(html.match(new RegExp(`id="${id}"[^>]*>([^<]*)<`))[1], "base64"));
 
 /** The bytes of a message without arrays. */
 function message(head) {

@@ -73,6 +73,7 @@ browserTest("the server goes away: what is shown stays, and every request says s
   await driver.press("Plan");
   await driver.untilResult(/server does not answer/);
   await driver.press("Save…");
+  await driver.choose("What", "2");
   await driver.press("Save");
   await driver.until(() => /server does not answer/.test(document.querySelector("dialog[open] [role=status]").textContent));
   await driver.press("Close");
