@@ -349,9 +349,10 @@ export class Editor {
       return { pose, reach: Math.hypot(...[0, 1, 2].map((k) => Math.max(-low[k], high[k]))) };
     });
     const inside = (/** @type {Six} */ place) => [0, 1, 2].every((k) => within(place[k], k) === place[k]);
-    const clear = (/** @type {Six} */ place) => inside(place) && taken.every((o) => Math.hypot(...[0, 1, 2].map((k) => o.pose[k] - place[k])) > o.reach + reach);
+    const clear = (/** @type {Six} */ place, among = taken) => inside(place) && among.every((o) => Math.hypot(...[0, 1, 2].map((k) => o.pose[k] - place[k])) > o.reach + reach);
     const places = NEARBY.map(([i, j]) => /** @type {Six} */ ([tidy(x + i * step), tidy(y + j * step), height, 0, 0, 0]));
-    return places.find(clear) ?? places[0];
+    // A room is around all places in it: then only start and goal are kept free.
+    return places.find((place) => clear(place)) ?? places.find((place) => clear(place, taken.slice(0, 2))) ?? places[0];
   }
   /** Selects the obstacle that was added. @param {number} count how many there were */
   selectNew(count) {

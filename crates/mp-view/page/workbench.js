@@ -11,6 +11,9 @@ import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 /** @import { Viewer } from "mp/viewer.js" */
 /** @typedef {{scene: string} | {files: {name: string, bytes: Uint8Array}[], main?: string}} Source  a shipped scene, or files */
 
+/** What of a document may change without the scene being another one. */
+const UNIMPORTANT = ["name", "color", "start", "goal"];
+
 export class Workbench {
   /** @param {Viewer} viewer @param {Session} session @param {Message} hello the reply of the session to `hello` */
   constructor(viewer, session, hello) {
@@ -21,7 +24,7 @@ export class Workbench {
     /** Whether bodies of the robot can be put to places: docs/formats/session.md. */ this.links = false;
     /** Whether paths of the robot get times. */ this.trajectories = false;
     /** How many parts of the motion come after this one. */ this.partsLeft = 0;
-    /** Which scene is open: the same for equal ones, wherever start and goal are. */ this.which = "";
+    /** Which scene is open: the same for equal ones, wherever start and goal are, and whatever bodies are called. */ this.which = "";
     /** Called after a scene was opened (“open”), or came back changed from the planner (“edit”).
      * @type {((reply: Message, how: "open" | "edit") => void)[]} */ this.onopened = [];
     /** Called after the session's scene was left. @type {(() => void)[]} */ this.onleft = [];
@@ -64,7 +67,7 @@ export class Workbench {
   }
   /** What the session says of its scene. @param {Message} reply */
   describe({ document = null, links = false, trajectories = false, parts_left: partsLeft = 0 }) {
-    const which = JSON.stringify([partsLeft, { ...document, start: null, goal: null }]);
+    const which = JSON.stringify([partsLeft, document], (key, value) => (UNIMPORTANT.includes(key) ? undefined : value));
     Object.assign(this, { document, links, trajectories, partsLeft, which });
   }
 

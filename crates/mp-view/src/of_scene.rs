@@ -49,7 +49,9 @@ impl SceneFile {
             match &body.pose {
                 Some(pose) => bounds.add(points.iter().map(|p| pose * p)),
                 None => {
-                    let poses = ends.iter().filter_map(|poses| poses.get(robots));
+                    // What moves by itself may go far away: it is enough where it begins, at the start, which is the last.
+                    let shown = if robots < own { &ends[..] } else { &ends[ends.len() - 1..] };
+                    let poses = shown.iter().filter_map(|poses| poses.get(robots));
                     poses.for_each(|pose| bounds.add(points.iter().map(|p| pose * p)));
                     robots += 1;
                 }

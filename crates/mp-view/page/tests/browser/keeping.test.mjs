@@ -43,6 +43,8 @@ browserTest("runs stay when the scene is edited, and an undo makes them its own 
   });
   const path = await shown();
   assert.match(path, /run 1/);
+  // In a corner, where the path does not lead.
+  await driver.lookAtCorner();
   await driver.press("Add");
   await untilObstacles(driver, count + 1);
   await driver.untilResult(/of the scene before/, 1);
