@@ -189,16 +189,23 @@ mod tests {
         assert_eq!(before.matches("<script").count(), after.matches("<script").count());
     }
 
+    /// A part of a page, unpacked as the page does it.
+    fn unpacked(html: &str, id: &str) -> Vec<u8> {
+        let begin = format!("<script id=\"{id}\" type=\"application/octet-stream\">");
+        let (_, rest) = html.split_once(&begin).unwrap();
+        let bytes = STANDARD.decode(rest.split('<').next().unwrap()).unwrap();
+        let mut unpacked = Vec::new();
+        let mut decoder = lzma_rust2::LzmaReader::new_mem_limit(&*bytes, u32::MAX, None).unwrap();
+        std::io::Read::read_to_end(&mut decoder, &mut unpacked).unwrap();
+        unpacked
+    }
+
     /// The planner is unpacked from the page as it was.
     #[test]
     fn the_planner_is_in_the_page() {
         let module = *b"\0asm\x01\0\0\0";
         let html = page(None, Planner::Inside(&module));
-        let (_, rest) = html.split_once("<script id=\"planner\" type=\"application/octet-stream\">").unwrap();
-        let bytes = STANDARD.decode(rest.split('<').next().unwrap()).unwrap();
-        let mut unpacked = Vec::new();
-        std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(&*bytes), &mut unpacked).unwrap();
-        assert_eq!(unpacked, module);
+        assert_eq!(unpacked(&html, "planner"), module);
         assert!(!html.contains("mp-session") && !html.contains("id=\"scene\""));
         let served = page(None, Planner::Server);
         assert!(
@@ -213,12 +220,7 @@ mod tests {
         let file = SceneFile::of(&mp_plan::Scene::find("easy").unwrap()).unwrap();
         let cube = b"OFF 4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
         let html = page_with_files(&file, b"module", &[("a.off".to_owned(), cube.to_vec())]);
-        let (_, rest) = html.split_once("<script id=\"open\" type=\"application/octet-stream\">").unwrap();
-        let bytes = STANDARD.decode(rest.split('<').next().unwrap()).unwrap();
-        let mut unpacked = Vec::new();
-        let mut decoder = lzma_rust2::LzmaReader::new_mem_limit(&*bytes, u32::MAX, None).unwrap();
-        std::io::Read::read_to_end(&mut decoder, &mut unpacked).unwrap();
-        let open = Message::parse(&unpacked).unwrap();
+        let open = Message::parse(&unpacked(&html, "open")).unwrap();
         assert_eq!((&open.head["do"], &open.head["main"]), (&json!("open"), &json!("a.off")));
         assert_eq!(open.bytes(&open.head["files"][0]["bytes"], "bytes").unwrap(), cube);
         assert!(html.find("id=\"open\"") < html.find("id=\"planner\""));

@@ -156,11 +156,12 @@ fn out_of_bounds_there_is_a_place_within() {
 fn what_must_be_changed_is_a_warning() {
     let page = opened("easy");
     let mut document = document();
+    let obstacles = document["obstacles"].take();
     document["obstacles"] = json!([]);
     let odd = page.ask(json!({"do": "edit", "document": document}));
     assert_eq!((&odd.head["warnings"], &odd.head["notes"]), (&json!([]), &json!(["there are no obstacles"])));
-    document["bounds"] = json!([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]]);
-    document["goal"] = json!([50.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    document["obstacles"] = obstacles;
+    document["goal"] = json!([0, 0, 0, 0, 0, 0]);
     let wrong = page.ask(json!({"do": "edit", "document": document}));
     assert!(wrong.head["warnings"].to_string().contains("the goal is"), "{:?}", wrong.head);
 }
