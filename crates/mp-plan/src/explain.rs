@@ -30,7 +30,7 @@ pub(crate) fn explain(kind: &dyn Robot, q: &Configuration) -> Explanation {
         true => kind.any_measure().clearance(q, f64::INFINITY).max(0.0),
         false => 0.0,
     };
-    let nearest = fault.is_some().then(|| kind.nearest_free(q)).flatten();
+    let nearest = fault.is_some().then(|| nearest_free(kind, q)).flatten();
     Explanation {
         free: fault.is_none(),
         in_bounds,
@@ -40,6 +40,19 @@ pub(crate) fn explain(kind: &dyn Robot, q: &Configuration) -> Explanation {
         fault,
         nearest_free: nearest.map(|q| kind.row(&q)),
     }
+}
+
+/// A free configuration near `q`; of one out of bounds, near the nearest one within.
+fn nearest_free(kind: &dyn Robot, q: &Configuration) -> Option<Configuration> {
+    if kind.any_space().contains(q) {
+        return kind.nearest_free(q);
+    }
+    let mut row = kind.row(q);
+    for (number, limits) in row.iter_mut().zip(kind.limits()) {
+        *number = limits.map_or(*number, |[low, high]| number.max(low).min(high));
+    }
+    let inside = kind.state(&row);
+    if fault(kind, &inside).is_none() { Some(inside) } else { kind.nearest_free(&inside) }
 }
 
 /// What is wrong with a configuration, to follow the words "the start is".
@@ -134,10 +147,14 @@ pub(crate) fn check_ends(kind: &dyn Robot) -> Result<Vec<String>, Error> {
     Ok(inside.chain(kind.ends_error()).collect())
 }
 
+/// Which of start and goals are not free, and why.
+pub(crate) fn wrong_ends(kind: &dyn Robot) -> Vec<String> {
+    ends(kind).filter_map(|(_, name, q)| Some(format!("{name} is {}", fault(kind, q)?))).collect()
+}
+
 /// What is wrong or odd about a scene.
 pub(crate) fn lint(kind: &dyn Robot) -> Vec<String> {
-    let mut found: Vec<String> =
-        ends(kind).filter_map(|(_, name, q)| Some(format!("{name} is {}", fault(kind, q)?))).collect();
+    let mut found = wrong_ends(kind);
     found.extend(ends(kind).filter_map(|(_, name, q)| Some(format!("at {name} {}", enclosures(kind, q)?))));
     found.extend(kind.lint());
     let bodies = kind.bodies();

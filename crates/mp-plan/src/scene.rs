@@ -1,6 +1,6 @@
 //! A scene of any kind, and what can be done with it.
 
-use crate::explain::{check_ends, explain, lint};
+use crate::explain::{check_ends, explain, lint, wrong_ends};
 use crate::finish::certificate::certificate;
 use crate::finish::check::check;
 use crate::finish::finish_given;
@@ -643,6 +643,12 @@ impl Scene {
     /// When it was interrupted.
     pub fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         self.robot.make_ready(interrupt)
+    }
+
+    /// Which of start and goals are not free, and why, in sentences; [`lint`](Self::lint) says them too.
+    #[must_use]
+    pub fn wrong_ends(&self) -> Vec<String> {
+        wrong_ends(&*self.robot)
     }
 
     /// What is wrong or odd about the scene, in sentences. Empty when nothing is.

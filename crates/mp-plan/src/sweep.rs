@@ -130,6 +130,8 @@ pub struct Track {
     /// How far (m) the robot has moved from the start to each: an upper bound for its points. For robots whose states say when
     /// they are there, how long (s) that took.
     pub travel: Vec<f64>,
+    /// Which of them are the path's own.
+    pub corners: Vec<usize>,
 }
 
 impl Track {
@@ -171,9 +173,10 @@ pub(crate) fn track(kind: &dyn Robot, path: &PathRows) -> Result<Track, Error> {
     let spacing = (0.1 * kind.picture_spacing()).max(total / MAX_BETWEEN);
     let mut track = Track::default();
     let mut add = |q: &Configuration, travel: f64| track.add(kind, &mut checker, q, travel);
-    let mut way = 0.0;
+    let (mut way, mut corners) = (0.0, vec![0]);
     for (edge, length) in lengths.iter().enumerate() {
         let parts = (length / spacing).ceil().clamp(1.0, MAX_BETWEEN) as u32;
+        corners.push(corners[edge] + parts as usize);
         let length = ways[edge];
         for k in 0..parts {
             let t = f64::from(k) / f64::from(parts);
@@ -183,6 +186,7 @@ pub(crate) fn track(kind: &dyn Robot, path: &PathRows) -> Result<Track, Error> {
     }
     if let Some(last) = states.last() {
         add(last, way);
+        track.corners = corners;
     }
     Ok(track)
 }

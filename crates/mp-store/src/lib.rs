@@ -9,6 +9,7 @@
 //! - [`FileId`] tells whether two names lead to the same file.
 //! - [`Lock`] keeps other processes from growing the same file or folder.
 //! - [`Journal`] is a file that grows by whole lines.
+//! - [`packed`] makes bytes small that travel.
 //!
 //! ```
 //! let folder = std::env::temp_dir().join(format!("mp-store-{}", std::process::id()));
@@ -29,6 +30,8 @@ mod id;
 mod journal;
 mod lock;
 mod name;
+#[cfg(not(target_family = "wasm"))]
+mod packed;
 mod read;
 mod temporary;
 mod write;
@@ -38,5 +41,7 @@ pub use id::FileId;
 pub use journal::Journal;
 pub use lock::Lock;
 pub use name::{check_name, in_folder, write_all};
+#[cfg(not(target_family = "wasm"))]
+pub use packed::packed;
 pub use read::{open, read, read_stream};
 pub use write::{folder_of, make_folder, writable, write, write_parts};

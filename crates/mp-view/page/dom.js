@@ -32,9 +32,9 @@ export function showError(error, ...actions) {
   box.classList.remove("note");
 }
 
-/** Shows something worth knowing where errors are shown. @param {string} text */
-export function showNote(text) {
-  showError(text);
+/** Shows something worth knowing where errors are shown. @param {string} text @param {HTMLElement[]} actions buttons beside it */
+export function showNote(text, ...actions) {
+  showError(text, ...actions);
   byId("alert").classList.add("note");
 }
 

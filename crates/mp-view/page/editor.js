@@ -99,6 +99,11 @@ export class Editor {
     if (!s) return true;
     return "obstacle" in s ? s.obstacle < (this.document?.obstacles.length ?? 0) : this.ends.at(s.end) !== null;
   }
+  /** What was opened is a copy of changes that no file has. */
+  changedSinceOpened() {
+    if (this.history) this.history.saved = null;
+    this.refresh();
+  }
   /** Everything that can be selected, with its name. @returns {{name: string, selection: Selection}[]} */
   parts() {
     const { scene } = this.viewer;
@@ -122,6 +127,7 @@ export class Editor {
     if (body < 0) return this.select(null);
     const { robot } = this.viewer.scene;
     if (body >= robot) return this.select(this.document ? { obstacle: body - robot } : null);
+    if (this.viewer.scene.bodies[body].role === "moving") return this.select(null);
     if (this.workbench.links) this.held = body;
     this.select(role === "goal" ? { end: index } : role === "start" ? { end: "start" } : null);
   }
@@ -330,19 +336,23 @@ export class Editor {
     const count = this.document?.obstacles.length ?? 0;
     return this.run(`add ${name}`, (d) => doc.addObstacle(d, name, shape, this.freePlace(d, reach))).then(() => this.selectNew(count));
   }
-  /** A place near the middle of the picture that is clear of all bodies. @param {Document} d @param {number} reach @returns {Six} */
+  /** A place near the middle of the picture, where the robot may be, that is clear of all bodies. @param {Document} d @param {number} reach @returns {Six} */
   freePlace(d, reach) {
     const { shapes, ofBody, scene, camera } = this.viewer;
     const step = niceStep(Math.max(reach, camera.pixel()), 0.5);
-    const [x, y, z] = camera.target.map((c) => tidy(Math.round(c / step) * step));
+    const { limits } = scene;
+    const within = (/** @type {number} */ c, /** @type {number} */ k) => Math.max(limits[k]?.[0] ?? -Infinity, Math.min(limits[k]?.[1] ?? Infinity, c));
+    const [x, y, z] = camera.target.map((c, k) => tidy(Math.round(within(c, k) / step) * step));
     const height = d.space === "SE2" ? 0 : z;
     const taken = [d.start, d.goal, ...d.obstacles.map((o) => o.pose)].map((pose, i) => {
       const { low, high } = shapes[ofBody[Math.max(0, i - 2 + scene.robot)]];
       return { pose, reach: Math.hypot(...[0, 1, 2].map((k) => Math.max(-low[k], high[k]))) };
     });
-    const clear = (/** @type {Six} */ place) => taken.every((o) => Math.hypot(...[0, 1, 2].map((k) => o.pose[k] - place[k])) > o.reach + reach);
+    const inside = (/** @type {Six} */ place) => [0, 1, 2].every((k) => within(place[k], k) === place[k]);
+    const clear = (/** @type {Six} */ place, among = taken) => inside(place) && among.every((o) => Math.hypot(...[0, 1, 2].map((k) => o.pose[k] - place[k])) > o.reach + reach);
     const places = NEARBY.map(([i, j]) => /** @type {Six} */ ([tidy(x + i * step), tidy(y + j * step), height, 0, 0, 0]));
-    return places.find(clear) ?? places[0];
+    // A room is around all places in it: then only start and goal are kept free.
+    return places.find((place) => clear(place)) ?? places.find((place) => clear(place, taken.slice(0, 2))) ?? places[0];
   }
   /** Selects the obstacle that was added. @param {number} count how many there were */
   selectNew(count) {

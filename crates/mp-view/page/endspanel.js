@@ -117,7 +117,7 @@ export class EndsPanel {
     if (v.fault && !v.touching.length) reasons.push(v.fault);
     const parts = [el("strong", { class: "bad" }, "Refused"), el("ul", {}, ...reasons.map((reason) => el("li", {}, reason)))];
     const near = v.nearest_free;
-    if (near) parts.push(button("Take the nearest free configuration", () => this.ends.set(this.end, near)));
+    if (near) parts.push(button(v.in_bounds ? "Take the nearest free configuration" : "Take the nearest place in bounds", () => this.ends.set(this.end, near)));
     else parts.push(el("small", {}, "No free configuration was found near it. Move it away from what it touches."));
     return parts;
   }

@@ -1,5 +1,6 @@
 // The page: reads the scene inside, or asks the planner for one, and shows it.
 
+import { SafeCopy } from "mp/copy.js";
 import { showError } from "mp/dom.js";
 import { Editor } from "mp/editor.js";
 import { EndsPanel } from "mp/endspanel.js";
@@ -50,10 +51,12 @@ function show(bytes) {
 async function connect(session, viewer) {
   const workbench = new Workbench(viewer, session, await session.request({ do: "hello" }));
   const editor = new Editor(workbench);
+  const copy = new SafeCopy(editor);
   const opening = new Opening(editor);
   const gallery = new Gallery(workbench);
   const saving = new SaveDialog(workbench);
   opening.saveBy(saving);
+  saving.copy = () => copy.text();
   new Inspector(editor, () => opening.chooseMesh());
   new PlanningPanel(workbench);
   new TimingPanel(workbench, () => saving.show("save_trajectory"));
@@ -62,7 +65,8 @@ async function connect(session, viewer) {
   const { opened } = workbench.hello;
   if (opened) workbench.take(opened, "open");
   else if (viewer.scene.bodies.length) await openInside(workbench);
-  else if (workbench.hello.scenes.length) gallery.show();
+  if (copy.offer() || opened || viewer.scene.bodies.length) return workbench;
+  if (workbench.hello.scenes.length) gallery.show();
   else await editor.create();
   return workbench;
 }

@@ -57,7 +57,13 @@ export class Panels {
     this.showPaths();
     this.showBodies();
     this.bodies.open = scene.bodies.length <= 12;
-    const parts = [section("Scene", true, [factList(this.sceneFacts())])];
+    this.showFacts();
+  }
+  /** Shows what the scene is, and the report of a run in it. */
+  showFacts() {
+    const { scene } = this;
+    const notes = scene.notes.map((note) => el("small", {}, `${note.charAt(0).toUpperCase()}${note.slice(1)}.`));
+    const parts = [section("Scene", true, [factList(this.sceneFacts()), ...notes])];
     if (scene.report) parts.push(section("Report", true, [factList(reportFacts(scene.report))]));
     this.facts.replaceChildren(...parts);
   }
@@ -169,12 +175,13 @@ export class Panels {
   /** @returns {[string, string][]} */
   sceneFacts() {
     const { scene } = this;
+    const robot = scene.bodies.filter((body) => body.role === "robot").length;
     const size = scene.bounds[0].map((low, k) => brief(scene.bounds[1][k] - low)).join(" × ");
     /** @type {[string, string][]} */
     const facts = [
       ["space", scene.space],
-      ["robot", `${brief(scene.robot)} ${scene.robot === 1 ? "body" : "bodies"}`],
-      ["obstacles", brief(scene.bodies.length - scene.robot)],
+      ["robot", `${brief(robot)} ${robot === 1 ? "body" : "bodies"}`],
+      ["obstacles", brief(scene.bodies.length - robot)],
       ["triangles", brief(this.triangles)],
       ["size", `${size} m`],
     ];
@@ -206,7 +213,11 @@ export class Panels {
     this.help = factList(HELP);
     dialog.replaceChildren(el("h2", { id: "help-title" }, "Mouse, fingers and keys"), this.help, close);
     dialog.setAttribute("aria-labelledby", "help-title");
-    byId("help-button").onclick = () => dialog.showModal();
+    byId("help-button").onclick = () => {
+      dialog.showModal();
+      // What has the focus is at its end.
+      dialog.scrollTop = 0;
+    };
   }
   /** Adds lines to the help dialog. @param {[string, string][]} lines */
   addHelp(lines) { this.help?.append(...factList(lines).children); }
@@ -224,22 +235,34 @@ export class Panels {
 function pathWords(/** @type {Path} */ path) {
   const words = [path.trajectory ? `${brief(path.trajectory.duration)} s` : `${brief(path.count)} configurations`];
   if (Number.isFinite(path.length)) words.push(`length ${brief(path.length)}`);
-  if (path.clearance?.length) words.push(`least clearance shown ${brief(path.clearance.reduce((a, b) => Math.min(a, b)))} m`);
+  const clearance = clearanceOf({}, path);
+  if (clearance) words.push(`clearance ${clearance}`);
   words.push(path.verified ? "verified" : "not verified");
   return words.join(", ");
 }
+
+/** The clearance of a path and how it is known: proved along the path, or the least of where the picture has the robot; empty where neither is.
+ * @param {Record<string, unknown>} report @param {Path | null} [path] */
+export function clearanceOf({ clearance }, path = null) {
+  if (typeof clearance === "number") return `${brief(clearance)} m, proved`;
+  return path?.clearance?.length ? `${brief(path.clearance.reduce((a, b) => Math.min(a, b)))} m, sampled` : "";
+}
+
+/** The time of all stages of a run, seconds. @param {Record<string, unknown>} report */
+export const totalTime = ({ stages }) => /** @type {{time_s: number}[]} */ (stages ?? []).reduce((sum, stage) => sum + stage.time_s, 0);
 
 /** The figures of a report that people ask for first. @param {Record<string, unknown>} report @returns {[string, string][]} */
 export function reportFacts(report) {
   /** @type {[name: string, member: string, unit: string][]} */
   const wanted = [
-    ["planner", "planner", ""], ["metric", "metric", ""], ["motion check", "motion", ""], ["seed", "seed", ""], ["time", "time_s", "s"],
+    ["planner", "planner", ""], ["metric", "metric", ""], ["motion check", "motion", ""], ["seed", "seed", ""], ["planning", "time_s", "s"],
     ["finishing", "finish_s", "s"], ["iterations", "iterations", ""], ["nodes", "nodes", ""], ["edges", "edges", ""],
     ["motion checks", "motion_checks", ""], ["collision checks", "collision_checks", ""], ["length as found", "path_length_found", ""],
-    ["length", "path_length", ""], ["clearance", "clearance", "m, at least"], ["stopped", "why", ""], ["fingerprint", "fingerprint", ""],
+    ["length", "path_length", ""], ["clearance", "clearance", "m, proved"], ["stopped", "why", ""], ["fingerprint", "fingerprint", ""],
   ];
   /** @type {[string, string][]} */
   const facts = [["result", report.solved === true ? "a verified path" : "no path"]];
+  if (report.stages) facts.push(["total time", `${brief(totalTime(report))} s`]);
   for (const [name, member, unit] of wanted) {
     const value = report[member];
     if (typeof value === "number") facts.push([name, `${brief(value)} ${unit}`.trim()]);

@@ -171,7 +171,8 @@ export class Picker {
   describeItem(item, point, s) {
     const body = this.scene.bodies[item.body];
     const shape = this.shapes[item.shape];
-    /** @type {[string, string][]} */ const facts = [["part of", PARTS[item.role](item.index)], placeFact(point)];
+    const part = this.scene.bodies[item.body].role === "moving" ? "the obstacles that move" : PARTS[item.role](item.index);
+    /** @type {[string, string][]} */ const facts = [["part of", part], placeFact(point)];
     facts.push(["size", [0, 1, 2].map((k) => brief(shape.high[k] - shape.low[k])).join(" × ") + " m"]);
     if (shape.triangles.length) facts.push(["triangles", brief(shape.triangles.length / 3)]);
     if (item.role === "copy" || item.role === "robot") facts.push(...this.rowFacts(s.path, item.index));

@@ -137,8 +137,10 @@ export class PictureMaker {
       if (!s.bodies[b].visible) continue;
       const mode = given ?? this.modeOf(s, b);
       const alpha = mode === "transparent" ? ALPHA : 1;
-      const { stretch, color: own } = this.scene.bodies[b];
-      const shown = role === "start" || role === "goal" ? color : (own ?? color);
+      const { stretch, color: own, role: part } = this.scene.bodies[b];
+      // What moves by itself is drawn where it is now: on the path that is shown, or at the start.
+      if (part === "moving" && (role === "goal" || (role === "start" && this.scene.paths[s.path]?.count))) continue;
+      const shown = part === "robot" && (role === "start" || role === "goal") ? color : (own ?? color);
       items.push({ shape: this.ofBody[b], pose: poses, at: at + 7 * b, color: shown, alpha, mode, cut: false, layer: LAYERS[role], stretch, body: b, role, index });
     }
     return items;

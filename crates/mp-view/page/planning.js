@@ -3,6 +3,7 @@
 import { brief, button, checkbox, el, labelled, section, select, showError, slider } from "mp/dom.js";
 import { isTyping } from "mp/controls.js";
 import { FIELDS } from "mp/field.js";
+import { clearanceOf, totalTime } from "mp/panels.js";
 import { Runs, ended } from "mp/runs.js";
 import { readPath } from "mp/scene.js";
 
@@ -52,11 +53,11 @@ export class PlanningPanel {
     this.showPlanner();
     this.showState();
     workbench.onevent.push((event) => this.event(event));
-    workbench.onopened.push((reply) => {
+    workbench.onopened.push((reply, how) => {
       this.suit(reply);
-      this.opened();
+      this.opened(how);
     });
-    workbench.onleft.push(() => this.opened());
+    workbench.onleft.push(() => this.opened("open"));
     workbench.onlost.push(() => this.lost());
     this.viewer.keys.push((e) => this.key(e));
     this.viewer.panels?.addHelp(HELP);
@@ -218,7 +219,10 @@ export class PlanningPanel {
     await this.tell("step", { iterations: Math.max(1, Math.round(this.stepSize?.valueAsNumber || 1)) });
   }
   /** The configuration where the chosen path ends, if it has been written. */
-  get end() { return this.viewer.scene.paths[this.runs.chosen?.path ?? -1]?.written?.at(-1) ?? null; }
+  get end() {
+    const { chosen } = this.runs;
+    return (chosen && !this.runs.isOld(chosen) && this.runs.pathOf(chosen)?.written?.at(-1)) || null;
+  }
 
   nextPart() { return this.end && this.workbench.nextPart(this.end); }
 
@@ -237,23 +241,24 @@ export class PlanningPanel {
     if (event.event === "done") this.finished(run, event);
     if (event.event === "failed") {
       this.fail(run, event.message, event.cancelled ? null : Object.assign(new Error(event.message), { help: event.help }));
-      if (run.found) this.keep(run, run.found);
+      if (run.found && !this.runs.isOld(run)) this.keep(run, run.found);
     }
     this.update(run);
   }
   /** @param {Run} run @param {Message} event */
   finished(run, { report, path }) {
-    const { scene } = this.viewer;
     run.state = "done";
     run.report = report;
-    if (path) this.addPath(run, readPath(path, scene.columns.length, scene.robot), report.path ?? null);
+    if (path) this.addPath(run, readPath(path, run.columns, run.robot), report.path ?? null);
     const seed = this.seed;
     if (seed && isOn(this.next)) seed.valueAsNumber = (numberIn(seed) ?? 0) + 1;
-    if (!report.solved) this.explain();
+    if (!report.solved && !this.runs.isOld(run)) this.explain();
   }
   /** Shows the path of a run. @param {Run} run @param {Path} path @param {number[][] | null} written */
   addPath(run, path, written) {
-    run.path = this.viewer.addPath({ ...path, name: `run ${run.id}: ${run.planner}`, ofRun: true, written });
+    run.track = { ...path, name: `run ${run.id}: ${run.planner}`, ofRun: true, written };
+    const { columns, robot } = this.viewer.scene;
+    if (run.columns === columns.length && run.robot === robot) run.path = this.viewer.addPath(run.track);
     if (this.runs.chosen === run) this.runs.choose(run);
   }
   /** Keeps the path of a run that was ended before it had finished it, if the planner's verifier passes it as it would be written.
@@ -266,7 +271,7 @@ export class PlanningPanel {
     this.update(run);
     try {
       const { path, faults, written } = await this.workbench.session.request({ do: "path", name: run.planner, rows, ...run.ends });
-      if (!this.runs.all.includes(run)) return;
+      if (!this.runs.all.includes(run) || this.runs.isOld(run)) return;
       run.note = faults.length ? `${why} The path that it had found is not free: ${faults[0]}.` : `${why} A verified path stays, as it was found.`;
       if (!faults.length) this.addPath(run, readPath(path, columns.length, robot), written);
     } catch (error) {
@@ -301,11 +306,12 @@ export class PlanningPanel {
     if (this.run && this.going) this.fail(this.run, "the planner is gone", null);
     this.showState();
   }
-  /** After another scene was opened or shown, or this one was changed. */
-  opened() {
+  /** After another scene was opened or shown, or this one was changed. @param {"open" | "edit"} how */
+  opened(how) {
     this.cancel();
-    this.run = null;
-    this.runs.clear();
+    if (how === "edit") this.runs.keep(this.workbench.which);
+    else this.runs.clear(this.workbench.which);
+    if (how === "open" || this.going) this.run = null;
     this.showState();
   }
   showState() {
@@ -332,9 +338,12 @@ export class PlanningPanel {
     if (!this.workbench.open) return "Open a scene to plan in it.";
     if (!run) return "";
     if (!run.report) return run.note || `Run ${run.id}: ${run.state}`;
-    const { solved, path_length: length, clearance, why } = run.report;
-    if (!solved) return `Run ${run.id} has no path: ${why ?? "it ended"}.`;
-    return `Run ${run.id}: a verified path, length ${brief(length)}${typeof clearance === "number" ? `, clearance at least ${brief(clearance)} m` : ""}.`;
+    const { solved, path_length: length, why } = run.report;
+    const took = `in ${brief(totalTime(run.report))} s`;
+    if (!solved) return `Run ${run.id} has no path: ${why ?? "it ended"}, ${took}.`;
+    const old = this.runs.isOld(run) ? " It is of the scene before." : "";
+    const clearance = clearanceOf(run.report, this.runs.pathOf(run));
+    return `Run ${run.id}: a verified path ${took}, length ${brief(length)}${clearance && `, clearance ${clearance}`}.${old}`;
   }
   /** @param {Message} progress */
   countWords({ iterations = 0, nodes = 0, motions = 0, time_s: time = 0 }) {

@@ -163,7 +163,7 @@ export class PathPlot {
     context.fillStyle = style.color;
     context.font = "11px system-ui, sans-serif";
     const value = curve.values[Math.min(Math.round(time), curve.values.length - 1)];
-    const extent = quantity.key === "clearance" ? `least ${brief(own[0])}` : `${brief(own[0])} to ${brief(own[1])}`;
+    const extent = quantity.key === "clearance" ? `sampled, least ${brief(own[0])}` : `${brief(own[0])} to ${brief(own[1])}`;
     context.fillText(`${quantity.name} ${brief(value)} ${quantity.unit} (${extent} ${quantity.unit})`, 4, 11);
   }
 }

@@ -2,14 +2,17 @@
 
 import { brief, byId, el } from "mp/dom.js";
 import { RunLayer, RunPicture } from "mp/live.js";
-import { reportFacts } from "mp/panels.js";
+import { clearanceOf, reportFacts, totalTime } from "mp/panels.js";
 
 /** @import { Message } from "mp/message.js" */
+/** @import { Path, Scene } from "mp/scene.js" */
 /** @import { Viewer } from "mp/viewer.js" */
 /** @typedef {{id: number, planner: string, seed: number, state: string, progress: Message, report: Message | null, path: number,
- *  picture: RunPicture | null, note: string, ends: Message, found: Float64Array | null, cells: HTMLElement[], row: HTMLElement, choose: HTMLInputElement, compare: HTMLInputElement}} Run
+ *  picture: RunPicture | null, note: string, ends: Message, found: Float64Array | null, cells: HTMLElement[], row: HTMLElement, choose: HTMLInputElement, compare: HTMLInputElement,
+ *  of: string, columns: number, robot: number, track: Path | null}} Run
  *  `path` is −1 where there is none; `picture` is null for the searches of older runs; `ends` are start and goals of its request, and
- *  `found` the configurations of the last path found, before it is finished. */
+ *  `found` the configurations of the last path found, before it is finished. `of` says which scene it planned in, with so many `columns` and
+ *  bodies of the robot; `track` is its path after the scene was changed. */
 
 /** Of how many runs the searches are kept. */
 const KEPT = 3;
@@ -18,13 +21,13 @@ const HEADS = ["Show", "Compare", "Run", "Planner", "Seed", "Result", "Time", "I
 /** Whether the run has ended. @param {Run} run */
 export const ended = (run) => run.state === "done" || run.state === "failed";
 
-/** What is in the cells of a run. @param {Run} run @returns {string[]} */
-function words({ id, planner, seed, state, progress, report, note }) {
+/** What is in the cells of a run. @param {Run} run @param {Path | null} path @param {boolean} old whether it is of the scene before @returns {string[]} */
+function words({ id, planner, seed, state, progress, report, note }, path, old) {
   const from = report ?? progress;
   const number = (/** @type {unknown} */ value, unit = "") => (typeof value === "number" ? `${brief(value)}${unit}` : "–");
-  const result = report?.solved ? "verified path" : report ? (report.why ?? "no path") : note || state;
-  const counts = [number(from.time_s, "\u202fs"), number(from.iterations), number(from.nodes)];
-  return [String(id), planner, String(report?.seed ?? seed), result, ...counts, number(report?.path_length ?? progress.length), number(report?.clearance, "\u202fm")];
+  const result = (report?.solved ? "verified path" : report ? (report.why ?? "no path") : note || state) + (old ? ", of the scene before" : "");
+  const counts = [number(report?.stages ? totalTime(report) : from.time_s, "\u202fs"), number(from.iterations), number(from.nodes)];
+  return [String(id), planner, String(report?.seed ?? seed), result, ...counts, number(report?.path_length ?? progress.length), clearanceOf(report ?? {}, path) || "–"];
 }
 
 export class Runs {
@@ -35,14 +38,40 @@ export class Runs {
     /** @type {Run[]} */ this.all = [];
     /** @type {Run | null} */ this.chosen = null;
     /** @type {Run | null} */ this.compared = null;
+    /** The scene that has the paths. @type {Scene} */ this.scene = viewer.scene;
+    /** Which scene that is: of equal ones the runs are the same. */ this.of = "";
     this.body = el("tbody", {});
     const heads = el("tr", {}, ...HEADS.map((head) => el("th", { scope: "col" }, head)));
     this.facts = el("div", { class: "facts" });
     const table = el("table", {}, el("caption", {}, "Runs"), el("thead", {}, heads), this.body);
     byId("runs").replaceChildren(el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of runs" }, table), this.facts);
   }
-  /** Forgets all runs: their paths belong to another scene. */
-  clear() {
+  /** Whether the scene was changed since the run. @param {Run} run */
+  isOld(run) { return run.of !== this.of; }
+
+  /** @param {Run} run */
+  pathOf(run) { return this.scene.paths[run.path] ?? null; }
+
+  /** The scene was changed, or a change was taken back: all runs stay, and their paths where the robot can be shown on them. @param {string} of */
+  keep(of) {
+    const { viewer, chosen, compared } = this;
+    const { scene } = viewer;
+    for (const run of this.all) {
+      run.track = this.scene.paths[run.path] ?? run.track;
+      const fits = run.track && run.columns === scene.columns.length && run.robot === scene.robot;
+      run.path = fits && run.track ? viewer.addPath(run.track) : -1;
+    }
+    this.scene = scene;
+    this.of = of;
+    for (const run of this.all) this.update(run);
+    if (!chosen) return;
+    this.choose(chosen);
+    this.compare(compared);
+  }
+  /** Forgets all runs: another scene was opened. @param {string} of */
+  clear(of) {
+    this.scene = this.viewer.scene;
+    this.of = of;
     for (const run of this.all) this.drop(run);
     this.all = [];
     this.chosen = this.compared = null;
@@ -64,9 +93,10 @@ export class Runs {
     const compare = el("input", { type: "checkbox", "aria-label": `Compare with run ${id}`, onchange: () => this.compare(compare.checked ? run : null) });
     const cells = HEADS.slice(2).map(() => el("td", {}));
     const row = el("tr", {}, el("td", {}, choose), el("td", {}, compare), ...cells);
-    const { renderer } = this.viewer;
+    const { renderer, scene } = this.viewer;
     const picture = renderer ? new RunPicture(renderer) : null;
-    /** @type {Run} */ const run = { id, planner, seed, state: "starting", progress: {}, report: null, path: -1, picture, note: "", ends, found: null, cells, row, choose, compare };
+    /** @type {Run} */ const run = { id, planner, seed, state: "starting", progress: {}, report: null, path: -1, picture, note: "", ends, found: null, cells, row, choose, compare,
+      of: this.of, columns: scene.columns.length, robot: scene.robot, track: null };
     if (picture) this.layer.all.add(picture);
     this.all.push(run);
     for (const old of this.all.filter((r) => r.picture).slice(0, -KEPT)) this.drop(old);
@@ -78,7 +108,7 @@ export class Runs {
   }
   /** Shows the run's figures. @param {Run} run */
   update(run) {
-    words(run).forEach((text, i) => { if (run.cells[i].textContent !== text) run.cells[i].textContent = text; });
+    words(run, this.pathOf(run), this.isOld(run)).forEach((text, i) => { if (run.cells[i].textContent !== text) run.cells[i].textContent = text; });
     const ready = run.path >= 0;
     run.compare.disabled = !ready;
     if (run === this.chosen || run === this.compared) this.showFacts();

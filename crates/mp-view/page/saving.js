@@ -1,12 +1,13 @@
-// Saving: the environment, the path, the page and the scene, as files beside the scene or as downloads.
+// Saving: the environment, the path, the page and the scene, as files beside the scene or as downloads; pictures and films as downloads.
 
 import { button, checkbox, el, labelled, select } from "mp/dom.js";
+import { filmOf, pictureOf } from "mp/recording.js";
 
 /** @import { Message } from "mp/message.js" */
 /** @import { Path } from "mp/scene.js" */
 /** @import { Workbench } from "mp/workbench.js" */
 
-/** @typedef {"save" | "save_path" | "save_trajectory" | "export"} Saving */
+/** @typedef {"save" | "save_path" | "save_trajectory" | "export" | "picture" | "film"} Saving  the last two need no planner */
 /** What can be saved: label, request, format. @type {[label: string, request: Saving, format: string][]} */
 const KINDS = [
   ["the environment, to edit again (.mp.json)", "save", "own"],
@@ -20,6 +21,9 @@ const KINDS = [
   ["the trajectory with what it moves, for Foxglove (MCAP)", "save_trajectory", "mcap"],
   ["this page, to send (HTML)", "export", "html"],
   ["the scene for the viewer (MPV)", "export", "mpv"],
+  ["the scene with its paths, for Blender (GLB)", "export", "glb"],
+  ["a picture of what is shown (PNG)", "picture", "png"],
+  ["a film of the path, played once as it is shown", "film", ""],
 ];
 
 /** Gives a file to the browser to save. @param {string} name @param {Uint8Array} bytes */
@@ -49,6 +53,7 @@ export class SaveDialog {
   constructor(/** @type {Workbench} */ workbench) {
     this.workbench = workbench;
     /** The document as it is now, edited or not. @type {() => Message | null} */ this.document = () => workbench.document;
+    /** The document as a file, for when the planner is gone. @type {() => string} */ this.copy = () => "";
     /** Called when a document was saved. @type {(document: Message) => void} */ this.onsaved = () => {};
     this.opener = button("Save…", () => this.show(), { "aria-haspopup": "dialog", title: "Save (Ctrl + S)" });
     this.opener.disabled = true;
@@ -64,7 +69,7 @@ export class SaveDialog {
     const edited = this.document();
     /** @type {[string, string][]} */
     const options = KINDS.map(([label], i) => [String(i), label]);
-    const can = { save: edited, save_path: path, save_trajectory: path?.trajectory, export: true };
+    const can = { save: edited, save_path: path, save_trajectory: path?.trajectory, export: true, picture: true, film: path };
     const possible = options.filter((_, i) => can[KINDS[i][1]]);
     const first = possible.find(([i]) => KINDS[Number(i)][1] === wanted) ?? possible[0];
     const kind = select(possible, first[0], () => {});
@@ -93,6 +98,11 @@ export class SaveDialog {
    * @param {boolean} overwrite whether files that are there already are replaced @returns {Promise<string>} */
   async save(request, format, name, overwrite) {
     const { viewer, session, hello, ends } = this.workbench;
+    if (request === "picture" || request === "film") {
+      const blob = await (request === "picture" ? pictureOf(viewer) : filmOf(viewer));
+      const ending = blob.type.replace(/^\w+\/(\w+).*$/, "$1");
+      return deliver({ files: [{ name: `${name}.${ending}`, bytes: new Uint8Array(await blob.arrayBuffer()) }] }, null);
+    }
     const { scene, settings } = viewer;
     const columns = scene.columns.length;
     const path = scene.paths[settings.path];
@@ -103,8 +113,13 @@ export class SaveDialog {
       save_trajectory: { knots: path?.trajectory?.knots },
       export: { paths: scene.paths.map((p) => ({ name: p.name, rows: rowsOf(p, columns) })), ...ends.request() },
     }[request];
-    const reply = await session.request({ do: request, format, name, ...what, ...(overwrite ? { overwrite } : {}) });
+    let gone = "";
+    const reply = await session.request({ do: request, format, name, ...what, ...(overwrite ? { overwrite } : {}) }).catch((error) => {
+      if (!error.gone || format !== "own") throw error;
+      gone = "The planner does not answer. ";
+      return { files: [{ name: `${name}.mp.json`, bytes: new TextEncoder().encode(this.copy()) }] };
+    });
     if (edited) this.onsaved(edited);
-    return deliver(reply, hello.folder);
+    return gone + deliver(reply, hello.folder);
   }
 }

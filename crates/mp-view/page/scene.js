@@ -9,7 +9,7 @@ import { decode } from "mp/message.js";
 /** @typedef {{name: string, unit: string}} Column */
 /** @typedef {{positions: Float32Array, triangles: Uint32Array}} Mesh */
 /** @typedef {{rings: Float32Array[]}} Area */
-/** @typedef {{name: string, role: "robot" | "obstacle", mesh: number, area: number, lines: number[], pose: number[],
+/** @typedef {{name: string, role: "robot" | "moving" | "obstacle", mesh: number, area: number, lines: number[], pose: number[],
  *  color: Color | null, stretch: Vec3}} Body
  *  `mesh` and `area` are -1 where the body has none. `stretch` is 1, 1, 1 but while handles scale the body. */
 /** @typedef {{row: number[], poses: number[], refused?: boolean}} Configuration  `refused`: the planner said that it is not free */
@@ -24,8 +24,8 @@ import { decode } from "mp/message.js";
 /** @typedef {{name: string, space: string, planar: boolean, columns: Column[], limits: ([number, number] | null)[],
  *  bounds: [number[], number[]], meshes: Mesh[], areas: Area[], lines: Float32Array[], bodies: Body[], robot: number,
  *  start: Configuration, goals: Configuration[], paths: Path[], trees: Tree[], roadmap: Roadmap | null,
- *  report: Record<string, unknown> | null}} Scene
- *  `robot` is the number of robot bodies; they are the first of `bodies`. */
+ *  report: Record<string, unknown> | null, notes: string[]}} Scene
+ *  `robot` is the number of bodies whose poses come with configurations: robot bodies and obstacles that move; they are the first of `bodies`. `notes` are what the planner says of the scene. */
 
 /** @typedef {Record<string, unknown>} Json */
 /** @typedef {{f32: Float32Array, f64: Float64Array, u32: Uint32Array, i32: Int32Array, u8: Uint8Array}} Arrays */
@@ -119,7 +119,7 @@ function readBody(entry, i, parts) {
   const body = object(entry, "body");
   const name = text(body.name, "name of a body");
   const role = body.role;
-  check(role === "robot" || role === "obstacle", `In the scene file, the body “${name}” is neither robot nor obstacle.`);
+  check(role === "robot" || role === "moving" || role === "obstacle", `In the scene file, the body “${name}” is neither robot nor obstacle.`);
   const mesh = body.mesh == null ? -1 : index(body.mesh, parts.meshes.length, `the mesh of the body “${name}”`);
   const area = body.area == null ? -1 : index(body.area, parts.areas.length, `the area of the body “${name}”`);
   const lines = maybeList(body.lines, "lines of a body").map((l) => index(l, parts.lines.length, `a line of the body “${name}”`));
@@ -147,10 +147,13 @@ export function readPath(entry, columns, robot) {
   const clearance = path.clearance == null ? null : array(path.clearance, "f32", `clearance of the path “${name}”`);
   const travel = path.travel == null ? null : finite(path.travel, "f32", `travel of the path “${name}”`, 1);
   const count = trace.length / 3;
+  const corners = path.corners == null ? null : array(path.corners, "u32", `corners of the path “${name}”`);
+  checkIndices(corners ?? [], count, `a corner of the path “${name}”`);
+  const written = corners && Array.from(corners, (i) => [...rows.subarray(i * columns, (i + 1) * columns)]);
   const equal = rows.length === count * columns && poses.length === count * robot * 7 && [clearance, travel].every((known) => !known || known.length === count);
   check(equal, `In the scene file, the arrays of the path “${name}” do not have the same number of configurations.`);
   const length = typeof path.length === "number" ? path.length : NaN;
-  return { name, count, rows, poses, trace, clearance, travel, verified: path.verified === true, length, ofRun: false, written: null, trajectory: null };
+  return { name, count, rows, poses, trace, clearance, travel, verified: path.verified === true, length, ofRun: false, written, trajectory: null };
 }
 
 /** @param {unknown} entry @returns {Tree} */
@@ -211,7 +214,7 @@ const readColumns = (columns) =>
 /** A scene with nothing in it. @returns {Scene} */
 export const emptyScene = () => ({
   name: "", space: "", planar: false, columns: [], limits: [], bounds: [[-1, -1, -1], [1, 1, 1]], meshes: [], areas: [], lines: [], bodies: [],
-  robot: 0, start: { row: [], poses: [] }, goals: [], paths: [], trees: [], roadmap: null, report: null,
+  robot: 0, start: { row: [], poses: [] }, goals: [], paths: [], trees: [], roadmap: null, report: null, notes: [],
 });
 
 /** Reads and checks a scene file. @param {Uint8Array} given @returns {Scene} */
@@ -224,8 +227,8 @@ export function readScene(given) {
   }));
   const lines = maybeList(head.lines, "list of lines").map((l) => finite(object(l, "line").points, "f32", "points of a line", 3));
   const bodies = list(head.bodies, "list of bodies").map((b, i) => readBody(b, i, { meshes, areas, lines }));
-  const robot = bodies.filter((b) => b.role === "robot").length;
-  check(bodies.slice(0, robot).every((b) => b.role === "robot"), "In the scene file, the robot's bodies must come first.");
+  const robot = bodies.filter((b) => b.role !== "obstacle").length;
+  check(bodies.slice(0, robot).every((b) => b.role !== "obstacle"), "In the scene file, the robot's bodies must come first.");
   const columns = readColumns(list(head.columns, "list of columns"));
   const limits = maybeList(head.limits, "list of limits").map(readLimit);
   return {
@@ -246,5 +249,6 @@ export function readScene(given) {
     trees: maybeList(head.trees, "list of trees").map((t) => readTree(t)),
     roadmap: readRoadmap(head.roadmap),
     report: head.report == null ? null : object(head.report, "report"),
+    notes: [],
   };
 }

@@ -1,7 +1,7 @@
 // The page's connection to its planner: a server (`mp view`), or workers with the planner that is inside the page.
 
 import { decode, encode } from "mp/message.js";
-import { unpack } from "mp/packed.js";
+import { pageWith, unpack } from "mp/packed.js";
 import { PlannerWorker } from "mp/worker.js";
 
 /** @import { Message } from "mp/message.js" */
@@ -19,15 +19,15 @@ const ENDS = ["done", "timed", "failed"];
 
 /** Why a request failed, and what to do. */
 export class SessionError extends Error {
-  /** @param {string} message @param {string | null} [help] */
-  constructor(message, help = null) {
+  /** @param {string} message @param {string | null} [help] @param {boolean} [gone] whether the planner does not answer at all */
+  constructor(message, help = null, gone = false) {
     super(message);
-    this.help = help;
+    this.help = help; this.gone = gone;
   }
 }
 
 const gone = (/** @type {string} */ why) =>
-  new SessionError(`The planner's server does not answer: ${why}.`, "What is shown stays. Press “Reconnect”; if the server was ended, start “mp view” again and open its new address.");
+  new SessionError(`The planner's server does not answer: ${why}.`, "What is shown stays. Press “Reconnect”; if the server was ended, start “mp view” again and open its new address.", true);
 
 /** What the server says when it refuses. @param {Response} answer */
 async function refusal(answer) {
@@ -135,6 +135,7 @@ class WorkerLink {
   async send(bytes, request) {
     if (request.do === "plan" || request.do === "time") return this.plan(bytes, request.run);
     if (OF_RUN.includes(request.do)) return this.toRun(bytes, request);
+    if (request.do === "export" && request.format === "html") return this.exportPage(request);
     // A worker that stopped by a fault is replaced by the next request.
     this.main ??= this.worker(() => {}, () => (this.main = null), () => {});
     const forget = (/** @type {unknown} */ error) => {
@@ -142,6 +143,16 @@ class WorkerLink {
       throw stopped(error instanceof Error ? error.message : String(error));
     };
     return this.main.then((worker) => worker.send(bytes)).catch(forget);
+  }
+  /** This page with what is asked for: the planner gives the scene, and the page has the rest. @param {Message} request */
+  async exportPage(request) {
+    const asked = { ...request, format: "mpv" };
+    const reply = /** @type {Message} */ (decode(await this.send(encode(asked), asked), "message"));
+    for (const file of reply.files ?? []) {
+      file.name = file.name.replace(/mpv$/, "html");
+      file.bytes = await pageWith(file.bytes);
+    }
+    return encode(reply);
   }
   /** @param {Uint8Array} bytes @param {number} run */
   async plan(bytes, run) {
@@ -194,7 +205,7 @@ class WorkerLink {
 }
 
 const stopped = (/** @type {string} */ why) =>
-  new SessionError(`The planner inside this page stopped: ${why}.`, "What is shown stays, and the next request starts the planner again. If the scene is large, use the program “mp view”, which has more memory.");
+  new SessionError(`The planner inside this page stopped: ${why}.`, "What is shown stays, and the next request starts the planner again. If the scene is large, use the program “mp view”, which has more memory.", true);
 
 export class Session {
   /** @param {(owner: Owner) => Link} connect */

@@ -102,6 +102,13 @@ export class Timeline {
     if (animation === "auto" && this.settings.time >= this.last) this.settings.time = 0;
     this.changed();
   }
+  /** Plays the path from its start to its end. */
+  playOnce() {
+    this.atEnd = "stop";
+    this.direction = 1;
+    this.settings.time = 0;
+    this.setAnimation("auto");
+  }
   toggle() {
     if (this.settings.animation !== "auto") return this.setAnimation("auto");
     this.playing = !this.playing;

@@ -11,19 +11,6 @@ import { readPath } from "mp/scene.js";
 /** Numbers from here on are those of timings: runs in the table count from 1. */
 const FIRST = 2 ** 32;
 
-/** The configurations of a path without those on the straight line between their neighbours, which an animation adds.
- * @param {number[][]} rows @returns {number[][]} */
-export function cornersOf(rows) {
-  const straight = (/** @type {number[]} */ a, /** @type {number[]} */ b, /** @type {number[]} */ c) => {
-    const [ab, ac] = [b, c].map((q) => q.map((x, k) => x - a[k]));
-    const part = Math.hypot(...ab) / (Math.hypot(...ac) || 1);
-    return part <= 1 && ab.every((x, k) => Math.abs(x - part * ac[k]) < 1e-9);
-  };
-  /** @type {number[][]} */ const kept = [];
-  rows.forEach((row, i) => { if (!i || i + 1 === rows.length || !straight(kept[kept.length - 1], row, rows[i + 1])) kept.push(row); });
-  return kept;
-}
-
 export class TimingPanel {
   /** @param {Workbench} workbench @param {() => void} save the trajectory that is shown */
   constructor(workbench, save) {
@@ -56,7 +43,7 @@ export class TimingPanel {
     const { path } = this;
     if (!path || this.going) return;
     const run = ++this.count;
-    const rows = path.written ?? cornersOf(rowsOf(path, this.viewer.scene.columns.length));
+    const rows = rowsOf(path, this.viewer.scene.columns.length);
     const [velocity, acceleration, jerk] = [this.velocity, this.acceleration, this.jerk].map((field) => (field.value.trim() ? field.valueAsNumber : 1));
     this.going = { run, path, cancelled: false };
     showError("");
@@ -89,7 +76,7 @@ export class TimingPanel {
     if (i < 0) return;
     const { count, rows, poses, trace, clearance, travel } = readPath(sent, scene.columns.length, scene.robot);
     const words = [...summary.split(/\n */), ...notes];
-    const written = path.written ?? rowsOf(path, scene.columns.length);
+    const written = rowsOf(path, scene.columns.length);
     const trajectory = { duration, velocities, accelerations, limits, curve, knots, words };
     this.viewer.setPath(i, { ...path, count, rows, poses, trace, clearance, travel, written, trajectory });
     if (this.path?.trajectory !== trajectory) return;

@@ -11,6 +11,9 @@ import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 /** @import { Viewer } from "mp/viewer.js" */
 /** @typedef {{scene: string} | {files: {name: string, bytes: Uint8Array}[], main?: string}} Source  a shipped scene, or files */
 
+/** What of a document may change without the scene being another one. */
+const UNIMPORTANT = ["name", "color", "start", "goal"];
+
 export class Workbench {
   /** @param {Viewer} viewer @param {Session} session @param {Message} hello the reply of the session to `hello` */
   constructor(viewer, session, hello) {
@@ -21,6 +24,7 @@ export class Workbench {
     /** Whether bodies of the robot can be put to places: docs/formats/session.md. */ this.links = false;
     /** Whether paths of the robot get times. */ this.trajectories = false;
     /** How many parts of the motion come after this one. */ this.partsLeft = 0;
+    /** Which scene is open: the same for equal ones, wherever start and goal are, and whatever bodies are called. */ this.which = "";
     /** Called after a scene was opened (“open”), or came back changed from the planner (“edit”).
      * @type {((reply: Message, how: "open" | "edit") => void)[]} */ this.onopened = [];
     /** Called after the session's scene was left. @type {(() => void)[]} */ this.onleft = [];
@@ -53,15 +57,19 @@ export class Workbench {
     if (reply.written) scene.paths[0].written = reply.written;
     scene.paths.push(...known.paths);
     scene.report ??= known.report;
+    scene.notes = reply.notes ?? [];
     this.open = true;
     this.describe(reply);
     this.viewer.show(scene, { keepCamera: how === "edit" });
     this.ends.show(scene);
-    showNote((reply.notes ?? []).join(". "));
+    showNote((reply.warnings ?? []).join(". "));
     for (const listener of this.onopened) listener(reply, how);
   }
   /** What the session says of its scene. @param {Message} reply */
-  describe({ document = null, links = false, trajectories = false, parts_left: partsLeft = 0 }) { Object.assign(this, { document, links, trajectories, partsLeft }); }
+  describe({ document = null, links = false, trajectories = false, parts_left: partsLeft = 0 }) {
+    const which = JSON.stringify([partsLeft, document], (key, value) => (UNIMPORTANT.includes(key) ? undefined : value));
+    Object.assign(this, { document, links, trajectories, partsLeft, which });
+  }
 
   /** Opens the next part of the motion. @param {number[]} row where this one ends @returns {Promise<boolean>} */
   nextPart(row) {
@@ -79,6 +87,8 @@ export class Workbench {
     this.open = true;
     this.describe(reply);
     this.ends.show(this.viewer.scene);
+    this.viewer.scene.notes = reply.notes ?? [];
+    this.viewer.panels?.showFacts();
     for (const listener of this.onopened) listener(reply, "open");
   }
   /** The planner is gone: what is shown stays. @param {SessionError} error */

@@ -75,6 +75,8 @@ pub(crate) struct PathHead {
     clearance: Option<ArrayRef>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     travel: Option<ArrayRef>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    corners: Option<ArrayRef>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -127,6 +129,7 @@ pub(crate) fn path_head(path: &PathTrack, data: &mut Vec<u8>) -> PathHead {
         trace: append(data, &path.trace),
         clearance: path.clearance.as_ref().map(|clearance| append(data, clearance)),
         travel: path.travel.as_ref().map(|travel| append(data, travel)),
+        corners: path.corners.as_ref().map(|corners| append(data, corners)),
     }
 }
 
@@ -220,7 +223,7 @@ impl SceneFile {
         };
         const LENGTH: &str = "does not have the number of entries expected";
         const INDEX: &str = "has an index out of range";
-        let robots = self.bodies.iter().filter(|body| body.role == Role::Robot).count();
+        let robots = self.bodies.iter().filter(|body| body.role != Role::Obstacle).count();
         for mesh in &self.meshes {
             fits(mesh.positions.len().is_multiple_of(3), "positions", LENGTH)?;
             fits(mesh.triangles.len().is_multiple_of(3), "triangles", LENGTH)?;
@@ -256,6 +259,7 @@ impl SceneFile {
             let clearance = fitting(&path.clearance) && fitting(&path.travel);
             let all = path.trace.len() == 3 * count && path.rows.len() == count * self.columns.len();
             fits(all && path.poses.len() == 7 * robots * count && clearance, "paths", LENGTH)?;
+            fits(path.corners.iter().flatten().all(|&i| (i as usize) < count), "corners", INDEX)?;
         }
         for tree in &self.trees {
             let count = tree.parents.len();
@@ -318,6 +322,7 @@ fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
             trace: get(data, &path.trace, "trace")?,
             clearance: path.clearance.map(|clearance| get(data, &clearance, "clearance")).transpose()?,
             travel: path.travel.map(|travel| get(data, &travel, "travel")).transpose()?,
+            corners: path.corners.map(|corners| get(data, &corners, "corners")).transpose()?,
         })
     };
     let tree = |tree: TreeHead| {

@@ -26,7 +26,8 @@ impl SceneFile {
     #[must_use]
     pub fn to_glb(&self, seconds: f64) -> Vec<u8> {
         let mut file = Glb::new(self);
-        let robot: Vec<&crate::Body> = self.bodies.iter().filter(|body| body.role == Role::Robot).collect();
+        let robot: Vec<&crate::Body> =
+            self.bodies.iter().filter(|body| body.role != Role::Obstacle).collect();
         let seven = |poses: &[f64], i: usize| poses.get(7 * i..7 * i + 7).and_then(|p| p.try_into().ok());
 
         let mut nodes = Vec::new();

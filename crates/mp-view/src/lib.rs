@@ -27,6 +27,7 @@ mod growth;
 mod message;
 mod model;
 mod of_scene;
+#[cfg(not(target_family = "wasm"))]
 mod page;
 mod session;
 
@@ -35,6 +36,7 @@ pub use growth::GrownTrees;
 pub use model::{
     Area, Bends, Body, Configuration, Mesh, PathTrack, Polyline, Roadmap, Role, SceneFile, Shape, Tree,
 };
+#[cfg(not(target_family = "wasm"))]
 pub use page::{Planner, page, page_with_files};
 #[cfg(not(target_family = "wasm"))]
 pub use session::Session;

@@ -69,6 +69,8 @@ pub struct Polyline {
 pub enum Role {
     /// It is a part of the robot.
     Robot,
+    /// It is an obstacle that moves by itself. Its poses come with each configuration, as those of the robot, after them.
+    Moving,
     /// It stands still.
     Obstacle,
 }
@@ -94,8 +96,8 @@ pub struct Body {
     pub role: Role,
     /// What it looks like, in its own frame.
     pub shape: Shape,
-    /// Where an obstacle is: x y z (m), and the unit quaternion x y z w. `None` for the bodies of the robot, whose poses
-    /// come with each configuration.
+    /// Where an obstacle is: x y z (m), and the unit quaternion x y z w. `None` for the bodies of the robot and obstacles that move,
+    /// whose poses come with each configuration.
     pub pose: Option<[f64; 7]>,
     /// Its own colour: red, green and blue. `None` for the colour of its role. Start and goals keep theirs.
     pub color: Option<[u8; 3]>,
@@ -129,6 +131,8 @@ pub struct PathTrack {
     pub clearance: Option<Vec<f32>>,
     /// How far (m) the robot has moved from the start to each configuration, an upper bound for its points, where it is known.
     pub travel: Option<Vec<f32>>,
+    /// Which configurations are the path's own, where it is known; the others are between them.
+    pub corners: Option<Vec<u32>>,
 }
 
 /// A search tree, drawn by one point of the robot.

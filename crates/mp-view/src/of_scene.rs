@@ -49,16 +49,22 @@ impl SceneFile {
             match &body.pose {
                 Some(pose) => bounds.add(points.iter().map(|p| pose * p)),
                 None => {
-                    let poses = ends.iter().filter_map(|poses| poses.get(robots));
+                    // What moves by itself may go far away: it is enough where it begins, at the start, which is the last.
+                    let shown = if robots < own { &ends[..] } else { &ends[ends.len() - 1..] };
+                    let poses = shown.iter().filter_map(|poses| poses.get(robots));
                     poses.for_each(|pose| bounds.add(points.iter().map(|p| pose * p)));
                     robots += 1;
                 }
             }
             let (name, pose) = (body.name, body.pose.as_ref().map(seven));
-            let role = if pose.is_some() { Role::Obstacle } else { Role::Robot };
+            let role = match pose {
+                Some(_) => Role::Obstacle,
+                None if robots > own => Role::Moving,
+                None => Role::Robot,
+            };
             let shape = file.add_shape(&body.shape);
-            let moves = pose.is_none() && robots > own;
-            file.bodies.push(Body { name, role, shape, pose, color: moves.then_some(MOVING) });
+            let color = (role == Role::Moving).then_some(MOVING);
+            file.bodies.push(Body { name, role, shape, pose, color });
         }
         file.bounds = bounds.get();
         Ok(file)
@@ -171,6 +177,7 @@ impl PathTrack {
             trace: track.trace.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32]).collect(),
             clearance: Some(track.clearance.into_iter().map(|c| c as f32).collect()),
             travel: Some(track.travel.into_iter().map(|s| s as f32).collect()),
+            corners: (!track.corners.is_empty()).then(|| track.corners.iter().map(|&i| i as u32).collect()),
         }
     }
 }

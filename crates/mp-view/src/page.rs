@@ -16,11 +16,12 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 45] = modules!(
+const MODULES: [(&str, &str); 48] = modules!(
     "buffers",
     "camera",
     "colors",
     "controls",
+    "copy",
     "coverage",
     "document",
     "dom",
@@ -37,6 +38,7 @@ const MODULES: [(&str, &str); 45] = modules!(
     "inspector",
     "jointplots",
     "live",
+    "lzma",
     "main",
     "math",
     "message",
@@ -48,6 +50,7 @@ const MODULES: [(&str, &str); 45] = modules!(
     "picture",
     "planning",
     "plot",
+    "recording",
     "renderer",
     "runs",
     "saving",
@@ -88,7 +91,7 @@ pub fn page(scene: Option<&SceneFile>, planner: Planner<'_>) -> String {
     let modules = serde_json::to_vec(&modules).unwrap_or_default();
     let planner = match planner {
         Planner::None => String::new(),
-        Planner::Inside(module) => data("planner", module),
+        Planner::Inside(module) => part("planner", &mp_store::packed(module)),
         Planner::Server => "<meta name=\"mp-session\" content=\"server\">".to_owned(),
     };
     HTML.replace("<!--STYLE-->", &format!("<style>\n{STYLE}</style>"))
@@ -100,6 +103,9 @@ pub fn page(scene: Option<&SceneFile>, planner: Planner<'_>) -> String {
 /// With more vertices the meshes of a scene are in a page once, in the files of the scene, and the page shows them when its
 /// planner has read those.
 const MANY_VERTICES: usize = 5_000;
+
+/// Files with more bytes are packed by gzip: each megabyte would take a second otherwise.
+const MOST_SMALL: usize = 4 << 20;
 
 /// As [`page`] with the WebAssembly module `planner` inside, which opens the scene from `files`: names and contents, the scene's own
 /// first. So the page can plan in a scene that the module does not have.
@@ -114,16 +120,20 @@ pub fn page_with_files(scene: &SceneFile, planner: &[u8], files: &[(String, Vec<
     let vertices: usize = scene.meshes.iter().map(|mesh| mesh.positions.len() / 3).sum();
     let scene = if vertices > MANY_VERTICES { &light } else { scene };
     let html = page(Some(scene), Planner::Inside(planner));
-    html.replacen(
-        "<script id=\"planner\"",
-        &format!("{}\n<script id=\"planner\"", data("open", &open.to_bytes())),
-        1,
-    )
+    let open = open.to_bytes();
+    let open =
+        if open.len() > MOST_SMALL { data("open", &open) } else { part("open", &mp_store::packed(&open)) };
+    html.replacen("<script id=\"planner\"", &format!("{open}\n<script id=\"planner\""), 1)
 }
 
 /// Bytes as a part of the page.
 fn data(id: &str, bytes: &[u8]) -> String {
-    let text = STANDARD.encode(packed(bytes));
+    part(id, &packed(bytes))
+}
+
+/// A part of the page as it is.
+fn part(id: &str, bytes: &[u8]) -> String {
+    let text = STANDARD.encode(bytes);
     format!("<script id=\"{id}\" type=\"application/octet-stream\">{text}</script>")
 }
 
@@ -179,16 +189,23 @@ mod tests {
         assert_eq!(before.matches("<script").count(), after.matches("<script").count());
     }
 
+    /// A part of a page, unpacked as the page does it.
+    fn unpacked(html: &str, id: &str) -> Vec<u8> {
+        let begin = format!("<script id=\"{id}\" type=\"application/octet-stream\">");
+        let (_, rest) = html.split_once(&begin).unwrap();
+        let bytes = STANDARD.decode(rest.split('<').next().unwrap()).unwrap();
+        let mut unpacked = Vec::new();
+        let mut decoder = lzma_rust2::LzmaReader::new_mem_limit(&*bytes, u32::MAX, None).unwrap();
+        std::io::Read::read_to_end(&mut decoder, &mut unpacked).unwrap();
+        unpacked
+    }
+
     /// The planner is unpacked from the page as it was.
     #[test]
     fn the_planner_is_in_the_page() {
         let module = *b"\0asm\x01\0\0\0";
         let html = page(None, Planner::Inside(&module));
-        let (_, rest) = html.split_once("<script id=\"planner\" type=\"application/octet-stream\">").unwrap();
-        let bytes = STANDARD.decode(rest.split('<').next().unwrap()).unwrap();
-        let mut unpacked = Vec::new();
-        std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(&*bytes), &mut unpacked).unwrap();
-        assert_eq!(unpacked, module);
+        assert_eq!(unpacked(&html, "planner"), module);
         assert!(!html.contains("mp-session") && !html.contains("id=\"scene\""));
         let served = page(None, Planner::Server);
         assert!(
@@ -203,11 +220,7 @@ mod tests {
         let file = SceneFile::of(&mp_plan::Scene::find("easy").unwrap()).unwrap();
         let cube = b"OFF 4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
         let html = page_with_files(&file, b"module", &[("a.off".to_owned(), cube.to_vec())]);
-        let (_, rest) = html.split_once("<script id=\"open\" type=\"application/octet-stream\">").unwrap();
-        let bytes = STANDARD.decode(rest.split('<').next().unwrap()).unwrap();
-        let mut unpacked = Vec::new();
-        std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(&*bytes), &mut unpacked).unwrap();
-        let open = Message::parse(&unpacked).unwrap();
+        let open = Message::parse(&unpacked(&html, "open")).unwrap();
         assert_eq!((&open.head["do"], &open.head["main"]), (&json!("open"), &json!("a.off")));
         assert_eq!(open.bytes(&open.head["files"][0]["bytes"], "bytes").unwrap(), cube);
         assert!(html.find("id=\"open\"") < html.find("id=\"planner\""));

@@ -6,8 +6,17 @@
 
 #[cfg(target_arch = "aarch64")]
 mod arm;
-#[cfg(any(feature = "scalar", not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
+#[cfg(any(
+    feature = "scalar",
+    not(any(
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    ))
+))]
 mod scalar;
+#[cfg(all(not(feature = "scalar"), target_arch = "wasm32", target_feature = "simd128"))]
+mod wasm;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
@@ -16,8 +25,17 @@ use std::ops::{BitAnd, BitOr};
 /// The lanes that every CPU of this architecture has, with vectors where there are any.
 #[cfg(all(not(feature = "scalar"), target_arch = "aarch64"))]
 use arm::Neon as Scalar;
-#[cfg(any(feature = "scalar", not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
+#[cfg(any(
+    feature = "scalar",
+    not(any(
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    ))
+))]
 use scalar::Scalar;
+#[cfg(all(not(feature = "scalar"), target_arch = "wasm32", target_feature = "simd128"))]
+use wasm::Simd128 as Scalar;
 #[cfg(all(not(feature = "scalar"), target_arch = "x86_64"))]
 use x86::Sse2 as Scalar;
 

@@ -1,17 +1,8 @@
-// Trajectories: what is sent of a path to be timed, and what their plots show.
+// Trajectories: what their plots show.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { endsOf, numbersOf } from "mp/jointplots.js";
-import { cornersOf } from "mp/timing.js";
-
-test("configurations between corners are left out, corners and turns back stay", () => {
-  const line = (from, to) => Array.from({ length: 7 }, (_, i) => from.map((x, k) => x + ((to[k] - x) * i) / 7));
-  const corners = [[0, 0], [0.3, 1], [2, 1.1], [0, 1], [0, 1]];
-  const dense = [...corners.slice(1).flatMap((to, i) => line(corners[i], to)), corners.at(-1)];
-  assert.deepEqual(cornersOf(dense).filter((row, i, all) => !i || String(row) !== String(all[i - 1])), corners.slice(0, -1));
-  assert.deepEqual(cornersOf([[1, 2]]), [[1, 2]]);
-});
 
 test("plots have room for limits that are near, and for those of velocities always", () => {
   const [low, high] = endsOf([0, 1], [-9, 1.5], false);

@@ -137,6 +137,35 @@ fn explains_configurations() {
     assert!(page.refused(json!({"do": "check", "row": [1, 2]})).contains("finite numbers"));
 }
 
+/// Of a configuration out of bounds the nearest free one within them is offered.
+#[test]
+fn out_of_bounds_there_is_a_place_within() {
+    for name in ["easy", "arm", "rrs-low", "parking", "warehouse", "crossing"] {
+        let page = opened(name);
+        let file = SceneFile::of(&Scene::find(name).unwrap()).unwrap();
+        let row: Vec<f64> = file.goals[0].row.iter().map(|number| number + 1000.0).collect();
+        let outside = page.ask(json!({"do": "check", "row": row}));
+        assert_eq!(outside.head["in_bounds"], false, "{name}");
+        let within = page.ask(json!({"do": "check", "row": outside.head["nearest_free"]}));
+        assert_eq!(within.head["free"], true, "{name}: {:?}", outside.head);
+    }
+}
+
+/// What is wrong with start and goals is told apart from what is only odd.
+#[test]
+fn what_must_be_changed_is_a_warning() {
+    let page = opened("easy");
+    let mut document = document();
+    let obstacles = document["obstacles"].take();
+    document["obstacles"] = json!([]);
+    let odd = page.ask(json!({"do": "edit", "document": document}));
+    assert_eq!((&odd.head["warnings"], &odd.head["notes"]), (&json!([]), &json!(["there are no obstacles"])));
+    document["obstacles"] = obstacles;
+    document["goal"] = json!([0, 0, 0, 0, 0, 0]);
+    let wrong = page.ask(json!({"do": "edit", "document": document}));
+    assert!(wrong.head["warnings"].to_string().contains("the goal is"), "{:?}", wrong.head);
+}
+
 /// The events of a run give the tree of its report, and the result is that of planning without a session.
 /// The body of an arm reaches a place; the path of a motion's part leads to the next part.
 #[test]
@@ -639,6 +668,8 @@ fn files_go_into_the_folder_and_nowhere_else() {
         |request: Message| page.reply(request).head["error"]["message"].as_str().unwrap().to_owned();
     assert!(refused(save("a", false)).contains("exists already"));
     page.reply(save("a", true));
+    let content = json!({"do": "save", "format": "own", "name": "content", "content": true});
+    assert_eq!(files_of(&page.reply(message(content)))[0].0, "content.mp.json");
     for name in ["../a", "/a", "", ".a", "a/b", "a\\b", "a\0", "CON", &"x".repeat(300)] {
         assert!(refused(save(name, true)).contains("no name"), "{name}");
     }
@@ -664,7 +695,15 @@ fn paths_are_read_saved_and_exported() {
     }
     let paths = json!([{"name": "one", "rows": rows}]);
     let exported = page.ask(json!({"do": "export", "format": "mpv", "name": "p", "paths": paths}));
-    assert_eq!(SceneFile::parse(&files_of(&exported)[0].1).unwrap().paths[0].name, "one");
+    let path = &SceneFile::parse(&files_of(&exported)[0].1).unwrap().paths[0];
+    let corners = path.corners.as_ref().unwrap();
+    assert_eq!((path.name.as_str(), corners.len()), ("one", rows.len()));
+    for (corner, row) in corners.iter().zip(&rows) {
+        let own = path.rows.chunks(row.len()).nth(*corner as usize).unwrap();
+        assert!(own.iter().zip(row).all(|(a, b)| (a - b).abs() < 1e-9), "{own:?} {row:?}");
+    }
+    let exported = page.ask(json!({"do": "export", "format": "glb", "name": "p", "paths": paths}));
+    assert_eq!(&files_of(&exported)[0].1[..4], b"glTF");
     assert!(page.refused(json!({"do": "save_path", "rows": [[1]], "format": "txt"})).contains("1 number"));
 }
 

@@ -32,6 +32,9 @@ pub struct Opening {
     pub thumbnail: Option<Thumbnail>,
 }
 
+/// How long a path takes in a file of meshes that move, seconds: as in a film of `mp render`.
+const GLB_SECONDS: f64 = 8.0;
+
 /// A scene as a small picture: the bytes of a PNG.
 pub type Thumbnail = fn(&Scene) -> Result<Vec<u8>, Error>;
 
@@ -133,7 +136,7 @@ impl Workspace {
             (Some(open), _) => Value::Object(self.described(open, &mut reply)?),
             (None, Some(file)) => {
                 let note = "this file only shows: to plan, open the scene that it was made from";
-                json!({"scene": reply.array(&file.to_bytes()), "document": null, "notes": [note]})
+                json!({"scene": reply.array(&file.to_bytes()), "document": null, "warnings": [note]})
             }
             (None, None) => Value::Null,
         };
@@ -238,7 +241,10 @@ impl Workspace {
         members.insert("written".to_owned(), json(&open.path.as_ref().map(|path| &path.rows)));
         members.insert("scene".to_owned(), message.array(&file.to_bytes()));
         members.insert("document".to_owned(), json(&open.document));
-        let notes: Vec<String> = open.scene.notes().iter().cloned().chain(open.scene.lint()).collect();
+        let wrong = open.scene.wrong_ends();
+        let odd = open.scene.lint().into_iter().filter(|found| !wrong.contains(found));
+        let notes: Vec<String> = open.scene.notes().iter().cloned().chain(odd).collect();
+        members.insert("warnings".to_owned(), wrong.into());
         members.insert("notes".to_owned(), notes.into());
         members.insert("planner".to_owned(), open.scene.default_planner().into());
         members.insert("cannot".to_owned(), json(&open.scene.planners_that_cannot()));
@@ -411,9 +417,16 @@ impl Workspace {
             let path = PathRows { format, columns: open.scene.columns(), rows };
             file.add_path(&open.scene, text_of(&members, "name")?, &path)?;
         }
-        let formats = [Content::Page, Content::ViewerScene].map(Content::ending);
-        let ending = format_of(request, &formats, "exports")?;
-        let bytes = if ending == formats[0] { file.to_html().into_bytes() } else { file.to_bytes() };
+        let formats = [Content::ViewerScene, Content::Gltf, Content::Page].map(Content::ending);
+        // A page with the planner inside puts the scene into its own text.
+        let formats = if cfg!(target_family = "wasm") { &formats[..2] } else { &formats[..] };
+        let ending = format_of(request, formats, "exports")?;
+        let bytes = match ending {
+            #[cfg(not(target_family = "wasm"))]
+            ending if ending == Content::Page.ending() => file.to_html().into_bytes(),
+            ending if ending == Content::Gltf.ending() => file.to_glb(GLB_SECONDS),
+            _ => file.to_bytes(),
+        };
         self.written(request, vec![(format!("{name}.{ending}"), bytes)])
     }
 
@@ -421,12 +434,12 @@ impl Workspace {
     fn written(&self, request: &Message, files: Vec<(String, Vec<u8>)>) -> Answer {
         let mut reply = Message::default();
         files.iter().try_for_each(|(name, _)| mp_store::check_name(name))?;
-        if let Some(folder) = &self.folder {
-            let overwrite = request.head.get("overwrite").and_then(Value::as_bool).unwrap_or(false);
+        let flag = |name: &str| request.head.get(name).and_then(Value::as_bool).unwrap_or(false);
+        if let Some(folder) = self.folder.as_ref().filter(|_| !flag("content")) {
             let names: Vec<String> = files.iter().map(|file| file.0.clone()).collect();
             // The scene comes last: then all that it names is there.
             let files = files.into_iter().rev().map(|(name, bytes)| (name, [Ok::<_, Error>(bytes)]));
-            mp_store::write_all(folder, files, overwrite)?;
+            mp_store::write_all(folder, files, flag("overwrite"))?;
             return Ok(reply.with("written", names));
         }
         let files: Vec<Value> =

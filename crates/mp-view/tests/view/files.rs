@@ -47,7 +47,7 @@ fn every_kind_of_scene_is_read_back() {
         assert_eq!(SceneFile::parse(&bytes).unwrap(), file, "{name}");
         assert_eq!(file.bodies.len(), scene.bodies().len());
         assert_eq!(file.start.row, scene.start());
-        let robots = file.bodies.iter().filter(|body| body.role == Role::Robot).count();
+        let robots = file.bodies.iter().filter(|body| body.role != Role::Obstacle).count();
         let path = &file.paths[0];
         let count = path.trace.len() / 3;
         assert!(path.verified && count > 10 && path.poses.len() == 7 * robots * count, "{name}");
@@ -117,7 +117,7 @@ fn files_that_do_not_fit_are_refused_with_a_reason() {
 #[test]
 fn indices_and_counts_are_checked() {
     type Break = fn(&mut SceneFile);
-    let breaks: [Break; 13] = [
+    let breaks: [Break; 14] = [
         |file| file.meshes[0].triangles[0] = u32::MAX,
         |file| file.meshes[0].positions.truncate(4),
         |file| file.trees[0].parents[1] = 2,
@@ -127,6 +127,7 @@ fn indices_and_counts_are_checked() {
         |file| file.trees[0].bends.nodes.truncate(1),
         |file| file.trees[0].bends.nodes.extend([0, 0]),
         |file| file.paths[0].travel = Some(vec![0.0; 3]),
+        |file| file.paths[0].corners = Some(vec![u32::MAX]),
         |file| file.roadmap.as_mut().unwrap().edges[0] = 3,
         |file| file.start.row.clear(),
         |file| file.paths[0] = PathTrack { trace: vec![0.0; 3], ..PathTrack::default() },

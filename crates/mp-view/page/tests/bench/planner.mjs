@@ -4,13 +4,13 @@
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { gunzipSync } from "node:zlib";
+import { unlzma } from "../../lzma.js";
 
 const RUNS = 9;
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
 /** A part of a page by its id, unpacked. */
-const part = (html, id) => gunzipSync(Buffer.from(html.match(new RegExp(`id="${id}"[^>]*>([^<]*)<`))[1], "base64"));
+const part = (html, id) => unlzma(Buffer.from(html.match(new RegExp(`id="${id}"[^>]*>([^<]*)<`))[1], "base64"));
 
 /** The bytes of a message without arrays. */
 function message(head) {
@@ -56,8 +56,8 @@ console.log("|---|---|---|---|---|---|");
 for (let i = 0; i + 1 < rest.length; i += 2) {
   const [file, scene] = rest.slice(i, i + 2);
   const reports = await inPage(file, Array(RUNS + 1).fill(1));
-  const native = JSON.parse(execFileSync(program, ["plan", scene, "--seed", "1", "--json"], { stdio: ["ignore", "pipe", "ignore"], cwd: tmpdir() }));
-  const times = Array.from({ length: RUNS }, () => JSON.parse(execFileSync(program, ["plan", scene, "--seed", "1", "--json"], { stdio: ["ignore", "pipe", "ignore"], cwd: tmpdir() })).time_s);
+  const native = JSON.parse(execFileSync(program, ["plan", scene, "--planner", "rrt-connect", "--seed", "1", "--json"], { stdio: ["ignore", "pipe", "ignore"], cwd: tmpdir() }));
+  const times = Array.from({ length: RUNS }, () => JSON.parse(execFileSync(program, ["plan", scene, "--planner", "rrt-connect", "--seed", "1", "--json"], { stdio: ["ignore", "pipe", "ignore"], cwd: tmpdir() })).time_s);
   const path = reports[0].path;
   const same = native.path.length === path.length && native.iterations === reports[0].iterations && native.collision_checks === reports[0].collision_checks;
   const off = same ? Math.max(...path.flatMap((row, r) => row.map((x, k) => Math.abs(x - native.path[r][k])))) : Infinity;

@@ -73,6 +73,7 @@ browserTest("the server goes away: what is shown stays, and every request says s
   await driver.press("Plan");
   await driver.untilResult(/server does not answer/);
   await driver.press("Save…");
+  await driver.choose("What", "9");
   await driver.press("Save");
   await driver.until(() => /server does not answer/.test(document.querySelector("dialog[open] [role=status]").textContent));
   await driver.press("Close");
@@ -88,6 +89,7 @@ browserTest("two tabs at once are two sessions", () => withPage("easy", async (d
   const second = new Driver(page);
   await second.untilReady();
   const before = await state(second);
+  await driver.lookAtCorner();
   await driver.press("Add");
   await driver.until(async () => (await window.mpView.planner).document.obstacles.length === 3);
   await Promise.all([plans(driver, 1), plans(second, 1)]);

@@ -242,6 +242,14 @@ export class Driver {
       return [x + box.left, y + box.top];
     }, point);
   }
+  /** Looks at a corner of where the robot may be. */
+  async lookAtCorner() {
+    await this.page.evaluate(async () => {
+      const { viewer } = await window.mpView.planner;
+      viewer.camera.target = viewer.scene.limits.slice(0, 3).map(([low, high], k) => (k ? high : low));
+      viewer.changed();
+    });
+  }
   /** Drags from a pixel to another, slowly enough for the page to follow. */
   async drag([x, y], [toX, toY]) {
     const { mouse } = this.page;

@@ -1,0 +1,92 @@
+// A copy of what is edited, which needs no planner: it can be saved when the planner is gone, and it is offered after a crash or a reload.
+
+import { button, showNote } from "mp/dom.js";
+
+/** @import { Document, DocumentBody } from "mp/document.js" */
+/** @import { Editor } from "mp/editor.js" */
+
+/** Pages from files share one storage; each server has its own. */
+const KEY = `mp copy ${location.protocol === "file:" ? location.pathname : ""}`;
+/** How long after a change it is kept, milliseconds. */
+const DELAY = 500;
+
+/** What the browser keeps, or null. A page in a frame may have no storage. @returns {{name: string, time: number, text: string} | null} */
+function kept() {
+  try {
+    return JSON.parse(localStorage.getItem(KEY) ?? "null");
+  } catch {
+    return null;
+  }
+}
+
+/** Puts a copy in the place of the last one; without room for it there is none. @param {object | null} copy */
+function keep(copy) {
+  try {
+    localStorage.removeItem(KEY);
+    if (copy) localStorage.setItem(KEY, JSON.stringify(copy));
+  } catch {
+    // The page says in time that it has unsaved changes.
+  }
+}
+
+export class SafeCopy {
+  /** @param {Editor} editor */
+  constructor(editor) {
+    this.editor = editor;
+    /** The triangles of meshes, as texts of OFF files. @type {Map<string, string>} */ this.meshes = new Map();
+    /** Whether the copy that is kept is of this page. */ this.own = false;
+    /** @type {Document | null} */ this.last = null;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */ this.soon = undefined;
+    editor.onchange.push(() => this.changed());
+  }
+  changed() {
+    const { history } = this.editor;
+    if (history?.document === this.last && history?.dirty === this.own) return;
+    this.last = history?.document ?? null;
+    clearTimeout(this.soon);
+    if (history?.dirty) this.soon = setTimeout(() => this.renew(), DELAY);
+    else if (this.own) keep(null);
+    this.own = history?.dirty ?? false;
+  }
+  async renew() {
+    const document = this.last;
+    // Without the planner the meshes of before are known.
+    await this.learn().catch(() => {});
+    if (document && document === this.last) keep({ name: document.name, time: Date.now(), text: this.text() });
+  }
+  /** Asks for the triangles of meshes that are new. */
+  async learn() {
+    const document = this.last;
+    const unknown = (/** @type {DocumentBody} */ { shape }) => "mesh" in shape && !this.meshes.has(shape.mesh.file);
+    if (!document || ![document.robot, ...document.obstacles].some(unknown)) return;
+    const { files } = await this.editor.workbench.session.request({ do: "save", format: "own", name: "copy", document, content: true });
+    /** @type {Document} */ const whole = JSON.parse(new TextDecoder().decode(files[0].bytes));
+    for (const [i, { shape }] of [document.robot, ...document.obstacles].entries()) {
+      const saved = [whole.robot, ...whole.obstacles][i].shape;
+      if ("mesh" in shape && "mesh" in saved && saved.mesh.off) this.meshes.set(shape.mesh.file, saved.mesh.off);
+    }
+  }
+  /** What is edited, as a scene file of its own. */
+  text() {
+    const document = this.editor.document;
+    const whole = (/** @type {string} */ key, /** @type {any} */ value) => (key === "mesh" ? { ...value, off: this.meshes.get(value.file) } : value);
+    return `${JSON.stringify(document, whole, 1)}\n`;
+  }
+  /** Offers the copy of the last time, if there is one. Returns whether there is. */
+  offer() {
+    const copy = kept();
+    if (!copy) return false;
+    const take = async () => {
+      const bytes = new TextEncoder().encode(copy.text);
+      const { workbench } = this.editor;
+      if (await workbench.openScene({ files: [{ name: "copy.mp.json", bytes }] })) this.editor.changedSinceOpened();
+    };
+    const forget = () => {
+      keep(null);
+      showNote("");
+    };
+    const time = new Date(copy.time).toLocaleString();
+    showNote(`“${copy.name}” had changes that were not saved. The page has a copy of ${time}.`, button("Open the copy", take), button("Discard it", forget));
+    return true;
+  }
+}
