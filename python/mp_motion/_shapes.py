@@ -494,6 +494,8 @@ def shape_members(shape: Shape, files: dict[str, bytes]) -> dict[str, Any]:
             return {"mesh": name} | ({"solid": True} if shape.solid else {})
         case object(vertices=vertices, faces=faces):
             return shape_members(Mesh(vertices, faces), files)
+        case _:
+            pass
     raise Error(
         f"{shape!r} is no shape",
         remedy="give a Mesh, a Box, a Sphere, a Cylinder, a Capsule, a Cone, a Hull, Points or a HeightField",

@@ -9,7 +9,6 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 from urllib.parse import unquote, urlparse
 
@@ -63,6 +62,14 @@ def test_what_is_no_pose_is_refused(pose: np.ndarray) -> None:
         mp.Scene.rigid(mp.Box(1, 1, 1), pose, pose)
 
 
+@dataclasses.dataclass
+class MeshOfOthers:
+    """As those of trimesh are."""
+
+    vertices: Any
+    faces: Any
+
+
 def test_meshes_have_the_same_bits() -> None:
     rng = np.random.default_rng(2)
     vertices = rng.normal(size=(4, 3))
@@ -73,8 +80,7 @@ def test_meshes_have_the_same_bits() -> None:
     assert report.solved and scene.check(report)
     again = mp.Scene.rigid(mp.Mesh(mesh.vertices, mesh.triangles), start, goal, [mp.Body(mesh, np.eye(4), "rock")])
     assert again.plan(seed=4).fingerprint == report.fingerprint
-    # As those of trimesh are.
-    other = SimpleNamespace(vertices=mesh.vertices, faces=mesh.triangles)
+    other = MeshOfOthers(mesh.vertices, mesh.triangles)
     again = mp.Scene.rigid(other, start, goal, [mp.Body(other, np.eye(4), "rock")])
     assert again.plan(seed=4).fingerprint == report.fingerprint
 
