@@ -43,8 +43,8 @@ use x86::Sse2 as Scalar;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Isa {
-    /// Plain arrays, on any CPU. On x86-64 and aarch64 compiled only with the feature `scalar`; without that feature this
-    /// is the set that every such CPU has, with the same answers.
+    /// Plain arrays, on any CPU. On x86-64, aarch64 and WebAssembly with SIMD compiled only with the feature `scalar`; without
+    /// that feature this is the set of vectors that each of them has at least, with the same answers.
     Scalar,
     /// Two 128-bit registers (every x86-64).
     Sse2,

@@ -1,4 +1,4 @@
-//! Two 128-bit vectors of WebAssembly. The same answers as plain arrays, in a third of the code.
+//! 128-bit vectors of WebAssembly, two at a time. None of its operations needs `unsafe`.
 
 use super::{Lanes, Mask};
 use std::arch::wasm32::{
@@ -9,7 +9,7 @@ use std::ops::{BitAnd, BitOr};
 
 /// Two vectors.
 #[derive(Clone, Copy)]
-pub(crate) struct Simd128(v128, v128);
+pub(super) struct Simd128(v128, v128);
 
 impl Lanes for Simd128 {
     type Mask = Both;
@@ -88,7 +88,7 @@ impl Lanes for Simd128 {
 
 /// What comparing [`Simd128`]s gives: a lane of ones where it holds.
 #[derive(Clone, Copy)]
-pub(crate) struct Both(v128, v128);
+pub(super) struct Both(v128, v128);
 
 impl BitAnd for Both {
     type Output = Self;

@@ -225,8 +225,6 @@ fn without_volume(geometry: &Geometry<'_>) -> Option<Result<Option<TriMesh>, Str
     let sides = match (*name, lengths.as_slice()) {
         ("box", &[x, y, z]) => [x, y, z],
         ("sphere", &[radius]) => [2.0 * radius; 3],
-        // A ball.
-        ("capsule", &[radius, 0.0]) if radius > 0.0 => return None,
         (_, &[radius, length]) => [2.0 * radius, 2.0 * radius, length],
         _ => return None,
     };
@@ -269,9 +267,6 @@ fn shape(
     mesh: &mut impl FnMut(&str) -> Result<TriMesh, String>,
 ) -> Result<TriMesh, String> {
     let shape = match geometry {
-        Geometry::Primitive("capsule", lengths) if lengths[1] == 0.0 => {
-            Shape::primitive("sphere", &lengths[..1])
-        }
         Geometry::Primitive(name, lengths) => Shape::primitive(name, lengths),
         Geometry::Mesh(file, scale) => {
             let read = mesh(file)?;

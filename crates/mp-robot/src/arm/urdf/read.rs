@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) enum Geometry<'a> {
     /// Its name, and its lengths (m): the sides of a box; the radius, then the length, of everything else.
     Primitive(&'static str, Vec<f64>),
-    /// The name of a file, and how much longer it is along each axis.
+    /// The name of a mesh file, and by what the mesh is scaled along x, y and z.
     Mesh(&'a str, [f64; 3]),
 }
 
@@ -23,7 +23,8 @@ pub(super) struct Reader<'t, 'a> {
     text: &'t Text<'a>,
     /// Where lines end.
     ends: Vec<usize>,
-    /// The version of URDF, major and minor. 1.1 has quaternions of origins, and from 1.2 on a limit that is not written is none.
+    /// The version of URDF, major and minor. From 1.1 on an origin may have a quaternion; from 1.2 on a joint
+    /// whose limit is left out has none.
     version: (u32, u32),
     /// Notes about attributes with too many numbers.
     pub(super) surplus: RefCell<BTreeSet<String>>,
@@ -55,7 +56,8 @@ impl<'t, 'a> Reader<'t, 'a> {
             .ok_or_else(|| self.text.error(node, format!("<{}> has no {key}", node.tag_name().name())))
     }
 
-    /// An attribute of `N` numbers, between which some programs put commas. Of more than several the first ones are taken.
+    /// An attribute of `N` numbers, if it is there. Commas between them are taken for blanks. Where several are wanted and there are more, the
+    /// first ones are taken, with a note.
     pub(super) fn numbers<const N: usize>(
         &self,
         node: &Node<'_, '_>,
@@ -132,7 +134,10 @@ impl<'t, 'a> Reader<'t, 'a> {
             "box" => Geometry::Primitive("box", self.needed_numbers::<3>(&shape, "size")?.to_vec()),
             "sphere" => Geometry::Primitive("sphere", vec![length("radius")?]),
             "cylinder" => Geometry::Primitive("cylinder", vec![length("radius")?, length("length")?]),
-            "capsule" => Geometry::Primitive("capsule", vec![length("radius")?, length("length")?]),
+            "capsule" => match (length("radius")?, length("length")?) {
+                (radius, 0.0) => Geometry::Primitive("sphere", vec![radius]),
+                (radius, length) => Geometry::Primitive("capsule", vec![radius, length]),
+            },
             "mesh" => {
                 let scale = self.numbers(&shape, "scale")?.unwrap_or([1.0; 3]);
                 Geometry::Mesh(self.word(&shape, "filename")?, scale)
@@ -145,7 +150,7 @@ impl<'t, 'a> Reader<'t, 'a> {
         })
     }
 
-    /// The type of a joint, one that there is.
+    /// The type of a joint. It is one of [`JOINTS`].
     pub(super) fn joint_type<'n>(&self, joint: &Node<'n, '_>) -> Result<&'n str, UrdfError> {
         let name = self.word(joint, "name")?;
         let kind = self.word(joint, "type")?;
