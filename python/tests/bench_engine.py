@@ -255,12 +255,35 @@ def with_fcl(row: Callable[[str, str, float, int, float], None]) -> None:
             row(problem, f"mp, the scene itself, {motion}, with verifying", seconds, checks, 0.0)
 
 
+def shortened() -> None:
+    """Count how often a function of Python is asked for a short path: by RRT-Connect, shortened; on our side verified too."""
+    print("\n## Short paths: calls of the function, milliseconds of processor time, length; median and most of 20 seeds\n")
+    print("| problem | | calls | ms | length | that our verifier finds free |\n|---|---|---:|---:|---:|---:|")
+    for name, (function, low, high, start, goal) in peer().PROBLEMS.items():
+        ours, theirs = list[tuple[float, ...]](), list[tuple[float, ...]]()
+        for seed in range(1, 21):
+            scene = mp.Scene.own(mp.Robot(mp.Space(low, high), valid=function), start, goal)
+            spent = time.process_time()
+            report = scene.plan("rrt-connect", seed=seed)
+            spent = time.process_time() - spent
+            ours.append((report.calls or 0, 1e3 * spent, report.path_length or 0.0, report.solved))
+            if done := ompl("shortened", seed, name):
+                assert done["solved"]
+                theirs.append((done["calls"], 1e3 * done["processor_s"], done["length"], bool(scene.check(done["path"]))))
+        for side, rows in {"mp": ours, "OMPL": theirs}.items():
+            if rows:
+                middle, most = np.median(rows, axis=0), np.max(rows, axis=0)
+                cells = (f"{m:.{d}f}, {x:.{d}f}" for m, x, d in zip(middle[:3], most[:3], (0, 0, 2), strict=True))
+                print(f"| {name} | {side} | {' | '.join(cells)} | {sum(row[3] for row in rows)} |", flush=True)
+
+
 SECTIONS = {
     "threads": other_threads,
     "interrupts": interrupts,
     "many": many,
     "program": beside_the_program,
     "callbacks": callbacks,
+    "shortened": shortened,
 }
 
 if __name__ == "__main__":

@@ -1,13 +1,14 @@
 """What is measured of OMPL's wheel, in an environment of its own, and the functions that both sides call.
 
-``bench_engine.py`` runs ``python peer_ompl.py locked``, ``… wall`` and ``… cubicles SEED FOLDER``. They need ``ompl`` from PyPI
-and, for ``cubicles``, ``python-fcl``.
+``bench_engine.py`` runs ``python peer_ompl.py locked``, ``… wall``, ``… cubicles SEED FOLDER`` and
+``… shortened SEED PROBLEM``. They need ``ompl`` from PyPI and, for ``cubicles``, ``python-fcl``.
 """
 
 from __future__ import annotations
 
 import importlib
 import json
+import math
 import sys
 import threading
 import time
@@ -41,6 +42,26 @@ def wall(q: Any) -> bool:
     return not (1.9 <= q[0] <= 2.1 and q[1] <= 3)
 
 
+def arm(q: Any) -> bool:
+    """Return whether the joints and the middles of the links of an arm in the plane are outside three discs."""
+    x = y = angle = 0.0
+    for turn in q:
+        angle += turn
+        for along in (0.5, 1.0):
+            at = x + along * math.cos(angle), y + along * math.sin(angle)
+            if any(math.dist(at, disc[:2]) < disc[2] for disc in ((2.5, 2.5, 0.8), (-2.5, 2, 0.7), (0, -3, 0.6))):
+                return False
+        x, y = x + math.cos(angle), y + math.sin(angle)
+    return True
+
+
+# Own robots: the function, the bounds, the start and the goal.
+PROBLEMS: dict[str, tuple[Callable[[Any], bool], list[float], list[float], list[float], list[float]]] = {
+    "wall": (wall, [0] * 2, [4] * 2, [1, 1], [3, 1]),
+    "arm": (arm, [-3.1] * 6, [3.1] * 6, [0] * 6, [1.57, 0.3, 0.3, 0.3, 0, 0]),
+}
+
+
 class Bodies:
     """Robot and obstacles of an exported scene, as python-fcl has them."""
 
@@ -69,21 +90,24 @@ class Bodies:
         return not self.fcl.collide(self.robot, self.obstacles, self.request, self.result())
 
 
-def plane(valid: Any) -> Any:
-    """Make the problem of the wall, for RRT*."""
-    space = ob.RealVectorStateSpace(2)
-    bounds = ob.RealVectorBounds(2)
-    bounds.setLow(0)
-    bounds.setHigh(4)
+def own(problem: str, valid: Any, planner: str) -> Any:
+    """Make one of the problems of own robots; without a function nothing is in the way."""
+    _, low, high, *ends = PROBLEMS[problem]
+    space = ob.RealVectorStateSpace(len(low))
+    bounds = ob.RealVectorBounds(len(low))
+    for i, (least, most) in enumerate(zip(low, high, strict=True)):
+        bounds.setLow(i, least)
+        bounds.setHigh(i, most)
     space.setBounds(bounds)
     setup = og.SimpleSetup(space)
-    ends = space.allocState(), space.allocState()
-    for state, (x, y) in zip(ends, ((1, 1), (3, 1)), strict=True):
-        state[0], state[1] = x, y
+    states = [space.allocState(), space.allocState()]
+    for state, end in zip(states, ends, strict=True):
+        for i, value in enumerate(end):
+            state[i] = value
     information = setup.getSpaceInformation()
     setup.setStateValidityChecker(valid if valid is not None else ob.AllValidStateValidityChecker(information))
-    setup.setStartAndGoalStates(*ends)
-    setup.setPlanner(og.RRTstar(information))
+    setup.setStartAndGoalStates(*states)
+    setup.setPlanner(getattr(og, planner)(information))
     return setup
 
 
@@ -147,10 +171,23 @@ def main(what: str, seed: str = "1", folder: str = ".") -> None:
     ou.setLogLevel(ou.LOG_ERROR)
     counted = Counted(wall)
     if what == "locked":
-        print(json.dumps(solve_beside_ticks(plane(None), 2.0)))
+        print(json.dumps(solve_beside_ticks(own("wall", None, "RRTstar"), 2.0)))
         return
-    if what == "wall":
-        done = solve_beside_ticks(plane(counted), 2.0)
+    if what == "shortened":
+        function, low, *_ = PROBLEMS[folder]
+        counted = Counted(lambda state: function([state[i] for i in range(len(low))]))
+        setup = own(folder, counted, "RRTConnect")
+        spent = time.process_time()
+        solved = setup.solve(60.0)
+        setup.simplifySolution()
+        done = {
+            "processor_s": time.process_time() - spent,
+            "solved": bool(solved),
+            "length": setup.getSolutionPath().length(),
+            "path": [[state[i] for i in range(len(low))] for state in setup.getSolutionPath().getStates()],
+        }
+    elif what == "wall":
+        done = solve_beside_ticks(own("wall", counted, "RRTstar"), 2.0)
     else:
         bodies = Bodies(Path(folder), "cubicles")
 

@@ -8,7 +8,7 @@ use crate::options::Common;
 use clap::Args;
 use mp_plan::{Control, Error, ProblemChanges, Report, Request, RunStage, Scene};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -31,6 +31,9 @@ pub(crate) struct Options {
     /// Problems of each scene [default: 10, with --quick 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     problems: Option<u32>,
+    /// Measure nothing; write the scene files of the problems, and `problems.jsonl`, a list of them for `mp many`, to this folder.
+    #[arg(long, value_name = "FOLDER")]
+    list: Option<PathBuf>,
 }
 
 /// The problems of a robot.
@@ -160,6 +163,9 @@ fn measured(lab: &Lab, common: &Common, options: &Options) -> Result<bool> {
             })
         })
         .collect();
+    if let Some(list) = &options.list {
+        return written(list, &problems, |problem| problem.text(&set.joints, &folder, robot));
+    }
     let cases: Vec<Case> = problems.keys().cloned().collect();
     let name = lab.name(&format!("arms-{robot}"));
     let mut log = lab.log(&name, common.time)?;
@@ -193,6 +199,24 @@ fn measured(lab: &Lab, common: &Common, options: &Options) -> Result<bool> {
     }
     lab.report(&name, &sections(2, &[(robot.clone(), summary)]), &log.table(&cases)?)?;
     Ok(runs.iter().all(|(_, run)| run.solved))
+}
+
+/// Writes the scene files of the problems and the list of them. True, as nothing was measured that could have failed.
+fn written(
+    list: &Path,
+    problems: &BTreeMap<Case, &Problem>,
+    text: impl Fn(&Problem) -> String,
+) -> Result<bool> {
+    let mut lines = String::new();
+    for (case, problem) in problems {
+        let scene = format!("{}-{}", case.scene, case.index);
+        mp_store::write(&list.join(format!("{scene}.toml")), text(problem).as_bytes())?;
+        let budget = json!({ "time_s": null, "iterations": 1_000_000 });
+        let line = json!({ "scene": scene, "seeds": [case.seed], "request": { "budget": budget } });
+        let _ = writeln!(lines, "{line}");
+    }
+    mp_store::write(&list.join("problems.jsonl"), lines.as_bytes())?;
+    Ok(true)
 }
 
 /// A row of the table: medians and 95% quantiles, each of all problems.

@@ -1,9 +1,8 @@
 //! Shortening and smoothing of paths without ever leaving free space.
 //!
-//! Every edge these functions add, halves of old edges included, has been found free by `check`; a
-//! change with an edge that is not free is dropped. All are bounded in work and depend on their
-//! arguments only: the same seed gives the same path. When `check` is [interrupted](MotionValidity::interrupt_by), the path is
-//! returned as it is by then.
+//! Every edge that these functions add was found free by `check`, or is a part of an edge that was; a change with an edge that is not free
+//! is dropped. All are bounded in work and depend on their arguments only: the same seed gives the same path. When `check` is
+//! [interrupted](MotionValidity::interrupt_by), the path is returned as it is by then.
 //!
 //! | function | does |
 //! |---|---|
@@ -12,30 +11,62 @@
 //! | [`partial_shortcut`] | the same for one factor of the space at a time |
 //! | [`bspline`] | rounds corners by cubic B-spline subdivision |
 //! | [`simplify`] | all of these in a good order |
+//! | [`loosen`] | makes room where a finer check finds too little of it |
 
 mod bspline;
+mod loosen;
 mod random;
 
 pub use bspline::bspline;
+pub use loosen::loosen;
 pub use random::{partial_shortcut, shortcut};
 
 use crate::{Factored, MotionValidity, Path, Rng, Space, trace};
 
 /// How much work to put into shortening a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
     /// Shortcuts tried at most, of each kind.
     pub attempts: usize,
-    /// Shortcuts that may gain less than a thousandth of the length, one after another, before giving up.
+    /// Shortcuts that may fail, one after another, before giving up.
     pub patience: usize,
+    /// What a shortcut must gain, as a part of the length of the path.
+    pub least_gain: f64,
     /// Rounds of corner rounding, each at most doubling the number of states; at most 10 are done.
     pub rounds: usize,
 }
 
 impl Default for Effort {
-    /// 200 attempts, patience 60, 3 rounds.
+    /// 200 attempts, patience 60, a least gain of a thousandth, 3 rounds.
     fn default() -> Self {
-        Self { attempts: 200, patience: 60, rounds: 3 }
+        Self { attempts: 200, patience: 60, least_gain: 1e-3, rounds: 3 }
+    }
+}
+
+/// A path that is being shortened.
+#[derive(Clone, Debug)]
+pub struct Draft<S> {
+    /// The states, joined by straight motions.
+    pub states: Vec<S>,
+    /// Of each edge, whether it was found free, or is a part of an edge that was. The others are edges of the given path.
+    pub free: Vec<bool>,
+    /// Of each state, which place of the given path it has come from, as the length of that path up to there.
+    pub origin: Vec<f64>,
+}
+
+impl<S: Clone> Draft<S> {
+    /// The path as it is given.
+    pub fn of(space: &impl Space<State = S>, path: &Path<S>) -> Self {
+        Self {
+            states: path.states.clone(),
+            free: vec![false; path.states.len().saturating_sub(1)],
+            origin: random::arc_lengths(space, &path.states),
+        }
+    }
+
+    /// The path as it is now.
+    pub fn path(self) -> Path<S> {
+        Path::straight(self.states)
     }
 }
 
@@ -48,22 +79,33 @@ pub fn reduce<C: Space>(
     check: &mut impl MotionValidity<C::State>,
     path: &Path<C::State>,
 ) -> Path<C::State> {
-    let old = &path.states;
-    let mut states: Vec<C::State> = old.first().cloned().into_iter().collect();
+    reduced(space, check, Draft::of(space, path)).path()
+}
+
+fn reduced<C: Space>(
+    space: &C,
+    check: &mut impl MotionValidity<C::State>,
+    old: Draft<C::State>,
+) -> Draft<C::State> {
+    let mut kept = vec![0; old.states.len().min(1)];
+    let mut free = Vec::new();
     let mut first = 0;
-    while first + 1 < old.len() {
-        let mut last = old.len() - 1;
+    while first + 1 < old.states.len() {
+        let mut last = old.states.len() - 1;
         if check.is_interrupted() {
-            states.extend_from_slice(&old[first + 1..]);
+            kept.extend(first + 1..=last);
+            free.extend_from_slice(&old.free[first..]);
             break;
         }
-        while last > first + 1 && !is_shortcut(space, check, &old[first..=last]) {
+        while last > first + 1 && !is_shortcut(space, check, &old.states[first..=last]) {
             last = first + (last - first) / 2;
         }
-        states.push(old[last].clone());
+        kept.push(last);
+        free.push(last > first + 1 || old.free[first]);
         first = last;
     }
-    Path::straight(states)
+    let states = kept.iter().map(|&i| old.states[i].clone()).collect();
+    Draft { states, free, origin: kept.iter().map(|&i| old.origin[i]).collect() }
 }
 
 /// Whether the straight motion between the ends of a piece of path is free and no longer than it.
@@ -73,15 +115,12 @@ fn is_shortcut<C: Space>(space: &C, check: &mut impl MotionValidity<C::State>, p
     space.distance(first, last) <= along && check.check_motion(first, last).is_free()
 }
 
-/// Whether every edge through `states` is free. The first and the last one are asked about last: they are parts of edges that were
-/// free, so others are likelier to refuse.
-fn all_free<S>(check: &mut impl MotionValidity<S>, states: &[S]) -> bool {
+/// Whether every edge through `states` is free. The first and the last one are parts of edges of which `known` says whether they were found
+/// free: then they are not asked about, and otherwise last, as others are likelier to refuse.
+fn all_free<S>(check: &mut impl MotionValidity<S>, states: &[S], known: [bool; 2]) -> bool {
     let mut free = |states: &[S]| states.windows(2).all(|w| check.check_motion(&w[0], &w[1]).is_free());
     let n = states.len();
-    match n {
-        0..4 => free(states),
-        _ => free(&states[1..n - 1]) && free(&states[..2]) && free(&states[n - 2..]),
-    }
+    free(&states[1..n - 1]) && (known[0] || free(&states[..2])) && (known[1] || free(&states[n - 2..]))
 }
 
 /// Reduces, takes shortcuts of both kinds, reduces again and rounds the corners.
@@ -94,11 +133,22 @@ pub fn simplify<C: Factored>(
     effort: Effort,
     rng: &mut Rng,
 ) -> Path<C::State> {
-    let short = reduce(space, check, path);
-    let short = shortcut(space, check, &short, effort, rng);
-    let short = partial_shortcut(space, check, &short, effort, rng);
-    let short = reduce(space, check, &short);
-    let short = bspline(space, check, &short, effort.rounds);
-    trace::simplified([path, &short].map(|path| path.states.len()));
+    simplified(space, check, path, effort, rng).path()
+}
+
+/// As [`simplify`], and says what it knows of each edge.
+pub fn simplified<C: Factored>(
+    space: &C,
+    check: &mut impl MotionValidity<C::State>,
+    path: &Path<C::State>,
+    effort: Effort,
+    rng: &mut Rng,
+) -> Draft<C::State> {
+    let short = reduced(space, check, Draft::of(space, path));
+    let short = random::straightened(space, check, short, effort, rng);
+    let short = random::straightened_by_factor(space, check, short, effort, rng);
+    let short = reduced(space, check, short);
+    let short = bspline::rounded(space, check, short, effort.rounds);
+    trace::simplified([path.states.len(), short.states.len()]);
     short
 }

@@ -1,6 +1,6 @@
 //! Shortening never leaves free space, never lengthens, and repeats itself.
 
-use mp_cspace::shorten::{Effort, bspline, partial_shortcut, reduce, shortcut, simplify};
+use mp_cspace::shorten::{Effort, bspline, loosen, partial_shortcut, reduce, shortcut, simplified, simplify};
 use mp_cspace::*;
 use nalgebra::Vector2;
 
@@ -50,7 +50,7 @@ fn all_free(space: &Se2, path: &Path<Se2State>) {
 #[test]
 fn every_kind_stays_free_and_does_not_lengthen() {
     let space = space();
-    let effort = Effort { attempts: 300, patience: 100, rounds: 3 };
+    let effort = Effort { attempts: 300, patience: 100, least_gain: 0.0, rounds: 3 };
     for seed in 0..10 {
         let path = rambling(&space, seed);
         let mut check = FineDiscrete::new(&space, free, Length::Absolute(0.005)).unwrap();
@@ -124,7 +124,7 @@ fn degenerate_paths_are_left_alone() {
 /// Each shortcut of one factor adds states. They do not pile up where there is room to leave them out.
 #[test]
 fn states_do_not_pile_up() {
-    let (space, effort) = (space(), Effort { attempts: 300, patience: 300, rounds: 0 });
+    let (space, effort) = (space(), Effort { attempts: 300, patience: 300, least_gain: 0.0, rounds: 0 });
     for seed in 0..10 {
         let path = rambling(&space, seed);
         let mut open = Discrete::new(&space, |_: &Se2State| true, Length::Absolute(0.5)).unwrap();
@@ -136,4 +136,28 @@ fn states_do_not_pile_up() {
             path.states.len()
         );
     }
+}
+
+/// What a coarser check made short is mostly refused by a finer one; once it is loosened it mostly passes, and is hardly longer.
+#[test]
+fn loose_paths_pass_a_finer_check() {
+    let space = Rn::<2>::new([0.0, 0.0], [4.0, 4.0]).unwrap();
+    let free = |q: &Vector2<f64>| !((1.9..=2.1).contains(&q.x) && q.y <= 3.0);
+    let given = [(1.0, 1.0), (0.5, 3.5), (1.5, 3.9), (3.0, 3.4), (3.0, 1.0)];
+    let path = Path::straight(given.map(|(x, y)| Vector2::new(x, y)).to_vec());
+    let mut passed = [0, 0];
+    for seed in 0..100 {
+        let mut check = Discrete::new(&space, free, Length::Fraction(0.0025)).unwrap();
+        let draft = simplified(&space, &mut check, &path, Effort::default(), &mut Rng::seed(seed));
+        let mut fine = FineDiscrete::new(&space, free, Length::Fraction(0.0005)).unwrap();
+        let loose = loosen(&space, &mut fine, &path, &draft, 0.005);
+        let tight = draft.path();
+        passed[0] += u32::from(verify_path(&space, &tight, &mut fine).is_free());
+        if let Some(loose) = loose {
+            passed[1] += 1;
+            assert!(verify_path(&space, &loose, &mut fine).is_free(), "seed {seed}");
+            assert!(loose.length(&space) < 1.05 * tight.length(&space), "seed {seed}");
+        }
+    }
+    assert!(passed[0] < 50 && passed[1] > 95, "{passed:?}");
 }

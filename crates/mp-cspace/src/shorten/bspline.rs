@@ -1,6 +1,6 @@
 //! Corner rounding.
 
-use super::all_free;
+use super::{Draft, all_free};
 use crate::{MotionValidity, Path, Space};
 
 /// Rounds of subdivision done at most: each may double the number of states.
@@ -17,22 +17,30 @@ pub fn bspline<C: Space>(
     path: &Path<C::State>,
     rounds: usize,
 ) -> Path<C::State> {
-    let mut states = path.states.clone();
+    rounded(space, check, Draft::of(space, path), rounds).path()
+}
+
+pub(super) fn rounded<C: Space>(
+    space: &C,
+    check: &mut impl MotionValidity<C::State>,
+    mut draft: Draft<C::State>,
+    rounds: usize,
+) -> Draft<C::State> {
     for _ in 0..rounds.min(MAX_ROUNDS) {
-        match round(space, check, &states) {
-            Some(rounded) => states = rounded,
+        match round(space, check, &draft) {
+            Some(rounded) => draft = rounded,
             None => break,
         }
     }
-    Path::straight(states)
+    draft
 }
 
 /// One round, `None` when nothing moved.
 fn round<C: Space>(
     space: &C,
     check: &mut impl MotionValidity<C::State>,
-    states: &[C::State],
-) -> Option<Vec<C::State>> {
+    Draft { states, free, origin }: &Draft<C::State>,
+) -> Option<Draft<C::State>> {
     let middle = |a: &C::State, b: &C::State| space.interpolate(a, b, 0.5);
     // Corners that would move less are straight enough.
     let least = 1e-6 * space.extent();
@@ -47,7 +55,7 @@ fn round<C: Space>(
         if space.distance(&w[1], &new) > least {
             // All edges that may arise, whichever neighbours move.
             let edges = [w[0].clone(), before, new, after, w[2].clone()];
-            if all_free(check, &edges) {
+            if all_free(check, &edges, [free[i], free[i + 1]]) {
                 let [_, before, new, after, _] = edges;
                 moved[i + 1] = Some([before, new, after]);
             }
@@ -56,18 +64,29 @@ fn round<C: Space>(
     if moved.iter().all(Option::is_none) {
         return None;
     }
-    let mut out = Vec::with_capacity(2 * states.len());
-    for (i, state) in states.iter().enumerate() {
+    let half_way = |i: usize| (origin[i] + origin[i + 1]) / 2.0;
+    let mut out = Draft {
+        states: states[..1].to_vec(),
+        free: Vec::with_capacity(2 * states.len()),
+        origin: origin[..1].to_vec(),
+    };
+    let mut add = |state: &C::State, free, origin| {
+        out.states.push(state.clone());
+        out.free.push(free);
+        out.origin.push(origin);
+    };
+    for (i, state) in states.iter().enumerate().skip(1) {
+        let is_after_moved = moved[i - 1].is_some();
         match &moved[i] {
             Some([before, new, after]) => {
                 // The corner before has added this middle already.
-                if moved[i - 1].is_none() {
-                    out.push(before.clone());
+                if !is_after_moved {
+                    add(before, true, half_way(i - 1));
                 }
-                out.push(new.clone());
-                out.push(after.clone());
+                add(new, true, origin[i] / 2.0 + (half_way(i - 1) + half_way(i)) / 4.0);
+                add(after, true, half_way(i));
             }
-            None => out.push(state.clone()),
+            None => add(state, is_after_moved || free[i - 1], origin[i]),
         }
     }
     Some(out)

@@ -1,25 +1,25 @@
 //! Random shortcuts.
 
-use super::{Effort, all_free, reduce};
+use super::{Draft, Effort, all_free, reduced};
 use crate::{Factored, MotionValidity, Path, Rng, Space};
 use rand::RngExt;
 
-/// Shortcuts end when [`Effort::patience`] of them, one after another, have not gained this part of the length.
-const WORTH: f64 = 1e-3;
-/// A path with this many times the states it had is [reduced](reduce): each shortcut of one factor asks about all states between its ends.
+/// A path with this many times the states it had is [reduced](super::reduce): each shortcut of one factor asks about all states between its ends.
 const CROWDED: usize = 4;
 
-/// A piece of a path: it begins on edge `first` and ends on edge `last`, at the arc lengths `s` and the
-/// states `from` and `to`.
+/// A piece of a path: it begins on edge `first` and ends on edge `last`, at the arc lengths `s`, the states `from` and `to`, and the
+/// [origins](Draft::origin) `origin`.
 struct Piece<S> {
     first: usize,
     last: usize,
     s: (f64, f64),
     from: S,
     to: S,
+    origin: (f64, f64),
 }
 
-fn arc_lengths<C: Space>(space: &C, states: &[C::State]) -> Vec<f64> {
+/// Of each state, the length of the path up to it.
+pub(super) fn arc_lengths<C: Space>(space: &C, states: &[C::State]) -> Vec<f64> {
     let mut s = vec![0.0];
     for w in states.windows(2) {
         s.push(s[s.len() - 1] + space.distance(&w[0], &w[1]));
@@ -30,7 +30,7 @@ fn arc_lengths<C: Space>(space: &C, states: &[C::State]) -> Vec<f64> {
 /// A random piece over two edges or more.
 fn random_piece<C: Space>(
     space: &C,
-    states: &[C::State],
+    draft: &Draft<C::State>,
     s: &[f64],
     rng: &mut Rng,
 ) -> Option<Piece<C::State>> {
@@ -40,16 +40,14 @@ fn random_piece<C: Space>(
     // Never an edge of zero length, except perhaps the last.
     let edge_at = |at: f64| s.partition_point(|&end| end <= at).clamp(1, s.len() - 1) - 1;
     let (first, last) = (edge_at(s1), edge_at(s2));
-    let state_at = |edge: usize, at: f64| {
+    let place = |edge: usize, at: f64| {
         let t = ((at - s[edge]) / (s[edge + 1] - s[edge])).clamp(0.0, 1.0);
-        space.interpolate(&states[edge], &states[edge + 1], t)
+        let state = space.interpolate(&draft.states[edge], &draft.states[edge + 1], t);
+        (state, draft.origin[edge] + t * (draft.origin[edge + 1] - draft.origin[edge]))
     };
-    (first < last).then(|| Piece {
-        first,
-        last,
-        s: (s1, s2),
-        from: state_at(first, s1),
-        to: state_at(last, s2),
+    (first < last).then(|| {
+        let ((from, start), (to, end)) = (place(first, s1), place(last, s2));
+        Piece { first, last, s: (s1, s2), from, to, origin: (start, end) }
     })
 }
 
@@ -59,46 +57,48 @@ fn random_piece<C: Space>(
 fn improve<C: Space>(
     space: &C,
     check: &mut impl MotionValidity<C::State>,
-    path: &Path<C::State>,
+    mut draft: Draft<C::State>,
     effort: Effort,
     rng: &mut Rng,
     mut propose: impl FnMut(&[C::State], &[f64], Piece<C::State>, &mut Rng) -> Vec<C::State>,
-) -> Path<C::State> {
-    let mut states = path.states.clone();
-    let mut s = arc_lengths(space, &states);
-    // Shortcuts tried since the path had the length `before`.
-    let (mut tried, mut before) = (0, s[s.len() - 1]);
-    let mut crowded = CROWDED * states.len();
+) -> Draft<C::State> {
+    let mut s = arc_lengths(space, &draft.states);
+    let mut failed = 0;
+    let mut crowded = CROWDED * draft.states.len();
+    // A gain within rounding does not count.
+    let least_gain = effort.least_gain.max(1e-9);
     for _ in 0..effort.attempts {
-        if tried >= effort.patience || states.len() < 3 || check.is_interrupted() {
+        if failed >= effort.patience || draft.states.len() < 3 || check.is_interrupted() {
             break;
         }
-        tried += 1;
-        let Some(piece) = random_piece(space, &states, &s, rng) else { continue };
-        let (first, last) = (piece.first, piece.last);
-        let middle = propose(&states, &s, piece, rng);
-        let mut new = vec![states[first].clone()];
+        failed += 1;
+        let Some(piece) = random_piece(space, &draft, &s, rng) else { continue };
+        let (first, last, origin) = (piece.first, piece.last, piece.origin);
+        let middle = propose(&draft.states, &s, piece, rng);
+        let mut new = vec![draft.states[first].clone()];
         new.extend(middle);
-        new.push(states[last + 1].clone());
+        new.push(draft.states[last + 1].clone());
         let length = arc_lengths(space, &new)[new.len() - 1];
-        // A gain within rounding does not count.
-        let gain = s[last + 1] - s[first] - length;
-        let is_shorter = gain > 1e-9 * s[s.len() - 1];
-        if is_shorter && all_free(check, &new) {
+        let is_shorter = s[last + 1] - s[first] - length > least_gain * s[s.len() - 1];
+        if is_shorter && all_free(check, &new, [draft.free[first], draft.free[last]]) {
+            failed = 0;
             new.pop();
-            states.splice(first..=last, new);
-            if states.len() > crowded {
-                states = reduce(space, check, &Path::straight(states)).states;
-                crowded = CROWDED * states.len();
+            // The states between keep theirs, if there are any.
+            let kept = if new.len() > 3 { first + 1..last + 1 } else { 0..0 };
+            let mut origins = vec![draft.origin[first], origin.0];
+            origins.extend_from_slice(&draft.origin[kept]);
+            origins.push(origin.1);
+            draft.origin.splice(first..=last, origins);
+            draft.free.splice(first..=last, vec![true; new.len()]);
+            draft.states.splice(first..=last, new);
+            if draft.states.len() > crowded {
+                draft = reduced(space, check, draft);
+                crowded = CROWDED * draft.states.len();
             }
-            s = arc_lengths(space, &states);
-            let length = s[s.len() - 1];
-            if before - length > WORTH * length {
-                (tried, before) = (0, length);
-            }
+            s = arc_lengths(space, &draft.states);
         }
     }
-    Path::straight(states)
+    draft
 }
 
 /// Joins two random places of the path by a straight motion wherever that is free and shorter,
@@ -113,6 +113,16 @@ pub fn shortcut<C: Space>(
     effort: Effort,
     rng: &mut Rng,
 ) -> Path<C::State> {
+    straightened(space, check, Draft::of(space, path), effort, rng).path()
+}
+
+pub(super) fn straightened<C: Space>(
+    space: &C,
+    check: &mut impl MotionValidity<C::State>,
+    path: Draft<C::State>,
+    effort: Effort,
+    rng: &mut Rng,
+) -> Draft<C::State> {
     improve(space, check, path, effort, rng, |_, _, piece, _| vec![piece.from, piece.to])
 }
 
@@ -129,9 +139,19 @@ pub fn partial_shortcut<C: Factored>(
     effort: Effort,
     rng: &mut Rng,
 ) -> Path<C::State> {
+    straightened_by_factor(space, check, Draft::of(space, path), effort, rng).path()
+}
+
+pub(super) fn straightened_by_factor<C: Factored>(
+    space: &C,
+    check: &mut impl MotionValidity<C::State>,
+    path: Draft<C::State>,
+    effort: Effort,
+    rng: &mut Rng,
+) -> Draft<C::State> {
     let factors = space.factors();
     if factors < 2 {
-        return path.clone();
+        return path;
     }
     improve(space, check, path, effort, rng, |states, s, piece, rng| {
         let factor = rng.random_range(0..factors);

@@ -76,7 +76,8 @@ browserTest("changes outlive a reload", () => withPage("easy", async (driver) =>
   await driver.untilReady();
   await driver.untilAlert(/changes that were not saved/);
   await driver.press("Open the copy");
-  await untilObstacles(driver, 2);
+  // The scene of the reload has as many obstacles.
+  await driver.until(async (name) => (await window.mpView.planner).document?.obstacles[0]?.name === name, made.obstacles[0].name);
   const again = await driver.page.evaluate(async () => (await window.mpView.planner).document);
   assert.deepEqual(again.obstacles, made.obstacles);
   assert.ok(await driver.page.evaluate(() => document.body.classList.contains("unsaved")), "it is not saved yet");
