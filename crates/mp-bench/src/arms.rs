@@ -207,6 +207,7 @@ fn written(
     problems: &BTreeMap<Case, &Problem>,
     text: impl Fn(&Problem) -> String,
 ) -> Result<bool> {
+    mp_store::make_folder(list)?;
     let mut lines = String::new();
     for (case, problem) in problems {
         let scene = format!("{}-{}", case.scene, case.index);
@@ -326,5 +327,12 @@ mod tests {
         assert_eq!((case.scene.as_str(), case.index), ("room", 1));
         assert!(run.solved && run.length > 3.0 && run.whole >= run.planning + run.shortening + run.proof);
         assert!(std::fs::read_to_string(out.join("arms-small-quick.md")).unwrap().contains("| room | 1/1 |"));
+
+        let list = folder.path().join("list");
+        assert!(measured(&lab, &common, &Options { list: Some(list.clone()), ..options }).unwrap());
+        let lines = std::fs::read_to_string(list.join("problems.jsonl")).unwrap();
+        let line: Value = serde_json::from_str(lines.trim_end()).unwrap();
+        assert_eq!((line["scene"].as_str(), &line["seeds"]), (Some("room-1"), &json!([case.seed])));
+        assert_eq!(Scene::find(list.join("room-1")).unwrap().name(), "room-1");
     }
 }
