@@ -17,6 +17,8 @@ use mp_kinds::proof::verified;
 use mp_kinds::turns::turning;
 use mp_time::{BlendedPath, Extreme, Interpolation, Knots, Limits, TimeError, Trajectory, timed};
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicU64;
 
@@ -260,8 +262,36 @@ pub struct LeastAlong {
     pub time: f64,
 }
 
+/// A part of a trajectory: from when to when (s), and a bound (m) on the clearance in it. The greatest has the lowest bound.
+#[derive(Clone, Copy)]
+struct Part {
+    bound: f64,
+    from: f64,
+    to: f64,
+}
+
+impl Ord for Part {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.bound.total_cmp(&self.bound).then(other.from.total_cmp(&self.from))
+    }
+}
+
+impl PartialOrd for Part {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Part {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Part {}
+
 /// Configurations that are looked at, at most.
-const STATES: usize = 4000;
+const STATES: usize = 16_000;
 
 /// The least clearance along a trajectory, to within `accuracy` (m) if that does not take too long: parts of which less than that can be said are
 /// halved, those with the lowest bound first. Ranges of joints are those of their polynomials, and no point of the robot travels
@@ -276,13 +306,13 @@ pub(crate) fn least_along(
     let mut checker = Counted::new(kind.any_measure(), &unused).with_interrupt(interrupt.clone());
     let [first, last] = trajectory.span();
     let mut least = LeastAlong { bound: f64::INFINITY, found: f64::INFINITY, time: first };
-    let mut open = vec![(f64::NEG_INFINITY, first, last)];
+    let mut open = BinaryHeap::from([Part { bound: f64::NEG_INFINITY, from: first, to: last }]);
     for _ in 0..STATES {
-        let lowest = (0..open.len()).min_by(|a, b| open[*a].0.total_cmp(&open[*b].0))?;
-        if open[lowest].0 >= least.found - accuracy {
+        let Part { bound, from, to } = *open.peek()?;
+        if bound >= least.found - accuracy {
             break;
         }
-        let (_, from, to) = open.swap_remove(lowest);
+        open.pop();
         let middle = 0.5 * (from + to);
         let q = trajectory.at(middle).position;
         let far = (0..q.len()).map(|joint| {
@@ -305,12 +335,13 @@ pub(crate) fn least_along(
         if clearance <= 0.0 {
             return Some(LeastAlong { bound: 0.0, found: 0.0, time: middle });
         }
-        match clearance - travel >= least.found - accuracy || to - from < 1e-9 {
-            true => open.push((clearance - travel, from, to)),
-            false => open.extend([(clearance - travel, from, middle), (clearance - travel, middle, to)]),
+        let bound = clearance - travel;
+        match bound >= least.found - accuracy || to - from < 1e-9 {
+            true => open.push(Part { bound, from, to }),
+            false => open.extend([Part { bound, from, to: middle }, Part { bound, from: middle, to }]),
         }
     }
-    least.bound = open.iter().map(|part| part.0).fold(f64::INFINITY, f64::min).min(least.found).max(0.0);
+    least.bound = open.peek().map_or(f64::INFINITY, |part| part.bound).min(least.found).max(0.0);
     Some(least)
 }
 
