@@ -28,11 +28,11 @@ const FINER: f64 = 4.0;
 /// way is far shorter then. The same seed gives the same path, unless `interrupt` ends it early: then the path is what it is after the last
 /// change.
 ///
-/// The motions of a robot that is sampled are tested more coarsely than its verifier does, and the path made [looser](loosen) in the end where
-/// that finds too little room. If the verifier refuses it still, it is asked about each motion of another try before that too, which takes many
-/// times as many questions.
+/// The motions of a robot that is sampled are tested at fewer states than its verifier tests. In the end the verifier tests the path, which is made
+/// [looser](loosen) where it is refused. If that does not help, the given path is shortened once more, and the verifier tests each motion of it: that
+/// takes many times as many states.
 ///
-/// Says whether the verifier has found each edge of the result free.
+/// Returns the path, and whether the verifier has found each of its edges free.
 ///
 /// # Errors
 /// When the tolerance of the robot is not valid.
