@@ -1,17 +1,25 @@
-//! Tests under valgrind: reads of memory that was never written or is not ours, in the only crate with
-//! `unsafe` code and in what calls it with large sizes.
+//! Tests under valgrind: reads of memory that was never written or is not ours, in the vectors of mp-simd, which have
+//! `unsafe` code, and in what calls them with large sizes.
 
 use crate::programs::test_programs;
 use crate::{bad, note, root};
 use std::ffi::OsString;
 use std::process::{Command, ExitCode, Stdio};
 
-/// Which tests are built: mp-collide has the kernels, mp-robot calls them for arms.
-const TESTS: [&str; 8] =
-    ["--package", "mp-collide", "--package", "mp-robot", "--lib", "--test", "differential", "--test=arms"];
+/// Which tests are built: mp-simd has the vectors, mp-collide the kernels, mp-robot calls them for arms.
+const TESTS: [&str; 8] = [
+    "--package=mp-simd",
+    "--package=mp-collide",
+    "--package=mp-robot",
+    "--lib",
+    "--test",
+    "differential",
+    "--test",
+    "arms",
+];
 
-/// The programs of tests that are run: of the library with the kernels, of whole queries, and of arms.
-const PROGRAMS: [&str; 3] = ["mp_collide", "differential", "arms"];
+/// The programs of tests that are run: of the vectors, of the library with the kernels, of whole queries, and of arms.
+const PROGRAMS: [&str; 4] = ["mp_simd", "mp_collide", "differential", "arms"];
 
 /// The exit code of valgrind when it found an error.
 const ERROR: &str = "97";

@@ -3,8 +3,8 @@
 use crate::bvh::root_box::RootBox;
 use crate::mesh::CollisionMesh;
 use crate::pose::Relative;
-use crate::wide::{Wide, Wide3};
 use mp_geom::Sphere;
+use mp_simd::wide::{Wide, Wide3};
 use nalgebra::{Isometry3, Point3};
 
 /// The cylinder of least volume around a mesh about an axis of its box; it is as high as the box.

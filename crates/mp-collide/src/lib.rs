@@ -91,18 +91,16 @@ mod pose;
 mod query;
 mod scene;
 mod separation;
-mod simd;
 
 pub mod reference;
 pub mod triangle;
-pub mod wide;
 
 pub use counters::Counters;
 pub use cover::{Cover, MOST_BALLS, PlacedCover, WideCover, wide_apart};
 pub use filled::FillError;
 pub use mesh::CollisionMesh;
+pub use mp_simd::Isa;
 pub use query::Query;
 pub use query::interval::{IntervalCheck, RigidMotion};
 pub use scene::{Body, BodyId, Contact, Scene, SceneError};
 pub use separation::Separation;
-pub use simd::Isa;

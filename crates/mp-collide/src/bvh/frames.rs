@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::bvh::{NodeBox, Tree};
 use crate::pose::Relative;
-use crate::simd::Lanes;
+use mp_simd::Lanes;
 
 /// A rigid motion in `f32`, between centred frames.
 #[derive(Clone, Copy, Debug)]

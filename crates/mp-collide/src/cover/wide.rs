@@ -2,8 +2,8 @@
 
 use super::{Cover, ROUNDING};
 use crate::around::Around;
-use crate::wide::{Wide, Wide3, WideFrame, WideKernel, on_widest, sub};
 use mp_geom::Sphere;
+use mp_simd::wide::{Wide, Wide3, WideFrame, WideKernel, on_widest, sub};
 
 /// Where coordinates are larger, products may overflow: nothing is decided then.
 pub(crate) const LARGEST: f64 = 1e100;

@@ -4,7 +4,7 @@
 use crate::bvh::frames::{FrameTransform, Frames, Placed};
 use crate::bvh::{Leaf, NodeBox};
 use crate::kernels::separating_axes::{cross, dot, sub};
-use crate::simd::{Lanes, Mask};
+use mp_simd::{Lanes, Mask};
 
 /// Added to every margin, so that products that underflow decide nothing.
 pub(crate) const TINY: f32 = 1e-34;

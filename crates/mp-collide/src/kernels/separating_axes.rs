@@ -2,7 +2,7 @@
 
 use crate::bvh::Node;
 use crate::bvh::frames::Placed;
-use crate::simd::{Lanes, Mask};
+use mp_simd::{Lanes, Mask};
 
 /// Bit `i` is set unless child `i` of `node` is surely farther than `margin` from `q`.
 ///

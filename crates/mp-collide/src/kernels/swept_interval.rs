@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::bvh::frames::Frames;
 use crate::bvh::{NodeBox, Tree};
 use crate::pose::Relative;
-use crate::simd::Lanes;
+use mp_simd::Lanes;
 
 /// The displacement (m) of points of `a` from the middle of an interval to one of its ends, to first order:
 /// `shift + turn × p`, in the centred frame of a tree. To the other end it is the opposite.

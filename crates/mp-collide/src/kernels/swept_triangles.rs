@@ -6,8 +6,8 @@ use crate::bvh::{LEAF, NodeBox, Tree};
 use crate::counters::Counters;
 use crate::kernels::swept_interval::{Drift, SweptInterval};
 use crate::kernels::triangle_distance::{DistanceBounds, DistanceKernel, SeparatingDirection};
-use crate::simd::Lanes;
 use crate::triangle::{Triangle, closest_within, intersect};
+use mp_simd::Lanes;
 
 /// Whether triangles keep a distance over a part of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 use crate::bvh::{Lane, Leaf};
 use crate::kernels::leaf_pair::corners;
 use crate::kernels::separating_axes::{cross, dot, sub};
-use crate::simd::{Lanes, Mask};
 use crate::triangle::Triangle;
+use mp_simd::{Lanes, Mask};
 
 /// Keeps quotients finite where an edge or a triangle has no extent.
 const TINY: f32 = 1e-37;
@@ -279,8 +279,8 @@ fn cross_scalar(a: &[f32; 3], b: &[f32; 3]) -> [f32; 3] {
 mod tests {
     use super::*;
     use crate::bvh::{NodeBox, build::leaf};
-    use crate::simd::{Isa, Kernel, run};
     use crate::triangle::closest_within;
+    use mp_simd::{Isa, Kernel, run};
     use nalgebra::{Point3, UnitQuaternion};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;

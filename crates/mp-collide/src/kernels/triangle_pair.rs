@@ -5,7 +5,7 @@ use crate::bvh::frames::Frames;
 use crate::bvh::{Lane, Leaf, WIDTH};
 use crate::kernels::leaf_pair::{Corners, LeafFrame, TINY, U};
 use crate::kernels::separating_axes::{cross, dot, sub};
-use crate::simd::{Lanes, Mask};
+use mp_simd::{Lanes, Mask};
 
 /// Bounds on the errors of heights over the planes of the first leaf, over those of the second, and of volumes.
 struct ErrorBounds {
@@ -276,10 +276,10 @@ impl<L: Lanes> Signs<L> {
 
 #[cfg(test)]
 mod tests {
-    use crate::simd::Isa;
     use crate::triangle::{Triangle, intersect};
     use crate::{CollisionMesh, Query};
     use mp_geom::TriMesh;
+    use mp_simd::Isa;
     use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;

@@ -10,8 +10,8 @@ use crate::kernels::leaf_pair::near_each_other;
 use crate::kernels::separating_axes::distances;
 use crate::kernels::triangle_distance::{DistanceBounds, DistanceKernel, SeparatingDirection};
 use crate::query::descend::{opens_first, prefetch_node};
-use crate::simd::{Kernel, Lanes, Mask};
 use crate::triangle::{Closest, closest_within, is_farther, is_nearest};
+use mp_simd::{Kernel, Lanes, Mask};
 
 /// Two nodes whose boxes are at least the square root of `bound` apart; ordered so that the nearest is the greatest.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use crate::bvh::frames::{FrameTransform, Frames};
 use crate::bvh::{LEAF, Leaf, Node, Tree};
 use crate::counters::Counters;
 use crate::kernels::separating_axes::touching;
-use crate::simd::{Kernel, Lanes, prefetch};
+use mp_simd::{Kernel, Lanes, prefetch};
 
 /// How a walk compares two leaves.
 pub(crate) trait LeafPair {

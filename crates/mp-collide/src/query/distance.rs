@@ -12,8 +12,8 @@ use crate::query::clouds;
 use crate::query::descend::Descend;
 use crate::query::within::Within;
 use crate::separation::Separation;
-use crate::simd::run;
 use crate::triangle::{Closest, closest_within, crossing};
+use mp_simd::run;
 
 impl Query {
     /// The distance of the meshes with nearest points, in the world.

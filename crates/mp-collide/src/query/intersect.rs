@@ -6,8 +6,8 @@ use crate::counters::Counters;
 use crate::kernels::leaf_pair::{LeafFrame, corners, near_box};
 use crate::kernels::triangle_pair::{TriangleFilter, Verdict};
 use crate::query::descend::LeafPair;
-use crate::simd::Lanes;
 use crate::triangle::intersect;
+use mp_simd::Lanes;
 
 /// Ends a walk at two triangles that meet, as positions in the trees.
 pub(crate) struct Intersect<'q> {

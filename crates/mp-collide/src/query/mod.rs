@@ -27,8 +27,8 @@ use crate::query::descend::Descend;
 use crate::query::intersect::Intersect;
 use crate::query::schedule::MotionParts;
 use crate::query::sweep::SweptPair;
-use crate::simd::{Isa, run};
 use crate::triangle::intersect;
+use mp_simd::{Isa, run};
 
 /// Runs queries: scratch memory and counters of one thread. Make one per thread and keep it.
 ///

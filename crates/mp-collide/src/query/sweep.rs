@@ -17,7 +17,7 @@ use crate::query::Query;
 use crate::query::descend::{LeafPair, for_children, opens_first};
 use crate::query::intersect::Intersect;
 use crate::query::schedule::{MotionParts, Schedule};
-use crate::simd::{Kernel, Lanes, Mask, run};
+use mp_simd::{Kernel, Lanes, Mask, run};
 
 /// A pair of nodes during a part of the motion.
 #[derive(Clone, Copy, Debug)]

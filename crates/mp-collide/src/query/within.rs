@@ -6,8 +6,8 @@ use crate::counters::Counters;
 use crate::kernels::leaf_pair::near_each_other;
 use crate::kernels::triangle_distance::{DistanceBounds, DistanceKernel, SeparatingDirection};
 use crate::query::descend::LeafPair;
-use crate::simd::{Lanes, Mask};
 use crate::triangle::{closest_within, intersect};
+use mp_simd::{Lanes, Mask};
 
 /// Ends a walk at two triangles within a tolerance.
 pub(crate) struct Within<'q> {

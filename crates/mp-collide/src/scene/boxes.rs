@@ -3,8 +3,8 @@
 use super::{Body, Scene};
 use crate::broad;
 use crate::cover::{Cover, LARGEST, PlacedCover, ROUNDING, WideCover};
-use crate::wide::{LANES, Wide, WideKernel, on_widest};
 use mp_geom::Aabb;
+use mp_simd::wide::{LANES, Wide, WideKernel, on_widest};
 use nalgebra::Point3;
 use std::cell::Cell;
 

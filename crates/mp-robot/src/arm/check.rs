@@ -4,11 +4,11 @@ use super::Arm;
 use super::robot::{LinkBody, Scratch, are_nested};
 use super::wide::{COARSE, LEAST};
 use crate::kept::beyond;
-use mp_collide::wide::LANES;
 use mp_cspace::{
     Clearance, ClearanceSearch, Coordinates, IntervalClearance, LeastClearance, MotionClearance,
     MotionInterval, Rng, Validity, obstacles::ObstacleHints,
 };
+use mp_simd::wide::LANES;
 use std::collections::VecDeque;
 
 impl Arm {

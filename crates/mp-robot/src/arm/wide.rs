@@ -6,9 +6,9 @@
 use super::kinematics::{BaseTravel, JointFrame};
 use super::robot::{LinkBody, SharedArm};
 use super::travel::{Chain, ROUND_UP};
-use mp_collide::wide::{LANES, Wide, Wide3, WideFrame, WideKernel, add, cross, dot, on_widest, sub};
 use mp_collide::{Scene, WideCover, wide_apart};
 use mp_cspace::{Coordinates, MotionInterval};
+use mp_simd::wide::{LANES, Wide, Wide3, WideFrame, WideKernel, add, cross, dot, on_widest, sub};
 use nalgebra::{Isometry3, Matrix3};
 
 /// A bound by covers that is at least this part of what is enough is used as it is: it proves a part of the interval, and the exact distance

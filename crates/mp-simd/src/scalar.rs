@@ -5,7 +5,7 @@ use std::ops::{BitAnd, BitOr};
 
 /// Plain arrays.
 #[derive(Clone, Copy)]
-pub(crate) struct Scalar([f32; 8]);
+pub(super) struct Scalar([f32; 8]);
 
 impl Scalar {
     #[inline(always)]
@@ -80,7 +80,7 @@ impl Lanes for Scalar {
 
 /// What comparing [`Scalar`]s gives: a bit per lane.
 #[derive(Clone, Copy)]
-pub(crate) struct Bits(u32);
+pub(super) struct Bits(u32);
 
 impl BitAnd for Bits {
     type Output = Self;

@@ -3,7 +3,7 @@
 //! Each lane is computed by additions, multiplications, divisions and square roots as IEEE 754 has them, never fused, so it has the same
 //! bits on every processor.
 
-use crate::simd::{Isa, Kernel, Lanes, run};
+use crate::{Isa, Kernel, Lanes, run};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// The number of lanes.

@@ -1,7 +1,32 @@
-//! Eight `f32` lanes on every CPU: the one module of this crate that may use `unsafe`.
+//! Eight numbers at a time on every CPU.
 //!
-//! A kernel is generic over [`Lanes`] and never names an instruction set. [`run`] picks the widest
-//! implementation the CPU has. [`Scalar`] is the twin the others are tested against.
+//! - A [`Kernel`] computes with eight `f32`. It is generic over [`Lanes`] and never names an instruction set: [`run`] compiles it for
+//!   each of them, and runs it on the one that is asked for, [`Isa::detect`] for the widest the CPU has. Where the CPU has fused
+//!   multiply-add, [`Lanes::mul_add`] rounds once, so the last bits differ from one instruction set to another: kernels bound the error.
+//! - [`wide`] has eight `f64`, never fused: the same bits on every CPU.
+//!
+//! The eight lanes are one register of 256 bits (AVX2, AVX-512) or two of 128 (SSE2, NEON, WebAssembly); those of [`wide`] take twice as much.
+//! `Isa::Scalar`, plain arrays, is the twin the others are tested against.
+//!
+//! ```
+//! use mp_simd::{Isa, Kernel, Lanes, run};
+//!
+//! /// The lengths of eight vectors in the plane.
+//! struct Lengths<'a>(&'a [f32; 8], &'a [f32; 8]);
+//!
+//! impl Kernel for Lengths<'_> {
+//!     type Output = [f32; 8];
+//!     #[inline(always)]
+//!     fn run<L: Lanes>(self) -> [f32; 8] {
+//!         let (x, y) = (L::load(self.0), L::load(self.1));
+//!         let mut out = [0.0; 8];
+//!         x.square().add(y.square()).sqrt().store(&mut out);
+//!         out
+//!     }
+//! }
+//!
+//! assert_eq!(run(Isa::detect(), Lengths(&[3.0; 8], &[4.0; 8])), [5.0; 8]);
+//! ```
 #![allow(unsafe_code)] // Intrinsics and `#[target_feature]` calls; each block says why it is sound.
 
 #[cfg(target_arch = "aarch64")]
@@ -19,6 +44,8 @@ mod scalar;
 mod wasm;
 #[cfg(target_arch = "x86_64")]
 mod x86;
+
+pub mod wide;
 
 use std::ops::{BitAnd, BitOr};
 
@@ -101,24 +128,32 @@ impl Isa {
 }
 
 /// The result of a comparison in eight lanes.
-pub(crate) trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> {
+pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> {
     /// Bit `i` is set where the comparison holds in lane `i`.
     fn bits(self) -> u32;
 }
 
 /// Eight lanes of `f32`. A NaN compares false.
-pub(crate) trait Lanes: Copy {
+pub trait Lanes: Copy {
+    /// The result of a comparison.
     type Mask: Mask;
+    /// From an array.
     fn load(a: &[f32; 8]) -> Self;
+    /// Into an array.
     fn store(self, a: &mut [f32; 8]);
+    /// The same number eight times.
     fn splat(x: f32) -> Self;
     /// Four values in the lower lanes and again in the upper.
     fn twice(a: &[f32; 4]) -> Self;
     /// One value in the four lower lanes, another in the upper.
     fn halves(low: f32, high: f32) -> Self;
+    /// `self + b`.
     fn add(self, b: Self) -> Self;
+    /// `self − b`.
     fn sub(self, b: Self) -> Self;
+    /// `self · b`.
     fn mul(self, b: Self) -> Self;
+    /// `self / b`.
     fn div(self, b: Self) -> Self;
     /// `self · b + c`, fused where the CPU can.
     #[inline(always)]
@@ -130,8 +165,11 @@ pub(crate) trait Lanes: Copy {
     fn mul_sub(self, b: Self, c: Self) -> Self {
         self.mul(b).sub(c)
     }
+    /// Absolute values.
     fn abs(self) -> Self;
+    /// Square roots.
     fn sqrt(self) -> Self;
+    /// `self · self`.
     #[inline(always)]
     fn square(self) -> Self {
         self.mul(self)
@@ -148,14 +186,16 @@ pub(crate) trait Lanes: Copy {
 
 /// A computation generic over the lanes. `run` and all it calls must be `#[inline(always)]`, so that it is compiled
 /// for the instruction set it runs on.
-pub(crate) trait Kernel {
+pub trait Kernel {
+    /// What it computes.
     type Output;
+    /// Computes it.
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
 /// Runs `kernel` on `isa`, or on plain arrays where this CPU lacks it.
 #[inline]
-pub(crate) fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
+pub fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]
     match isa {
         // SAFETY: `Isa` values other than Scalar and Sse2 come from `detect`/`available`, or pass
@@ -191,7 +231,7 @@ fn supported(isa: Isa) -> bool {
 
 /// Asks the CPU to fetch the `size_of::<T>()` bytes at `item` into its cache.
 #[inline(always)]
-pub(crate) fn prefetch<T>(item: &T) {
+pub fn prefetch<T>(item: &T) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
