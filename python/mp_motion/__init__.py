@@ -52,6 +52,7 @@ from ._shapes import (
     pose_from_rotation,
     pose_from_xyz_qxyzw,
 )
+from ._viewer import Viewer
 
 __all__ = [
     "Attached",
@@ -92,6 +93,7 @@ __all__ = [
     "TightCorner",
     "Trajectory",
     "Verdict",
+    "Viewer",
     "matrix_from_pose",
     "meta_planners",
     "metrics",

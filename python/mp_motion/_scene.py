@@ -39,6 +39,7 @@ from ._shapes import (
     pose_numbers,
     shape_members,
 )
+from ._viewer import Viewer
 
 #: A file, as a name or a path.
 File: TypeAlias = str | os.PathLike[str]
@@ -1059,6 +1060,18 @@ class Scene:
         path : array_like, shape (n, columns), or Report or Finished, optional
         """
         _view.show(self, path)
+
+    def view(self, path: PathRows | None = None, *, open: bool = True) -> Viewer:
+        """Open the scene in a page that stays: what the program gives the viewer, the page shows while the program goes on.
+
+        Parameters
+        ----------
+        path : array_like, shape (n, columns), or Report or Finished, optional
+            A path to begin with.
+        open : bool
+            Whether the browser is opened, or in a notebook the page below the cell. Otherwise open :attr:`Viewer.address`.
+        """
+        return Viewer(self, path, open=flag("open", open))
 
     def save(
         self,

@@ -29,27 +29,40 @@ def content(scene: Scene, file: File, path: PathRows | None, wanted: Wanted) -> 
     """Return the bytes of a file whose kind is that of its ending."""
     file = os.fspath(file)
     kind = scene._native.kind_of_file(file)
-    found = path is not None and not (isinstance(path, Report) and path.path is None)
-    rows = scene._path(path) if found and path is not None else None
+    rows = rows_of(scene, path)
     if kind == "path":
         if rows is None:
             raise Error("there is no path to write", remedy="give a path, or a report of a run that was solved")
         return scene._native.path_text(file, rows).encode()
-    if scene._robot is not None:
-        raise Error("a robot of your own has no picture", remedy="plot `report.path`, or save it as .txt, .csv or .json")
+    refuse_own(scene)
     if kind == "view":
-        report = None
-        if isinstance(path, Report):
-            members = path.to_dict()
-            members["path"] = members["first_path"] = None
-            report = json.dumps(members)
-        return scene._native.view(file, report, rows, 8.0 if wanted[4] is None else wanted[4])
+        return scene._native.view(file, told(path), rows, 8.0 if wanted[4] is None else wanted[4])
     caption = str(path) if isinstance(path, Report) else ""
     caption = caption.removeprefix(f"{scene.name}: ")
     drawn = scene._native.draw(file, rows, caption, wanted)
     if drawn is None:
         raise Error("the film was cancelled")
     return drawn
+
+
+def rows_of(scene: Scene, path: PathRows | None) -> Any:
+    """Return the configurations of a path; ``None`` where there is none."""
+    return None if path is None or (isinstance(path, Report) and path.path is None) else scene._path(path)
+
+
+def refuse_own(scene: Scene) -> None:
+    """Refuse robots that nobody can draw."""
+    if scene._robot is not None:
+        raise Error("a robot of your own has no picture", remedy="plot `report.path`, or save it as .txt, .csv or .json")
+
+
+def told(path: PathRows | None) -> str | None:
+    """Return a report as JSON, without its paths."""
+    if not isinstance(path, Report):
+        return None
+    members = path.to_dict()
+    members["path"] = members["first_path"] = None
+    return json.dumps(members)
 
 
 def save(scene: Scene, file: File, path: PathRows | None, wanted: Wanted) -> None:

@@ -5,7 +5,7 @@ use crate::report::rows;
 use crate::scene::Scene;
 use mp_io::Content;
 use mp_plan::{Film, FilmKind, Look, PICTURE_SIZE, PathRows};
-use mp_view::{Planner, SceneFile};
+use mp_view::{PathTrack, Planner, SceneFile};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use std::path::Path;
@@ -65,6 +65,7 @@ impl Scene {
     }
 
     /// The scene for viewers, in the format of the ending of `file`; with a report (its JSON form and its path) or a path alone.
+    /// A page has this planner.
     pub(crate) fn viewed(
         &self,
         py: Python<'_>,
@@ -72,6 +73,7 @@ impl Scene {
         report: Option<&str>,
         path: Option<PyReadonlyArray2<'_, f64>>,
         seconds: f64,
+        planner: Planner<'_>,
     ) -> PyResult<Vec<u8>> {
         let path = path.map(|path| rows(&path));
         let content = Content::of(file).next();
@@ -90,7 +92,7 @@ impl Scene {
             Ok::<_, mp_plan::Error>(match content {
                 Some(Content::ViewerScene) => file.to_bytes(),
                 Some(Content::Gltf) => file.to_glb(seconds),
-                _ => mp_view::page(Some(&file), Planner::None).into_bytes(),
+                _ => mp_view::page(Some(&file), planner).into_bytes(),
             })
         })?;
         raised.map_or(Ok(()), Err)?;
@@ -99,6 +101,28 @@ impl Scene {
 }
 
 impl Scene {
+    /// A path as a message to a page that shows what this program sends.
+    pub(crate) fn path_shown(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        path: &PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Vec<u8>> {
+        let path = self.rows(rows(path));
+        let scene = &self.scene;
+        let (bytes, raised) = self.work(py, &mp_plan::Cancel::new(), None, |_| {
+            let track = scene.track(&path)?;
+            // One configuration leads nowhere: what matters is whether it is free.
+            let (free, length) = match path.rows.len() {
+                1 => (track.clearance.iter().all(|clearance| *clearance > 0.0), 0.0),
+                _ => scene.check(&path).map(|verdict| (verdict.free, verdict.path_length))?,
+            };
+            Ok::<_, mp_plan::Error>(PathTrack::of(name, free, Some(length), track).to_bytes())
+        })?;
+        raised.map_or(Ok(()), Err)?;
+        bytes.to_python()
+    }
+
     pub(crate) fn rows(&self, rows: Vec<Vec<f64>>) -> PathRows {
         PathRows { format: self.scene.path_format(), columns: self.scene.columns(), rows }
     }

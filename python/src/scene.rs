@@ -14,6 +14,7 @@ use mp_plan::{
     TrajectoryKind,
 };
 use mp_store::FileId;
+use mp_view::Planner;
 use nalgebra::Point3;
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -542,7 +543,27 @@ impl Scene {
         path: Option<PyReadonlyArray2<'_, f64>>,
         seconds: f64,
     ) -> PyResult<Vec<u8>> {
-        self.viewed(py, &file, report, path, seconds)
+        self.viewed(py, &file, report, path, seconds, Planner::None)
+    }
+
+    /// The page that shows what this program sends, with the scene inside.
+    fn page(
+        &self,
+        py: Python<'_>,
+        report: Option<&str>,
+        path: Option<PyReadonlyArray2<'_, f64>>,
+    ) -> PyResult<Vec<u8>> {
+        self.viewed(py, Path::new("x.html"), report, path, 0.0, Planner::Elsewhere)
+    }
+
+    /// A message to that page: a path to show under this name.
+    fn path_for_page(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        path: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Vec<u8>> {
+        self.path_shown(py, name, &path)
     }
 
     /// Writes a file whole or not at all. It must be none of the files of the scene.

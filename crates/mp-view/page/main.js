@@ -5,6 +5,7 @@ import { showError } from "mp/dom.js";
 import { Editor } from "mp/editor.js";
 import { EndsPanel } from "mp/endspanel.js";
 import { FieldLayer } from "mp/field.js";
+import { follow, follows } from "mp/following.js";
 import { Gallery } from "mp/gallery.js";
 import { Inspector } from "mp/inspector.js";
 import { decode } from "mp/message.js";
@@ -96,6 +97,7 @@ const ready = viewer.then(() => {});
 /** Resolves when the planner is there, to null in a page without one. */
 const planner = viewer.then((it) => session && connect(session, it));
 planner.catch(showError);
+if (follows()) viewer.then(follow).catch(showError);
 ready.catch(() => {});
 
 /** @returns {Viewer} */

@@ -162,13 +162,19 @@ export class Panels {
   markBody(body) {
     this.bodies.querySelectorAll("button.name").forEach((name, b) => name.setAttribute("aria-pressed", String(b === body)));
   }
+  /** Marks the path that is shown, unless it was chosen here. */
+  markPath() {
+    const marked = /** @type {HTMLInputElement | null} */ (this.paths.querySelector("input:checked"));
+    if (marked?.value !== String(this.settings.path)) this.paths.lastElementChild?.replaceChildren(...this.pathList());
+  }
   /** @returns {HTMLElement[]} */
   pathList() {
     const { scene, settings: s, actions } = this;
     // The paths of runs are in the table of runs.
-    const rows = scene.paths.filter((path) => !path.ofRun).map((path, p) => {
-      const input = el("input", { type: "radio", name: "path", checked: p === s.path, onchange: () => actions.choosePath(p) });
-      return el("li", {}, el("label", { class: "check" }, input, el("span", {}, path.name, el("small", {}, pathWords(path)))));
+    const rows = scene.paths.flatMap((path, p) => {
+      if (path.ofRun) return [];
+      const input = el("input", { type: "radio", name: "path", value: String(p), checked: p === s.path, onchange: () => actions.choosePath(p) });
+      return [el("li", {}, el("label", { class: "check" }, input, el("span", {}, path.name, el("small", {}, pathWords(path)))))];
     });
     return [el("ul", { class: "paths" }, ...rows)];
   }

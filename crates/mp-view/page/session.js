@@ -36,7 +36,7 @@ async function refusal(answer) {
 }
 
 /** The messages of a stream: each a length and its bytes. @param {ReadableStreamDefaultReader<Uint8Array>} reader */
-async function* framesOf(reader) {
+export async function* framesOf(reader) {
   let rest = new Uint8Array(0);
   const take = async (/** @type {number} */ count) => {
     const out = new Uint8Array(count);

@@ -229,6 +229,7 @@ export class Viewer {
   }
   choosePath(/** @type {number} */ path) {
     this.settings.path = path;
+    this.panels?.markPath();
     this.timeline?.showPath();
     for (const listener of this.onpath) listener();
     this.changed();

@@ -133,6 +133,16 @@ pub(crate) fn path_head(path: &PathTrack, data: &mut Vec<u8>) -> PathHead {
     }
 }
 
+impl PathTrack {
+    /// The path as a message to a page [that shows what a program sends](crate::Planner::Elsewhere).
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut data = Vec::new();
+        let head = serde_json::json!({"path": path_head(self, &mut data)});
+        frame(serde_json::to_vec(&head).unwrap_or_default(), &data)
+    }
+}
+
 impl SceneFile {
     /// The bytes of the file. The same scene gives the same bytes.
     ///

@@ -16,7 +16,7 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 48] = modules!(
+const MODULES: [(&str, &str); 49] = modules!(
     "buffers",
     "camera",
     "colors",
@@ -30,6 +30,7 @@ const MODULES: [(&str, &str); 48] = modules!(
     "endspanel",
     "field",
     "files",
+    "following",
     "frames",
     "gallery",
     "gizmo",
@@ -79,6 +80,9 @@ pub enum Planner<'a> {
     Inside(&'a [u8]),
     /// Behind the server that the page comes from.
     Server,
+    /// There is none: the page shows what the program that it comes from sends, scenes and paths, as docs/formats/session.md describes
+    /// it.
+    Elsewhere,
 }
 
 /// The viewer as one HTML file, with a scene and a planner. It opens without a network, and needs a browser with WebGL 2.
@@ -93,6 +97,7 @@ pub fn page(scene: Option<&SceneFile>, planner: Planner<'_>) -> String {
         Planner::None => String::new(),
         Planner::Inside(module) => part("planner", &mp_store::packed(module)),
         Planner::Server => "<meta name=\"mp-session\" content=\"server\">".to_owned(),
+        Planner::Elsewhere => "<meta name=\"mp-session\" content=\"shown\">".to_owned(),
     };
     HTML.replace("<!--STYLE-->", &format!("<style>\n{STYLE}</style>"))
         .replace("<!--MODULES-->", &data("modules", &modules))

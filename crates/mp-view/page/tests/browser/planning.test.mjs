@@ -51,6 +51,22 @@ browserTest("a run finds a verified path, and its tree is drawn", () => withPage
     return (await window.mpView.planner).viewer.picture.items.map((item) => item.role);
   });
   assert.ok(roles.includes("robot") && roles.includes("compared"));
+
+  // A path beside those of runs: its mark and its click are its own.
+  const chosen = () => driver.page.evaluate(async () => {
+    const { scene, settings } = (await window.mpView.planner).viewer;
+    const marked = document.querySelector("ul.paths input:checked");
+    return [scene.paths[settings.path].name, marked?.closest("label").textContent.startsWith("mine") ?? false];
+  });
+  await driver.page.evaluate(async () => {
+    const { viewer } = await window.mpView.planner;
+    viewer.choosePath(viewer.addPath({ ...viewer.scene.paths[0], name: "mine", ofRun: false }));
+  });
+  assert.deepEqual(await chosen(), ["mine", true]);
+  await driver.click("radio", "Show run 1");
+  assert.equal((await chosen())[1], false);
+  await driver.page.click("ul.paths input");
+  assert.deepEqual(await chosen(), ["mine", true]);
 }));
 
 browserTest("a run is paused, stepped and resumed", () => withPage("rrs-low", async (driver) => {
