@@ -103,9 +103,9 @@ impl LinkedSpace for FloatingJoints {
     }
 }
 
-/// A joint that is beyond a limit by no more than this (rad or m) is taken to be at the limit: encoders, and numbers of single
-/// precision, are as far off.
-const HAIR: f64 = 1e-6;
+/// A joint that is beyond a limit by no more than this (rad or m) is taken to be at the limit: encoders, numbers of single precision, and
+/// limits with five decimals, as 3.14159 is for half a turn, are as far off.
+const HAIR: f64 = 1e-5;
 
 /// The values of joints, at the limit where they are a [`HAIR`] beyond it.
 fn within(ranges: &[JointRange], joints: &[f64]) -> Vec<f64> {

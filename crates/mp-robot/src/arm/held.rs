@@ -3,7 +3,7 @@
 use super::{ArmError, ArmModel, Kinematics};
 
 /// A joint that is to be held beyond a limit by no more than this (rad or m) is held at the limit.
-const HAIR: f64 = 1e-6;
+const HAIR: f64 = 1e-5;
 
 impl ArmModel {
     /// The same robot with the joint held at `value` (rad or m): it has no number in a configuration.

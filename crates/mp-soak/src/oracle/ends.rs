@@ -42,9 +42,9 @@ impl Case {
         Ok(())
     }
 
-    /// A row as `mp check` reads it: joints that are no more than a millionth (rad or m) beyond a limit are at it.
+    /// A row as `mp check` reads it: joints that are no more than a hundred-thousandth (rad or m) beyond a limit are at it.
     pub fn at_limits(&self, row: &[f64]) -> Vec<f64> {
-        const HAIR: f64 = 1e-6;
+        const HAIR: f64 = 1e-5;
         let first = match &self.moves {
             Moves::Tree(tree) if tree.floats => 6,
             Moves::Tree(_) => 0,
