@@ -6,7 +6,7 @@ use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table, sections};
 use crate::options::Common;
 use clap::Args;
-use mp_plan::{Control, Error, ProblemChanges, Report, Request, RunStage, Scene};
+use mp_plan::{Control, Error, ErrorKind, ProblemChanges, Report, Request, RunStage, Scene};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -115,8 +115,10 @@ struct Case {
 }
 
 /// The result of a case: seconds of processor time.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Run {
+    /// Whether start and goal are free: where the set is made with other shapes of the links, they may not be. The rest is zero then.
+    valid: bool,
     /// Whether there is a path, proved.
     solved: bool,
     planning: f64,
@@ -179,6 +181,7 @@ fn measured(lab: &Lab, common: &Common, options: &Options) -> Result<bool> {
         return Ok(false);
     }
     let runs: Vec<(&Case, &Run)> = log.each(&cases).collect();
+    let refused = runs.iter().filter(|(_, run)| !run.valid).count();
     let scenes = set.problems.keys().map(|scene| (scene.as_str(), Some(scene)));
     let mut summary = Table::new([
         "scene",
@@ -191,14 +194,22 @@ fn measured(lab: &Lab, common: &Common, options: &Options) -> Result<bool> {
         "mean length",
     ]);
     for (name, scene) in scenes.chain([("**all**", None)]) {
-        let of: Vec<&Run> =
-            runs.iter().filter(|(case, _)| scene.is_none_or(|s| *s == case.scene)).map(|(_, r)| *r).collect();
+        let of = runs.iter().filter(|(case, run)| run.valid && scene.is_none_or(|s| *s == case.scene));
+        let of: Vec<&Run> = of.map(|(_, run)| *run).collect();
         if !of.is_empty() {
             summary.rows.push(row(name, &of));
         }
     }
-    lab.report(&name, &sections(2, &[(robot.clone(), summary)]), &log.table(&cases)?)?;
-    Ok(runs.iter().all(|(_, run)| run.solved))
+    let mut text = sections(2, &[(robot.clone(), summary)]);
+    if refused > 0 {
+        let _ = writeln!(
+            text,
+            "\nOf {} problems {refused} are left out: a start or goal is not free.",
+            runs.len()
+        );
+    }
+    lab.report(&name, &text, &log.table(&cases)?)?;
+    Ok(runs.iter().all(|(_, run)| run.solved || !run.valid))
 }
 
 /// Writes the scene files of the problems and the list of them. True, as nothing was measured that could have failed.
@@ -253,7 +264,13 @@ fn planned(scene: &Scene, seed: u64, time: f64, lab: &Lab) -> Result<Option<Run>
     // Planning would do it, and count it as its own.
     let _ = scene.make_ready(&mp_cspace::Interrupt::new(lab.cancel.clone()));
     let (ready, began) = (since(began), clock.now());
-    let report = scene.plan_with(&request, &mut control)?;
+    let report = match scene.plan_with(&request, &mut control) {
+        Err(error) if matches!(error.kind(), ErrorKind::NotFree(_)) => {
+            tracing::warn!("left out: {}", error.report());
+            return Ok(Some(Run::default()));
+        }
+        report => report?,
+    };
     let whole = since(began);
     Ok((!lab.cancel.is_raised()).then(|| of_report(&report, whole, ready)))
 }
@@ -263,6 +280,7 @@ fn of_report(report: &Report, whole: f64, ready: f64) -> Run {
         report.stages.iter().filter(|spent| spent.stage == stage).map(|spent| spent.time_s).sum()
     };
     Run {
+        valid: true,
         solved: report.solved && report.verified,
         planning: spent(RunStage::Planning),
         shortening: spent(RunStage::Shortening),
@@ -304,17 +322,17 @@ mod tests {
             joint("b", ["upper", "lower"], 0.5)
         );
         std::fs::write(robots.join("small.urdf"), urdf).unwrap();
-        let problem = |valid: bool| {
+        let problem = |index: u32, valid: bool, start: [f64; 2]| {
             serde_json::json!({
-                "index": if valid { 1 } else { 2 }, "valid": valid, "start": [1.5, 0.1], "goals": [[-1.5, -0.1]],
+                "index": index, "valid": valid, "start": start, "goals": [[-1.5, -0.1]],
                 "spheres": [{ "n": "ball", "p": [0.9, 0.0, 0.0], "r": 0.1 }],
                 "boxes": [{ "n": "box", "p": [-0.8, 0.0, 0.0], "rpy": [0, 0, 0.5], "h": [0.1, 0.1, 0.1] }],
                 "cylinders": [{ "n": "pole", "p": [0.0, 0.0, 0.5], "r": 0.05, "l": 0.2 }],
             })
         };
-        let set = serde_json::json!({
-            "joints": ["a", "b"], "note": "any", "problems": { "room": [problem(true), problem(false)] },
-        });
+        let (free, in_ball) = ([1.5, 0.1], [0.0, 0.0]);
+        let room = [problem(1, true, free), problem(2, false, free), problem(3, true, in_ball)];
+        let set = serde_json::json!({ "joints": ["a", "b"], "note": "any", "problems": { "room": room } });
         std::fs::write(folder.path().join("small.json"), set.to_string()).unwrap();
         let out = folder.path().join("out");
         let (common, lab) = (Common { out: out.clone(), ..Common::test() }, Lab::test(&out, 1));
@@ -323,15 +341,16 @@ mod tests {
         let options = Options { dataset: Some(folder.path().to_owned()), ..options };
         assert!(measured(&lab, &common, &options).unwrap());
         let log = lab.log::<Case, Run>("arms-small-quick", common.time).unwrap();
-        let [(case, run)] = log.all()[..] else { panic!("{:?}", log.all()) };
+        let [(case, run), (begins_in_ball, refused)] = log.all()[..] else { panic!("{:?}", log.all()) };
+        assert_eq!((begins_in_ball.index, refused.valid), (3, false));
         assert_eq!((case.scene.as_str(), case.index), ("room", 1));
         assert!(run.solved && run.length > 3.0 && run.whole >= run.planning + run.shortening + run.proof);
-        assert!(std::fs::read_to_string(out.join("arms-small-quick.md")).unwrap().contains("| room | 1/1 |"));
-
+        let text = std::fs::read_to_string(out.join("arms-small-quick.md")).unwrap();
+        assert!(text.contains("| room | 1/1 |") && text.contains("Of 2 problems 1 are left out"), "{text}");
         let list = folder.path().join("list");
         assert!(measured(&lab, &common, &Options { list: Some(list.clone()), ..options }).unwrap());
         let lines = std::fs::read_to_string(list.join("problems.jsonl")).unwrap();
-        let line: Value = serde_json::from_str(lines.trim_end()).unwrap();
+        let line: Value = serde_json::from_str(lines.lines().next().unwrap()).unwrap();
         assert_eq!((line["scene"].as_str(), &line["seeds"]), (Some("room-1"), &json!([case.seed])));
         assert_eq!(Scene::find(list.join("room-1")).unwrap().name(), "room-1");
     }
