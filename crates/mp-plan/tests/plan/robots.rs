@@ -158,11 +158,12 @@ fn a_start_beyond_a_limit() {
         assert!(scene.notes().is_empty());
     }
     // Limits with five decimals, and ends at the angles that they are meant to be.
-    let goal = format!("[0.5, {}]", -std::f64::consts::PI);
-    let toml = problem("", &format!("[0, {}]", std::f64::consts::FRAC_PI_2), &goal);
-    let scene = scene(&[("p.toml", &toml), ("r.urdf", &two_bars([-3.14159, 1.570_79]))]);
-    let (_, path) = planned(&scene);
-    assert_eq!([path.rows[0][1], path.rows.last().unwrap()[1]], [1.570_79, -3.14159]);
+    let five = |x: f64| (1e5 * x).floor() / 1e5;
+    let (quarter, half) = (PI / 2.0, PI);
+    let toml = problem("", &format!("[0, {quarter}]"), &format!("[0.5, {}]", -half));
+    let rounded = two_bars([-five(half), five(quarter)]);
+    let (_, path) = planned(&scene(&[("p.toml", &toml), ("r.urdf", &rounded)]));
+    assert_eq!([path.rows[0][1], path.rows.last().unwrap()[1]], [five(quarter), -five(half)]);
     // More is refused, and the help says by which settings it is not.
     let error = at("", 1.5709).check_ends().unwrap_err();
     let shown = error.report();
