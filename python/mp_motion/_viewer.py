@@ -28,7 +28,7 @@ CONFIGURATION = "configuration"
 PULSE = 2.0
 
 
-class _Page:
+class Page:
     """What one open page has not been sent yet: of each name the newest."""
 
     def __init__(self, first: dict[str, bytes]) -> None:
@@ -38,6 +38,8 @@ class _Page:
 
     def put(self, name: str, message: bytes) -> None:
         with self.changed:
+            # What was given last is shown last.
+            self.waiting.pop(name, None)
             self.waiting[name] = message
             self.changed.notify()
 
@@ -77,13 +79,13 @@ class Viewer:
         self._scene = scene
         self._page: bytes = scene._native.page(told(path), rows_of(scene, path))
         self._shown: dict[str, bytes] = {}
-        self._pages: set[_Page] = set()
+        self._pages: set[Page] = set()
         self._lock = threading.Condition()
         self._seen = False
         # Other users of this machine can read the arguments of programs: the browser is started with an address that works
         # once.
         self._token, self._ticket = secrets.token_urlsafe(24), secrets.token_urlsafe(24)
-        self._server = _Server(self)
+        self._server = Server(self)
         threading.Thread(target=self._server.serve_forever, name="mp viewer", daemon=True).start()
         if not open:
             return
@@ -165,20 +167,20 @@ class Viewer:
         )
 
 
-class _Server(ThreadingHTTPServer):
+class Server(ThreadingHTTPServer):
     daemon_threads = True
 
     def __init__(self, viewer: Viewer) -> None:
-        super().__init__(("127.0.0.1", 0), _Handler)
+        super().__init__(("127.0.0.1", 0), Handler)
         self.viewer = viewer
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Say nothing of tabs that are closed."""
 
 
-class _Handler(BaseHTTPRequestHandler):
+class Handler(BaseHTTPRequestHandler):
     def do_GET(self) -> None:
-        server = cast("_Server", self.server)
+        server = cast("Server", self.server)
         viewer, port = server.viewer, server.server_port
         # Under another name of this machine a page of somebody else may ask.
         if self.headers.get("Host") not in {f"127.0.0.1:{port}", f"localhost:{port}"}:
@@ -211,7 +213,7 @@ class _Handler(BaseHTTPRequestHandler):
     def _stream(self, viewer: Viewer) -> None:
         """Send what is shown and what is shown from now on: of each message its length (u32, little-endian) and its bytes."""
         with viewer._lock:
-            page = _Page(dict(viewer._shown))
+            page = Page(dict(viewer._shown))
             viewer._pages.add(page)
             viewer._seen = True
         try:

@@ -15,6 +15,7 @@ from urllib.parse import urlsplit
 import pytest
 
 import mp_motion as mp
+from mp_motion._viewer import Page
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -172,6 +173,28 @@ def test_without_a_browser_the_address_is_said(scene: mp.Scene, monkeypatch: pyt
     with viewer:
         assert viewer.address in str(caught[0].message)
         assert viewer.address in repr(viewer) and viewer.address in viewer._repr_html_()
+
+
+def test_a_robot_of_ones_own_has_no_page() -> None:
+    robot = mp.Robot(mp.Space([0, 0], [4, 4]), valid=lambda _: True)
+    with pytest.raises(mp.Error, match="has no picture"):
+        mp.Scene.own(robot, start=[0.5, 2], goal=[3.5, 2]).view()
+
+
+def test_what_was_shown_last_is_last(scene: mp.Scene, viewer: mp.Viewer) -> None:
+    row = scene.start
+    for name in ("a", "b", "a"):
+        viewer.show([row], name=name)
+    tab = Tab(viewer)
+    assert [tab.path()[0] for _ in range(2)] == ["b", "a"]
+    tab.close()
+    # So it is for a page that has taken nothing meanwhile.
+    page = Page({})
+    for name, message in (("a", b"1"), ("b", b"2"), ("a", b"3")):
+        page.put(name, message)
+    assert page.take() == [b"2", b"3"]
+    page.close()
+    assert page.take() is None
 
 
 def test_bad_input_is_refused(scene: mp.Scene, viewer: mp.Viewer) -> None:

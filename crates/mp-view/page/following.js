@@ -14,13 +14,21 @@ export const follows = () => document.querySelector('meta[name="mp-session"][con
 export async function follow(viewer) {
   const answer = await fetch("shown", { cache: "no-store" });
   if (!answer.ok || !answer.body) throw new Error("The program that opened this page shows nothing here any more: let it show its scene again.");
-  // A stream that breaks off has ended too: its program is gone.
   try {
-    for await (const bytes of framesOf(answer.body.getReader())) if (bytes.length) take(viewer, bytes);
-  } catch (error) {
-    if (!(error instanceof TypeError)) showError(error);
+    for await (const bytes of framesOf(answer.body.getReader())) if (bytes.length) attempt(() => take(viewer, bytes));
+  } catch {
+    // A stream that breaks off has ended too: its program is gone.
   }
   byId("hint").textContent = "The program that showed this has ended.";
+}
+
+/** What cannot be shown is said, and what comes after it is shown. @param {() => void} show */
+function attempt(show) {
+  try {
+    show();
+  } catch (error) {
+    showError(error);
+  }
 }
 
 /** Shows a scene file, or a path of the scene that is shown: in the place of the one with the same name.

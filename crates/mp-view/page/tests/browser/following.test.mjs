@@ -22,7 +22,7 @@ const shown = (page) => page.evaluate(async () => {
   const all = [...document.querySelectorAll("ul.paths li")];
   const names = all.map((row) => row.querySelector("span").firstChild.textContent);
   const chosen = names[all.findIndex((row) => row.querySelector("input").checked)] ?? "";
-  return { scene: text("#title"), names, chosen, timeline: text("#timeline output.count"), hint: text("#hint") };
+  return { scene: text("#title"), names, chosen, timeline: text("#timeline output.count"), hint: text("#hint"), alert: text("#alert") };
 });
 
 /** Waits until the page shows this. @param {import("puppeteer-core").Page} page @param {Partial<Awaited<ReturnType<typeof shown>>>} wanted texts that begin or are in it */
@@ -74,6 +74,9 @@ browserTest("a page shows the scenes and paths that a program sends", () => with
     stream.write(framed(encode({ path: { ...path, name: "configuration" } })));
     const last = await until(tab.page, { timeline: `of ${path.trace.length / 3}` });
     assert.deepEqual([last.names, last.chosen], [["found", "configuration"], "configuration"]);
+    // What cannot be shown is said, and is not the end.
+    stream.write(framed(encode({ path: { ...first, poses: new Float32Array(0) } })));
+    await until(tab.page, { alert: "do not have the same number of configurations" });
     stream.write(framed(readFileSync(file("cubicles.mpv"))));
     await until(tab.page, { scene: "cubicles" });
     assert.deepEqual(tab.faults, []);
