@@ -38,7 +38,7 @@ async function until(page, wanted) {
 
 browserTest("a page shows the scenes and paths that a program sends", () => withFolder(async (folder) => {
   const file = (name) => join(folder, name);
-  mp("plan", "easy", "--seed", "1", "--out", file("path.csv"));
+  mp("plan", "easy", "--seed", "1", "--out", file("path.csv"), "--picture", file("path.png"));
   mp("render", "easy", "--out", file("page.html"));
   for (const scene of ["easy", "cubicles"]) mp("render", scene, ...(scene === "easy" ? [file("path.csv")] : []), "--out", file(`${scene}.mpv`));
   const page = readFileSync(file("page.html"), "utf8").replace("</head>", '<meta name="mp-session" content="shown"></head>');
