@@ -1070,6 +1070,11 @@ class Scene:
             A path to begin with.
         open : bool
             Whether the browser is opened, or in a notebook the page below the cell. Otherwise open :attr:`Viewer.address`.
+
+        Returns
+        -------
+        Viewer
+            What shows paths and configurations in the page, until the program ends: a script ends with :meth:`Viewer.wait`.
         """
         return Viewer(self, path, open=flag("open", open))
 

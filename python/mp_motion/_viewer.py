@@ -112,6 +112,11 @@ class Viewer:
             The path. The verifier of the scene says whether it is free.
         name : str
             How it is called in the page.
+
+        Raises
+        ------
+        Error
+            When there is no path, or its configurations have not one number for each column.
         """
         self._send(text("name", name), self._scene._path(path))
 
@@ -121,7 +126,12 @@ class Viewer:
         Parameters
         ----------
         configuration : array_like, shape (columns,), or mapping of columns to numbers
-            Where the robot is.
+            Where the robot is: metres and radians, as :attr:`Scene.columns` says.
+
+        Raises
+        ------
+        Error
+            When it has not one number for each column.
         """
         self._send(CONFIGURATION, self._scene._path([self._scene._row(configuration)]))
 

@@ -137,9 +137,9 @@ pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> {
 pub trait Lanes: Copy {
     /// The result of a comparison.
     type Mask: Mask;
-    /// From an array.
+    /// The numbers of an array, the first in lane 0.
     fn load(a: &[f32; 8]) -> Self;
-    /// Into an array.
+    /// Writes the lanes to an array, lane 0 first.
     fn store(self, a: &mut [f32; 8]);
     /// The same number eight times.
     fn splat(x: f32) -> Self;
@@ -184,8 +184,8 @@ pub trait Lanes: Copy {
     fn lt(self, b: Self) -> Self::Mask;
 }
 
-/// A computation generic over the lanes. `run` and all it calls must be `#[inline(always)]`, so that it is compiled
-/// for the instruction set it runs on.
+/// A computation generic over the lanes. Its `run` and all that this calls must be `#[inline(always)]`: only then is it compiled for the
+/// instruction set it runs on. The result is right without, but slow.
 pub trait Kernel {
     /// What it computes.
     type Output;
@@ -198,8 +198,7 @@ pub trait Kernel {
 pub fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]
     match isa {
-        // SAFETY: `Isa` values other than Scalar and Sse2 come from `detect`/`available`, or pass
-        // `supported` below, so the CPU has the features the function enables.
+        // SAFETY: `supported` has just said that the CPU has the features the function enables.
         Isa::Avx512 if supported(isa) => return unsafe { x86::avx512(kernel) },
         // SAFETY: as above.
         Isa::Avx2 if supported(isa) => return unsafe { x86::avx2(kernel) },
