@@ -58,7 +58,6 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// The target of this name.
 const fn find<T: Copy>(targets: &[(&str, T)], name: &str) -> Option<T> {
     let mut i = 0;
     while i < targets.len() {

@@ -10,7 +10,6 @@ use std::time::Instant;
 /// A way of running the test programs.
 struct Way {
     name: &'static str,
-    /// What it shows.
     shows: &'static str,
     /// What must be installed: how to ask for it, and how to get it.
     needs: &'static [(&'static [&'static str], &'static str)],

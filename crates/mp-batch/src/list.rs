@@ -231,7 +231,7 @@ impl ProblemList {
         Ok(())
     }
 
-    /// The file of the list.
+    /// The file that it was loaded from, or the name that [`parse`](Self::parse) was given.
     #[must_use]
     pub fn file(&self) -> &Path {
         &self.file

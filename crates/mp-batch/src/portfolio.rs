@@ -151,7 +151,7 @@ impl Portfolio {
 /// What a rank has done for a portfolio. Depends on who was faster.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RankWork {
-    /// Runs that it has worked on.
+    /// How many runs it has advanced.
     pub runs: u64,
     /// Their iterations.
     pub iterations: u64,

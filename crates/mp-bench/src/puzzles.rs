@@ -95,7 +95,6 @@ impl Plan {
         }
     }
 
-    /// The cases of one scene and planner.
     fn runs(&self, scene: &str, planner: &str) -> impl Iterator<Item = Case> {
         let [scene, planner] = [scene, planner].map(str::to_owned);
         (1..=self.seeds).map(move |seed| Case { scene: scene.clone(), planner: planner.clone(), seed })

@@ -6,7 +6,6 @@ use std::path::PathBuf;
 /// The environment variable with the folder of the module. `cargo xtask` sets it.
 const VARIABLE: &str = "MP_PLANNERS";
 
-/// The name of the module.
 const MODULE: &str = "planner.wasm";
 
 /// The largest module that is read, bytes (64 MiB).

@@ -16,7 +16,6 @@ use std::path::Path;
 pub(crate) enum Picture {
     /// A picture in pixels or lines.
     Drawn(PictureKind, Look),
-    /// A film.
     Film(Film),
     /// The viewer with the scene inside, for a browser; with a planner inside when there is one.
     Page(Option<PagePlanner>),
@@ -26,7 +25,6 @@ pub(crate) enum Picture {
     Meshes(f64),
 }
 
-/// What a picture is of.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shown<'a> {
     pub(crate) scene: &'a Scene,

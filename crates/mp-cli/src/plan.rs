@@ -365,7 +365,6 @@ fn one(
     Ok(report)
 }
 
-/// Writes the path of a report.
 fn write_path(report: &mut Report, path: &PathRows, file: &Path) -> Result<(), Error> {
     let kind = if is_standard(file) { PathFileKind::Text } else { PathFileKind::of(file)? };
     write(file, path.to_file(kind).as_bytes())?;

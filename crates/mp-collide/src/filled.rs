@@ -18,7 +18,7 @@ pub enum FillError {
     /// Some edges belong to one triangle only.
     #[error("the mesh is not closed: {edges} edges have a triangle on one side only; close the holes")]
     Open {
-        /// How many.
+        /// Edges with a triangle on one side only.
         edges: usize,
     },
     /// More than two triangles at an edge, or several fans of them at a vertex.
@@ -27,9 +27,9 @@ pub enum FillError {
          {vertices} vertices; take it apart there"
     )]
     NotManifold {
-        /// How many edges.
+        /// Edges at which more than two triangles meet.
         edges: usize,
-        /// How many vertices.
+        /// Vertices at which several surfaces meet.
         vertices: usize,
     },
     /// Neighbouring triangles have opposite orientations.
@@ -37,7 +37,7 @@ pub enum FillError {
         "the mesh is not oriented: the triangles at {edges} edges are turned against each other; turn some"
     )]
     NotOriented {
-        /// At how many edges.
+        /// Edges whose two triangles have opposite orientations.
         edges: usize,
     },
     /// All triangles face inward, as those of a room.

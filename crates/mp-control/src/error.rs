@@ -16,7 +16,7 @@ pub enum InputError {
     /// An entry of an input is NaN or infinite.
     #[error("input {index} must be finite, found {input}")]
     NotFinite {
-        /// Which input.
+        /// The index of the input, counted from 0.
         index: usize,
         /// The input, as `Debug` prints it.
         input: String,
@@ -31,7 +31,7 @@ pub enum InputError {
     /// its degrees of freedom.
     #[error("an input of {entries} entries moves no state of the space, which has {dim} degrees of freedom")]
     NoMotion {
-        /// Entries of the input.
+        /// How many numbers the input has.
         entries: usize,
         /// Degrees of freedom of the space.
         dim: usize,
@@ -39,7 +39,7 @@ pub enum InputError {
     /// The flow leads to a state that is not finite.
     #[error("the flow leads to a state that is not finite: input {index} from {from}")]
     FlowNotFinite {
-        /// Which input.
+        /// The index of the input, counted from 0.
         index: usize,
         /// The state it is applied to, as `Debug` prints it.
         from: String,

@@ -116,7 +116,6 @@ pub struct InputPlanner<'c, C: Space, F, U, K> {
     interrupt: Interrupt,
     /// The distance to the target and the input of each successor that may be taken.
     ranked: Vec<(f64, usize)>,
-    /// The successor of each input.
     successors: Vec<C::State>,
 }
 

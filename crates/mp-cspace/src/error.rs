@@ -56,7 +56,7 @@ pub enum SpaceError {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{name} must be {expected}, found {value}")]
 pub struct ParameterError {
-    /// Which parameter.
+    /// The name of the parameter.
     pub name: &'static str,
     /// What it must be.
     pub expected: &'static str,

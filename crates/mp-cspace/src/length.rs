@@ -84,7 +84,7 @@ impl fmt::Display for Length {
 /// Why a text is no [`Length`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LengthError {
-    /// It is no number.
+    /// The text is not a number.
     #[error("not a number")]
     NoNumber,
     /// The number is not finite, or not above zero.

@@ -16,7 +16,7 @@ pub enum Event<'a, S> {
         tree: usize,
         /// Its index in the tree or roadmap.
         id: NodeId,
-        /// Where it is.
+        /// Its configuration.
         state: &'a S,
         /// Of a node of a roadmap, the name of its kind; `None` for the root of a tree.
         kind: Option<&'static str>,
@@ -29,7 +29,7 @@ pub enum Event<'a, S> {
         id: NodeId,
         /// The node that it was reached from; in tree 1 the node that it leads to.
         parent: NodeId,
-        /// Where it is.
+        /// Its configuration.
         state: &'a S,
         /// The states at which the edge between them bends, in forward time: from the parent on in tree 0, to
         /// the parent in tree 1. Empty for a straight edge.

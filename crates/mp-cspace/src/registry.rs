@@ -150,7 +150,7 @@ impl Settings {
         }
     }
 
-    /// The settings of `parameters` only.
+    /// The settings whose names are in `parameters`, in the same order.
     #[must_use]
     pub fn only(&self, parameters: &[Parameter]) -> Self {
         let known = |key: &str| parameters.iter().any(|parameter| parameter.name == key);

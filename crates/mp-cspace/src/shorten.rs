@@ -55,7 +55,7 @@ pub struct Draft<S> {
 }
 
 impl<S: Clone> Draft<S> {
-    /// The path as it is given.
+    /// A draft that is still the given path: no edge is known to be free.
     pub fn of(space: &impl Space<State = S>, path: &Path<S>) -> Self {
         Self {
             states: path.states.clone(),

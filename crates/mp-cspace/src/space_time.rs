@@ -53,7 +53,7 @@ impl<C: Space> SpaceTime<C> {
         Ok(Self { positions, horizon, speed, diagonal })
     }
 
-    /// The space of positions.
+    /// The space without the time.
     #[must_use]
     pub fn positions(&self) -> &C {
         &self.positions

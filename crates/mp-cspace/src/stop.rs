@@ -95,7 +95,7 @@ impl Stop for Iterations {
     }
 }
 
-/// Stops at this many nodes.
+/// Stops when the planner has at least this many nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Nodes(pub usize);
 

@@ -16,7 +16,7 @@ pub use run::{ComparedPlanner, Run, RunSettings};
 pub const MOVERS: [&str; 2] = ["free-flyer", "6-DOF arm"];
 /// What a state holds: positions alone, or positions and velocities.
 pub const MODELS: [&str; 2] = ["positions", "velocities"];
-/// The metrics, by name.
+/// The metrics, by their names in tables.
 pub const METRICS: [&str; 3] = ["euclidean", "scaled", "manhattan"];
 
 /// A robot of the experiment, with its start, its goal and its worlds.

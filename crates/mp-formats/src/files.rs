@@ -85,7 +85,7 @@ fn current_if_empty(folder: &Path) -> &Path {
 /// Other files, whose readers end when an [`Interrupt`] says so, with an error of kind [`ErrorKind::Interrupted`].
 #[derive(Clone, Debug)]
 pub struct Until<'f> {
-    /// The files.
+    /// Where the files come from.
     pub files: &'f dyn Files,
     /// What readers ask.
     pub interrupt: Interrupt,

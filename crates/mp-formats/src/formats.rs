@@ -115,12 +115,11 @@ impl Content {
         &FORMATS[self as usize]
     }
 
-    /// What reads it, if it is a mesh.
     pub(crate) fn mesh_reader(self) -> Option<ReadMesh> {
         self.format().mesh.map(|(_, read)| read)
     }
 
-    /// Whether it is a mesh.
+    /// Whether the content is a mesh, which `read_mesh` reads.
     #[must_use]
     pub fn is_mesh(self) -> bool {
         self.format().mesh.is_some()

@@ -31,7 +31,7 @@ impl<'a> Text<'a> {
         Ok(Self { file, text: crate::files::decode(file, bytes)?, guide })
     }
 
-    /// An error at a token.
+    /// An error that points at `token`, and names the guide of the format.
     pub fn error(&self, token: Token<'_>, message: impl Into<String>) -> Error {
         Error::at(ErrorKind::Format, self.file, self.text, token.at, token.text.len(), message.into())
             .help(format!("the format is described in docs/formats/{}", self.guide))
@@ -43,7 +43,7 @@ impl<'a> Text<'a> {
         format!("{}:{}:{}", self.file, e.line().unwrap_or(1), e.column().unwrap_or(1))
     }
 
-    /// An error where the text ends.
+    /// An error that points at the end of the text, where `expected` is missing.
     pub fn error_at_end(&self, expected: impl Into<String>) -> Error {
         let at = self.text.trim_end().len();
         if at == 0 {

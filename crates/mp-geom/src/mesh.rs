@@ -49,7 +49,7 @@ pub enum MeshError {
     TooLarge {
         /// "vertices", "triangles" or "triangle corners".
         what: &'static str,
-        /// How many.
+        /// How many of them the mesh has.
         count: usize,
     },
 }

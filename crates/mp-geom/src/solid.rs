@@ -15,7 +15,7 @@ pub enum SolidError {
     /// An edge has an odd number of triangles.
     #[error("the surface is not closed: {edges} edges have a triangle on one side only")]
     Open {
-        /// How many.
+        /// Edges with an odd number of triangles.
         edges: usize,
     },
     /// Neighbouring triangles have opposite orientations.

@@ -22,7 +22,7 @@ const GUIDE: &str = "the format is described in docs/formats/session.md, “Docu
 pub struct SceneDocument {
     /// The version of the format.
     pub version: u32,
-    /// The name of the scene.
+    /// What messages and pictures call the scene.
     pub name: String,
     /// The space in which the robot moves.
     pub space: SpaceKind,
@@ -100,7 +100,7 @@ pub enum DocumentShape {
     },
     /// Triangles of a file.
     Mesh {
-        /// The name of its file.
+        /// The name of the mesh file; it must be beside the document only where `off` is missing.
         file: String,
         /// Its triangles as text of an OFF file; without, they are in the file, beside the document.
         #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -30,7 +30,7 @@ pub struct Environment {
     pub start: [f64; 6],
     /// The goal configuration.
     pub goal: [f64; 6],
-    /// The obstacles.
+    /// The obstacles, which stand still, in the order of the file.
     pub obstacles: Vec<Obstacle>,
     /// `Space` after `End` (an extension; other readers stop at `End`).
     pub space: Option<SpaceKind>,

@@ -58,7 +58,7 @@ pub struct PlanarMoving {
 pub enum PlanarMap {
     /// An image with its scale.
     Image {
-        /// The name of the file.
+        /// The name of the image file.
         file: String,
         /// Metres per pixel.
         scale: f64,
@@ -86,7 +86,7 @@ pub struct PlanarFile {
     pub obstacles: Vec<PlanarObstacle>,
     /// The obstacles that move.
     pub moving: Vec<PlanarMoving>,
-    /// The robot.
+    /// The shape of the robot.
     pub robot: PlanarShape,
     /// How the robot moves, if it moves by inputs.
     pub driven: Option<Driven>,
@@ -119,7 +119,7 @@ pub enum PlanarPart {
     Map,
     /// The table `robot`.
     Robot,
-    /// The start.
+    /// The start configuration.
     Start,
     /// The goal of this index.
     Goal(usize),

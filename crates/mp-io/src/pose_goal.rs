@@ -14,7 +14,7 @@ pub enum FreeTurns {
     None,
     /// The link about its own x, y or z axis: 0, 1 or 2.
     About(usize),
-    /// All of it.
+    /// The link about all axes: its rotation is free.
     All,
 }
 
@@ -37,7 +37,7 @@ impl std::str::FromStr for FreeTurns {
 /// A place that a link is to have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseEntry {
-    /// The name of the link.
+    /// The link that is to be there.
     pub link: String,
     /// x, y, z, α, β, γ of the link in the world.
     pub pose: [f64; 6],

@@ -65,9 +65,9 @@ pub struct RigidProblem {
     pub name: String,
     /// The space in which the robot moves.
     pub space: SpaceKind,
-    /// The robot.
+    /// The body that moves, in its own frame.
     pub robot: Body,
-    /// The obstacles.
+    /// The bodies that stand still, each with its pose in the world.
     pub obstacles: Vec<PlacedBody>,
     /// The robot's pose in the world at the start.
     pub start: Isometry3<f64>,

@@ -68,7 +68,7 @@ pub struct RobotFile {
     pub goals: Vec<GoalEntry>,
     /// How far from the goal a number of the last configuration may be; 0 when it is not given.
     pub tolerance: f64,
-    /// The obstacles.
+    /// The obstacles, in the order of the file.
     pub obstacles: Vec<ObstacleEntry>,
     /// What links carry.
     pub attached: Vec<AttachedEntry>,
@@ -86,7 +86,7 @@ pub struct RobotFile {
 pub enum RobotFilePart {
     /// A part of the robot of this index.
     Robot(usize, RobotPart),
-    /// The start.
+    /// The start configuration.
     Start,
     /// The goal of this index.
     Goal(usize),

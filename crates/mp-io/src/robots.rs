@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub struct FoundRobot {
     /// The name of its file, without ending.
     pub name: String,
-    /// Where it is.
+    /// The path of the URDF or MJCF.
     pub file: PathBuf,
     /// How many joints move on their own.
     pub joints: usize,
@@ -69,7 +69,7 @@ impl RobotPath {
         Self::new(list("MP_ROBOTS").chain(package_folders()).chain(cache).chain(python))
     }
 
-    /// The folders.
+    /// The folders that are searched, in this order.
     #[must_use]
     pub fn folders(&self) -> &[PathBuf] {
         &self.folders
@@ -188,7 +188,6 @@ fn is_urdf(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(Content::Robot.ending()))
 }
 
-/// The robot of a file, if that is one.
 fn described(file: PathBuf) -> Option<FoundRobot> {
     let bytes = mp_store::read(&file, MAX_BYTES).ok()?;
     let text = String::from_utf8_lossy(&bytes);

@@ -117,7 +117,7 @@ pub enum ShapeEntry {
     MeshFile(String, bool),
     /// Points in a file of this name, the radius (m) of the ball around each, and the side (m) of the cells on which they are thinned.
     PointFile(String, [f64; 2]),
-    /// All of it.
+    /// A shape without a file: all of it is in the entry.
     Whole(Shape),
 }
 
@@ -191,7 +191,6 @@ impl<T> Shaped<T> {
     }
 }
 
-/// A set of points.
 fn points(source: &TomlText<'_>, value: &Spanned<Value>) -> Result<ShapeEntry, Error> {
     let PointTable { radius, cell, file, at } = source.value(value)?;
     source.positive("the radius", &[radius], &value.span())?;

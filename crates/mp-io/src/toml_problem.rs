@@ -83,7 +83,7 @@ impl TomlText<'_> {
 /// What a goal asks of one number of a configuration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GoalPart {
-    /// To have this value.
+    /// The number must have this value.
     Exactly(f64),
     /// To be in this interval, both ends included.
     Between([f64; 2]),
@@ -218,7 +218,6 @@ impl GoalEntry {
     }
 }
 
-/// The text of a goal.
 #[derive(Deserialize)]
 #[serde(
     untagged,
@@ -231,7 +230,6 @@ pub(crate) enum GoalText {
     Named(BTreeMap<String, PartText>),
 }
 
-/// The text of one number of a goal.
 #[derive(Deserialize)]
 #[serde(untagged)]
 pub(crate) enum PartText {
@@ -271,7 +269,7 @@ pub(crate) struct Motion<S = Vec<f64>> {
 pub struct Timing {
     /// The greatest speed of the robot, in the metric of its space per second; `None` for a robot that moves by inputs.
     pub speed: Option<f64>,
-    /// The time of the start.
+    /// When the motion begins.
     pub start: f64,
     /// The time of the arrival; any time when it is not given.
     pub goal: Option<[f64; 2]>,

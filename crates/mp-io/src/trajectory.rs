@@ -27,7 +27,7 @@ pub struct TrajectoryFile {
     pub accelerations: Vec<Vec<f64>>,
 }
 
-/// A kind of file for trajectories.
+/// A format of files that hold a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TrajectoryKind {
     /// Comma-separated values: a line of names with units, then one point on each line.

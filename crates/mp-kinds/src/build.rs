@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// A robot among its obstacles, and what is to be known of how it was built.
 #[derive(Clone, Debug)]
 pub struct Built {
-    /// The robot.
+    /// The robot among its obstacles, with start and goals.
     pub robot: Arc<dyn Robot>,
     /// The name of its kind: `space`, `plane`, `discs`, `moving`, `driven`, `driven-moving`, `arms`, `floating`.
     pub kind: &'static str,
@@ -30,7 +30,7 @@ impl Built {
     }
 }
 
-/// The robot, if it is of this kind.
+/// The robot as the type `K`; `None` if it is of another type.
 pub fn of_kind<K: 'static>(robot: &dyn Robot) -> Option<&K> {
     (robot as &dyn Any).downcast_ref()
 }

@@ -29,7 +29,7 @@ pub struct FieldImage {
     pub range: f64,
 }
 
-/// A field of any kind.
+/// A field behind a pointer, so that its type needs no name.
 #[allow(missing_debug_implementations, reason = "a pointer has nothing to print")]
 pub struct AnyField<'a>(Box<dyn Field<Configuration> + 'a>);
 

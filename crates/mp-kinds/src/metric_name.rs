@@ -43,7 +43,7 @@ impl MetricName {
         ),
     ];
 
-    /// Its name.
+    /// Its name on the command line and in files.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(metric, ..)| *metric == self).map_or("default", |(_, name, _)| name)

@@ -50,7 +50,7 @@ impl Deadlines {
 /// A check that finds no motion free that the robot cannot make, and none at all once it is interrupted.
 #[allow(missing_debug_implementations, reason = "a pointer has nothing to print")]
 pub struct Possible<'k> {
-    /// The robot.
+    /// The robot whose motions are checked.
     pub kind: &'k dyn Robot,
     /// The check of motions that it can make.
     pub check: AnyCheck<'k, Configuration>,

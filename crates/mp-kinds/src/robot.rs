@@ -70,10 +70,10 @@ impl Body {
     }
 }
 
-/// The shape of a body.
+/// What is drawn of a body, in the frame of the body.
 #[derive(Clone, Debug)]
 pub enum BodyShape {
-    /// A mesh.
+    /// Triangles in space.
     Mesh(TriMesh),
     /// Rings around an area of the plane z = 0, the outer ring first. The last point of a ring is joined to its first.
     Area(Vec<Vec<Point2<f64>>>),
@@ -113,7 +113,7 @@ impl fmt::Display for Contact {
 /// The start or a goal of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum End {
-    /// The start.
+    /// The start of the problem.
     Start,
     /// The goal with this index.
     Goal(usize),
@@ -182,7 +182,7 @@ impl<K: Motion + Description + Appearance + Any + fmt::Debug + Send + Sync> Robo
 
 /// What planners ask of a robot, beside its [typed motions](crate::TypedMotion).
 pub trait Motion: AnyMotion {
-    /// The start configuration.
+    /// Where paths begin.
     fn start(&self) -> &Configuration;
 
     /// The goal configurations, at least one.
@@ -291,7 +291,7 @@ pub trait Description: Motion {
     /// The name of the space in reports: `SE3`, `6 joints`.
     fn space_name(&self) -> String;
 
-    /// What touches what at a configuration.
+    /// The pairs of bodies in contact at a configuration; none if it is free.
     fn touching(&self, q: &Configuration) -> Vec<Contact>;
 
     /// What is nearest to contact at a configuration, as messages name it, such as `tool and table`, and how far apart that is (m). By

@@ -14,7 +14,7 @@ pub struct Explanation {
     pub in_bounds: bool,
     /// A lower bound (m) on the distance to contact; zero in collision, and where none is known.
     pub clearance: f64,
-    /// What touches what.
+    /// The pairs of bodies in contact; empty when the configuration is free.
     pub touching: Vec<Contact>,
     /// What is inside of closed surfaces, which have no inside unless they are made solid.
     pub warnings: Vec<String>,

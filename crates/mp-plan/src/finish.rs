@@ -23,7 +23,7 @@ const SHORT_PART: f64 = 0.5;
 /// A path that passed the verifier after it was written as text and read again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finished {
-    /// The path.
+    /// The path, as it was read again.
     pub path: PathRows,
     /// Its length, in the metric of the space.
     pub length: f64,

@@ -258,7 +258,6 @@ const ARM: &str = "<robot name=\"a\"><link name=\"base\"/><link name=\"upper\"><
 /// Which links of it may touch.
 const MAY_TOUCH: &str = "<robot name=\"a\"><disable_collisions link1=\"upper\" link2=\"lower\"/></robot>";
 
-/// A map, and its image.
 const MAP: &str = "image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 const IMAGE: &str =
     "P2\n5 4\n255\n255 255 255 255 255\n255 255 0 255 255\n255 255 0 255 255\n255 255 255 255 255\n";

@@ -19,12 +19,12 @@ pub struct PathRows {
     pub rows: Vec<Vec<f64>>,
 }
 
-/// A kind of file for paths.
+/// A format of files that hold a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PathFileKind {
     /// The text form of the robot.
     Text,
-    /// JSON.
+    /// JSON, as docs/formats/path.md describes it.
     Json,
     /// Comma-separated values: a line of names with units, then one configuration on each line.
     Csv,

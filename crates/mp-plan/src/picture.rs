@@ -16,7 +16,7 @@ use std::path::Path;
 /// The default size of pictures, in pixels.
 pub const PICTURE_SIZE: (usize, usize) = (1280, 960);
 
-/// A kind of picture.
+/// A format of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PictureKind {
     /// A PNG: pixels.

@@ -28,7 +28,7 @@ impl PortfolioSchedule {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::None, Self::Luby, Self::Counter, Self::Zeta, Self::Wide];
 
-    /// Its name.
+    /// Its name on the command line and in reports.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -14,9 +14,9 @@ pub const REPORT_VERSION: u32 = 1;
 /// Lengths of paths are in the metric of the space, clearances in metres, times in seconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
-    /// [`REPORT_VERSION`].
+    /// The version of the format: [`REPORT_VERSION`].
     pub version: u32,
-    /// The name of the scene.
+    /// The name of the scene that was planned in.
     pub scene: String,
     /// The file of the scene, if there is one.
     pub scene_file: Option<String>,
@@ -30,13 +30,13 @@ pub struct Report {
     pub stopped_by: Option<StoppedBy>,
     /// `stopped_by` in a sentence.
     pub why: Option<String>,
-    /// The name of the planner.
+    /// The name of the planner, as `--planner` takes it.
     pub planner: String,
-    /// The name of the metric.
+    /// The name of the metric, as `--metric` takes it.
     pub metric: String,
     /// How motions were checked while planning.
     pub motion: String,
-    /// The seed.
+    /// The seed of all random numbers: the same one gives the same path.
     pub seed: u64,
     /// The number of iterations of the planner's loop.
     pub iterations: u64,
@@ -67,7 +67,7 @@ pub struct Report {
     pub first_path: Option<Vec<Vec<f64>>>,
     /// The length of the path as the planner found it; for an anytime planner, of the last path.
     pub path_length_found: Option<f64>,
-    /// The length of `path`.
+    /// The length of `path`, in the metric of the space; `None` without a path.
     pub path_length: Option<f64>,
     /// A lower bound on the clearance along `path`; `None` where there was no time left to compute one.
     pub clearance: Option<f64>,
@@ -100,7 +100,7 @@ pub struct Report {
 /// A stage of a run, and how long it took.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StageTime {
-    /// Which stage.
+    /// What the run did in this time.
     pub stage: RunStage,
     /// How long it took.
     pub time_s: f64,
@@ -114,7 +114,7 @@ impl StageTime {
     }
 }
 
-/// The stages of a run.
+/// What a run does, one after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RunStage {

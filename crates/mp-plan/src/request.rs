@@ -205,13 +205,13 @@ impl Request {
         })
     }
 
-    /// Sets the seed.
+    /// Sets the seed of all random numbers: the same one gives the same path.
     #[must_use]
     pub fn seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
 
-    /// Sets the metric.
+    /// Sets how distances between configurations are measured.
     #[must_use]
     pub fn metric(self, metric: MetricName) -> Self {
         Self { metric, ..self }
@@ -250,7 +250,7 @@ impl Request {
         self
     }
 
-    /// Sets the number of threads.
+    /// Sets on how many threads the planner works.
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }

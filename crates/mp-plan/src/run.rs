@@ -154,7 +154,6 @@ pub(crate) fn prepare<'s>(kind: &'s dyn Robot, request: &'s Request) -> Result<P
     Prepared::new(kind, request)
 }
 
-/// A planner made by name.
 pub(crate) enum NamedPlanner<'p> {
     Auto(Box<Auto<'p>>),
     Tree(mp_tree::AnyPlanner<'p, Configuration, ()>),
@@ -189,7 +188,6 @@ pub(crate) struct RobotRun<'p, 'k> {
 /// The part of the budget of time that planning may take; the rest is for shortening and verifying.
 pub(crate) const PLANNING_PART: f64 = 0.9;
 
-/// What a run has found.
 struct Found {
     /// The last path.
     best: Option<Path<Configuration>>,

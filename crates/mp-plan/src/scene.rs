@@ -160,7 +160,6 @@ impl Scene {
         self.robot.rigid_problem()
     }
 
-    /// The robot, if it is of this kind.
     pub(crate) fn robot<K: 'static>(&self) -> Option<&K> {
         mp_kinds::build::of_kind(&*self.robot)
     }
@@ -198,7 +197,7 @@ impl Scene {
         self.kind
     }
 
-    /// The name of the scene.
+    /// What messages and files call the scene.
     #[must_use]
     pub fn name(&self) -> &str {
         self.robot.name()
@@ -372,7 +371,6 @@ impl Scene {
         self.keeping(if request.clearance == 0.0 { self.clearance_kept() } else { request.clearance })
     }
 
-    /// The configuration of a row.
     pub(crate) fn state(&self, row: &[f64]) -> Result<Configuration, Error> {
         state(&*self.robot, row)
     }

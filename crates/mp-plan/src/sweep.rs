@@ -135,7 +135,6 @@ pub struct Track {
 }
 
 impl Track {
-    /// Adds a configuration.
     fn add(&mut self, kind: &dyn Robot, checker: &mut AnyChecker, q: &Configuration, travel: f64) {
         self.rows.push(kind.row(q));
         self.poses.push(kind.poses(q));

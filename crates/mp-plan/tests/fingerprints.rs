@@ -174,7 +174,6 @@ fn hashes_of_pictures(scene: &Scene, report: &Report) -> String {
     kinds.iter().map(of).collect::<Vec<_>>().join(" ")
 }
 
-/// Runs a case.
 fn run(case: &Case, scene: &Scene) -> String {
     let words: Vec<&str> = case.words.split(' ').skip(1).collect();
     let mut kept = Kept::default();

@@ -59,7 +59,7 @@ pub enum Error {
     /// An item cannot be done, or its result cannot be taken.
     #[error("item {item}, done by rank {rank}: {message}")]
     Item {
-        /// The number of the item, from 0.
+        /// The number of the item, counted from 0.
         item: u64,
         /// Who did it.
         rank: usize,

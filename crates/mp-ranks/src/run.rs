@@ -246,7 +246,6 @@ fn outcome(item: u64, context: &ItemContext, work: &Work<'_>) -> Outcome {
     }
 }
 
-/// What a panic said.
 fn said(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     format!("a fault of the program: {}", text.unwrap_or("no message"))

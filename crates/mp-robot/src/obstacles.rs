@@ -153,7 +153,6 @@ impl Obstacles {
         })
     }
 
-    /// The obstacles that are solids.
     pub(crate) fn solids(&self) -> &[(BodyId, SolidObstacle)] {
         self.solids.get_or_init(|| {
             let named = self.placed.iter().zip(&self.own).filter_map(|((id, mesh), (_, solid))| {

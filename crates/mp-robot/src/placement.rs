@@ -20,7 +20,7 @@ pub struct BodyRadii {
 }
 
 impl BodyRadii {
-    /// The radii of `mesh`.
+    /// The radii of `mesh` about the origin of its frame.
     #[must_use]
     pub fn of(mesh: &TriMesh) -> Self {
         let from_z = mesh.vertices().iter().map(|p| mp_math::hypot(p.x, p.y)).fold(0.0, f64::max);

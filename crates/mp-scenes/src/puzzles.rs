@@ -3,7 +3,7 @@
 /// A scene with what is known of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Puzzle {
-    /// The name of the scene.
+    /// The name of the scene, as `mp plan` takes it.
     pub scene: &'static str,
     /// How hard it is: 1 where RRT-Connect takes seconds at most, 2 where it does not always arrive within a minute, 3 where no
     /// planner did so reliably when the scene was made.

@@ -6,7 +6,7 @@
 use crate::{Isa, Kernel, Lanes, run};
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// The number of lanes.
+/// How many numbers a [`Wide`] has.
 pub const LANES: usize = 8;
 
 /// Eight numbers.
@@ -209,7 +209,7 @@ pub fn add(a: &Wide3, b: &Wide3, times: f64) -> Wide3 {
 pub struct WideFrame {
     /// The rows of the rotation matrices.
     pub turn: [Wide3; 3],
-    /// The origins.
+    /// The origins of the frames.
     pub origin: Wide3,
 }
 

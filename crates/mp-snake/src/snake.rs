@@ -177,7 +177,6 @@ impl CurveMeasurement {
 /// Buffers have room for this many nodes from the beginning: as many as edges need.
 pub(crate) const NODES: usize = 32;
 
-/// Most nodes of a curve.
 const MOST_NODES: usize = 10_000;
 
 /// How often a step is halved before it fails.

@@ -86,7 +86,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Problem `number` of seed `seed`.
+    /// The problem that `seed` and `number` draw; of the kind that `wanted` names, if it names one.
     #[must_use]
     pub fn new(seed: u64, number: u64, wanted: &Wanted) -> Self {
         let mut draw = Draw::new(seed, number);

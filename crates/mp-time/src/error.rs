@@ -24,7 +24,7 @@ pub enum TimeError {
         /// How many there are.
         found: usize,
     },
-    /// A number is not finite.
+    /// A time, position, velocity or acceleration is NaN or infinite.
     #[error("a number of point {} is not finite", point + 1)]
     NotFinite {
         /// The index of the point.
@@ -35,15 +35,15 @@ pub enum TimeError {
     Times {
         /// The index of the point.
         point: usize,
-        /// Its time (s).
+        /// The time of the point (s).
         time: f64,
-        /// The time before (s).
+        /// The time of the point before (s).
         before: f64,
     },
     /// A curve needs numbers that are not there.
     #[error("a {curve} curve needs {what}, which are missing")]
     Missing {
-        /// The curve.
+        /// The curve that was asked for.
         curve: Interpolation,
         /// What is missing.
         what: &'static str,
@@ -55,7 +55,7 @@ pub enum TimeError {
         what: &'static str,
         /// The index of the joint.
         joint: usize,
-        /// The limit.
+        /// The limit that was given (rad or m, per s or s²).
         limit: f64,
     },
     /// A path cannot be timed: rounding leaves no speed along it.

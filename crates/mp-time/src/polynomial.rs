@@ -8,7 +8,6 @@ pub(crate) fn value(c: &Polynomial, x: f64) -> f64 {
     c.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// The derivative.
 pub(crate) fn derivative(c: &Polynomial) -> Polynomial {
     std::array::from_fn(|i| if i < 5 { (i + 1) as f64 * c[i + 1] } else { 0.0 })
 }

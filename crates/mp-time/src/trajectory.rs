@@ -32,7 +32,7 @@ impl fmt::Display for Interpolation {
 pub struct Knots {
     /// The time (s) of each point.
     pub times: Vec<f64>,
-    /// The positions.
+    /// The positions of each point.
     pub positions: Vec<Vec<f64>>,
     /// The velocities; empty if they are not known.
     pub velocities: Vec<Vec<f64>>,
@@ -56,7 +56,7 @@ pub struct Sample {
 pub struct Extreme {
     /// The amount; of velocities and accelerations without the sign.
     pub amount: f64,
-    /// The time (s).
+    /// When the number has this amount (s).
     pub time: f64,
 }
 

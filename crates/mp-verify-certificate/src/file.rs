@@ -134,7 +134,6 @@ impl Frame {
     }
 }
 
-/// What every version has.
 #[derive(Deserialize)]
 struct Version {
     certificate: u32,

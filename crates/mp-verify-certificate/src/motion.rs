@@ -354,7 +354,6 @@ fn wheels(from: &[f64], speed: f64, rate: f64, time: f64) -> [f64; 3] {
     [chord * cos, chord * sin, turn]
 }
 
-/// The pose at a time on a track.
 fn track(poses: &[[f64; 8]], time: f64) -> Pose {
     let pose = |row: &[f64; 8]| seven(&std::array::from_fn(|i| row[i + 1]));
     let (first, last) = (&poses[0], &poses[poses.len() - 1]);

@@ -9,7 +9,7 @@ use parry3d_f64::math::Vec3;
 /// What a certificate proves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proved {
-    /// The name of the scene.
+    /// The name of the scene, as the certificate gives it.
     pub scene: String,
     /// How many configurations the path has.
     pub configurations: usize,

@@ -57,7 +57,6 @@ impl Growth {
         }
     }
 
-    /// Notes an event.
     pub(crate) fn note(&mut self, event: &SearchEvent<'_>) {
         match event {
             SearchEvent::Rooted { tree, id, row, kind } => {

@@ -34,7 +34,6 @@ impl Message {
         json(&append(&mut self.data, entries))
     }
 
-    /// The bytes of the message.
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         frame(serde_json::to_vec(&self.head).unwrap_or_default(), &self.data)
     }

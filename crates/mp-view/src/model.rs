@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// A scene with what is to be shown of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFile {
-    /// The name of the scene.
+    /// What the page calls the scene.
     pub name: String,
     /// The configuration space: `SE3`, `SE2`, `R2`, `6 joints`.
     pub space: String,

@@ -19,7 +19,7 @@ pub(super) const FORMAT: &str = "mp-many";
 pub struct ResultsHeader {
     /// `mp-many`.
     pub format: String,
-    /// [`RESULTS_VERSION`].
+    /// The version of the format: [`RESULTS_VERSION`].
     pub version: u32,
     /// The version of the program that planned.
     pub program: String,

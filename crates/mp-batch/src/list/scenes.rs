@@ -386,7 +386,6 @@ fn read_once(
     (scene, hexadecimal(fingerprint))
 }
 
-/// The files of a folder.
 #[derive(Debug)]
 pub(super) struct InFolder<'f>(pub(super) &'f Path);
 

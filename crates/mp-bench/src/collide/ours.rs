@@ -22,7 +22,6 @@ pub(crate) struct TreeBuild {
     pub(crate) bytes: usize,
 }
 
-/// Builds the trees of `pair`.
 pub(crate) fn build(pair: &Pair) -> (Meshes, TreeBuild) {
     let begin = nanoseconds();
     let meshes = Meshes::new(pair);

@@ -22,7 +22,6 @@ pub(crate) struct Parry {
 }
 
 impl Parry {
-    /// Builds the trees.
     pub(crate) fn new(pair: &Pair) -> Result<(Self, TreeBuild)> {
         let begin = nanoseconds();
         let parry = Self { a: mesh_to_parry(&pair.a)?, b: mesh_to_parry(&pair.b)? };

@@ -35,7 +35,6 @@ impl Table {
         Self { commits, ..self }
     }
 
-    /// The table in Markdown.
     pub(crate) fn markdown(&self) -> String {
         let line = |cells: &[String]| format!("| {} |", cells.join(" | "));
         let rule: Vec<String> = self.head.iter().map(|_| "---".to_owned()).collect();

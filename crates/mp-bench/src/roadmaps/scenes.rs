@@ -40,7 +40,6 @@ pub(super) const CORRIDORS: [Corridors; 2] = [
 ];
 
 impl Corridors {
-    /// The name of the corridor with this slack.
     pub(super) fn scene(&self, slack: f64) -> String {
         format!("{} {slack}", self.name)
     }

@@ -23,7 +23,6 @@ fn falls(points: &[(f64, f64)]) -> f64 {
     mp_math::exp(mp_math::ln(wide) + t * (mp_math::ln(narrow) - mp_math::ln(wide)))
 }
 
-/// The number in thousands.
 fn thousands(v: f64) -> String {
     if v < 10_000.0 { format!("{:.1}k", 1e-3 * v) } else { format!("{:.0}k", 1e-3 * v) }
 }

@@ -7,7 +7,6 @@ use crate::options::Common;
 use mp_experiments::rrs::{Case, PreparedWorld, Run, planned};
 use mp_scenes::source::disc_scenes::disc_scene;
 
-/// The worlds, by name.
 pub(super) const WORLDS: [&str; 4] = ["maze", "low", "high", "random"];
 
 /// The planners. Most take steps of exactly Δq, as the paper's algorithm says; those with `-upto` steps of at

@@ -48,7 +48,6 @@ const MOVES: [Moves; 10] = [
 ];
 /// The moves with which the paper's numbers agree best: its trees are drawn.
 const LIKE_THE_PAPER: Moves = Moves::Axes(20);
-/// The moves in charts.
 const IN_CHARTS: [Moves; 5] =
     [Moves::Straight(0.05), Moves::Straight(0.2), Moves::Axes(16), LIKE_THE_PAPER, Moves::Axes(24)];
 /// The moves that are started elsewhere as well.

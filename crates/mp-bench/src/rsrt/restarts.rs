@@ -61,7 +61,6 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// The cases of one problem and schedule.
     pub(super) fn runs(&self, problem: &str, schedule: &str) -> impl Iterator<Item = Case> {
         let [problem, schedule] = [problem, schedule].map(str::to_owned);
         (1..=self.seeds).map(move |seed| Case { problem: problem.clone(), schedule: schedule.clone(), seed })

@@ -103,7 +103,6 @@ impl<'b> Placed<'b> {
         self.column(0)
     }
 
-    /// Axis `k` in every lane.
     #[inline(always)]
     pub(crate) fn axis<L: Lanes>(&self, k: usize) -> [L; 3] {
         self.column(k + 1)

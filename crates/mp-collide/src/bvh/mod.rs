@@ -19,7 +19,6 @@ pub(crate) const WIDTH: usize = 8;
 /// Set in a reference to a leaf; the other bits are its index.
 pub(crate) const LEAF: u32 = 1 << 31;
 
-/// One value per lane.
 pub(crate) type Lane = [f32; WIDTH];
 
 /// The box of one node or leaf, in the centred frame of its tree. 64 bytes.
@@ -60,7 +59,6 @@ impl Node {
         child: [0; WIDTH],
     };
 
-    /// Makes `child`, with its box, the child in `lane`.
     pub(crate) fn set(&mut self, lane: usize, child: u32, obb: &NodeBox) {
         self.child[lane] = child;
         for d in 0..3 {

@@ -17,7 +17,6 @@ pub(crate) struct Found {
     pub(crate) distance: f64,
     /// The place on the other.
     pub(crate) on: Point3<f64>,
-    /// The point.
     pub(crate) point: Point3<f64>,
     /// The number of the triangle, or of the point of the other cloud.
     pub(crate) part: usize,

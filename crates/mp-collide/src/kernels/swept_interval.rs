@@ -22,7 +22,6 @@ impl Drift {
         Self { shift: shift.map(|x| x as f32).into(), turn: turn.map(|x| x as f32).into() }
     }
 
-    /// The drift of one point.
     #[inline(always)]
     pub(crate) fn at_point(&self, p: &Vector3<f64>) -> Vector3<f64> {
         let wide = |v: [f32; 3]| Vector3::from(v.map(f64::from));

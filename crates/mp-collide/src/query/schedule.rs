@@ -17,7 +17,6 @@ pub(crate) trait Schedule {
     }
 }
 
-/// A part of a motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MotionPart {
     /// From its first number to before its last.

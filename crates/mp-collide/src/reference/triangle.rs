@@ -62,7 +62,6 @@ pub(super) fn point_triangle(p: &Point3<f64>, t: &Triangle) -> f64 {
     to_point(p, t).norm()
 }
 
-/// The shortest vector from a triangle to a point.
 fn to_point(p: &Point3<f64>, t: &Triangle) -> Vector3<f64> {
     let (u, v) = (t[1] - t[0], t[2] - t[0]);
     let normal = u.cross(&v);
@@ -81,7 +80,6 @@ fn to_point(p: &Point3<f64>, t: &Triangle) -> Vector3<f64> {
     least.way
 }
 
-/// The shortest vector from a segment to a point.
 pub(super) fn from_segment(p: &Point3<f64>, a: &Point3<f64>, b: &Point3<f64>) -> Vector3<f64> {
     let (along, to_p) = (b - a, p - a);
     let reach = to_p.dot(&along);

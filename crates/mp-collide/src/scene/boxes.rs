@@ -80,7 +80,6 @@ impl Scene {
 struct FromBodies<'a> {
     cover: &'a Cover,
     placed: &'a mut WideCover,
-    /// Which bodies.
     near: &'a [u32],
     bodies: &'a [Option<Body>],
     enough: Wide,

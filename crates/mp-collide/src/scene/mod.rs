@@ -50,7 +50,7 @@ pub enum SceneError {
     /// No such body, or not any more.
     #[error("there is no body number {index} in the scene")]
     NoSuchBody {
-        /// The number.
+        /// The index that was asked for, counted from 0.
         index: usize,
     },
     /// More bodies than can be numbered.
@@ -78,7 +78,7 @@ impl Body {
         &self.name
     }
 
-    /// Its mesh.
+    /// Its triangles, in its own frame.
     #[must_use]
     pub fn mesh(&self) -> &CollisionMesh {
         &self.mesh
@@ -104,9 +104,9 @@ impl Body {
 /// A body something is in contact with, and how deep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
-    /// The body.
+    /// The body that is touched.
     pub body: BodyId,
-    /// Its name.
+    /// The name of the body.
     pub name: String,
     /// An estimate of the penetration depth (metres), see [`Query::depth`](crate::Query::depth).
     pub depth: f64,
@@ -222,7 +222,7 @@ impl Scene {
         Some(body)
     }
 
-    /// A body.
+    /// The body of this number; `None` if it was removed.
     #[must_use]
     pub fn body(&self, id: BodyId) -> Option<&Body> {
         self.bodies.get(id.index())?.as_ref()

@@ -23,13 +23,13 @@ impl<S> Default for PolylineEdge<S> {
 }
 
 impl<S> PolylineEdge<S> {
-    /// The straight edge.
+    /// A straight edge: it has no vertices between its ends.
     #[must_use]
     pub fn straight() -> Self {
         Self(None)
     }
 
-    /// The edge through `vertices`.
+    /// An edge that bends at `vertices`, in this order; its ends are not among them.
     #[must_use]
     pub fn through(vertices: &[S]) -> Self
     where

@@ -194,7 +194,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         self.space
     }
 
-    /// The local planner.
+    /// What proposes and checks motions between two states.
     #[must_use]
     pub fn local(&self) -> &L {
         &self.local

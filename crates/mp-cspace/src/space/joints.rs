@@ -15,7 +15,7 @@ pub trait Coordinates: Clone + Debug + PartialEq + Send + Sync {
     const COUNT: Option<usize>;
     /// The list of `f(0)`, `f(1)`, …, `f(count - 1)`; where [`COUNT`](Self::COUNT) is a number, of that many.
     fn from_fn(count: usize, f: impl FnMut(usize) -> f64) -> Self;
-    /// The coordinates.
+    /// The coordinates, in the order of the degrees of freedom.
     fn as_slice(&self) -> &[f64];
     /// The coordinates, mutable.
     fn as_mut_slice(&mut self) -> &mut [f64];

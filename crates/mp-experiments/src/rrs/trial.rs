@@ -29,7 +29,7 @@ pub type Point = Vector2<f64>;
 /// A case: a planner in a world.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Case {
-    /// The world, by name.
+    /// The name of the world.
     pub world: String,
     /// The planner, by name: `rrt`, `rrt-upto`, `rrt-connect`, `rrs`, `rrs-upto`, `rrs-paper` and
     /// `rrs-risk` in the field of that name, or `rrs-` and how it bends

@@ -77,7 +77,7 @@ pub struct OffDocument {
     pub colors: Vec<OffColor>,
     /// Texture coordinates of the vertices (`STOFF`): empty, or one for each.
     pub texture: Vec<[f64; 2]>,
-    /// The faces.
+    /// The faces, as indices of vertices.
     pub faces: Vec<OffFace>,
     /// The number of edges that the file states; readers do not use it.
     pub edges: Option<u64>,

@@ -49,7 +49,7 @@ const WALLS: u32 = u32::MAX - 1;
 /// The point of an obstacle's boundary that is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestToPoint {
-    /// The nearest point.
+    /// The point of the boundary, metres.
     pub point: Point2<f64>,
     /// Its distance, metres.
     pub distance: f64,
@@ -60,7 +60,7 @@ pub struct NearestToPoint {
 /// Where a segment and the boundary of an obstacle are nearest to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestToSegment {
-    /// The point on the segment.
+    /// The nearest point on the segment, metres.
     pub on_segment: Point2<f64>,
     /// The point on the boundary.
     pub point: Point2<f64>,

@@ -128,7 +128,6 @@ impl<'m> Model<'m> {
         self.sources.iter().position(|source| source.text.as_ptr() == text).unwrap_or_default()
     }
 
-    /// An error at `node`.
     pub(super) fn error(&self, node: Element<'m>, message: impl Into<String>) -> Error {
         let Source { file, text } = &self.sources[self.source(node)];
         let length = 1 + node.tag_name().name().len();
@@ -159,7 +158,6 @@ impl<'m> Model<'m> {
 /// The default classes: what elements say that do not say it themselves.
 #[derive(Default)]
 pub(super) struct Classes<'m> {
-    /// The number of a class, by its name.
     names: HashMap<&'m str, usize>,
     /// The class around each.
     around: Vec<usize>,
@@ -199,7 +197,6 @@ impl<'m> Classes<'m> {
         Ok(classes)
     }
 
-    /// The number of a class that `node` names.
     pub(super) fn number(&self, model: &Model<'m>, node: Element<'m>, name: &str) -> Result<usize, Error> {
         self.names.get(name).copied().ok_or_else(|| {
             let message = format!("there is no default class \"{}\"", clipped(name));

@@ -66,7 +66,6 @@ impl<'m> PairedGeoms<'m> {
         })
     }
 
-    /// The links of the pairs.
     fn links(&self) -> BTreeSet<(usize, usize)> {
         let link = |name: &str| self.links.get(name).copied();
         self.pairs.iter().filter_map(|[a, b]| Some(ordered(link(a)?, link(b)?))).collect()

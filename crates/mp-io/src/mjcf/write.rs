@@ -119,7 +119,6 @@ fn joint_text(reader: &Reader<'_, '_>, joint: &MjJoint<'_>) -> String {
     text + "</joint>"
 }
 
-/// The SRDF.
 pub(super) fn srdf(reader: &mut Reader<'_, '_>) -> Result<String, Error> {
     let [may_touch, kept_apart] = reader.link_pairs()?;
     let states = reader.keyframes()?;

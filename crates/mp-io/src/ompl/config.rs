@@ -20,7 +20,7 @@ pub struct OmplState {
 }
 
 impl OmplState {
-    /// The pose.
+    /// The pose in the world (m).
     #[must_use]
     pub fn pose(&self) -> Isometry3<f64> {
         let rotation = match Unit::try_new(self.axis, f64::EPSILON) {
@@ -34,7 +34,7 @@ impl OmplState {
 /// The content of the section `[problem]` of an OMPL.app problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OmplProblem {
-    /// `name`.
+    /// `name`: what the problem is called.
     pub name: Option<String>,
     /// `robot`: the mesh file of the robot.
     pub robot: String,
@@ -42,9 +42,9 @@ pub struct OmplProblem {
     pub world: Option<String>,
     /// The plane when neither z nor an axis is given, else space.
     pub space: SpaceKind,
-    /// `start.*`.
+    /// `start.*`: the pose of the robot at the start.
     pub start: OmplState,
-    /// `goal.*`.
+    /// `goal.*`: the pose of the robot at the goal.
     pub goal: OmplState,
     /// `volume.min.*` and `volume.max.*`, when all of them are given: lowest x, y, z, highest x, y, z of the
     /// position; z is 0 in the plane.

@@ -17,7 +17,7 @@ const MAX_BYTES: usize = 1 << 20;
 /// The content of the YAML file of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RosMap {
-    /// The name of the image.
+    /// The name of the image file, as the YAML file gives it.
     pub image: String,
     /// Metres per pixel.
     pub resolution: f64,

@@ -81,7 +81,6 @@ pub(super) struct RobotPlaces {
 }
 
 impl RobotPlaces {
-    /// Where a part of the robot is.
     pub(super) fn of(&self, part: RobotPart) -> &Range<usize> {
         match part {
             RobotPart::Srdf => &self.srdf,
@@ -99,13 +98,13 @@ impl RobotPlaces {
 /// A part of a robot in a [`RobotFile`](super::RobotFile) that an error can point at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RobotPart {
-    /// The name of the URDF.
+    /// The entry that names the URDF.
     Urdf,
-    /// The name of the SRDF.
+    /// The entry that names the SRDF.
     Srdf,
     /// The table `robot`.
     Robot,
-    /// The base.
+    /// The entry that places the base.
     Base,
     /// The limits of this index.
     Limits(usize),
@@ -381,7 +380,6 @@ pub(super) fn robots_of(
     Ok(robots)
 }
 
-/// The robot of one table.
 fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) -> Result<RobotEntry, Error> {
     let table = DriveTable::by_numbers(robot.kind, robot.duration, robot.speeds, robot.accelerations);
     let driven = table.read(source, &robot_span, &["velocities", "accelerations"])?;

@@ -15,9 +15,9 @@ use toml::Spanned;
 pub enum PartChange {
     /// An obstacle is attached to a link, as it is where it is.
     Attach {
-        /// The name of the obstacle.
+        /// The obstacle that is attached, by its name.
         obstacle: String,
-        /// The link.
+        /// The link that carries it from then on.
         link: String,
         /// The links that it may touch from then on.
         may_touch: Vec<String>,

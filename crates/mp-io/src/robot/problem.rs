@@ -107,7 +107,6 @@ impl RobotProblem {
     }
 }
 
-/// The robot number `i` of a file in `folder`.
 fn described(files: &dyn Files, folder: &Path, file: &RobotFile, i: usize) -> Result<DescribedRobot, Error> {
     let entry = &file.robots[i];
     let text = |part: RobotPart, name: &str| {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// An SRDF that was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FoundSrdf {
-    /// Where it is.
+    /// The path of the SRDF.
     pub file: PathBuf,
     /// Its content.
     pub text: String,

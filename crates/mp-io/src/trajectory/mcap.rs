@@ -41,7 +41,7 @@ pub struct Recording {
 /// A body of a [`Recording`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedBody {
-    /// Its name.
+    /// What the file calls it.
     pub name: String,
     /// Its shape, in its own frame.
     pub shape: RecordedShape,

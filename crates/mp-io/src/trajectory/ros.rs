@@ -156,7 +156,6 @@ pub(super) fn parse_yaml(
     made(file, message, wanted).map(Some)
 }
 
-/// The trajectory of a message.
 pub(super) fn made(file: &str, message: Message, wanted: &[Column]) -> Result<TrajectoryFile, Error> {
     let error = |message: String| Error::new(ErrorKind::Content, file, message).help(guide());
     let several = message.multi_dof_joint_trajectory.is_some_and(|joints| !joints.joint_names.is_empty());

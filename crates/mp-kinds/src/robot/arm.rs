@@ -48,9 +48,9 @@ pub trait LinkedSpace: Factored<State = Configuration> + TrueMetric + Clone + De
     fn of(arm: &Arm) -> Result<Self, Error>;
     /// The space under its own metric.
     fn measured(&self) -> Measured<'_>;
-    /// The configuration of a row.
+    /// The configuration whose numbers are in `row`, as paths have them.
     fn state(&self, row: &[f64]) -> Configuration;
-    /// The row of a configuration.
+    /// The numbers of a configuration, as paths have them.
     fn row(q: &Configuration) -> Vec<f64>;
     /// The pose of the base at a configuration, if it floats.
     fn base(q: &Configuration) -> Option<Isometry3<f64>>;
@@ -297,7 +297,7 @@ impl<C: LinkedSpace> LinkedScene<C> {
         &self.arm
     }
 
-    /// The obstacles.
+    /// The obstacles that stand still, each with its pose in the world.
     #[must_use]
     pub fn obstacle_bodies(&self) -> &[PlacedBody] {
         &self.obstacles

@@ -90,13 +90,13 @@ pub enum ModelFrame {
     },
     /// It turns about an axis, or slides along it.
     Joint {
-        /// The parent.
+        /// The index of the parent frame.
         parent: usize,
         /// Its pose there at value zero.
         origin: [f64; 7],
         /// The axis, of unit length, in its own frame.
         axis: [f64; 3],
-        /// Whether it slides.
+        /// Whether the joint slides along its axis; if not, it turns about it.
         slides: bool,
         /// The column of its value; none if it does not move.
         column: Option<usize>,
@@ -117,11 +117,11 @@ pub enum ModelFrame {
 /// A body: convex pieces, which are the hulls of some of its vertices.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelBody {
-    /// Its name.
+    /// What messages call it.
     pub name: String,
-    /// Its frame.
+    /// The index of the frame that carries it.
     pub frame: usize,
-    /// Whether it is one of the bodies of the robot.
+    /// Whether it belongs to the robot; if not, it is an obstacle.
     pub of_robot: bool,
     /// All that is within this distance of its pieces belongs to it, metres.
     pub radius: f64,
@@ -239,7 +239,7 @@ fn index(i: usize) -> u32 {
 pub struct ModelPair {
     /// The body of the robot.
     pub body: usize,
-    /// The others.
+    /// The indices of the bodies that it must not touch.
     pub others: Vec<usize>,
 }
 

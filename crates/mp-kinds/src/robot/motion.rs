@@ -27,7 +27,7 @@ pub trait TypedMotion: Sized {
     where
         Self: 'c;
 
-    /// The space.
+    /// The space of its configurations.
     fn space(&self) -> &Self::Space;
     /// The checker. Clone it to use it.
     fn checker(&self) -> &Self::Checker;
@@ -95,7 +95,7 @@ impl<'c> Counting<'c> {
         Self { exactly, ..self }
     }
 
-    /// The checker, counted.
+    /// `checker`, which counts its queries here and stops when it is interrupted.
     pub fn of<R: Queries>(&self, checker: R) -> Counted<'c, R> {
         let counted = Counted::new(checker, self.queries).with_interrupt(self.interrupt.clone());
         if self.exactly { counted.exactly() } else { counted }
@@ -137,9 +137,9 @@ pub fn motions<'c>(
 
 /// The motions of a robot among its obstacles, behind pointers: [`TypedMotion`] gives them.
 pub trait AnyMotion {
-    /// The space.
+    /// The space of its configurations, behind a pointer.
     fn any_space(&self) -> AnyFactored<'_, Configuration>;
-    /// A checker.
+    /// A new checker of configurations and motions, behind a pointer.
     fn any_checker(&self) -> AnyChecker;
     /// A checker that keeps no clearance: what it measures is the distance to obstacles itself.
     fn any_measure(&self) -> AnyChecker;

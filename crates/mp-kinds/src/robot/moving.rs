@@ -29,7 +29,7 @@ pub trait WithMoving:
 {
     /// Where it is: what the numbers of a configuration say.
     type Place: StateVector + Clone + Debug + PartialEq + Send + Sync;
-    /// The space of its places.
+    /// The space of its places, without time.
     type Places: Factored + Space<State = Self::Place> + Embed + Clone + Send + Debug + 'static;
     /// The robot among all of them: what planners check places at times with.
     type Among: Checker<(Self::Place, f64)> + Debug + 'static;
@@ -66,7 +66,7 @@ pub trait WithMoving:
     fn obstacle_speed(among: &Self::Among) -> f64;
     /// The trajectories of the moving obstacles.
     fn trajectories(among: &Self::Among) -> Vec<&Trajectory>;
-    /// The poses of the moving obstacles at a time.
+    /// The poses of the moving obstacles in the world at `time` (s).
     fn obstacle_poses(among: &Self::Among, time: f64) -> Vec<Isometry3<f64>>;
     /// The indices of the moving obstacles that the robot touches.
     fn touched(among: &mut Self::Among, q: &(Self::Place, f64)) -> Vec<usize>;

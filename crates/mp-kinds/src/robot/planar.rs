@@ -42,7 +42,7 @@ pub trait PlanarBody:
     + Debug
     + 'static
 {
-    /// A configuration.
+    /// A configuration: a position, with an angle if the robot turns.
     type State: StateVector + Clone + Debug + PartialEq + Send + Sync + PlanarConfiguration + 'static;
     /// The space of configurations.
     type Space: Factored + Space<State = <Self as PlanarBody>::State> + Embed + Clone + Send + Debug + 'static;
@@ -67,7 +67,7 @@ pub trait PlanarBody:
     fn space(bounds: [[f64; 2]; 2]) -> Result<Self::Space, Error>;
     /// The space under its own metric.
     fn measured(space: &AsVectors<Self::Space>) -> Measured<'static>;
-    /// A verifier.
+    /// The verifier of the motions of this robot in `space`.
     fn verifier<'c>(&self, space: &'c Self::Space) -> Self::Verifier<'c>;
     /// A verifier among areas that move.
     fn moving_verifier<'c>(

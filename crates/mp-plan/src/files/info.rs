@@ -18,11 +18,11 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Info {
-    /// A mesh.
+    /// A mesh: its surface, size and volume.
     Mesh(MeshInfo),
     /// A scene of any kind.
     Scene(SceneInfo),
-    /// A path.
+    /// A path: its configurations and its length.
     Path(PathInfo),
 }
 
@@ -67,7 +67,6 @@ impl fmt::Display for Info {
     }
 }
 
-/// The kind of content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum FileContent {
     Mesh,

@@ -10,7 +10,7 @@ use std::path::Path;
 /// The pairs of links of the robot in a file, from [`sampled`](Self::sampled).
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotPairs {
-    /// The name of the robot.
+    /// The name of the robot in its file.
     pub robot: String,
     /// How often links touch.
     pub pairs: SampledPairs,

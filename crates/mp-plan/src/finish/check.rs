@@ -13,13 +13,13 @@ use serde::{Deserialize, Serialize};
 /// The result of checking a path. `mp check --json` prints its JSON form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The name of the scene.
+    /// The name of the scene that the path was checked in.
     pub scene: String,
-    /// The name of the path.
+    /// What messages call the path, such as its file; empty until the caller names it.
     pub path: String,
     /// Whether the path is free all along and leads from the start of the scene to a goal.
     pub free: bool,
-    /// The number of configurations.
+    /// How many configurations the path has.
     pub configurations: usize,
     /// The length of the path, in the metric of the space.
     pub path_length: f64,

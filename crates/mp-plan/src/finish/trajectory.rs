@@ -56,7 +56,7 @@ pub struct TightCorner {
 /// A path with times, whose curve is proved free.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedPath {
-    /// The trajectory.
+    /// The points of the path with their times, and the curve between them.
     pub trajectory: Trajectory,
     /// How many corners the path has.
     pub corners: usize,
@@ -363,7 +363,7 @@ pub struct TrajectoryVerdict {
 /// A limit that a trajectory exceeds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LimitFault {
-    /// The joint.
+    /// The name of the joint.
     pub joint: String,
     /// `position`, `velocity`, `acceleration` or `jerk`: the change of the acceleration in a millisecond.
     pub of: String,
@@ -491,7 +491,6 @@ fn moving_ends(trajectory: &Trajectory) -> Option<String> {
     Some(format!("the trajectory {when} while {name} moves: what the robot does there was not looked at"))
 }
 
-/// What a trajectory reaches of each that has limits.
 const REACHED: [fn(&Trajectory, usize) -> Extreme; 3] =
     [Trajectory::fastest, Trajectory::hardest, Trajectory::jerkiest];
 

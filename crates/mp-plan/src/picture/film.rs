@@ -14,7 +14,7 @@ const MAX_FRAMES: f64 = 100_000.0;
 /// How many frames the palette of a GIF is made from.
 const PALETTE_FRAMES: usize = 8;
 
-/// A kind of film.
+/// A format of films.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FilmKind {
     /// An animated GIF: at most 255 colours, plays everywhere, repeats.
@@ -72,7 +72,7 @@ impl Film {
         }
     }
 
-    /// The number of frames.
+    /// How many frames the film has: its seconds times its rate, within limits.
     #[must_use]
     pub fn frames(&self) -> usize {
         (self.seconds * self.rate).round().clamp(1.0, MAX_FRAMES) as usize

@@ -25,7 +25,6 @@ pub fn meta_planners() -> &'static [mp_tree::MetaPlanner] {
     mp_tree::meta_planners()
 }
 
-/// A planner by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum PlannerKind {
     /// The portfolio [`auto`].

@@ -89,7 +89,6 @@ impl RoadmapFile<'_> {
         }
     }
 
-    /// Writes the roadmap to the file.
     pub(crate) fn write(&self, map: &Roadmap<Configuration>) -> Result<(), Error> {
         Ok(mp_store::write(self.path, &map.to_bytes(self.fingerprint))?)
     }

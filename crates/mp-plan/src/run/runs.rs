@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// A summary of the runs on one scene. Medians are over the solved runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Medians {
-    /// The name of the scene.
+    /// The name of the scene that these runs are of.
     pub scene: String,
     /// Runs made, solved or not.
     pub runs: usize,

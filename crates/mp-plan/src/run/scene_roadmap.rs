@@ -25,7 +25,6 @@ const NEIGHBOURS: usize = 20;
 /// [`Scene::roadmap`](crate::Scene::roadmap) builds it. It owns all its data and may be sent to another thread.
 pub struct SceneRoadmap {
     pub(crate) roadmap: RobotRoadmap,
-    /// The file of the scene.
     pub(crate) file: Option<String>,
 }
 
@@ -80,7 +79,7 @@ impl SceneRoadmap {
         self.roadmap.verify()
     }
 
-    /// The number of nodes.
+    /// How many configurations it holds.
     #[must_use]
     pub fn nodes(&self) -> usize {
         self.roadmap.size()[0]

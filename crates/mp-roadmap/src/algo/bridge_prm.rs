@@ -83,7 +83,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: crate::engine::settings::UNDIRECTED,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let parts = Pairs::<BetweenObstacles>::read(args.space, args.settings, MIXING)?;
     args.build(parts)

@@ -92,7 +92,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: UNDIRECTED,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let count = |parameter| Ok::<_, BuildError>(args.settings.count_of(parameter)? as usize);
     let pace = Pace { first: count(&FIRST)?, more: count(&MORE)? };

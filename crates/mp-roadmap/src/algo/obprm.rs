@@ -230,7 +230,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: crate::engine::settings::UNDIRECTED,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let (geometry, reach) = (args.geometry(INFO.name)?, reachable(args.space, args.settings)?);
     let parts = parts(args.space, geometry, reach, OnSurfaces::read(args.settings)?)?;

@@ -207,7 +207,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: crate::engine::settings::UNDIRECTED,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let (geometry, settings) = (args.geometry(INFO.name)?, args.settings);
     let parts = parts(geometry, reachable(args.space, settings)?, ByGeometry::read(settings)?)?;

@@ -161,7 +161,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: crate::engine::settings::UNDIRECTED,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let reach = reachable(args.space, args.settings)?;
     let parts = parts(args.space, reach, Learning::read(args.settings)?)?;

@@ -74,7 +74,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: UNDIRECTED,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let parts = parts(args.space, args.settings.number(FACTOR.name)?.unwrap_or(1.1))?;
     args.build(parts)

@@ -170,7 +170,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: UNDIRECTED,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let generator = InRegions::read(args.space, args.index(), args.settings)?;
     let connector = generator.connector.clone();

@@ -77,7 +77,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: UNDIRECTED,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let parts = parts(args.space, args.settings.count_of(&FAILURES)?)?;
     args.build(parts)

@@ -44,7 +44,7 @@ where
         self.checker.space()
     }
 
-    /// The roadmap that grows.
+    /// The roadmap, to which nodes and edges are added.
     pub fn map(&mut self) -> &mut Roadmap<C::State, L::Edge> {
         self.map
     }

@@ -77,7 +77,7 @@ pub enum RoadmapError {
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {error}", path.display())]
 pub struct RoadmapFileError {
-    /// The file.
+    /// The path of the file.
     pub path: PathBuf,
     /// What went wrong.
     pub error: RoadmapError,

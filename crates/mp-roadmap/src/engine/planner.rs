@@ -96,7 +96,7 @@ where
         self.builder.map()
     }
 
-    /// The builder of the roadmap.
+    /// What builds the roadmap.
     #[must_use]
     pub fn builder(&self) -> &Builder<'c, C, L, G, K, N> {
         &self.builder

@@ -38,7 +38,6 @@ pub(crate) type Prefetched<S, E> = Vec<PrefetchedMotion<S, E>>;
 pub(crate) struct PrefetchedAttempt<S, E> {
     /// The candidates, with the motions prefetched for each.
     pub(crate) candidates: Vec<(Candidate<S, E>, Prefetched<S, E>)>,
-    /// The piece that it made.
     pub(crate) piece: Option<Piece<S, E>>,
     /// How many queries it took to generate them.
     pub(crate) queries: u64,
@@ -93,7 +92,7 @@ where
         near
     }
 
-    /// The component of a node.
+    /// The component of a node, named by one of its nodes.
     #[must_use]
     pub fn component(&self, id: NodeId) -> NodeId {
         self.map.component_now(id)

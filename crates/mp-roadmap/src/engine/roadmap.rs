@@ -101,7 +101,7 @@ impl EdgeId {
     }
 }
 
-/// An edge.
+/// An edge of a roadmap, with what is known of its motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link<E> {
     /// The motion from the source of the edge to its target; `None` while it is not checked.

@@ -14,13 +14,13 @@ pub enum ArmError {
     Duplicate {
         /// "link" or "joint".
         what: &'static str,
-        /// The name.
+        /// The name that both have.
         name: String,
     },
     /// A joint names a link that does not exist.
     #[error("joint \"{joint}\" has the {role} link \"{link}\", but there is no link of that name")]
     UnknownLink {
-        /// The joint.
+        /// The name of the joint.
         joint: String,
         /// "parent" or "child".
         role: &'static str,
@@ -36,7 +36,7 @@ pub enum ArmError {
         first: String,
         /// The other.
         second: String,
-        /// The one that is missing.
+        /// The name that no link has.
         missing: String,
     },
     /// The work was interrupted.
@@ -55,7 +55,7 @@ pub enum ArmError {
         "no joint of this arm moves by itself: give one of {joints}, whose limits are equal, room to move"
     )]
     AllHeld {
-        /// The joints.
+        /// The names of the joints whose limits are equal.
         joints: String,
     },
     /// A joint of a robot whose base moves is called like a number of the pose of the base.
@@ -64,7 +64,7 @@ pub enum ArmError {
          another name"
     )]
     BaseName {
-        /// The joint.
+        /// The name of the joint.
         joint: String,
         /// The names of those numbers.
         taken: String,
@@ -81,7 +81,7 @@ pub enum ArmError {
          a closed chain has to be cut at one of them"
     )]
     TwoParents {
-        /// The link.
+        /// The name of the link.
         link: String,
         /// The first joint.
         first: String,
@@ -112,7 +112,7 @@ pub enum ArmError {
     /// The axis of a joint that moves has no direction.
     #[error("the axis of joint \"{joint}\" is {x} {y} {z}: it must have a direction")]
     Axis {
-        /// The joint.
+        /// The name of the joint.
         joint: String,
         /// Its axis.
         x: f64,
@@ -126,7 +126,7 @@ pub enum ArmError {
     Origin {
         /// "joint" or "link" or "base".
         what: &'static str,
-        /// Its name.
+        /// The name of the joint or link; empty for the base.
         name: String,
         /// The largest possible.
         max: f64,
@@ -137,7 +137,7 @@ pub enum ArmError {
          both finite; make the joint continuous if it turns without end"
     )]
     Limits {
-        /// The joint.
+        /// The name of the joint.
         joint: String,
         /// Its lower limit (rad or m).
         low: f64,
@@ -155,7 +155,7 @@ pub enum ArmError {
     /// A joint shall be held where it cannot be.
     #[error("joint \"{joint}\" shall be held at {value}, but may be from {low} to {high}")]
     Held {
-        /// The joint.
+        /// The name of the joint.
         joint: String,
         /// Where it shall be held (rad or m).
         value: f64,
@@ -169,7 +169,7 @@ pub enum ArmError {
     Attached {
         /// What shall be attached.
         name: String,
-        /// The link.
+        /// The name of the link that should carry it.
         link: String,
         /// Why it cannot be.
         why: String,
@@ -177,7 +177,7 @@ pub enum ArmError {
     /// A joint cannot mimic another.
     #[error("joint \"{joint}\" mimics \"{of}\": {why}")]
     Mimic {
-        /// The joint.
+        /// The name of the joint that mimics.
         joint: String,
         /// The one it names.
         of: String,
@@ -187,7 +187,7 @@ pub enum ArmError {
     /// A link is too large to compute with.
     #[error("link \"{link}\" is too large or too far away: {radius:e} m; at most {max:e} m can be handled")]
     TooLarge {
-        /// The link.
+        /// The name of the link.
         link: String,
         /// Its size.
         radius: f64,
@@ -240,7 +240,7 @@ pub enum UrdfError {
         what: &'static str,
         /// Where its first element is.
         line: u32,
-        /// Its format.
+        /// The other format, as messages call it.
         format: &'static str,
         /// What to do about it.
         remedy: &'static str,
@@ -256,9 +256,9 @@ pub enum UrdfError {
     Kind {
         /// Where it is in the text.
         line: u32,
-        /// The joint.
+        /// The name of the joint.
         joint: String,
-        /// Its kind.
+        /// The type that the file gives it.
         kind: &'static str,
     },
     /// A collision shape is not valid.
@@ -266,7 +266,7 @@ pub enum UrdfError {
     Shape {
         /// Where it is in the text.
         line: u32,
-        /// The link.
+        /// The name of the link.
         link: String,
         /// The number of the shape in the link, counted from 1.
         number: usize,

@@ -11,7 +11,7 @@ use rand::RngExt;
 /// A link in contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmContact {
-    /// The link.
+    /// The name of the link.
     pub link: String,
     /// What it touches: an obstacle or another link.
     pub other: String,
@@ -24,7 +24,7 @@ pub struct ArmContact {
 /// What is nearest to each other at a configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmGap {
-    /// The link.
+    /// The name of the link.
     pub link: String,
     /// What it is near: an obstacle or another link.
     pub other: String,

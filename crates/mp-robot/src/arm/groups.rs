@@ -5,12 +5,12 @@ use super::{ArmModel, JointKind, UrdfError};
 use roxmltree::Node;
 use std::collections::BTreeSet;
 
-/// A state with a name.
+/// A named state of an SRDF: values for the joints of a group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedState {
-    /// Its name.
+    /// The name of the state.
     pub name: String,
-    /// The group that it is of.
+    /// The name of the group that it sets.
     pub group: String,
     /// Joints and their values (rad or m).
     pub values: Vec<(String, f64)>,
@@ -97,7 +97,7 @@ impl SrdfGroups {
         self.groups.iter().map(|(name, _)| name.as_str())
     }
 
-    /// The states.
+    /// The named states, of all groups.
     #[must_use]
     pub fn states(&self) -> &[NamedState] {
         &self.states

@@ -23,7 +23,7 @@ pub enum FreeTurn {
 /// A place that a link is to have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseGoal {
-    /// The name of the link.
+    /// The link that is to be there, by its name.
     pub link: String,
     /// Where it is to be, in the world.
     pub pose: Isometry3<f64>,

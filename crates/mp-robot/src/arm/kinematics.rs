@@ -43,7 +43,7 @@ pub struct Coordinate {
 /// A link, and where it is fixed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttachedLink {
-    /// Its name.
+    /// The name of the link.
     pub name: String,
     /// The frame it is fixed to: 0 is the base, `i + 1` the frame of the joint `i`.
     pub frame: usize,

@@ -7,7 +7,7 @@ use nalgebra::{Isometry3, Vector3};
 /// A rigid part of an arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// Its name.
+    /// The name of the link, one of a kind in its arm.
     pub name: String,
     /// The meshes that can collide, in the frame of the link. Empty for links that only carry joints.
     pub shapes: Vec<TriMesh>,
@@ -81,7 +81,7 @@ pub struct Mimic {
 /// A joint between two links.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Its name.
+    /// The name of the joint, one of a kind in its arm.
     pub name: String,
     /// The parent link.
     pub parent: String,
@@ -149,7 +149,7 @@ impl Joint {
         self
     }
 
-    /// Sets the axis.
+    /// Sets the axis, in the frame of the child. Its length does not matter, but must not be zero.
     #[must_use]
     pub fn axis(mut self, axis: Vector3<f64>) -> Self {
         self.axis = axis;

@@ -22,7 +22,7 @@ pub enum TrajectoryError {
     NotAfter {
         /// The index of the timed pose.
         index: usize,
-        /// Its time (s).
+        /// The time (s) that it is given.
         time: f64,
     },
 }

@@ -17,7 +17,7 @@ const SHORTEST: f64 = 1e-12;
 
 /// A robot of the plane that can be among areas that move: [`DiscRobot`] or [`PolygonRobot`].
 pub trait PlanarRobot: Validity<Self::Configuration> + MotionClearance<Self::Configuration> + Clone {
-    /// A configuration.
+    /// Where the robot is: a position, with an angle if it turns.
     type Configuration: Clone;
 
     /// The same robot in another world.
@@ -25,7 +25,7 @@ pub trait PlanarRobot: Validity<Self::Configuration> + MotionClearance<Self::Con
     /// # Errors
     /// Those of making a robot.
     fn in_world(&self, world: PlanarWorld) -> Result<Self, ParameterError>;
-    /// The configuration as it is seen from a frame.
+    /// `q`, given in the world, as it is in the coordinates of `frame`.
     fn seen_from(frame: &Isometry2<f64>, q: &Self::Configuration) -> Self::Configuration;
     /// The pose of the robot's frame.
     fn place(q: &Self::Configuration) -> Isometry2<f64>;
@@ -101,7 +101,6 @@ impl PlanarRobot for PolygonRobot {
     }
 }
 
-/// An area that moves.
 #[derive(Clone, Debug)]
 struct MovingArea {
     trajectory: Trajectory,
@@ -259,7 +258,7 @@ pub struct MovingAreasVerifier<'c, C, V> {
 }
 
 impl<'c, C> MovingAreasVerifier<'c, C, DiscVerifier> {
-    /// A verifier for a disc in `space`.
+    /// The verifier of a disc that moves in `space`.
     #[must_use]
     pub fn of_disc(space: &'c SpaceTime<C>, robot: &AmongMovingAreas<DiscRobot>) -> Self {
         Self::new(space, robot, DiscVerifier::new)
@@ -267,7 +266,7 @@ impl<'c, C> MovingAreasVerifier<'c, C, DiscVerifier> {
 }
 
 impl<'c, C: Space<State = Se2State>> MovingAreasVerifier<'c, C, PolygonVerifier<'c, C>> {
-    /// A verifier for a polygon in `space`.
+    /// The verifier of a polygon that moves in `space`.
     #[must_use]
     pub fn of_polygon(space: &'c SpaceTime<C>, robot: &AmongMovingAreas<PolygonRobot>) -> Self {
         Self::new(space, robot, |robot| PolygonVerifier::new(space.positions(), robot))
@@ -295,7 +294,7 @@ impl<'c, C, V> MovingAreasVerifier<'c, C, V> {
 pub trait PlanarConfiguration: Clone {
     /// The configuration as it is seen from a frame with this origin and angle.
     fn seen_in(&self, origin: Vector2<f64>, angle: f64) -> Self;
-    /// Its position and its angle.
+    /// The position (m) of its origin and its angle (rad); zero for a robot that does not turn.
     fn position_and_angle(&self) -> (Vector2<f64>, f64);
 }
 

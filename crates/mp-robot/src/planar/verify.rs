@@ -22,7 +22,7 @@ pub struct DiscVerifier {
 }
 
 impl DiscVerifier {
-    /// A verifier for `robot`.
+    /// A verifier of the motions of `robot`, with its own copy of the obstacles.
     #[must_use]
     pub fn new(robot: &DiscRobot) -> Self {
         let obstacles = Arc::new(EdgeList::new(robot.world()));
@@ -103,7 +103,7 @@ pub struct PolygonVerifier<'c, C> {
 }
 
 impl<'c, C: Space<State = Se2State>> PolygonVerifier<'c, C> {
-    /// A verifier for `robot` in `space`.
+    /// A verifier of the motions of `robot` in `space`, with its own copy of the obstacles.
     #[must_use]
     pub fn new(space: &'c C, robot: &PolygonRobot) -> Self {
         let obstacles = Arc::new(EdgeList::new(robot.world()));

@@ -7,7 +7,6 @@ use std::collections::BTreeSet;
 
 type Cube = [i32; 3];
 
-/// The cubes of the hook.
 const HOOK: [Cube; 5] = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0], [2, 1, 1]];
 /// The moves that take it out: an axis, a direction, a number of steps. The last one goes upwards through the top.
 const MOVES: [(usize, i32, i32); 7] =

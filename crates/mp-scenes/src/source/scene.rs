@@ -57,7 +57,6 @@ impl Scene {
         self
     }
 
-    /// Sets start and goal.
     pub(super) fn query(mut self, start: Six, goal: Six) -> Self {
         (self.start, self.goal) = (start, goal);
         self

@@ -102,9 +102,9 @@ pub struct Mover {
 pub struct Timing {
     /// The greatest speed (m/s; a radian counts as half a metre); none where inputs bound it.
     pub speed: Option<f64>,
-    /// The time (s) at the start.
+    /// When the robot is at the start (s).
     pub start: f64,
-    /// The time (s) at the goal.
+    /// The earliest and the latest arrival at the goal (s).
     pub goal: [f64; 2],
 }
 
@@ -113,7 +113,7 @@ pub struct Timing {
 pub struct Case {
     /// How the numbers of a configuration place the robot.
     pub moves: Moves,
-    /// The bodies of the robot.
+    /// The bodies of the robot; `moves` places them.
     pub robot: Vec<Body>,
     /// Pairs of bodies of the robot that must not touch.
     pub pairs: Vec<[usize; 2]>,

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 /// What a goal asks of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ask {
-    /// This value.
+    /// The number must be this.
     Exactly(f64),
     /// A value in this interval.
     Between([f64; 2]),

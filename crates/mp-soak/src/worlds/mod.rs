@@ -35,12 +35,12 @@ impl World {
     }
 }
 
-/// A kind of world.
+/// A kind of world that is drawn, such as boxes or an arm.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     /// The word for it on the command line and in tallies.
     pub name: &'static str,
-    /// What it is.
+    /// What such a world holds, in a sentence.
     pub summary: &'static str,
     /// How often it is drawn, beside the others.
     pub weight: u32,
@@ -69,7 +69,7 @@ impl Kind {
         KINDS.iter().find(|kind| kind.name == name)
     }
 
-    /// One of all kinds.
+    /// A kind drawn at random, by the weights.
     pub fn drawn(draw: &mut Draw) -> &'static Self {
         let mut left = draw.below(KINDS.iter().map(|kind| kind.weight as usize).sum());
         for kind in &KINDS {

@@ -89,7 +89,6 @@ impl Room {
         }
     }
 
-    /// A place in the room.
     fn place(&self, draw: &mut Draw) -> [f64; 3] {
         [0, 1, 2].map(|i| draw.within(self.low[i], self.high[i]))
     }
@@ -103,7 +102,6 @@ impl Room {
         [x, y, z, a, b, c]
     }
 
-    /// A configuration in the room.
     fn configuration(&self, draw: &mut Draw) -> Vec<f64> {
         let [x, y, z] = self.place(draw);
         let [a, b, c] = turned(draw);

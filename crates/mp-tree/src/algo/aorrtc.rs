@@ -79,7 +79,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: NEEDS_BOTH_ENDS,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     Ok(Box::new(Aorrtc::with_index(args.problem, args.index, args.tuning)?))
 }

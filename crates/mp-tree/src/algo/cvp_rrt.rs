@@ -70,7 +70,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let problem = moved_by_inputs(args.problem, &args.tuning, args.settings)?;
     Ok(Box::new(CvpRrt::with_index(problem, args.index, args.tuning)?))

@@ -88,7 +88,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let tolerance = args.settings.part_of(&TOLERANCE)?;
     Ok(Box::new(CyclicRrt::with_index(args.problem, args.index, args.tuning, tolerance)?))

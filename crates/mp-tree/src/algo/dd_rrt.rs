@@ -90,7 +90,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: NEEDS_BOTH_ENDS,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let domain = Domain::fixed().read(args.settings)?;
     Ok(Box::new(DdRrt::with_index(args.problem, args.index, args.tuning, domain)?))
@@ -125,7 +124,6 @@ pub mod adaptive {
         cannot: NEEDS_BOTH_ENDS,
     };
 
-    /// Makes it by name.
     pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
         let domain = Domain::adaptive().read(args.settings)?;
         Ok(Box::new(DdRrt::with_index(args.problem, args.index, args.tuning, domain)?))

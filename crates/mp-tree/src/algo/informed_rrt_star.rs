@@ -67,7 +67,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let near = near(args.settings)?;
     Ok(Box::new(InformedRrtStar::with_index(args.problem, args.index, args.tuning, near)?))

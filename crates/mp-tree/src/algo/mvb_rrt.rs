@@ -77,7 +77,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: NEEDS_BOTH_ENDS,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let samples = args.settings.count_of(&SAMPLES)?;
     Ok(Box::new(MvbRrt::with_index(args.problem, args.index, args.tuning, samples)?))

@@ -121,7 +121,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let mut problem = args.problem;
     let hints = problem.take_obstacles().hints.ok_or(BuildError::NoHints { planner: INFO.name })?;
@@ -359,7 +358,6 @@ pub mod connect {
         cannot: NEEDS_BOTH_ENDS,
     };
 
-    /// Makes it by name.
     pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
         let mut problem = args.problem;
         let hints = problem.take_obstacles().hints.ok_or(BuildError::NoHints { planner: INFO.name })?;

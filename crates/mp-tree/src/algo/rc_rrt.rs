@@ -76,7 +76,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let apart = apart(args.problem.space(), &args.tuning, args.settings)?;
     let problem = moved_by_inputs(args.problem, &args.tuning, args.settings)?;

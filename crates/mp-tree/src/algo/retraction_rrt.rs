@@ -86,7 +86,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: NEEDS_BOTH_ENDS,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let mut problem = args.problem;
     let gradient = problem.take_obstacles().gradient.ok_or(BuildError::NoGradient { planner: INFO.name })?;

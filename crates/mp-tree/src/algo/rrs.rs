@@ -165,7 +165,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let problem = with_bending_edges(INFO.name, args.problem, args.settings)?;
     Ok(Box::new(Flattened(Rrs::with_index(problem, args.index, args.tuning)?)))
@@ -191,7 +190,6 @@ pub mod connect {
         cannot: NEEDS_BOTH_ENDS,
     };
 
-    /// Makes it by name.
     pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
         if !args.problem.goals().can_aim() {
             return Err(BuildError::NoGoalState { planner: INFO.name });

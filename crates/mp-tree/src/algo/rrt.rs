@@ -58,7 +58,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     Ok(Box::new(Rrt::with_index(args.problem, args.index, args.tuning)?))
 }

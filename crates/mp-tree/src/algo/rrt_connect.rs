@@ -101,7 +101,6 @@ macro_rules! two_trees {
                 cannot: NEEDS_BOTH_ENDS,
             };
 
-            /// Makes it by name.
             pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
                 Ok(Box::new($variant::with_index(args.problem, args.index, args.tuning)?))
             }

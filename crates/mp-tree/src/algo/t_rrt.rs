@@ -124,7 +124,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let (mut problem, settings) = (args.problem, args.settings);
     let known = problem.take_obstacles();

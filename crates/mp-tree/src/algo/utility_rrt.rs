@@ -80,7 +80,6 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: NEEDS_BOTH_ENDS,
 };
 
-/// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let candidates = args.settings.count_of(&CANDIDATES)?;
     Ok(Box::new(UtilityRrt::with_index(args.problem, args.index, args.tuning, candidates)?))

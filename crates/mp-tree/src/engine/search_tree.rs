@@ -28,7 +28,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         self.index
     }
 
-    /// The nodes and edges.
+    /// The nodes, with the edges to their parents.
     #[must_use]
     pub fn nodes(&self) -> &Tree<C::State, L::Edge> {
         &self.tree
@@ -48,7 +48,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         !self.tree.is_empty() && self.selector.exhausted()
     }
 
-    /// The states of the tree and its selector.
+    /// The states of all nodes, and the selector, to be used together.
     pub fn parts(&mut self) -> (&[C::State], &mut Se) {
         (self.tree.states(), &mut self.selector)
     }

@@ -32,7 +32,6 @@ fn closed() -> Boxes<2> {
     hollow([0.9, 0.2], 0.05, 0.02, 0.0)
 }
 
-/// The outcome and the progress of a run.
 type RunResult = (Outcome<Path<Point>>, Progress);
 
 fn solve(planner: &mut impl Planner<Point, Edge = ()>, seed: u64, iterations: u64) -> RunResult {

@@ -219,7 +219,6 @@ fn bad_input_is_refused() {
     assert!(matches!(made, Err(BuildError::Unmade { .. })));
 }
 
-/// By name, the same planner.
 #[test]
 fn by_name_it_is_the_same() {
     let (space, boxes) = (square(), slit(0.2, 0.8, 0.04));

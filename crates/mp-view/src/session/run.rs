@@ -242,6 +242,5 @@ impl<'p> Driver<'p> {
 pub(crate) struct Advanced {
     /// Whether the search is over.
     pub(crate) over: bool,
-    /// What is left of the order.
     pub(crate) left: Order,
 }

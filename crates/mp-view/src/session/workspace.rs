@@ -460,7 +460,6 @@ impl Workspace {
     }
 }
 
-/// The shipped scene of this name.
 fn shipped(name: &str) -> Result<Scene, Error> {
     match Scene::shipped().contains(&name) {
         true => Scene::find(name),

@@ -5,7 +5,6 @@ use mp_view::{Bends, PathTrack, Roadmap, Role, SceneFile, Tree, ViewError};
 use proptest::prelude::*;
 use std::sync::OnceLock;
 
-/// A planned scene.
 fn planned(name: &str) -> (Scene, SceneFile) {
     let scene = Scene::find(name).unwrap();
     let report = scene.plan(&Request::new("rrt-connect").seed(1)).unwrap();

@@ -88,7 +88,6 @@ fn side(p: &Vector3<f64>, q: &Vector3<f64>, r: &Vector3<f64>) -> Option<Ordering
     (volume.abs() > VOLUME * size + UNDERFLOW).then(|| volume.total_cmp(&0.0))
 }
 
-/// Whether the triangles meet, exactly.
 pub(crate) fn meet_exactly(a: &Triangle, b: &Triangle, sides: &Sides) -> bool {
     let [a, b] = integers(a, b);
     triangles_meet(&a, &b, |i, j, k| sides.0[i][j][k])

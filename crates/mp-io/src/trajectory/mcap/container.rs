@@ -172,7 +172,6 @@ impl<'a> Content<'a> {
 /// What is read so far.
 #[derive(Default)]
 struct Reading {
-    /// The number and the name of each schema.
     schemas: Vec<(u16, String)>,
     /// The number, the schema, the topic and the encoding of each channel.
     channels: Vec<(u16, u16, String, String)>,

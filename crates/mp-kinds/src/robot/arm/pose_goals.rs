@@ -19,7 +19,7 @@ const AT_LEAST: u64 = 100;
 pub struct Reached {
     /// The values of the joints.
     pub row: Vec<f64>,
-    /// Whether it is free.
+    /// Whether the configuration is free of collisions.
     pub free: bool,
 }
 

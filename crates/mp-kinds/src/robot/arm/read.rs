@@ -24,7 +24,6 @@ impl One<'_> {
     }
 }
 
-/// The robots of a problem.
 fn robots(problem: &RobotProblem) -> impl Iterator<Item = One<'_>> {
     let all = problem.file.robots.iter().zip(&problem.robots).enumerate();
     all.map(move |(index, (entry, described))| One { problem, index, entry, described })

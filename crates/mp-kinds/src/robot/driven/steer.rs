@@ -259,7 +259,6 @@ impl DrivenScene {
         Path::straight(states.iter().map(|state| system.vector(state)).collect())
     }
 
-    /// Whether a state is at a goal.
     fn is_at_goal(&self, state: &Parts) -> bool {
         let q = self.space.system.vector(state);
         let rounding = ROUNDING * self.space.extent().max(1.0);

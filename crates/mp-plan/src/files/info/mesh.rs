@@ -25,9 +25,9 @@ pub struct MeshInfo {
 pub struct Surface {
     /// Always `metres`.
     pub units: &'static str,
-    /// The number of triangles.
+    /// How many triangles it has.
     pub triangles: usize,
-    /// The number of vertices.
+    /// How many vertices it has.
     pub vertices: usize,
     /// The lower corner of the box around it.
     pub min: [f64; 3],

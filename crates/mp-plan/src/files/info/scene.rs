@@ -10,9 +10,9 @@ use std::fmt;
 /// What is in a scene of any kind. Metres and radians.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneInfo {
-    /// The file.
+    /// The path of its file; `None` for a scene that was made in the program.
     pub file: Option<String>,
-    /// Its name.
+    /// What messages and pictures call the scene.
     pub name: String,
     /// The configuration space: `SE3`, `SE2`, `R2`, `6 joints`.
     pub space: String,
@@ -39,9 +39,9 @@ pub struct SceneInfo {
 /// The meaning of one number of a configuration.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ColumnInfo {
-    /// Its name.
+    /// The name of the joint or coordinate.
     pub name: String,
-    /// Its unit.
+    /// The unit of the number: `m`, `rad`, ….
     pub unit: String,
     /// The least and the largest value; none for an angle without limits.
     pub limits: Option<[f64; 2]>,
@@ -50,13 +50,13 @@ pub struct ColumnInfo {
 /// The properties of a body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BodyInfo {
-    /// Its name.
+    /// What messages call the body.
     pub name: String,
     /// Whether it belongs to the robot.
     pub moves: bool,
     /// The pose of a body that stands still: x y z α β γ.
     pub pose: Option<[f64; 6]>,
-    /// Its mesh, if it has one.
+    /// Its surface; `None` for an area in the plane.
     pub mesh: Option<Surface>,
     /// The number of corners, for an area in the plane.
     pub corners: Option<usize>,

@@ -16,7 +16,6 @@ struct Claims {
     path: Vec<Vec<f64>>,
 }
 
-/// What every version has.
 #[derive(Deserialize)]
 struct Version {
     certificate: u32,

@@ -161,7 +161,6 @@ impl<'t, 'a> Reader<'t, 'a> {
         Ok(kind)
     }
 
-    /// The limits of a joint.
     pub(super) fn limits(&self, joint: &Node<'_, '_>) -> Result<[f64; 2], UrdfError> {
         let limit = self.needed(joint, "limit")?;
         let unlimited = if self.version >= (1, 2) { f64::INFINITY } else { 0.0 };
