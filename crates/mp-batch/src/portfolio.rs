@@ -201,8 +201,8 @@ impl PortfolioOutcome {
 
 impl Portfolio {
     /// Plans for a scene: makes many runs of one request, of which the one with the fewest iterations wins.
-    /// Anytime planners end with their first path; time is that of the whole portfolio, and other budgets are
-    /// those of each run. The stop of `control` is not asked, and its watch gets no single events.
+    /// Anytime planners end with their first path. The budget of time is for the whole portfolio, other budgets
+    /// are for each run. The stop of `control` is not asked, and its watch gets no single events.
     ///
     /// # Errors
     /// As [`Scene::plan`], when a number is out of its range, the request names a file for a roadmap, or the
@@ -383,8 +383,8 @@ struct RunOutcome {
     rejected: u64,
     queries: u64,
     map: Option<[usize; 2]>,
-    /// What ended a run without a path. Neither this nor a path is there when it was outrun: it did not have
-    /// a path that could win.
+    /// What ended a run without a path. A run that was stopped because it could no longer win has neither this
+    /// nor a path.
     stopped_by: Option<StoppedBy>,
     /// The states of its path as numbers.
     path: Option<Vec<Vec<f64>>>,

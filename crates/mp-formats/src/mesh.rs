@@ -37,7 +37,7 @@ pub fn read_mesh_of(files: &dyn Files, path: &Path) -> Result<TriMesh, Error> {
     read_mesh_with(files, path, Axes::YUp)
 }
 
-/// The mesh in place of one that is not needed: so small that it is in nothing's way.
+/// A mesh that stands for one that is not needed: so small that nothing collides with it.
 pub fn stand_in(file: &str) -> Result<TriMesh, Error> {
     let corner = Point3::new(1e-9, 1e-9, 1e-9);
     let corners = vec![corner, corner * 2.0, Point3::origin()];

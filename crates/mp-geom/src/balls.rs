@@ -54,8 +54,8 @@ impl TriMesh {
         self.with_facets(usize::MAX)
     }
 
-    /// A mesh to be drawn in its place: [`faceted`](Self::faceted), of many balls only so many that they look
-    /// alike.
+    /// A mesh to be drawn in its place, as [`faceted`](Self::faceted) makes it. Where there are very many balls,
+    /// fewer and larger ones stand for them: the picture looks the same.
     #[must_use]
     pub fn drawn(&self) -> Self {
         self.with_facets(DRAWN)

@@ -39,7 +39,7 @@ const AROUND: f64 = 0.1;
 impl TriMesh {
     /// The solids: the triangles of each, ascending. The triangles of a solid are a closed surface that faces
     /// outward; the solid is that surface and the points around which it winds. Solids may overlap. Triangles
-    /// of none are surfaces.
+    /// that belong to no solid are surfaces.
     #[must_use]
     pub fn solids(&self) -> &[Range<u32>] {
         &self.solids

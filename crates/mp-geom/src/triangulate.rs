@@ -36,8 +36,8 @@ pub(crate) fn triangulate(corners: &[Point3<f64>]) -> Vec<[usize; 3]> {
     triangulate_ccw(&projected)
 }
 
-/// A simple polygon always has an ear, and mostly one beside the last cut. After so many searches of the
-/// whole ring for one, the polygon crosses itself, and is not worth the time.
+/// How often the whole ring is searched for an ear. A simple polygon always has one, mostly beside the last cut: a
+/// polygon that needs more searches crosses itself, and is given up.
 const SEARCHES: usize = 16;
 
 /// As [`triangulate`], for a counter-clockwise polygon of the plane. O(n log n) on ordinary polygons, O(n²)

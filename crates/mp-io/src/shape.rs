@@ -140,7 +140,8 @@ struct HeightTable {
 }
 
 impl<T> Shaped<T> {
-    /// The shape of the body that messages call `name`, and its place: that of the table, `span`, if it has none.
+    /// The shape of a body, which messages call `name`, and where the shape is in the text: `span`, the table of the body, if
+    /// the shape has no place of its own.
     ///
     /// # Errors
     /// [`Error`] when it has none or several, or one that makes no sense.

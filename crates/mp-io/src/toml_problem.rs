@@ -145,7 +145,7 @@ impl GoalEntry {
     /// zero, values become intervals.
     ///
     /// # Errors
-    /// What is wrong and what is expected: too many or too few numbers, or a name that is none of `names`.
+    /// What is wrong and what is expected: too many or too few numbers, or a name that is not in `names`.
     pub fn parts(
         &self,
         what: &str,

@@ -213,8 +213,8 @@ fn not_drawn(kind: &dyn Robot) -> Error {
     Error::new(format!("the field of {} is not drawn", kind.name()))
 }
 
-/// The image of the field `name` with a range (m), about so many `cells` along the longer side. Only the place changes from pixel to pixel;
-/// the other numbers are those of `row`, which has one for each column of the robot.
+/// The image of the field `name` with a range (m), about `cells` pixels along its longer side. Each pixel is a position of the robot; its
+/// other numbers are those of `row`, which has one for each column of the robot.
 ///
 /// # Errors
 /// When the field does not suit the robot, or its file cannot be read.

@@ -260,9 +260,9 @@ pub trait Motion: AnyMotion {
         self.tolerance()
     }
 
-    /// The clearance (m) that shortcuts keep where there is room, and where no clearance is [kept](Self::kept) that was asked for: a
-    /// fiftieth of the size of the robots of this crate, because a path that grazes every corner is of no use. In passages that are
-    /// narrower they keep a tenth of it.
+    /// The clearance (m) that shortcuts keep where there is room, unless a clearance was asked for ([`kept`](Self::kept)). For the robots
+    /// of this crate it is a fiftieth of their size, because a path that grazes every corner is of no use. In narrower passages
+    /// shortcuts keep a tenth of it.
     fn shortcut_clearance(&self) -> f64 {
         200.0 * self.tolerance()
     }
@@ -376,8 +376,8 @@ pub trait Description: Motion {
         continued(&turning(self), &self.given_start(), rows)
     }
 
-    /// The row of the start with its angles as they were given: they may be whole turns away from those of [`row`](Self::row), which
-    /// it is by default.
+    /// The row of the start, with its angles as they were given. These may differ by whole turns from those of [`row`](Self::row),
+    /// which is the default.
     fn given_start(&self) -> Vec<f64> {
         self.row(self.start())
     }

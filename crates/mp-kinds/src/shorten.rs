@@ -15,8 +15,8 @@ const STREAM: u64 = 1;
 /// In passages too narrow for the clearance of shortcuts they keep this part of it.
 const NARROW: f64 = 0.1;
 
-/// Of two paths that lead through narrow passages, the one that keeps more elsewhere is taken if plain shortcuts do not make the other one
-/// shorter than this part of its length.
+/// Where a path leads through narrow passages, plain shortcuts are tried too. Their path replaces the one that keeps more clearance elsewhere
+/// only if it is shorter than this part of its length.
 const FAR_SHORTER: f64 = 0.8;
 
 /// Motions of robots that are sampled are tested at a resolution this many times finer than that of planning: the coarser it is, the deeper

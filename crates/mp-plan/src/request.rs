@@ -33,8 +33,8 @@ pub struct Request {
     pub metric: MetricName,
     /// How motions are checked while planning. The path returned is always verified with other code.
     pub motion: MotionValidator,
-    /// The clearance (m) that the path keeps from obstacles all along; an arm's links may be nearer to each other. Zero for that of the
-    /// [scene](crate::Scene::keeping), which keeps none unless told to.
+    /// The clearance (m) that the path keeps from obstacles all along; an arm's links may be nearer to each other. Zero takes the
+    /// clearance of the [scene](crate::Scene::keeping), which is zero by default.
     #[serde(skip_serializing_if = "is_zero")]
     pub clearance: f64,
     /// When to give up.

@@ -357,7 +357,7 @@ impl Scene {
         Ok(Self { robot, document: None, ..self.clone() })
     }
 
-    /// The clearance (m) that paths [keep](Self::keeping) from obstacles: zero unless told to.
+    /// The clearance (m) that paths keep from obstacles: zero by default; [`keeping`](Self::keeping) sets it.
     #[must_use]
     pub fn clearance_kept(&self) -> f64 {
         self.robot.kept()
@@ -597,10 +597,10 @@ impl Scene {
         certificate(&*self.robot, path, None, clearance, interrupt)
     }
 
-    /// In what a certificate differs from this scene, a sentence for each difference; nothing if it is about this scene. Compared are the numbers
-    /// of a configuration and how they move the robot; all bodies, their radii, shapes and solids, to the last bit; where they stand and
-    /// what moves them; which bodies are kept apart; and whether the path leads from the start to a goal within the bounds, as the robot
-    /// can move. What the certificate proves of all that is not looked at here: `mp-verify-certificate` does that.
+    /// The differences between a certificate and this scene, each as a sentence; none if the certificate is about this scene. This compares the
+    /// numbers of a configuration and how they move the robot; all bodies, their radii, shapes and solids, to the last bit; where they stand and
+    /// what moves them; and which bodies are kept apart. The path must lead from the start to a goal within the bounds, by motions that the robot
+    /// can make. This does not check the proof itself: `mp-verify-certificate` does.
     ///
     /// ```
     /// use mp_plan::{Interrupt, PathRows, Request, Scene};
@@ -719,9 +719,9 @@ impl Scene {
         }
     }
 
-    /// A field that pushes snakes, for the places of the robot of a world of the plane; otherwise the robot is as in `row`.
-    /// `path` is the one whose risk [`RelaxField::Risk`] shows. `range` is that of the planner `rrs`, by default its default.
-    /// The longer side has so many `cells`, 4,096 at most.
+    /// An image of a field that pushes snakes, in a world of the plane. Each cell is a position of the robot; its other numbers are
+    /// those of `row`. [`RelaxField::Risk`] shows the risk along `path`. `range` is the parameter of the planner `rrs`, whose default
+    /// it has by default. The image has `cells` cells along its longer side, 4,096 at most.
     ///
     /// # Errors
     /// When the scene is no world of the plane, the field does not suit its robot, the row is not one of its configurations, there

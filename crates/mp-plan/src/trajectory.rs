@@ -25,8 +25,8 @@ impl Scene {
         Some(known.into_iter().map(|[v, a, _]| [v, a].map(|limit| limit.unwrap_or(UNKNOWN))).collect())
     }
 
-    /// A trajectory sampled at equal times for an animation, so many times a second, or less often where that would be thousands;
-    /// [`travel`](Track::travel) has the seconds from its first point.
+    /// Samples a trajectory for an animation, at equal intervals of time: `rate` samples per second, or fewer where these would be
+    /// thousands. [`travel`](Track::travel) has the seconds from its first point.
     #[must_use]
     pub fn track_in_time(&self, trajectory: &Trajectory, rate: f64) -> Track {
         track_in_time(&*self.robot, trajectory, rate)

@@ -189,9 +189,9 @@ pub struct RiskMaps {
 }
 
 impl RiskMaps {
-    /// Of a robot that makes the steps of `path`, with the noise of its motion, past obstacles that its range
-    /// sensor has `seen` from a metre away: a map that is above one half where the robot collides. Long steps
-    /// should be [resampled](Path::resampled) first.
+    /// The maps of a robot that follows `path` with noisy motions. `seen` is the map of obstacles that its range
+    /// sensor has made from a metre away: above one half where the robot collides. Long steps of the path should
+    /// be [resampled](Path::resampled) first.
     ///
     /// # Errors
     /// When a number of the noise is out of range.

@@ -262,8 +262,8 @@ impl<'c, C: Space> Snake<'c, C> {
         self.spread_into(from, to, self.params.spacing, 4, curve);
     }
 
-    /// Lays a straight curve of nodes that are at most `spacing` (m) apart, but at least of so many pieces,
-    /// into `curve`, which is cleared first.
+    /// Replaces `curve` by a straight one: its nodes are at most `spacing` (m) apart, and it has at least
+    /// `pieces` pieces.
     pub(crate) fn spread_into(
         &self,
         from: &C::State,

@@ -134,7 +134,7 @@ pub fn timed<'n>(
 
 /// Rounding may add so much to how far a corner is cut.
 const ROUNDED: f64 = 1.0 + 1e-9;
-/// A parabola is made shorter so many times; then the robot stops at the corner.
+/// How often the parabola of a corner is made shorter, before the robot stops at the corner.
 const TRIES: u32 = 12;
 
 /// Times the sections of a path between which the robot stops, one after another.
@@ -187,7 +187,8 @@ struct TimedSection {
 impl Section<'_> {
     /// Within limits of jerk too.
     fn smooth(&self, limits: &Limits, joints: &[(&str, &str)]) -> Result<TimedSection, TimeError> {
-        /// By this factor accelerations are made smaller, at most so many times, until that can no longer make it shorter.
+        /// Lower accelerations need shorter windows, so the smoothed motion may take less time. The accelerations are multiplied by
+        /// this factor at most `TIMES` times, as long as that can help.
         const LESS: f64 = 0.84;
         const TIMES: usize = 60;
         /// Rounding of positions counts in jerk over the third power of the time between two points: these are no nearer to each other.

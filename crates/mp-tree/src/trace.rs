@@ -19,7 +19,7 @@ pub(crate) fn improved(cost: f64, nodes: usize) {
     tracing::debug!(cost, nodes, "improved");
 }
 
-/// Another attempt begins, after so many iterations of those before.
+/// Attempt number `attempt` begins; the attempts before it made `iterations` iterations together.
 pub(crate) fn restarted(attempt: u64, iterations: u64) {
     tracing::debug!(attempt, iterations, "restarted");
 }

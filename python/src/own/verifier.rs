@@ -7,11 +7,11 @@ use mp_cspace::Configuration;
 use mp_cspace::{Interrupt, MotionCheck, MotionValidity, Space, Validity};
 use mp_plan::Length;
 
-/// Configurations are tested so many times as near to each other as while planning.
+/// How many times finer than the planner the verifier tests configurations.
 const FINER: f64 = 20.0;
-/// So much of the clearance is travelled before it is asked again. The rest is the clearance that is proved.
+/// The part of the clearance that the robot moves before the clearance is asked again. The rest is the clearance that is proved.
 const PART: f64 = 0.8;
-/// Configurations are tested in parts of so many, so that a run can be stopped.
+/// How many configurations are tested at a time: a run can be stopped in between.
 const CHUNK: u64 = 64;
 
 /// Walks along each motion from its beginning to its end.

@@ -275,9 +275,9 @@ fn oracle_uses(path: &Path, text: &str) -> Vec<String> {
         .collect()
 }
 
-/// What an algorithm's file (`…/algo/NAME.rs`) lacks: an example called so, or a test (in the file, in one
-/// called so, in one that names it or its type, or, when it can be made by name, in one that runs all that
-/// can).
+/// What the file of an algorithm (`…/algo/NAME.rs`) lacks: an example called NAME, or a test. The test may be in the
+/// file itself, in a file called NAME, or in one that names the algorithm or its type; for an algorithm that can be made
+/// by name, also in one that runs all of these.
 fn algorithm(sources: &[(PathBuf, String)], path: &Path) -> Option<&'static str> {
     if !path.parent().is_some_and(|p| p.ends_with("src/algo")) || path.ends_with("mod.rs") {
         return None;

@@ -34,8 +34,9 @@ pub(crate) struct ResultsReader<R> {
     number: u64,
     bytes: Vec<u8>,
     pub(super) tally: Tally,
-    /// Of the bytes of all whole lines so far, and how many those are.
+    /// The hash of all whole lines read so far.
     pub(super) hash: Xxh3,
+    /// The number of bytes of these lines.
     pub(super) length: u64,
 }
 

@@ -123,8 +123,8 @@ impl ListedProblems {
         std::iter::once(self.list.file.clone()).chain(files).collect()
     }
 
-    /// The scene and the request of an item. A request that names no planner has the one that suits the
-    /// scene; one that names no budget of time has `time_s` seconds, if they are given. An item has one
+    /// The scene and the request of an item. A request without a planner gets the default one of the
+    /// scene; a request without a budget of time gets `time_s` seconds, if these are given. An item has one
     /// thread.
     ///
     /// # Errors
@@ -167,7 +167,7 @@ impl ListedProblems {
         self.kept.changed.get().map(PathBuf::as_path)
     }
 
-    /// Loads a scene; what `before` has of it is taken from there.
+    /// Loads a scene. Parts that `before` has too are taken from it, and not loaded again.
     fn loaded(&self, index: usize, before: Option<&Scene>, interrupt: &Interrupt) -> Result<Scene, Error> {
         let of = &self.scenes[index];
         let load = |files: &dyn Files, known: &Known| {

@@ -14,7 +14,7 @@ pub(crate) const STEP: f64 = 0.02;
 /// The distances of near poses from the border between free and colliding, in radii of the robot, each for
 /// half of them.
 pub(crate) const WIDTHS: [f64; 2] = [1e-2, 1e-4];
-/// The most uniform poses that are drawn to find one that is free or one that collides.
+/// At most this number of uniform poses are drawn to find a free one, or one that collides.
 const DRAWS: usize = 1_000_000;
 
 /// The most bisections: after these, the interval is empty in `f64`.

@@ -104,7 +104,7 @@ impl<'a> Results<'a> {
         self.plan.experiment.cells().into_iter().filter(such).collect()
     }
 
-    /// Each cell for which `from` gives another one that exists, with that one before it.
+    /// Pairs of cells of the experiment: what `from` gives for a cell, if it exists, and the cell.
     fn pairs(&self, from: impl Fn(&Cell) -> Option<Cell>) -> Vec<Pair> {
         let cells = self.plan.experiment.cells();
         let pair =

@@ -31,7 +31,7 @@ pub struct RobotEntry {
     pub urdf: String,
     /// The name of the SRDF file.
     pub srdf: Option<String>,
-    /// Whether there is to be none, so that none is looked for.
+    /// Whether the robot has no SRDF (`srdf = false`): then none is looked for either.
     pub without_srdf: bool,
     /// The folder that `package://` means.
     pub packages: Option<String>,

@@ -19,10 +19,10 @@ const ABOVE: usize = 3;
 
 /// The SRDF of the robot that `urdf` describes, in the file `file`, and the name of one beside it that may be of another robot.
 ///
-/// Looked at are the folder of the URDF, the folder `srdf` in and beside it, and the folder `config` of each `*_moveit_config` in the four
-/// folders from that of the URDF upward. One is of this robot if its `<robot name>` is that of the URDF; among those the one that is called
-/// like the URDF is taken, else the first in this order, then by the alphabet. If there is none, one beside the URDF that is called like
-/// it is taken, whatever robot it names.
+/// It searches the folder of the URDF, the folder `srdf` in and beside it, and the folder `config` of each `*_moveit_config` in the folder of
+/// the URDF and the three above, in this order, each by the alphabet. An SRDF is of this robot if it has the same `<robot name>` as the URDF.
+/// Of several, it takes the one with the file name of the URDF, otherwise the first. If there is none, it takes the SRDF beside the URDF
+/// with its file name, whatever robot that names.
 pub(super) fn srdf_near(files: &dyn Files, file: &Path, urdf: &str) -> (Option<FoundSrdf>, Option<String>) {
     let folder = file.parent().unwrap_or(Path::new(""));
     let own = file.with_extension(Content::RobotSemantics.ending());

@@ -154,7 +154,7 @@ impl DrivenScene {
         examples(self, &self.goal_parts)
     }
 
-    /// The parts of a state; the start for a vector that is none.
+    /// The parts of a state; those of the start, at rest, if `q` does not have the numbers of a state.
     fn parts(&self, q: &Configuration) -> Parts {
         self.space.parts(q).unwrap_or_else(|| self.space.at_rest(self.robot.start().clone()))
     }

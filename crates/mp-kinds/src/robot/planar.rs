@@ -390,7 +390,7 @@ fn at<B: PlanarBody>(row: &[f64]) -> Configuration {
     Configuration::of(&B::state(row))
 }
 
-/// The placement of a configuration; the origin for a row that is none.
+/// The place that a configuration stands for; the origin if `q` does not have the numbers of a place.
 fn placed<B: PlanarBody>(q: &Configuration) -> <B as PlanarBody>::State {
     q.to().unwrap_or_else(|| B::origin())
 }

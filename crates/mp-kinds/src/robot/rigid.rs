@@ -252,7 +252,7 @@ impl<P: Placement> Queries for RigidBody<P> {
     }
 }
 
-/// The placement of a configuration; that without shift and rotation for a row that is none.
+/// The pose that a configuration stands for; the identity if `q` does not have the numbers of a pose.
 fn placed<M: RigidSpace>(q: &Configuration) -> M::State {
     q.to().unwrap_or_else(|| M::configuration(&Isometry3::identity()))
 }

@@ -74,7 +74,7 @@ const RATES: [&str; 3] = ["velocity", "acceleration", "jerk"];
 /// The limits that are taken where none is known (rad/s or m/s, and these per s): those of MoveIt.
 pub(crate) const UNKNOWN: f64 = 1.0;
 
-/// A corner is rounded half as far so many times, then not at all.
+/// How often the rounding of a corner is halved, before the corner is not rounded at all.
 const HALVINGS: u32 = 6;
 
 /// Times a path, which is proved free first.

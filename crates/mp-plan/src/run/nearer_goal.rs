@@ -1,4 +1,4 @@
-//! Of several goals, one that is nearer than the one that a search has found.
+//! A path to another goal, much nearer than the one that the search has reached.
 
 use crate::run::search::search_within;
 use crate::{Budget, Control, Finish, Request, Robot};
@@ -12,9 +12,9 @@ const QUERIES: u64 = 20_000;
 /// And the part of the time left.
 const PART: f64 = 0.1;
 
-/// A way to a goal that is far nearer than the path is long, if the path is to be shortened and RRT-Connect soon finds one: the first goal that
-/// a search comes to need not be a good one, where there are many, such as the configurations that reach a place. Goals that are regions are
-/// left as they are.
+/// A path to a goal much nearer to the start, if the path is to be shortened and RRT-Connect finds one soon. Where there are many goals, such as
+/// the configurations that reach a place, the first one that a search reaches may be a bad choice. Goals that are regions are left as they
+/// are.
 pub(crate) fn nearer_goal(
     kind: &dyn Robot,
     request: &Request,

@@ -38,7 +38,7 @@ pub(crate) use mp_roadmap::planners;
 
 /// The least time between two checkpoints of a roadmap that grows.
 const CHECKPOINTS: Duration = Duration::from_secs(3);
-/// At most this part of the time goes into checkpoints: one in so many seconds.
+/// At most 1/`CHECKPOINT_PART` of the time goes into writing checkpoints.
 const CHECKPOINT_PART: u32 = 20;
 
 /// The file in which a roadmap is kept, locked for this process: other processes that would write to it are refused.

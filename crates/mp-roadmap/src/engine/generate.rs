@@ -70,10 +70,10 @@ pub trait NodeGenerator<C: Space, L: LocalPlanner<C::State>> {
         None
     }
 
-    /// How many of the next attempts neither depend on what the others add to the roadmap nor change the
-    /// generator, so that clones of it may make them beforehand and at the same time. It is asked again
-    /// before each of them is used: those that were made for an attempt that is not independent any more, as
-    /// other nodes were added meanwhile, are dropped.
+    /// How many of the next attempts are independent: they neither depend on what the others add to the roadmap
+    /// nor change the generator, so clones of it may make them beforehand, in parallel. The planner asks again
+    /// before it uses an attempt made so, and drops it if it is no longer independent, as other nodes were added
+    /// meanwhile.
     fn independent(&self, _map: &Roadmap<C::State, L::Edge>) -> u64 {
         0
     }

@@ -195,7 +195,7 @@ where
 
     /// Verifies all edges now, in both directions, so that no query waits for it. Edges that were only
     /// guessed are checked first; edges that fail are blocked. Returns how many were blocked. Ends early when
-    /// the checker is told to.
+    /// the checker is interrupted.
     ///
     /// Pays off for thousands of queries, where each edge is on many paths; for a single path verify only
     /// that path. Takes time by the number of edges not verified yet.

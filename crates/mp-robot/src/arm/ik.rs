@@ -72,7 +72,7 @@ fn across(axis: &Vector3<f64>) -> Vector3<f64> {
 pub const IK_PRECISION: f64 = 1e-9;
 /// Steps from one start.
 const STEPS: usize = 60;
-/// A start is given up when the error has not halved within so many steps.
+/// The search from a start ends when the error has not halved within this number of steps.
 const PATIENCE: usize = 12;
 /// Solutions closer than this (the distance of the space) are one.
 const SAME: f64 = 1e-3;
@@ -305,7 +305,8 @@ impl<'a> InverseKinematics<'a> {
         q
     }
 
-    /// The solution that the next start leads to, if it leads to one that is none of those before.
+    /// The solution that the search from the next start finds; `None` if it finds none, or one that was found
+    /// before.
     pub fn next_solution(&mut self) -> Option<Configuration> {
         let start = self.next_start();
         let q = self.from(&start)?;

@@ -30,8 +30,8 @@ pub(super) struct Search<'a, L, const K: usize> {
 }
 
 impl<const K: usize> KdTree<K> {
-    /// Offers `collector` every state that it may want. Returns the squared bound beyond which none is
-    /// wanted.
+    /// Offers `collector` every state that it may want. Returns the squared distance beyond which it wants no
+    /// state.
     pub(super) fn search(&self, states: &dyn EmbeddedStates, collector: &mut impl Collector) -> f32 {
         let Some(root) = self.root else { return f32::INFINITY };
         let q = self.layout.embed(|out| states.embed_query(out));

@@ -193,7 +193,7 @@ pub(super) fn messages(file: &str, bytes: &[u8], wanted: fn(&str) -> bool) -> Re
 }
 
 impl Reading {
-    /// Reads records; `packed` if they are those of a chunk, in which there are no others.
+    /// Reads records. `packed` says that they are in a chunk, which must not hold further chunks.
     fn records(
         &mut self,
         file: &str,

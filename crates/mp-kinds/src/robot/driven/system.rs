@@ -197,8 +197,8 @@ impl System {
         input.iter().zip(self.input_limits()).all(within)
     }
 
-    /// The inputs that planners choose among: `directions` of them, or the system's own choice, each at so many levels, every
-    /// one a quarter of the one before.
+    /// The inputs that planners choose among: in `directions` directions (0: the system's own choice), each at `levels` levels.
+    /// Each level is a quarter of the one before.
     pub(super) fn choices(&self, directions: usize, levels: u32) -> Vec<Vec<f64>> {
         let scaled = |inputs: Vec<Vec<f64>>, scale: fn(&mut Vec<f64>, f64)| {
             let level = |level: u32| {
