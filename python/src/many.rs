@@ -14,7 +14,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-/// So many results wait for who takes them.
+/// How many results may wait until they are taken.
 const WAITING: usize = 64;
 
 /// What a worker has to say; what a panic says.

@@ -166,7 +166,7 @@ impl Metric<Joints<Configuration>> for Distance {
     }
 }
 
-/// So many configurations are tried to find a free one.
+/// How many configurations are tried to find a free one.
 const TRIES: u32 = 200;
 
 impl TypedMotion for Own {

@@ -31,16 +31,16 @@ const COVERAGE: [&str; 5] = [
     "-Cllvm-args=-sanitizer-coverage-trace-compares",
 ];
 
-/// Targets take turns of so many seconds.
+/// The length of a turn, after which the next target is fuzzed, in seconds.
 const TURN: u64 = 60;
 
-/// Inputs have at most so many bytes: longer ones are slow and say nothing new.
+/// The most bytes of an input: longer ones are slow and reach nothing new.
 const MAX_BYTES: u32 = 4096;
 
-/// Inputs that are kept in the repository have at most so many bytes, except those with names.
+/// The most bytes of an input that is kept in the repository, except those with names.
 const KEPT_BYTES: u32 = 256;
 
-/// An input may take so many seconds. Most take some microseconds; the machine may be busy.
+/// How long an input may take, in seconds. Most take some microseconds; the machine may be busy.
 const MAX_SECONDS: u32 = 10;
 
 /// The arguments of the command.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// So many results for each thread may wait for an earlier one that takes long.
+/// How many results for each thread may wait for an earlier one that takes long.
 const AHEAD: usize = 512;
 
 /// Draws `items` one by one and runs `job` on each, with its number, on `threads` threads. `take` gets the

@@ -88,7 +88,7 @@ pub struct Portfolio {
 }
 
 impl Portfolio {
-    /// So many runs without caps, of which at most 64 are in a round.
+    /// A portfolio of `runs` runs without caps, at most 64 of them in a round.
     #[must_use]
     pub fn new(runs: u64) -> Self {
         Self { runs, schedule: PortfolioSchedule::None, unit: 1000, round: 64 }

@@ -210,7 +210,7 @@ fn outcomes(runs: &[(&Case, &Run)], still: usize) -> Table {
     table
 }
 
-/// Interrupts after so many seconds.
+/// An interrupt that says to end after `seconds`.
 fn within(seconds: f64) -> Interrupt {
     let clock = Clock::default();
     let end = clock.now().saturating_add(Duration::from_secs_f64(seconds));

@@ -124,7 +124,7 @@ impl<S> MotionValidity<S> for Free {
     }
 }
 
-/// The time (ms) in which an RRT grows to so many nodes where nothing is in the way, toward a goal that is never met.
+/// The time (ms) in which an RRT grows to `nodes` nodes in an empty space, toward a goal that it never reaches.
 fn grow<C>(space: &C, nodes: usize, by_name: bool) -> Timed
 where
     C: DefaultNn<State: StateVector, Nn: Send + Sync + 'static> + Clone + Send + 'static,

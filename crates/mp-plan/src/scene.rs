@@ -693,8 +693,8 @@ impl Scene {
         track(&*self.robot, path)
     }
 
-    /// So many configurations of a path as rows, at equal distances in the metric of the space, from its first to its last. All are on the
-    /// path; its corners need not be among them. Angles without limits go on from row to row.
+    /// Resamples a path: `count` configurations as rows, at equal distances in the metric of the space, from its first to its last. All are
+    /// on the path; its corners need not be among them. Angles without limits go on from row to row.
     ///
     /// ```
     /// use mp_plan::{PathRows, Scene};

@@ -4,10 +4,11 @@ use crate::ItemContext;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// One may be this part ahead of the one that is furthest behind, or so much.
+/// How far a search may be ahead of the last one, as a part of what that has reached.
 const LEAD_PART: u64 = 8;
+/// How far it may be ahead in any case.
 const LEAST_LEAD: u64 = 4;
-/// News of others may be so old.
+/// How old the news of other searches may be.
 const NEWS: Duration = Duration::from_micros(200);
 /// How often it is reported at most how far one is, unless it waits.
 const REPORT: Duration = Duration::from_micros(50);
@@ -37,8 +38,8 @@ impl Pace {
         Self { item, was: VecDeque::new(), reported: None }
     }
 
-    /// Says that so much has been reached, which must not fall, and waits for the last if that is too far
-    /// behind. Nobody is waited for when it is `over`. `now` is the time since any moment.
+    /// Tells the others that this search has reached `reach`, which must not fall, and waits while the last one is
+    /// too far behind. It does not wait when the race is `over`. `now` is the time since any moment.
     pub fn keep(
         &mut self,
         context: &ItemContext,
@@ -60,7 +61,7 @@ impl Pace {
         });
     }
 
-    /// It has reached so much: whether that should be reported.
+    /// Notes that it has reached `reach`. Whether that should be reported.
     fn reaches(&mut self, now: Duration, reach: u64) -> bool {
         self.was.push_back((now, reach));
         let due = self.reported.is_none_or(|reported| now.saturating_sub(reported) >= REPORT);

@@ -28,7 +28,7 @@ impl Shares {
         Self { items: vec![0; ranks], work: vec![0.0; ranks] }
     }
 
-    /// A rank has done an item, which was so much work.
+    /// Adds an item that `rank` has done, and the work that it took.
     pub fn add(&mut self, rank: usize, work: f64) {
         if let (Some(items), Some(sum)) = (self.items.get_mut(rank), self.work.get_mut(rank)) {
             *items += 1;

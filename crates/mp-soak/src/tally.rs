@@ -114,7 +114,7 @@ pub struct Tally {
     pub kinds: BTreeMap<String, Counts>,
     /// By planner, without meta-planners; and by meta-planner, with `…` after its prefix.
     pub planners: BTreeMap<String, Counts>,
-    /// Findings by sort.
+    /// How many findings there are of each kind.
     pub findings: BTreeMap<String, u64>,
 }
 

@@ -6,10 +6,10 @@ use std::fs::{Metadata, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// So many links are followed to the file that they lead to.
+/// At most this number of links are followed to a file.
 const LINKS: usize = 40;
 
-/// So many bytes of small parts are written at once.
+/// Small parts are collected and written in blocks of this number of bytes.
 const BUFFER: usize = 1 << 16;
 
 /// The folder of a file; the current one for a bare name.

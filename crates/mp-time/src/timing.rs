@@ -132,7 +132,7 @@ pub fn timed<'n>(
     }
 }
 
-/// Rounding may add so much to how far a corner is cut.
+/// By this factor rounding may increase how far a corner is cut.
 const ROUNDED: f64 = 1.0 + 1e-9;
 /// How often the parabola of a corner is made shorter, before the robot stops at the corner.
 const TRIES: u32 = 12;

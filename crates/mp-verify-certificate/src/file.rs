@@ -99,7 +99,7 @@ pub(crate) struct Body {
     pub(crate) parts: Vec<Part>,
 }
 
-/// So many pieces, one after the other.
+/// A run of pieces of a body: how many follow each other.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Part {

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::sync::Arc;
 
-/// So many configurations are given to one call of `valid_many`.
+/// At most this number of configurations are given to one call of `valid_many`.
 const BATCH: usize = 64;
 
 /// What is known of a robot.

@@ -10,8 +10,9 @@ use mp_store::{FileId, Lock};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// So many results for each thread of a rank may wait for their place in the file, and these at least.
+/// How many results for each thread of a rank may wait for their place in the file.
 const AHEAD: u64 = 64;
+/// How many may wait at least, however few threads there are.
 const AHEAD_AT_LEAST: u64 = 4096;
 
 /// How far the items of a list are planned by all ranks, and what each rank did.

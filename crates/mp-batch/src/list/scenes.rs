@@ -183,7 +183,7 @@ impl ListedProblems {
     }
 }
 
-/// So many scenes are kept at most, those that were asked for last.
+/// At most this number of scenes are kept: those that were asked for last.
 const KEPT: usize = 16;
 
 /// A scene, or the message and the remedy of the error.

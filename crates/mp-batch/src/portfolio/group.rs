@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::time::Duration;
 
-/// So many iterations make a turn at least.
+/// The least number of iterations in a turn.
 const LEAST_TURN: u64 = 4;
 /// A turn is at most this part of what the run has made.
 const TURN_PART: u64 = 16;

@@ -82,7 +82,7 @@ fn today() -> String {
     day(seconds / 86_400)
 }
 
-/// The day that begins so many days after 1970 does (Hinnant 2021, `civil_from_days`).
+/// The date of the day number `since_1970`, counted from 0 at 1 January 1970 (Hinnant 2021, `civil_from_days`).
 fn day(since_1970: u64) -> String {
     let days = since_1970 + 719_468; // since the first of March of the year 0
     let (era, of_era) = (days / 146_097, days % 146_097);

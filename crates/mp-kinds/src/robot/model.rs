@@ -133,7 +133,7 @@ pub struct ModelBody {
     pub parts: Vec<ModelPart>,
 }
 
-/// So many pieces of a body, one after the other.
+/// A run of pieces of a body: how many follow each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ModelPart {

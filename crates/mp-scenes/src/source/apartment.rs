@@ -62,7 +62,8 @@ pub(super) fn add(files: &mut Files) {
         .finish(files);
 }
 
-/// Adds the flats: doors that are so many times as wide as the piano is high, and so many times as high as it is wide.
+/// Adds the flats. The number in the name is the width of the doors divided by the height of the piano, and their height divided by
+/// its width.
 pub(super) fn add_flats(files: &mut Files) {
     let piano = piano();
     let size = piano.aabb();

@@ -12,7 +12,7 @@ const HOOK: [Cube; 5] = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0], [2, 1, 1]];
 const MOVES: [(usize, i32, i32); 7] =
     [(1, -1, 3), (0, 1, 4), (2, -1, 3), (0, -1, 4), (1, 1, 3), (0, 1, 2), (2, 1, 6)];
 
-/// Adds both scenes: tunnels that are so many times as wide as the cubes of the hook.
+/// Adds both scenes. The number in the name is the width of the tunnels divided by that of the cubes of the hook.
 pub(super) fn add(files: &mut Files) {
     let mut at = [0; 3];
     let (mut stops, mut carved) = (vec![at], BTreeSet::from(HOOK));

@@ -1,5 +1,5 @@
 //! `bugtrap`: a rod in a hollow body; the only exit is a neck that points inwards. `trap-1.05` … `trap-1.5`: the same with a short,
-//! straight neck, so many times as wide as the rod is thick.
+//! straight neck; the number is its width divided by the thickness of the rod.
 
 use super::scene::{Files, HOME, QUARTER, Scene};
 use super::shape::{cylinder, lathe, shifted};

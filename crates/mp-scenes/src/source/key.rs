@@ -12,7 +12,7 @@ const BIT: f64 = 0.4;
 /// Thickness of the plates of the lock.
 const PLATE: f64 = 0.2;
 
-/// Adds both scenes: openings that are so many times as large as the key.
+/// Adds both scenes. The number in the name is the size of the openings, divided by that of the key.
 pub(super) fn add(files: &mut Files) {
     let key = key();
     for (name, factor) in [("key-1.2", 1.2), ("key-1.5", 1.5)] {

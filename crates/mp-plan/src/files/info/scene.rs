@@ -139,7 +139,7 @@ impl BodyInfo {
 
 /// How many bodies are listed. The others are only counted.
 const LISTED: usize = 40;
-/// How many goals are.
+/// How many goals are listed.
 const GOALS: usize = 4;
 
 impl fmt::Display for SceneInfo {
