@@ -16,9 +16,9 @@ pub struct Explanation {
     pub clearance: f64,
     /// The pairs of bodies in contact; empty when the configuration is free.
     pub touching: Vec<Contact>,
-    /// What is inside of closed surfaces, which have no inside unless they are made solid.
+    /// Warnings of bodies inside closed surfaces: a surface has an inside only if it is made solid.
     pub warnings: Vec<String>,
-    /// What is wrong, to follow the words "the configuration is"; none when it is free.
+    /// What is wrong, as the end of a sentence that begins "the configuration is"; `None` when it is free.
     pub fault: Option<String>,
     /// A free configuration nearby, for one that is not free.
     pub nearest_free: Option<Vec<f64>>,

@@ -184,8 +184,8 @@ impl Scene {
         Self { notes: notes.into(), ..self }
     }
 
-    /// What was chosen for a scene whose file is a robot or a map alone, and what decides which links of an arm may touch without
-    /// being asked for, in sentences.
+    /// Notes, as sentences: what was chosen for a scene whose file is only a robot or a map, and what decides which links of an arm
+    /// may touch where the scene does not say.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
@@ -532,8 +532,8 @@ impl Scene {
     }
 
     /// Finishes a path from elsewhere, between any two configurations: verifies it, shortens or relaxes it as the request says, and
-    /// verifies the result as it will be written. Of the request, the finish, its field, the clearance, the seed and the budget of time
-    /// count.
+    /// verifies the result as it will be written. Only these parts of the request are used: finish, field, clearance, seed and budget of
+    /// time.
     ///
     /// ```
     /// use mp_plan::{Control, Finish, PathRows, Request, Scene};
@@ -564,7 +564,7 @@ impl Scene {
         self.check_until(path, &Interrupt::never())
     }
 
-    /// As [`check`](Self::check), unless `interrupt` says to end: then the path has a fault where it is not verified.
+    /// As [`check`](Self::check), until `interrupt` says to end: then the verdict names a fault where the path is not verified yet.
     ///
     /// # Errors
     /// As [`check`](Self::check).
@@ -635,7 +635,7 @@ impl Scene {
         check_ends(&*self.robot)
     }
 
-    /// Makes what planning in large meshes needs and would make at its beginning otherwise, unless `interrupt` says to end. Clones share it.
+    /// Prepares what planning among large meshes needs, which a run would otherwise do first, unless `interrupt` says to end. Clones share it.
     ///
     /// # Errors
     /// When it was interrupted.

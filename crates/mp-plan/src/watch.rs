@@ -26,8 +26,8 @@ pub trait Watch {
     /// The counts so far; at most ten times a second.
     fn progress(&mut self, _progress: &Progress) {}
     /// A path of this length in the metric was found. An anytime planner finds several. `rows` makes its configurations as they would
-    /// be written: verified, but not finished where the planner has verified them. A path that is proved after the search is told of
-    /// when it is finished.
+    /// be written: verified, but not finished where the planner has verified them. A path that is proved only after the search is
+    /// reported when it is finished.
     fn found(&mut self, _length: f64, _rows: &dyn Fn() -> Vec<Vec<f64>>) {}
     /// Whether [`event`](Self::event) is to be called, which costs time. Called once, when planning begins.
     fn wants_events(&self) -> bool {
