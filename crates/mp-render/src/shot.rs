@@ -241,22 +241,22 @@ impl<'s> Shot<'s> {
         let lights = Lights::of(camera);
         let mut layer = Layer::new(self.size.0 * self.size.1);
         decorate::background(&mut layer, self.size);
-        self.ground(&mut layer, camera);
         // Surfaces are not painted, but hide what is behind them.
         for body in scene.obstacles.iter().chain(solid.iter().map(|(body, _)| *body)) {
             body.model
                 .faces(camera, &body.pose_wb, &lights, |i, key, _| layer.key[i] = layer.key[i].min(key));
         }
+        self.ground(&mut layer, camera);
         for (n, o) in scene.obstacles.iter().enumerate() {
             let colour = mix(srgb(INK), srgb(OBSTACLES[n % OBSTACLES.len()]), 0.25);
-            decorate::wires(&mut layer, camera, o, colour, [0.75, 0.1]);
+            decorate::wires(&mut layer, camera, o, colour, [0.9, 0.1]);
         }
-        let faint = if self.animation.step { [0.7, 0.45] } else { [0.45, 0.3] };
+        let faint = if self.animation.step { [0.7, 0.25] } else { [0.45, 0.15] };
         for (body, colour) in copies {
             decorate::wires(&mut layer, camera, body, scaled(*colour, 0.8), faint);
         }
         for (body, colour) in solid {
-            decorate::wires(&mut layer, camera, body, scaled(*colour, 0.8), [1.0, 0.6]);
+            decorate::wires(&mut layer, camera, body, scaled(*colour, 0.8), [1.0, 0.45]);
         }
         path::draw_trace(&mut layer, camera, &scene.trace);
         decorate::labels(&mut layer, self.size, scene);
@@ -367,6 +367,32 @@ mod tests {
         let [solid, wire, glass] = [Mode::Solid, Mode::Wire, Mode::Transparent].map(filled);
         assert!(4 * wire < solid && wire > 50, "wire {wire}, solid {solid}");
         assert!(glass > 1000 && glass < solid, "glass {glass}, solid {solid}");
+    }
+
+    /// In wire pictures, edges are faint behind a wall, and the grid is not seen through a floor.
+    #[test]
+    fn wires_are_faint_behind_surfaces() {
+        let bare = Scene { trace: Vec::new(), goal: None, ..scene(Mode::Wire) };
+        let shown = |scene: &Scene| {
+            let picture = scene.draw((320, 240)).unwrap();
+            // The green of the start is the only colour above the legend.
+            let green = picture.rgb().chunks(3).take(320 * 200).map(|p| i32::from(p[1]) - i32::from(p[0]));
+            green.filter(|&more| more > 6).sum::<i32>()
+        };
+        let beside = |y: f64| Scene {
+            obstacles: vec![bare.obstacles[0].at(Isometry3::translation(0.0, y, 1.0))],
+            ..bare.clone()
+        };
+        let (before, behind) = (shown(&beside(4.0)), shown(&beside(0.0)));
+        assert!(behind > 500 && 3 * behind < before, "before {before}, behind {behind}");
+
+        let floor = Body::new(&cuboid(6.0, 6.0, 0.1).unwrap(), Isometry3::identity());
+        let view = "top".parse().unwrap();
+        let floor = Scene { obstacles: vec![floor], view, mode: Mode::Wire, ..Scene::default() };
+        let picture = floor.draw((320, 240)).unwrap();
+        // A row inside of the floor: white but for the diagonal of its two triangles.
+        let dark = (80..240).filter(|&x| picture.pixel(x, 100).unwrap()[0] < 235).count();
+        assert!(dark <= 4, "{dark}");
     }
 
     /// A wall that hides the robot fades out around it: above the robot no pixel is far from the next.
