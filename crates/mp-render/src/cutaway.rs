@@ -108,15 +108,21 @@ fn sweep(depth: &mut [f32], width: usize, step: f32, diagonal: f32) {
 fn smooth(field: &mut [f32], width: usize, reach: usize) {
     let height = field.len() / width;
     let share = 1.0 / (2 * reach + 1) as f64;
-    let (rows, columns) = ((height, width, width, 1), (width, 1, height, width));
-    for (lines, apart, length, step) in [rows, columns, rows, columns] {
+    // Along rows, each by itself; then along columns, all at once, as memory is read by rows.
+    for (length, lanes) in [(width, 1), (height, width)].repeat(2) {
         let before = field.to_vec();
-        for line in (0..lines).map(|line| line * apart) {
-            let at = |k: usize| f64::from(before[line + k.saturating_sub(reach).min(length - 1) * step]);
-            let mut sum: f64 = (0..=2 * reach).map(at).sum();
-            for k in 0..length {
-                field[line + k * step] = (sum * share) as f32;
-                sum += at(k + 2 * reach + 1) - at(k);
+        for (before, field) in before.chunks(length * lanes).zip(field.chunks_mut(length * lanes)) {
+            let at = |k: usize| &before[k.saturating_sub(reach).min(length - 1) * lanes..][..lanes];
+            let mut sums = vec![0.0; lanes];
+            for k in 0..=2 * reach {
+                sums.iter_mut().zip(at(k)).for_each(|(sum, z)| *sum += f64::from(*z));
+            }
+            for (k, field) in field.chunks_mut(lanes).enumerate() {
+                let ends = at(k).iter().zip(at(k + 2 * reach + 1));
+                for ((z, sum), (old, new)) in field.iter_mut().zip(&mut sums).zip(ends) {
+                    *z = (*sum * share) as f32;
+                    *sum += f64::from(*new) - f64::from(*old);
+                }
             }
         }
     }
