@@ -189,15 +189,6 @@ impl Camera {
         if self.perspective { -1.0 / key } else { key }
     }
 
-    /// The key of a depth in metres; −∞ for a depth at or behind the eye of a perspective camera.
-    pub(crate) fn key_of(&self, depth: f32) -> f32 {
-        match (self.perspective, depth > 0.0) {
-            (true, true) => -1.0 / depth,
-            (true, false) => f32::NEG_INFINITY,
-            (false, _) => depth,
-        }
-    }
-
     /// The weight of a translucent surface at `key` when it is blended with others.
     pub(crate) fn prominence(&self, key: f32) -> f32 {
         if self.perspective {

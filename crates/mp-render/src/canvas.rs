@@ -52,11 +52,14 @@ pub(crate) struct Veil {
     sum: Vec<Colour>,
     weight: Vec<f32>,
     through: Vec<f32>,
+    /// The largest opacity of a surface.
+    most: Vec<f32>,
 }
 
 impl Veil {
     pub(crate) fn new(samples: usize) -> Self {
-        Self { sum: vec![[0.0; 3]; samples], weight: vec![0.0; samples], through: vec![1.0; samples] }
+        let [weight, most] = [(); 2].map(|()| vec![0.0; samples]);
+        Self { sum: vec![[0.0; 3]; samples], weight, through: vec![1.0; samples], most }
     }
 
     /// Adds a surface of opacity `alpha` whose colour counts `weight` times.
@@ -68,13 +71,16 @@ impl Veil {
         }
         self.weight[i] += w;
         self.through[i] *= 1.0 - alpha;
+        self.most[i] = self.most[i].max(alpha);
     }
 
-    /// Blends the veil over `behind`, of which at most the fraction `most` is hidden.
+    /// Blends the veil over `behind`, of which at most the fraction `most` is hidden, unless one surface alone
+    /// hides more.
     pub(crate) fn over(&self, behind: &mut [Colour], most: f32) {
         for (i, b) in behind.iter_mut().enumerate() {
             if self.weight[i] > 0.0 {
-                *b = mix(*b, scaled(self.sum[i], 1.0 / self.weight[i]), (1.0 - self.through[i]).min(most));
+                let hidden = (1.0 - self.through[i]).min(most.max(self.most[i]));
+                *b = mix(*b, scaled(self.sum[i], 1.0 / self.weight[i]), hidden);
             }
         }
     }
@@ -138,5 +144,17 @@ mod tests {
         b.over(&mut over_b, 1.0);
         assert_eq!(over_a, over_b);
         assert!((over_a[0][1] - 0.25).abs() < 1e-6);
+    }
+
+    /// What many faint surfaces hide is limited; what one of them hides is not.
+    #[test]
+    fn a_surface_hides_as_much_as_it_is_opaque() {
+        for (alpha, count, left) in [(0.1, 40, 0.5), (0.9, 1, 0.1), (0.9, 3, 0.1)] {
+            let mut veil = Veil::new(1);
+            (0..count).for_each(|_| veil.add(0, [0.0; 3], alpha, 1.0));
+            let mut behind = [[1.0; 3]];
+            veil.over(&mut behind, 0.5);
+            assert!((behind[0][0] - left).abs() < 1e-6, "{alpha} {count}: {behind:?}");
+        }
     }
 }

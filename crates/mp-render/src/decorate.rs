@@ -3,6 +3,7 @@
 use crate::body::Body;
 use crate::camera::Camera;
 use crate::canvas::{Colour, Layer, Veil, mix, scaled, srgb};
+use crate::cutaway::Cutaway;
 use crate::palette::{GOAL, INK, OBSTACLES, START, gradient};
 use crate::raster::line;
 use crate::scene::{Scene, corners};
@@ -58,24 +59,25 @@ pub(crate) fn wires(
     model.lines(&model.edges, camera, &body.pose_wb, 0.8, |i, key, coverage| draw(sharp, i, key, coverage));
 }
 
-/// Draws the edges of obstacles: dark where they are opaque, faint where they are translucent, which is
-/// before `cut`.
+/// Draws the edges of obstacles: dark where they are opaque, faint where `cut` opens them.
 pub(crate) fn outlines(
     layer: &mut Layer,
     ghosts: &mut Veil,
     camera: &Camera,
     obstacles: &[Body],
-    cut: &[f32],
+    cut: &Cutaway,
 ) {
     let ink = srgb(INK);
     for (n, o) in obstacles.iter().enumerate() {
         let strength = 0.5 * fineness(&o.model.edges);
         let faint = scaled(srgb(OBSTACLES[n % OBSTACLES.len()]), 0.4);
         o.model.lines(&o.model.edges, camera, &o.pose_wb, 0.6, |i, key, coverage| {
-            if key < cut[i] && (cut[i].is_finite() || nearer(key, layer.key[i])) {
-                ghosts.add(i, faint, 0.9 * strength * coverage, 3.0);
-            } else if cut[i] < f32::INFINITY && nearer(key, layer.key[i]) {
-                layer.colour[i] = mix(layer.colour[i], ink, strength * coverage);
+            if !nearer(key, layer.key[i]) {
+                return;
+            }
+            match cut.at(i, camera.depth(key)) {
+                0.0 => layer.colour[i] = mix(layer.colour[i], ink, strength * coverage),
+                _ => ghosts.add(i, faint, 0.9 * strength * coverage, 3.0),
             }
         });
     }

@@ -3,20 +3,21 @@
 use crate::body::Body;
 use crate::camera::{Camera, seen_from};
 use crate::canvas::{self, Colour, Layer, Veil, mix, scaled, srgb};
+use crate::cutaway::Cutaway;
 use crate::error::{RenderError, check_range};
 use crate::lights::Lights;
 use crate::palette::{GOAL, INK, OBSTACLES, START, gradient};
 use crate::picture::Picture;
 use crate::scene::{SUPERSAMPLING, Scene, corners, extent};
 use crate::view::{Mode, View};
-use crate::{ambient_occlusion, cutaway, decorate, path, viewpoint};
+use crate::{ambient_occlusion, decorate, path, viewpoint};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 /// The margins on the left, top, right and bottom, as fractions of the picture.
 const MARGINS: [f64; 4] = [0.04, 0.1, 0.04, 0.09];
-/// The opacity of an obstacle where it hides the path.
+/// The opacity of an obstacle where it hides the path; around there it fades.
 const GHOST: f32 = 0.09;
 /// The opacity of a surface that is seen through.
 const GLASS: f32 = 0.2;
@@ -202,10 +203,11 @@ impl<'s> Shot<'s> {
                     if key < layer.key[i] {
                         ghosts.add(i, scaled(colour, light), GLASS, camera.prominence(key));
                     }
-                } else if key < cut[i] {
-                    ghosts.add(i, scaled(colour, light), GHOST, 1.0);
-                } else {
-                    layer.put(i, key, scaled(colour, light));
+                    return;
+                }
+                match cut.at(i, camera.depth(key)) {
+                    0.0 => layer.put(i, key, scaled(colour, light)),
+                    open => ghosts.add(i, scaled(colour, light), 1.0 - open * (1.0 - GHOST), 1.0),
                 }
             });
         }
@@ -217,14 +219,12 @@ impl<'s> Shot<'s> {
         Backdrop { layer, ghosts }
     }
 
-    /// For each sample, the depth before which obstacles are translucent.
-    fn cut(&self, camera: &Camera, lights: &Lights) -> Vec<f32> {
+    /// Where obstacles are translucent.
+    fn cut(&self, camera: &Camera, lights: &Lights) -> Cutaway {
         let samples = self.size.0 * self.size.1;
-        if self.scene.mode == Mode::Transparent {
-            return vec![f32::INFINITY; samples];
-        }
-        if self.map {
-            return vec![f32::NEG_INFINITY; samples];
+        let transparent = self.scene.mode == Mode::Transparent;
+        if transparent || self.map {
+            return Cutaway::everywhere(transparent, samples);
         }
         // The depth of the path at each sample.
         let mut nearest = vec![f32::INFINITY; samples];
@@ -232,7 +232,7 @@ impl<'s> Shot<'s> {
             robot.model.faces(camera, &robot.pose_wb, lights, |i, key, _| nearest[i] = nearest[i].min(key));
         }
         let slack = 0.02 * self.scene.robots().next().map_or(0.0, Body::radius) as f32;
-        cutaway::thresholds(camera, &nearest, 1.0 / mp_math::tan(self.half_angle) as f32, slack)
+        Cutaway::before(camera, &nearest, 1.0 / mp_math::tan(self.half_angle) as f32, slack)
     }
 
     /// Edges only: `solid` bodies strong, `copies` faint.
@@ -241,22 +241,22 @@ impl<'s> Shot<'s> {
         let lights = Lights::of(camera);
         let mut layer = Layer::new(self.size.0 * self.size.1);
         decorate::background(&mut layer, self.size);
-        self.ground(&mut layer, camera);
         // Surfaces are not painted, but hide what is behind them.
         for body in scene.obstacles.iter().chain(solid.iter().map(|(body, _)| *body)) {
             body.model
                 .faces(camera, &body.pose_wb, &lights, |i, key, _| layer.key[i] = layer.key[i].min(key));
         }
+        self.ground(&mut layer, camera);
         for (n, o) in scene.obstacles.iter().enumerate() {
             let colour = mix(srgb(INK), srgb(OBSTACLES[n % OBSTACLES.len()]), 0.25);
-            decorate::wires(&mut layer, camera, o, colour, [0.75, 0.1]);
+            decorate::wires(&mut layer, camera, o, colour, [0.9, 0.1]);
         }
-        let faint = if self.animation.step { [0.7, 0.45] } else { [0.45, 0.3] };
+        let faint = if self.animation.step { [0.7, 0.25] } else { [0.45, 0.15] };
         for (body, colour) in copies {
             decorate::wires(&mut layer, camera, body, scaled(*colour, 0.8), faint);
         }
         for (body, colour) in solid {
-            decorate::wires(&mut layer, camera, body, scaled(*colour, 0.8), [1.0, 0.6]);
+            decorate::wires(&mut layer, camera, body, scaled(*colour, 0.8), [1.0, 0.45]);
         }
         path::draw_trace(&mut layer, camera, &scene.trace);
         decorate::labels(&mut layer, self.size, scene);
@@ -367,6 +367,49 @@ mod tests {
         let [solid, wire, glass] = [Mode::Solid, Mode::Wire, Mode::Transparent].map(filled);
         assert!(4 * wire < solid && wire > 50, "wire {wire}, solid {solid}");
         assert!(glass > 1000 && glass < solid, "glass {glass}, solid {solid}");
+    }
+
+    /// In wire pictures, edges are faint behind a wall, and the grid is not seen through a floor.
+    #[test]
+    fn wires_are_faint_behind_surfaces() {
+        let bare = Scene { trace: Vec::new(), goal: None, ..scene(Mode::Wire) };
+        let shown = |scene: &Scene| {
+            let picture = scene.draw((320, 240)).unwrap();
+            // The green of the start is the only colour above the legend.
+            let green = picture.rgb().chunks(3).take(320 * 200).map(|p| i32::from(p[1]) - i32::from(p[0]));
+            green.filter(|&more| more > 6).sum::<i32>()
+        };
+        let beside = |y: f64| Scene {
+            obstacles: vec![bare.obstacles[0].at(Isometry3::translation(0.0, y, 1.0))],
+            ..bare.clone()
+        };
+        let (before, behind) = (shown(&beside(4.0)), shown(&beside(0.0)));
+        assert!(behind > 500 && 3 * behind < before, "before {before}, behind {behind}");
+
+        let floor = Body::new(&cuboid(6.0, 6.0, 0.1).unwrap(), Isometry3::identity());
+        let view = "top".parse().unwrap();
+        let floor = Scene { obstacles: vec![floor], view, mode: Mode::Wire, ..Scene::default() };
+        let picture = floor.draw((320, 240)).unwrap();
+        // A row inside of the floor: white but for the diagonal of its two triangles.
+        let dark = (80..240).filter(|&x| picture.pixel(x, 100).unwrap()[0] < 235).count();
+        assert!(dark <= 4, "{dark}");
+    }
+
+    /// A wall that hides the robot fades out around it: above the robot no pixel is far from the next.
+    #[test]
+    fn openings_have_soft_rims() {
+        let picture = scene(Mode::Solid).draw((640, 480)).unwrap();
+        let column = |x: usize| -> Vec<[u8; 3]> { (0..480).map(|y| picture.pixel(x, y).unwrap()).collect() };
+        // From the middle of the start upwards.
+        let robot =
+            (0..640).find(|&x| column(x).iter().any(|p| p[1] > p[0].saturating_add(60))).unwrap() + 20;
+        let column = column(robot);
+        let top = column.iter().position(|p| p[1] > p[0].saturating_add(25)).unwrap() - 3;
+        let wall = column.iter().position(|p| p[0] < 215 && p[0].abs_diff(p[2]) > 8).unwrap() + 4;
+        let jump = |w: &[[u8; 3]]| (0..3).map(|k| w[0][k].abs_diff(w[1][k])).max().unwrap();
+        let steepest = column[wall..top].windows(2).map(jump).max().unwrap();
+        let whole = (0..3).map(|k| column[wall][k].abs_diff(column[top][k])).max().unwrap();
+        assert!(whole > 60 && 4 * u32::from(steepest) < u32::from(whole), "{whole}, {steepest} at once");
     }
 
     /// In each mode and with each movement of the camera, a moment has the same pixels whenever it is drawn.

@@ -11,7 +11,7 @@ const FIELD_OF_VIEW: f64 = 0.698_131_700_797_731_8;
 /// How bodies in space are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Mode {
-    /// Opaque, with obstacles in front of the path cut open.
+    /// Opaque; obstacles in front of the path fade out.
     #[default]
     Solid,
     /// Edges only; faint where something hides them.

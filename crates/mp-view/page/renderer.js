@@ -21,6 +21,9 @@ import { IMAGE_FRAGMENT, IMAGE_VERTEX, LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMEN
  *  flat: boolean}} Picture  `flat`: a planar scene, where later things hide earlier ones. */
 /** @typedef {{first: number, count: number, item: Item, items: Item[]}} Batch copies that are drawn by one call */
 
+/** How strong edges of wire are that surfaces of wire hide; and paths, trees and roadmaps, which are what one looks for. */
+const [HIDDEN_EDGE, HIDDEN] = [0.15, 0.4];
+
 const LOST = "This page needs WebGL2, which this browser does not offer or has switched off.";
 
 export class Renderer {
@@ -44,6 +47,7 @@ export class Renderer {
     /** @type {ShapeBuffers[]} */ this.shapes = [];
     this.calls = 0;
     this.triangles = 0;
+    this.hidden = false;
   }
   /** Takes the shapes of another scene. Those that it has already stay on the graphics card, the others are freed. @param {Shape[]} shapes */
   setShapes(shapes) {
@@ -75,23 +79,50 @@ export class Renderer {
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(picture.flat ? gl.ALWAYS : gl.LEQUAL);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    const [low, middle, high] = picture.flat ? layered(picture.items) : this.byDepth(picture.items);
-    this.upload([...low, ...middle, ...high]);
+    const [low, middle, high, wire] = picture.flat ? layered(picture.items) : this.byDepth(picture.items);
+    this.upload([...low, ...middle, ...high, ...wire]);
     if (picture.flat) this.drawImages(picture);
     this.drawSurfaces(low, 0, picture);
     if (!picture.flat) this.drawImages(picture);
-    this.drawLines(picture, false);
-    this.drawPoints(picture, false);
-    this.drawSurfaces(middle, low.length, picture);
-    this.drawLines(picture, true);
-    this.drawSurfaces(high, low.length + middle.length, picture);
-    this.drawPoints(picture, true);
+    if (wire.length) {
+      this.drawSurfaces(middle, low.length, picture);
+      this.drawWire(wire, low.length + middle.length, picture);
+    } else {
+      this.drawLines(picture, false);
+      this.drawPoints(picture, false);
+      this.drawSurfaces(middle, low.length, picture);
+      this.drawLines(picture, true);
+      this.drawSurfaces(high, low.length + middle.length, picture);
+      this.drawPoints(picture, true);
+    }
     gl.bindVertexArray(null);
   }
-  /** What is drawn before the lines, after them, and after the traces. @param {Item[]} items @returns {Item[][]} */
+  /** What is drawn before the lines, after them, after the traces, and with the lines. @param {Item[]} items @returns {Item[][]} */
   byDepth(items) {
     const opaque = items.filter((i) => i.mode !== "transparent").sort((a, b) => a.layer - b.layer);
-    return [opaque, this.farToNear(items.filter((i) => i.mode === "transparent")), []];
+    // A mesh without edges is not left out of wire pictures.
+    const isWire = (/** @type {Item} */ i) => i.mode === "wire" && this.shapes[i.shape].shape.outlined;
+    const transparent = this.farToNear(items.filter((i) => i.mode === "transparent"));
+    return [opaque.filter((i) => !isWire(i)), transparent, [], opaque.filter(isWire)];
+  }
+  /** Wire and all lines. Surfaces of wire are not seen, and hide nothing but lines: what they hide is faint.
+   * @param {Item[]} items @param {number} shift @param {Picture} picture */
+  drawWire(items, shift, picture) {
+    const gl = this.gl;
+    for (const hidden of [true, false]) {
+      this.hidden = hidden;
+      if (!hidden) {
+        gl.colorMask(false, false, false, false);
+        this.useSurface(picture);
+        for (const batch of grouped(items)) this.fill(this.shapes[batch.item.shape], batch, batch.first + shift);
+        gl.colorMask(true, true, true, true);
+      }
+      this.drawSurfaces(items, shift, picture);
+      for (const over of [false, true]) {
+        this.drawLines(picture, over);
+        this.drawPoints(picture, over);
+      }
+    }
   }
   farToNear(/** @type {Item[]} */ items) {
     const { back } = this.now.camera.axes();
@@ -131,9 +162,8 @@ export class Renderer {
       const buffers = this.shapes[batch.item.shape];
       const first = batch.first + shift;
       const clear = batch.item.mode === "transparent";
-      if (clear || batch.item.role === "copy") gl.enable(gl.BLEND);
+      if (clear || batch.item.role === "copy" || this.hidden) gl.enable(gl.BLEND);
       gl.depthMask(!clear);
-      // A mesh without edges is not left out of wire pictures.
       if (batch.item.mode !== "wire" || !buffers.shape.outlined) this.fill(buffers, batch, first);
       if (batch.item.mode === "wire" || picture.edges) this.edges(buffers, batch, first);
       // Lines are drawn by another program.
@@ -154,6 +184,7 @@ export class Renderer {
     gl.uniform1f(at.cutting, picture.plane ? 1 : 0);
     gl.uniform1f(at.flatView, camera.perspective ? 0 : 1);
     gl.uniform3fv(at.cutColor, palette.cut);
+    gl.uniform1f(at.strength, this.hidden ? HIDDEN_EDGE : 1);
     const sun = normalize([0.4, -0.6, 1]);
     gl.uniform3f(at.sun, ...rotated(view, sun));
   }
@@ -208,6 +239,7 @@ export class Renderer {
     gl.uniformMatrix4fv(this.lineAt.both, false, this.now.both);
     gl.uniform4fv(this.lineAt.plane, picture.plane ?? [0, 0, 0, 1]);
     gl.uniform2f(this.lineAt.size, gl.drawingBufferWidth, gl.drawingBufferHeight);
+    gl.uniform1f(this.lineAt.strength, this.hidden ? HIDDEN : 1);
   }
   /** @param {LineSet} set @param {number} count @param {number} width pixels */
   strips(set, count, width) {
@@ -257,12 +289,15 @@ export class Renderer {
     gl.useProgram(this.point);
     gl.uniformMatrix4fv(this.pointAt.both, false, this.now.both);
     gl.uniform1f(this.pointAt.ratio, this.now.ratio);
+    gl.uniform1f(this.pointAt.strength, this.hidden ? HIDDEN : 1);
+    gl.enable(gl.BLEND);
     for (const { set, count, color } of picture.points.filter((p) => p.over === over && p.count)) {
       gl.uniform4f(this.pointAt.paint, ...(color ?? [0, 0, 0]), color ? 1 : 0);
       gl.bindVertexArray(set.vao);
       gl.drawArrays(gl.POINTS, 0, count);
       this.counted(0);
     }
+    gl.disable(gl.BLEND);
   }
   counted(/** @type {number} */ triangles) {
     this.calls++;
@@ -279,7 +314,7 @@ function rotated(m, v) {
 /** Of a planar scene: obstacles, start, goals and copies, the robot. @param {Item[]} items @returns {Item[][]} */
 function layered(items) {
   const sorted = items.sort((a, b) => a.layer - b.layer);
-  return [sorted.filter((i) => i.layer === 0), sorted.filter((i) => i.layer > 0 && i.layer < 4), sorted.filter((i) => i.layer === 4)];
+  return [sorted.filter((i) => i.layer === 0), sorted.filter((i) => i.layer > 0 && i.layer < 4), sorted.filter((i) => i.layer === 4), []];
 }
 
 /** Neighbours that one call can draw. @param {Item[]} items @returns {Batch[]} */

@@ -42,13 +42,13 @@ in float beyond;
 flat in float cutKind;
 uniform vec3 sun, cutColor;
 uniform vec4 line;
-uniform float shaded, cutting, flatView;
+uniform float shaded, cutting, flatView, strength;
 out vec4 result;
 void main() {
   vec3 slope = cross(dFdx(eye), dFdy(eye));
   if (beyond > 0.0) discard;
   if (shaded == 0.0) {
-    result = line.a > 0.0 ? vec4(line.rgb, line.a * tint.a) : tint;
+    result = (line.a > 0.0 ? vec4(line.rgb, line.a * tint.a) : tint) * vec4(1, 1, 1, strength);
     return;
   }
   if (cutKind > 1.5 && cutting > 0.0 && !gl_FrontFacing) {
@@ -97,10 +97,11 @@ void main() {
 export const LINE_FRAGMENT = `${HEAD}
 in vec4 tint;
 in float beyond;
+uniform float strength;
 out vec4 result;
 void main() {
   if (beyond > 0.0) discard;
-  result = tint;
+  result = tint * vec4(1, 1, 1, strength);
 }`;
 
 /** Round points. The fourth number of the colour is the size as a part of 16 pixels. */
@@ -123,11 +124,12 @@ void main() {
 export const POINT_FRAGMENT = `${HEAD}
 in vec3 tint;
 in float ring;
+uniform float strength;
 out vec4 result;
 void main() {
   float far = length(gl_PointCoord - 0.5);
   if (far > 0.5 || (ring > 0.0 && far < 0.34)) discard;
-  result = vec4(tint, 1.0);
+  result = vec4(tint, strength);
 }`;
 
 /** A rectangle with an image. */
