@@ -189,6 +189,48 @@ fn plans_avoid_new_obstacles() {
     }
 }
 
+const FOUR: &str = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+
+/// A mesh that was added is written beside the problem. Where the robot names further files in memory, all names stay, and the files are
+/// listed.
+#[test]
+fn meshes_are_written_beside_the_problem() {
+    let robot: &'static str =
+        Box::leak(ARM.replace("<box size='1 0.1 0.1'/>", "<mesh filename='bar.off'/>").into_boxed_str());
+    for (urdf, left) in [(ARM, vec![]), (robot, vec!["r.urdf".to_owned(), "bar.off".to_owned()])] {
+        let files: Arc<dyn Files> = Arc::new(InMemory(move |name: &str| match name {
+            "p.toml" => Some(PROBLEM.as_bytes()),
+            "r.urdf" => Some(urdf.as_bytes()),
+            "bar.off" => Some(FOUR.as_bytes()),
+            _ => None,
+        }));
+        let scene = Scene::load_from(&*files, Path::new("p.toml")).unwrap();
+        let problem = scene.problem(files, false).unwrap();
+        let mut document = problem.document().clone();
+        let file = "four.stl".to_owned();
+        let mesh = ProblemShape::Solid(DocumentShape::Mesh { file, off: None, solid: true });
+        document.obstacles.push(obstacle("four", mesh, [0.0, 0.0, 5.0, 0.1, 0.0, 0.0]));
+        document.obstacles[3].scale = Some([1.0, 1.0, 2.0]);
+        let four = |name: &str| {
+            assert_eq!(name, "four.stl");
+            mp_io::parse_mesh("four.off", FOUR.as_bytes())
+        };
+        let edited = problem.edited(&document, &four, &scene).unwrap();
+        let (saved, named) = problem.saved("q", &document, &four, None).unwrap();
+        assert_eq!(named, left);
+        let text = String::from_utf8(saved[0].1.clone()).unwrap();
+        assert!(text.contains("mesh = \"q_four.off\"\nsolid = true\n"), "{text}");
+        assert_eq!((saved[1].0.as_str(), text.contains("\"q_r.urdf\"")), ("q_four.off", left.is_empty()));
+        let kept: &'static [(String, Vec<u8>)] = Box::leak(saved.into_boxed_slice());
+        let again = InMemory(move |name: &str| match name {
+            "r.urdf" => Some(urdf.as_bytes()),
+            "bar.off" => Some(FOUR.as_bytes()),
+            _ => kept.iter().find(|file| file.0 == name).map(|file| file.1.as_slice()),
+        });
+        assert_eq!(seen(&Scene::load_from(&again, Path::new("q.toml")).unwrap()), seen(&edited));
+    }
+}
+
 #[test]
 fn what_is_wrong_is_said() {
     let files = in_memory(PROBLEM);
