@@ -14,7 +14,8 @@ use toml::{Spanned, Value};
 /// The version written and read.
 const VERSION: u32 = 1;
 /// The page that describes documents.
-const GUIDE: &str = "the documents of problems are described in docs/formats/session.md, “Documents of problems”";
+const GUIDE: &str =
+    "the documents of problems are described in docs/formats/session.md, “Documents of problems”";
 /// Corners of a polygon around a circle that is not one in its file.
 const CORNERS: usize = 32;
 /// Members of an obstacle that are not its shape.
@@ -160,12 +161,7 @@ impl ProblemDocument {
     /// # Errors
     /// [`Error`] when the document is of another version or of another text. Whether shapes and numbers make sense is for the readers of
     /// problems to say.
-    pub fn applied(
-        &self,
-        file: &str,
-        text: &str,
-        mesh: &dyn Fn(&str) -> String,
-    ) -> Result<String, Error> {
+    pub fn applied(&self, file: &str, text: &str, mesh: &dyn Fn(&str) -> String) -> Result<String, Error> {
         let source = TomlText { file, text, guide: GUIDE };
         let wrong = |what: String, help: &str| Err(source.error(&(0..0), what).help(help));
         if self.version != VERSION {
@@ -177,7 +173,9 @@ impl ProblemDocument {
         let kept: Vec<usize> = self.obstacles.iter().map_while(|o| o.of).collect();
         let new = &self.obstacles[kept.len()..];
         let sorted = kept.windows(2).all(|pair| pair[0] < pair[1]);
-        if !sorted || new.iter().any(|o| o.of.is_some()) || kept.last().is_some_and(|i| *i >= tables.obstacle.len())
+        if !sorted
+            || new.iter().any(|o| o.of.is_some())
+            || kept.last().is_some_and(|i| *i >= tables.obstacle.len())
         {
             let what = "the document is of another problem than this one".to_owned();
             return wrong(what, "open the problem that it was made from");
@@ -230,12 +228,17 @@ impl ProblemDocument {
                 Some(Shape::Primitive(kind, lengths)) if lengths.len() == 1 => {
                     lines.push(format!("{} = {}", kind.name, number(lengths[0])));
                 }
-                Some(Shape::Primitive(kind, lengths)) => lines.push(format!("{} = {}", kind.name, list(&lengths))),
+                Some(Shape::Primitive(kind, lengths)) => {
+                    lines.push(format!("{} = {}", kind.name, list(&lengths)))
+                }
                 _ => {}
             },
             ProblemShape::Other(OtherShape::Given { of, .. }) => {
                 let given = tables.obstacle.get(*of).ok_or_else(|| {
-                    source.error(&(0..0), format!("there is no obstacle {of} whose shape {} could have", obstacle.name))
+                    source.error(
+                        &(0..0),
+                        format!("there is no obstacle {of} whose shape {} could have", obstacle.name),
+                    )
                 })?;
                 let shape = given.get_ref().iter().filter(|(key, _)| !PLACED.contains(&key.as_str()));
                 lines.extend(shape.map(|(key, value)| format!("{} = {}", key, inline(value.get_ref()))));
@@ -273,7 +276,9 @@ impl ProblemObstacle {
             OtherShape::Polygon { rings } => rings.clone(),
         };
         let [sx, sy, _] = self.scale.unwrap_or([1.0; 3]);
-        Some(rings.into_iter().map(|ring| ring.into_iter().map(|[x, y]| [sx * x, sy * y]).collect()).collect())
+        Some(
+            rings.into_iter().map(|ring| ring.into_iter().map(|[x, y]| [sx * x, sy * y]).collect()).collect(),
+        )
     }
 
     /// The shape of an obstacle of the plane, where it is.
@@ -297,7 +302,8 @@ impl ProblemObstacle {
         })?;
         let (sin, cos) = mp_math::sin_cos(angle);
         let placed = |[px, py]: &[f64; 2]| list(&[x + cos * px - sin * py, y + sin * px + cos * py]);
-        let ring = |ring: &Vec<[f64; 2]>| format!("[{}]", ring.iter().map(placed).collect::<Vec<_>>().join(", "));
+        let ring =
+            |ring: &Vec<[f64; 2]>| format!("[{}]", ring.iter().map(placed).collect::<Vec<_>>().join(", "));
         let mut rings = rings.iter().map(ring);
         let mut lines = vec![format!("polygon = {}", rings.next().unwrap_or_else(|| "[]".to_owned()))];
         let holes: Vec<String> = rings.collect();
@@ -312,7 +318,8 @@ impl ProblemObstacle {
 fn obstacle(i: usize, members: &Members, plane: bool) -> ProblemObstacle {
     let value = |key: &str| members.get(key).map(Spanned::get_ref);
     let of = |key: &str| value(key).map(numbers);
-    let name = value("name").and_then(Value::as_str).map_or_else(|| format!("obstacle {}", i + 1), str::to_owned);
+    let name =
+        value("name").and_then(Value::as_str).map_or_else(|| format!("obstacle {}", i + 1), str::to_owned);
     let mut pose = [0.0; 6];
     for (to, from) in pose.iter_mut().zip(of("pose").or_else(|| of("at")).unwrap_or_default()) {
         *to = from;
@@ -324,7 +331,8 @@ fn obstacle(i: usize, members: &Members, plane: bool) -> ProblemObstacle {
         (pose[0], pose[1]) = (place[0], place[1]);
         ProblemShape::Other(shape)
     } else {
-        let figure = PRIMITIVES.iter().find_map(|kind| DocumentShape::of_primitive(kind.name, &of(kind.name)?));
+        let figure =
+            PRIMITIVES.iter().find_map(|kind| DocumentShape::of_primitive(kind.name, &of(kind.name)?));
         figure.map_or_else(
             || {
                 let kind = members.keys().find(|key| crate::shape::names().any(|name| name == *key));
@@ -347,9 +355,7 @@ fn shape_of_plane<'v>(
     if let Some([a, b, c, d]) = of("rectangle").as_deref() {
         return (OtherShape::Rectangle { size: [c - a, d - b] }, [0.5 * (a + c), 0.5 * (b + d)]);
     }
-    let ring = |ring: &Value| -> Vec<[f64; 2]> {
-        numbers(ring).as_chunks::<2>().0.to_vec()
-    };
+    let ring = |ring: &Value| -> Vec<[f64; 2]> { numbers(ring).as_chunks::<2>().0.to_vec() };
     let holes = value("holes").and_then(Value::as_array).into_iter().flatten();
     let mut rings: Vec<Vec<[f64; 2]>> = value("polygon").into_iter().chain(holes).map(ring).collect();
     let middle = [0, 1].map(|k| {
@@ -382,7 +388,8 @@ fn region(file: &str, text: &str, table: &Spanned<Members>) -> Result<Range<usiz
         return Err(TomlText { file, text, guide: GUIDE }.error(&span, message).help(help));
     }
     let start = text[..span.start].rfind('\n').map_or(0, |i| i + 1);
-    let within = |at: usize| table.get_ref().values().any(|value| value.span().start < at && at < value.span().end);
+    let within =
+        |at: usize| table.get_ref().values().any(|value| value.span().start < at && at < value.span().end);
     let mut end = span.end;
     let mut at = start;
     for line in text[start..].split_inclusive('\n') {
@@ -403,7 +410,8 @@ fn region(file: &str, text: &str, table: &Spanned<Members>) -> Result<Range<usiz
 fn is_header(line: &str) -> bool {
     let line = line.trim_start();
     let inner = line.trim_start_matches('[').trim_start();
-    let header = line.starts_with('[') && inner.starts_with(|c: char| c.is_alphabetic() || "_\"'".contains(c));
+    let header =
+        line.starts_with('[') && inner.starts_with(|c: char| c.is_alphabetic() || "_\"'".contains(c));
     header && !(inner.starts_with("obstacle") && inner[8..].trim_start().starts_with('.'))
 }
 
@@ -433,7 +441,10 @@ fn inline(value: &Value) -> String {
         Value::Datetime(x) => x.to_string(),
         Value::Array(all) => format!("[{}]", joined(all.iter().map(inline).collect())),
         Value::Table(all) => {
-            format!("{{ {} }}", joined(all.iter().map(|(key, value)| format!("{key} = {}", inline(value))).collect()))
+            format!(
+                "{{ {} }}",
+                joined(all.iter().map(|(key, value)| format!("{key} = {}", inline(value))).collect())
+            )
         }
     }
 }

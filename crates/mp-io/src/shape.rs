@@ -154,7 +154,8 @@ impl<T> Shaped<T> {
         name: &str,
         span: &Range<usize>,
     ) -> Result<(ShapeEntry, Range<usize>), Error> {
-        let said = |what: &str| self.members.iter().find(|(member, _)| *member == what).map(|(_, value)| value);
+        let said =
+            |what: &str| self.members.iter().find(|(member, _)| *member == what).map(|(_, value)| value);
         let solid = said(SOLID);
         let shapes: Vec<_> =
             self.members.iter().filter(|(member, _)| ![SOLID, SCALE].contains(member)).collect();
@@ -305,9 +306,8 @@ impl<'a> Meshes<'a> {
             ShapeEntry::Scaled(shape, scale) => {
                 let (place, mesh) = self.of(source, name, &((**shape).clone(), span.clone()))?;
                 let scaled = mesh.scaled(*scale);
-                let scaled = scaled.map_err(|e| {
-                    fault(&format!("{name} cannot be scaled: {e}"), "take factors nearer to 1")
-                });
+                let scaled = scaled
+                    .map_err(|e| fault(&format!("{name} cannot be scaled: {e}"), "take factors nearer to 1"));
                 (place, scaled?)
             }
         };

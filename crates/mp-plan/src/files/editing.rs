@@ -82,20 +82,30 @@ impl SceneProblem {
     ///
     /// # Errors
     /// When the document makes no sense: as the readers of problems say it.
-    pub fn edited(&self, document: &ProblemDocument, mesh: Meshes<'_>, before: &Scene) -> Result<Scene, Error> {
+    pub fn edited(
+        &self,
+        document: &ProblemDocument,
+        mesh: Meshes<'_>,
+        before: &Scene,
+    ) -> Result<Scene, Error> {
         let files = self.written(&document.name, document, mesh)?;
         let folder = self.file.parent().unwrap_or(Path::new(""));
         let text = files.first().map(|(_, text)| text.clone()).unwrap_or_default();
         let added = files.into_iter().skip(1).map(|(name, text)| (folder.join(name), text)).collect();
         let files = Added { added, rest: &*self.files };
-        let of = SceneFiles { file: self.file.clone(), text: Some(text), around: None, ..SceneFiles::clone(&self.of) };
+        let of = SceneFiles {
+            file: self.file.clone(),
+            text: Some(text),
+            around: None,
+            ..SceneFiles::clone(&self.of)
+        };
         let scene = Scene::load_again(&files, Arc::new(of), Some(before))?;
         scene.with_file(&self.of.file).keeping(before.clearance_kept())
     }
 
     /// The files of the edited document: the problem `name.toml`, then those that are to stand beside it. In the folder `into` it names the
     /// files of the problem where they are. Without a folder, and where the files are in memory, those that the problem names are among
-    /// the files; what these name in turn is not, and is listed behind them.
+    /// the files; where these name others in turn, none is, and the second list has all that are needed.
     ///
     /// # Errors
     /// When the document makes no sense, or a file cannot be read any more.
@@ -123,24 +133,26 @@ impl SceneProblem {
                 let mut named = Vec::new();
                 let renamed = self.renamed(&text, &mut |file| {
                     let bytes = known(file).filter(|_| !own.iter().any(|own| own == file))?;
-                    let last = Path::new(file).file_name()?.to_string_lossy().into_owned();
-                    let copy = format!("{name}_{last}");
+                    let parts: Vec<&str> =
+                        file.split(['/', '\\']).filter(|part| !["", ".", ".."].contains(part)).collect();
+                    let copy = format!("{name}_{}", parts.join("_"));
                     named.push(folder.join(file));
                     if !copies.iter().any(|(known, _)| *known == copy) {
                         copies.push((copy.clone(), bytes));
                     }
                     Some(copy)
                 })?;
-                let others = self.of.inputs.iter().filter(|file| {
-                    **file != self.of.file && **file != self.file && !named.contains(file)
-                });
-                left.extend(others.map(|file| file.display().to_string()));
+                let problem = |file: &PathBuf| *file == self.of.file || *file == self.file;
+                let further =
+                    |file: &&PathBuf| !problem(file) && !named.contains(file) && self.files.holds(file);
                 // All or none: files that name others by where they stand cannot stand elsewhere.
-                if left.is_empty() {
-                    renamed
-                } else {
+                if self.of.inputs.iter().any(|file| further(&file)) {
+                    let needed = self.of.inputs.iter().filter(|file| named.contains(file) || further(file));
+                    left.extend(needed.map(|file| file.display().to_string()));
                     copies.clear();
                     text
+                } else {
+                    renamed
                 }
             }
         };
@@ -160,10 +172,7 @@ impl SceneProblem {
         document: &ProblemDocument,
         mesh: Meshes<'_>,
     ) -> Result<Vec<(String, String)>, Error> {
-        let file_of = |mesh: &str| {
-            let stem = Path::new(mesh).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            format!("{name}_{stem}.off")
-        };
+        let file_of = |mesh: &str| format!("{name}_{}.off", mesh.replace('.', "_"));
         let text = document.applied(&self.file.display().to_string(), &self.text, &file_of)?;
         let mut files = vec![(format!("{name}.toml"), text)];
         for obstacle in &document.obstacles {

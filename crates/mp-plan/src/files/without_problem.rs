@@ -21,9 +21,7 @@ pub(crate) fn scene(files: &dyn Files, file: &Path, named: Option<Content>) -> R
         Some(Content::Robot) => robot(files, file).map(Some),
         Some(Content::Map) => map(files, file).map(Some),
         Some(Content::MapImage) => map(files, &beside(files, file)?).map(Some),
-        Some(Content::RobotMacros) => {
-            Ok(Some((with_macros(files, file, &ProblemChanges::default())?, None)))
-        }
+        Some(Content::RobotMacros) => Ok(Some((with_macros(files, file, &ProblemChanges::default())?, None))),
         Some(Content::RobotSemantics) => {
             Err(Error::new(format!("{} is an SRDF, not a scene", file.display()))
                 .help("name it in a robot problem: docs/formats/robot-problem.md"))
@@ -117,7 +115,8 @@ fn map(files: &dyn Files, file: &Path) -> Result<Around, Error> {
     let ros = mp_io::RosMap::parse(&file.display().to_string(), &files.read(file, mp_io::MAX_TEXT_BYTES)?)?;
     let image = file.parent().unwrap_or(Path::new("")).join(&ros.image);
     mp_io::GridMap::parse(&image.display().to_string(), &files.read(&image, mp_io::MAX_MESH_BYTES)?)?;
-    let mut problem = PlanarProblem::load_from(&OneText { file: &place, text: &text(RADIUS), files }, &place)?;
+    let mut problem =
+        PlanarProblem::load_from(&OneText { file: &place, text: &text(RADIUS), files }, &place)?;
     let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
     let world = mp_geom::planar::PlanarWorld::new_until(polygons, problem.walls, &files.interrupt())
         .map_err(|e| Error::new(e.to_string()))?;

@@ -75,7 +75,8 @@ fn edited_problems_read_back_from_their_files() {
         let edited = problem.edited(&changed, &no_mesh, &scene).unwrap();
         let last = changed.obstacles.len() - 1;
         let still: Vec<_> = edited.bodies().into_iter().filter(|body| body.pose.is_some()).collect();
-        let names = |count: usize| still.iter().take(count).map(|body| body.name.as_str()).collect::<Vec<_>>();
+        let names =
+            |count: usize| still.iter().take(count).map(|body| body.name.as_str()).collect::<Vec<_>>();
         let wanted: Vec<_> = changed.obstacles.iter().map(|o| o.name.as_str()).collect();
         assert_eq!(names(last + 1), wanted, "{name}");
         let dir = tempfile::tempdir().unwrap();
@@ -144,10 +145,7 @@ fn plans_avoid_new_obstacles() {
     write("r.urdf", ARM.as_bytes());
     write("room.yaml", b"image: room.pgm\nresolution: 0.1\norigin: [0, 0, 0]\n");
     write("room.pgm", &[b"P5 60 40 255\n".as_slice(), &[255; 2400]].concat());
-    for (file, new) in [
-        ("r.urdf", None),
-        ("room.yaml", Some(disc("pillar", 0.6, [3.0, 2.0]))),
-    ] {
+    for (file, new) in [("r.urdf", None), ("room.yaml", Some(disc("pillar", 0.6, [3.0, 2.0])))] {
         let scene = Scene::load(dir.path().join(file)).unwrap();
         let problem = scene.problem(Arc::new(Disk), true).unwrap();
         let mut document = problem.document().clone();
@@ -183,7 +181,8 @@ fn plans_avoid_new_obstacles() {
             assert_eq!(seen(&saved(&problem, &document, into.path())), seen(&edited));
         }
         // Beside its own files the names stay.
-        let (files, _) = problem.saved("here", &document, &no_mesh, Some(&dir.path().canonicalize().unwrap())).unwrap();
+        let (files, _) =
+            problem.saved("here", &document, &no_mesh, Some(&dir.path().canonicalize().unwrap())).unwrap();
         let text = String::from_utf8(files[0].1.clone()).unwrap();
         assert!(files.len() == 1 && text.contains(&format!("\"{file}\"")), "{text}");
     }
@@ -219,8 +218,8 @@ fn meshes_are_written_beside_the_problem() {
         let (saved, named) = problem.saved("q", &document, &four, None).unwrap();
         assert_eq!(named, left);
         let text = String::from_utf8(saved[0].1.clone()).unwrap();
-        assert!(text.contains("mesh = \"q_four.off\"\nsolid = true\n"), "{text}");
-        assert_eq!((saved[1].0.as_str(), text.contains("\"q_r.urdf\"")), ("q_four.off", left.is_empty()));
+        assert!(text.contains("mesh = \"q_four_stl.off\"\nsolid = true\n"), "{text}");
+        assert_eq!((saved[1].0.as_str(), text.contains("\"q_r.urdf\"")), ("q_four_stl.off", left.is_empty()));
         let kept: &'static [(String, Vec<u8>)] = Box::leak(saved.into_boxed_slice());
         let again = InMemory(move |name: &str| match name {
             "r.urdf" => Some(urdf.as_bytes()),
@@ -245,7 +244,9 @@ fn what_is_wrong_is_said() {
     assert!(refused(&|d| d.obstacles.swap(0, 1)).contains("another problem"));
     assert!(refused(&|d| d.obstacles[2].of = Some(9)).contains("another problem"));
     assert!(refused(&|d| d.obstacles.push(ball("b", -1.0, [0.0; 3]))).contains("is -1"));
-    assert!(refused(&|d| d.obstacles[2].scale = Some([0.0, 1.0, 1.0])).contains("the scale of obstacle 3 is 0"));
+    assert!(
+        refused(&|d| d.obstacles[2].scale = Some([0.0, 1.0, 1.0])).contains("the scale of obstacle 3 is 0")
+    );
     assert!(refused(&|d| d.obstacles[1].scale = Some([2.0; 3])).contains("set of points"));
     assert!(refused(&|d| d.obstacles.push(disc("c", 1.0, [0.0; 2]))).contains("shape of the plane"));
     assert!(refused(&|d| d.start = Some(vec![f64::NAN])).contains("p.toml"));
@@ -253,5 +254,7 @@ fn what_is_wrong_is_said() {
     let files = in_memory(inline);
     let scene = Scene::load_from(&*files, Path::new("p.toml")).unwrap();
     let error = scene.problem(files, false).unwrap_err();
-    assert!(error.to_string().contains("one list") && error.remedy().is_some_and(|r| r.contains("[[obstacle]]")));
+    assert!(
+        error.to_string().contains("one list") && error.remedy().is_some_and(|r| r.contains("[[obstacle]]"))
+    );
 }

@@ -58,7 +58,7 @@ pub(crate) struct Open {
 #[serde(untagged)]
 enum Document {
     /// All of a rigid body among meshes.
-    Scene(SceneDocument),
+    Scene(Box<SceneDocument>),
     /// Obstacles and ends of a problem in TOML.
     Problem(ProblemDocument),
 }
@@ -203,7 +203,7 @@ impl Workspace {
                     *file = self.name_mesh(file, mesh);
                 }
             }
-            let document = Some(Document::Scene(document));
+            let document = Some(Document::Scene(Box::new(document)));
             self.open = Some(Open { scene, document, problem: None, unedited: None, path });
             return;
         }
@@ -241,8 +241,10 @@ impl Workspace {
         let meshes = &self.meshes;
         let mesh = |name: &str| known_mesh(meshes, name);
         let scene = match (&document, &self.open) {
-            (Document::Scene(document), Some(open)) => open.scene.edited(document.clone(), &mesh)?,
-            (Document::Scene(document), None) => Scene::from_document(document.clone(), &mesh)?,
+            (Document::Scene(document), Some(open)) => {
+                open.scene.edited(SceneDocument::clone(document), &mesh)?
+            }
+            (Document::Scene(document), None) => Scene::from_document(SceneDocument::clone(document), &mesh)?,
             (Document::Problem(document), _) => {
                 self.problem()?.edited(document, &mesh, &self.opened()?.scene)?
             }
@@ -319,7 +321,8 @@ impl Workspace {
                 let still = file.bodies.iter_mut().filter(|body| body.role == Role::Obstacle);
                 for (obstacle, drawn) in document.obstacles.iter().zip(still) {
                     if let (Some(rings), Shape::Area(area)) = (obstacle.rings(), &drawn.shape) {
-                        let ring = |ring: Vec<[f64; 2]>| ring.as_flattened().iter().map(|x| *x as f32).collect();
+                        let ring =
+                            |ring: Vec<[f64; 2]>| ring.as_flattened().iter().map(|x| *x as f32).collect();
                         file.areas[*area].rings = rings.into_iter().map(ring).collect();
                         let [x, y, _, angle, ..] = obstacle.pose;
                         let pose = mp_geom::pose_from_six([x, y, 0.0, angle, 0.0, 0.0]);
@@ -428,7 +431,8 @@ impl Workspace {
         let end = row_of(&request.head, "row")?;
         let next = self.opened()?.scene.next_part(&end, &Interrupt::never())?;
         let next = next.ok_or_else(|| Error::new("this was the last part of the motion"))?;
-        let unedited = "Obstacles are edited in the first part of the motion: open the scene again.".to_owned();
+        let unedited =
+            "Obstacles are edited in the first part of the motion: open the scene again.".to_owned();
         let unedited = Some(unedited);
         self.open = Some(Open { scene: next, document: None, problem: None, unedited, path: None });
         self.reply()
@@ -443,11 +447,14 @@ impl Workspace {
             })?,
         };
         let mesh = |name: &str| known_mesh(&self.meshes, name);
-        let texts = |files: Vec<(String, String)>| files.into_iter().map(|(name, text)| (name, text.into_bytes()));
+        let texts =
+            |files: Vec<(String, String)>| files.into_iter().map(|(name, text)| (name, text.into_bytes()));
         let format = format_of(request, &["own", "gempa"], "scenes")?;
         let files = match document {
             Document::Problem(_) if format == "gempa" => {
-                return Err(Error::new("GEMPA has rigid bodies only").help("save it as the problem that it is"));
+                return Err(
+                    Error::new("GEMPA has rigid bodies only").help("save it as the problem that it is")
+                );
             }
             Document::Problem(document) => {
                 let folder = self.folder_of(request);
@@ -458,7 +465,7 @@ impl Workspace {
                 return Ok(self.written(request, files)?.with("note", left));
             }
             Document::Scene(document) if format == "own" => {
-                let document = SceneDocument { name: name.clone(), ..document };
+                let document = SceneDocument { name: name.clone(), ..*document };
                 document.problem(&name, &mesh)?;
                 vec![(format!("{name}.mp.json"), document.with_meshes(&mesh)?.to_text())]
             }
