@@ -79,7 +79,8 @@ export class Editor {
 
   /** @param {"open" | "edit"} how */
   opened(how) {
-    if (how === "open") {
+    // Later parts of a motion have no document.
+    if (how === "open" || !this.workbench.document) {
       const document = /** @type {Document | null} */ (this.workbench.document);
       this.history = document ? new doc.History(document) : null;
       this.sent = this.first = document;

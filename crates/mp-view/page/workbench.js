@@ -81,9 +81,14 @@ export class Workbench {
     Object.assign(this, { document, unedited, links, trajectories, partsLeft, which });
   }
 
-  /** Opens the next part of the motion. @param {number[]} row where this one ends @returns {Promise<boolean>} */
-  nextPart(row) {
-    return this.attempt(async () => this.take(await this.session.request({ do: "next", row }), "edit"));
+  /** Opens the next part of the motion, in which nothing is edited; asks first when there are unsaved changes.
+   * @param {number[]} row where this one ends @returns {Promise<boolean>} */
+  async nextPart(row) {
+    if (!(await mayDiscard())) return false;
+    return this.attempt(async () => {
+      this.take(await this.session.request({ do: "next", row }), "edit");
+      setUnsaved(false);
+    });
   }
   /** The page shows something else than the scene of the session: there is nothing to edit or to plan. */
   leave() {

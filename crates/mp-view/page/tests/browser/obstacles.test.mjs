@@ -193,3 +193,30 @@ browserTest("obstacles are added beside the pixels of a map, turned and scaled",
     assert.ok(Math.abs(again.obstacles[1].pose[0] - 5.5) < 1e-9);
   });
 }));
+
+browserTest("changed obstacles of a problem outlive a reload; later parts of a motion say where they are edited", () => withPage("carry", async (driver) => {
+  const before = await documentOf(driver);
+  await driver.press("Add");
+  await untilObstacles(driver, before.obstacles.length + 1);
+  await driver.fill("spinbutton", "z, metres", "3");
+  await untilPose(driver, before.obstacles.length, 2, 3);
+  const made = (await documentOf(driver)).obstacles;
+  await driver.until(() => Object.values(localStorage).some((text) => JSON.parse(JSON.parse(text).text).obstacles.at(-1).pose[2] === 3));
+  driver.page.once("dialog", (dialog) => dialog.accept());
+  await driver.page.reload();
+  await driver.untilReady();
+  await driver.untilAlert(/changes that were not saved/);
+  assert.equal((await documentOf(driver)).obstacles.length, before.obstacles.length);
+  await driver.press("Open the copy");
+  await untilObstacles(driver, made.length);
+  assert.deepEqual((await documentOf(driver)).obstacles, made);
+  assert.ok(await driver.page.evaluate(() => document.body.classList.contains("unsaved")));
+
+  await driver.press("Plan");
+  await driver.untilResult(/verified path/);
+  // Changes that no file has are asked about, as nothing is saved there.
+  await driver.press("Next part");
+  await driver.press("Discard them");
+  await driver.until(() => /Obstacles are edited in the first part of the motion: open the scene again\./.test(document.body.innerText));
+  assert.equal(await driver.page.$eval("[aria-label='Add a body']", (element) => element.checkVisibility()), false);
+}));
