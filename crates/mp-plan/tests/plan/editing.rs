@@ -84,6 +84,13 @@ fn edited_problems_read_back_from_their_files() {
         // Once more: the same document gives the same scene, and undoing all gives the first one.
         let back = problem.edited(document, &no_mesh, &edited).unwrap();
         assert_eq!(seen(&back), seen(&scene), "{name}");
+        // Ends that were moved are written too, as many numbers as the file has.
+        let ends = (scene.start(), scene.goals());
+        changed.start = Some(ends.0.clone());
+        changed.goals = Some(ends.1.clone());
+        let moved = problem.edited(&changed, &no_mesh, &scene).map(|scene| (scene.start(), scene.goals()));
+        let exact = |e: &mp_plan::Error| e.to_string().contains("cannot reach these numbers exactly");
+        assert!(moved.as_ref().map_or_else(exact, |moved| moved.0 == ends.0), "{name}: {moved:?}");
         edited_kinds.insert(scene.kind());
     }
     assert!(edited_kinds.len() >= 4, "{edited_kinds:?}");
