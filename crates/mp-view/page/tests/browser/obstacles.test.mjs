@@ -220,3 +220,25 @@ browserTest("changed obstacles of a problem outlive a reload; later parts of a m
   await driver.until(() => /Obstacles are edited in the first part of the motion: open the scene again\./.test(document.body.innerText));
   assert.equal(await driver.page.$eval("[aria-label='Add a body']", (element) => element.checkVisibility()), false);
 }));
+
+browserTest("every kind of problem takes an obstacle, which is drawn where the document has it", () => withPage("easy", async (driver) => {
+  for (const name of ["warehouse", "docks", "unicycle", "two-arms", "humanoid", "mobile-arm", "flyer", "tool-pose", "blade", "rrs-maze"]) {
+    await driver.page.evaluate(async (scene) => (await window.mpView.planner).openScene({ scene }), name);
+    const before = await documentOf(driver);
+    assert.ok(before && !before.robot, name);
+    await driver.press("Add");
+    await untilObstacles(driver, before.obstacles.length + 1);
+    assert.equal(await driver.alert(), "", name);
+    const { drawn, document } = await driver.page.evaluate(async () => {
+      const { viewer, document: now } = await window.mpView.planner;
+      const { scene } = viewer;
+      return { document: now, drawn: now.obstacles.map((_, i) => ({ name: scene.bodies[scene.robot + i].name, place: [...scene.bodies[scene.robot + i].pose].slice(0, 3) })) };
+    });
+    for (const [i, { name: called, pose }] of document.obstacles.entries()) {
+      assert.equal(drawn[i].name, called, name);
+      pose.slice(0, 3).forEach((x, k) => assert.ok(Math.abs(x - drawn[i].place[k]) < 1e-9, `${name}: ${called}`));
+    }
+    await driver.press("Undo");
+    await untilObstacles(driver, before.obstacles.length);
+  }
+}));
