@@ -47,7 +47,7 @@ fn edited_problems_read_back_from_their_files() {
     for name in Scene::shipped() {
         let scene = Scene::find(name).unwrap();
         let problem = scene.problem(Arc::new(shipped_files()), false);
-        if !scene.files().file.extension().is_some_and(|ending| ending == "toml") {
+        if scene.files().file.extension().is_none_or(|ending| ending != "toml") {
             assert!(problem.is_err(), "{name} is no problem in TOML");
             continue;
         }

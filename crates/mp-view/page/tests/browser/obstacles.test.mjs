@@ -101,7 +101,6 @@ browserTest("an obstacle of an arm is added, dragged, deleted and saved, and pla
   await driver.page.focus("[role=application]");
   await driver.keys("Control", "z");
   await untilPose(driver, index, 0, before[0]);
-  if (process.env.SHOT) await driver.page.screenshot({ path: `${process.env.SHOT}.arm.png` });
   await driver.choose("Selected", "lamp post");
   await driver.press("Delete");
   await untilObstacles(driver, names.length);
@@ -182,7 +181,6 @@ browserTest("obstacles are added beside the pixels of a map, turned and scaled",
     assert.match(text, /circle = \[.*0\.15\]/);
     assert.match(text, /polygon = /);
     assert.equal(await checked(driver, folder, "with-things", fresh, "fresh"), "");
-    if (process.env.SHOT) await driver.page.screenshot({ path: process.env.SHOT });
 
     // Opened again with its map, there are the same obstacles.
     const file = (from, name) => ({ name, content: readFileSync(join(from, name)) });
