@@ -63,37 +63,9 @@ impl ProblemChanges {
     /// # Errors
     /// [`Error`] when the text or that of an option is no TOML, or there is no start or goal to replace.
     pub fn applied(&self, file: &str, text: &str) -> Result<String, Error> {
-        let guide = "docs/formats describes problems";
-        let Ends { motion } = TomlText { file, text, guide }.read()?;
-        let (start, goal, goals) = motion.map_or((None, None, None), |m| (m.start, m.goal, m.goals));
-        let mut replaced: Vec<(Range<usize>, String, &'static str)> = Vec::new();
-        let none = |option: &'static str, what: &str| {
-            Error::new(ErrorKind::Content, option, format!("{file} has no {what} to replace"))
-                .help("add `[motion]` with `start` and `goal` to the problem")
-        };
-        if let Some(from) = &self.from {
-            let start = start.ok_or_else(|| none(FROM, "start"))?;
-            replaced.push((start.span(), value(FROM, from)?, FROM));
-        }
+        let from = self.from.as_ref().map(|from| value(FROM, from)).transpose()?;
         let given = self.to.iter().map(|to| value(TO, to)).collect::<Result<Vec<_>, _>>()?;
-        match (given.as_slice(), goal, goals) {
-            ([], ..) => {}
-            (_, _, Some(goals)) => replaced.push((goals.span(), format!("[{}]", given.join(", ")), TO)),
-            ([one], Some(goal), None) => replaced.push((goal.span(), one.clone(), TO)),
-            (several, Some(goal), None) => {
-                let key = text[..goal.span().start].rfind("goal").unwrap_or(goal.span().start);
-                replaced.push((key..goal.span().end, format!("goals = [{}]", several.join(", ")), TO));
-            }
-            (_, None, None) => return Err(none(TO, "goal")),
-        }
-        replaced.sort_by_key(|(span, ..)| std::cmp::Reverse(span.start));
-        let mut text = text.to_owned();
-        for (span, value, option) in replaced {
-            let rest = text[span.end..].lines().next().unwrap_or_default().trim();
-            let ends_line = rest.is_empty() || rest.starts_with('#');
-            let mark = if ends_line { format!("{MARK}{option}") } else { String::new() };
-            text.replace_range(span, &(value + &mark));
-        }
+        let mut text = with_ends(file, text, from, &given, true)?;
         for obstacle in &self.obstacles {
             text += &obstacle_lines(obstacle)?;
         }
@@ -133,6 +105,51 @@ impl ProblemChanges {
     pub fn goal_rows(&self) -> Result<Vec<Vec<f64>>, Error> {
         self.to.iter().map(|to| row(TO, to)).collect()
     }
+}
+
+/// The text of a problem, which errors call `file`, with another start and other goals, each a value of TOML. If they are from options,
+/// comments say so.
+///
+/// # Errors
+/// [`Error`] when the text is no TOML, or there is no start or goal to replace.
+pub(crate) fn with_ends(
+    file: &str,
+    text: &str,
+    from: Option<String>,
+    given: &[String],
+    from_options: bool,
+) -> Result<String, Error> {
+    let guide = "docs/formats describes problems";
+    let Ends { motion } = TomlText { file, text, guide }.read()?;
+    let (start, goal, goals) = motion.map_or((None, None, None), |m| (m.start, m.goal, m.goals));
+    let mut replaced: Vec<(Range<usize>, String, &'static str)> = Vec::new();
+    let none = |option: &'static str, what: &str| {
+        Error::new(ErrorKind::Content, option, format!("{file} has no {what} to replace"))
+            .help("add `[motion]` with `start` and `goal` to the problem")
+    };
+    if let Some(from) = from {
+        let start = start.ok_or_else(|| none(FROM, "start"))?;
+        replaced.push((start.span(), from, FROM));
+    }
+    match (given, goal, goals) {
+        ([], ..) => {}
+        (_, _, Some(goals)) => replaced.push((goals.span(), format!("[{}]", given.join(", ")), TO)),
+        ([one], Some(goal), None) => replaced.push((goal.span(), one.clone(), TO)),
+        (several, Some(goal), None) => {
+            let key = text[..goal.span().start].rfind("goal").unwrap_or(goal.span().start);
+            replaced.push((key..goal.span().end, format!("goals = [{}]", several.join(", ")), TO));
+        }
+        (_, None, None) => return Err(none(TO, "goal")),
+    }
+    replaced.sort_by_key(|(span, ..)| std::cmp::Reverse(span.start));
+    let mut text = text.to_owned();
+    for (span, value, option) in replaced {
+        let rest = text[span.end..].lines().next().unwrap_or_default().trim();
+        let ends_line = rest.is_empty() || rest.starts_with('#');
+        let mark = if ends_line && from_options { format!("{MARK}{option}") } else { String::new() };
+        text.replace_range(span, &(value + &mark));
+    }
+    Ok(text)
 }
 
 /// The numbers that an option gives.

@@ -396,8 +396,21 @@ impl DocumentBody {
 }
 
 impl DocumentShape {
+    /// The figure that files call `name`, with these lengths (m); `None` when documents do not have it.
+    pub(crate) fn of_primitive(name: &str, lengths: &[f64]) -> Option<Self> {
+        Some(match (name, lengths) {
+            ("sphere", &[radius]) => Self::Sphere { radius },
+            ("box", &[x, y, z]) => Self::Cube { size: [x, y, z] },
+            ("cone", &[radius, height]) => Self::Cone { radius, height },
+            ("cylinder", &[radius, height]) => Self::Cylinder { radius, height },
+            ("torus", &[ring, tube]) => Self::Torus { ring, tube },
+            ("tetrahedron", &[edge]) => Self::Tetrahedron { edge },
+            _ => return None,
+        })
+    }
+
     /// The shape of a figure; `None` for a mesh.
-    fn figure(&self) -> Option<Shape> {
+    pub(crate) fn figure(&self) -> Option<Shape> {
         match self {
             Self::Sphere { radius } => Shape::primitive("sphere", &[*radius]),
             Self::Cube { size } => Shape::primitive("box", size),

@@ -25,6 +25,7 @@ mod ompl;
 mod planar;
 mod pose_goal;
 mod problem;
+mod problem_document;
 mod problem_file;
 mod rigid_toml;
 mod robot;
@@ -59,6 +60,7 @@ pub use planar::{
 };
 pub use pose_goal::{FreeTurns, PoseEntry};
 pub use problem::{Body, PlacedBody, RigidProblem, SpaceKind};
+pub use problem_document::{OtherShape, ProblemDocument, ProblemObstacle, ProblemShape, with_file_names};
 pub use problem_file::ProblemFile;
 pub use rigid_toml::{RigidMoving, RigidTask};
 pub use robot::{

@@ -21,6 +21,8 @@ use toml::{Spanned, Value};
 const OTHERS: [&str; 4] = ["mesh", "hull", "height_field", "points"];
 /// What else is said of a shape.
 const SOLID: &str = "solid";
+/// How it is scaled along its own axes.
+const SCALE: &str = "scale";
 
 /// The names of all shapes.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
@@ -83,7 +85,7 @@ impl<'de, K: DeserializeSeed<'de>> DeserializeSeed<'de> for NameSeed<'_, K> {
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
         let name = String::deserialize(deserializer)?;
-        if let Some(known) = names().chain([SOLID]).find(|known| *known == name) {
+        if let Some(known) = names().chain([SOLID, SCALE]).find(|known| *known == name) {
             return Ok(Name::OfShape(known));
         }
         let seed = self.0.take().ok_or_else(|| D::Error::custom("a name is read twice"))?;
@@ -119,6 +121,8 @@ pub enum ShapeEntry {
     PointFile(String, [f64; 2]),
     /// A shape without a file: all of it is in the entry.
     Whole(Shape),
+    /// Another one, scaled along its own axes.
+    Scaled(Box<Self>, [f64; 3]),
 }
 
 /// A set of points, in the file or in one that it names.
@@ -151,8 +155,11 @@ impl<T> Shaped<T> {
         name: &str,
         span: &Range<usize>,
     ) -> Result<(ShapeEntry, Range<usize>), Error> {
-        let solid = self.members.iter().find(|(member, _)| *member == SOLID).map(|(_, value)| value);
-        let shapes: Vec<_> = self.members.iter().filter(|(member, _)| *member != SOLID).collect();
+        let said =
+            |what: &str| self.members.iter().find(|(member, _)| *member == what).map(|(_, value)| value);
+        let solid = said(SOLID);
+        let shapes: Vec<_> =
+            self.members.iter().filter(|(member, _)| ![SOLID, SCALE].contains(member)).collect();
         let &[(member, value)] = shapes.as_slice() else {
             // The last one in the text.
             let last = shapes.iter().map(|(_, value)| value.span()).max_by_key(|span| span.start);
@@ -188,7 +195,16 @@ impl<T> Shaped<T> {
             "points" => points(source, value)?,
             primitive => self::primitive(source, primitive, value)?,
         };
-        Ok((shape, value.span()))
+        let Some(scale) = said(SCALE) else { return Ok((shape, value.span())) };
+        if matches!(shape, ShapeEntry::PointFile(..) | ShapeEntry::Whole(Shape::Points(_))) {
+            let message = format!("{} has `scale`, and is a set of points", clipped(name));
+            return Err(source
+                .error(&scale.span(), message)
+                .expected("no `scale` beside `points`: scale their coordinates"));
+        }
+        let factors: [f64; 3] = source.value(scale)?;
+        source.positive(&format!("the scale of {}", clipped(name)), &factors, &scale.span())?;
+        Ok((ShapeEntry::Scaled(Box::new(shape), factors), value.span()))
     }
 }
 
@@ -287,6 +303,13 @@ impl<'a> Meshes<'a> {
                 (self.path.to_owned(), self.balls(self.path, points)?.map_err(useless)?)
             }
             ShapeEntry::Whole(shape) => (self.path.to_owned(), self.whole(shape)?.map_err(impossible)?),
+            ShapeEntry::Scaled(shape, scale) => {
+                let (place, mesh) = self.of(source, name, &((**shape).clone(), span.clone()))?;
+                let scaled = mesh.scaled(*scale);
+                let scaled = scaled
+                    .map_err(|e| fault(&format!("{name} cannot be scaled: {e}"), "take factors nearer to 1"));
+                (place, scaled?)
+            }
         };
         if vertex_beyond(&mesh).is_some() {
             let message = format!("{name} has a vertex beyond {MAX_COORDINATE:e} m");

@@ -1,5 +1,6 @@
 //! Scenes from files: readers of all formats, scenes by name, and what is in a file.
 
+pub(crate) mod editing;
 pub(crate) mod find;
 pub mod info;
 pub(crate) mod inputs;

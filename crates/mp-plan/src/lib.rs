@@ -80,6 +80,7 @@ mod trajectory;
 mod watch;
 
 pub use explain::Explanation;
+pub use files::editing::SceneProblem;
 pub use files::find::{SceneFiles, find_problem, shipped_files};
 pub use files::info;
 pub use files::robot_pairs::RobotPairs;

@@ -62,12 +62,16 @@ class GrowingBuffer {
   }
 }
 
-/** Rows of some coordinates and a colour of four bytes. */
+/** Bytes of a corner: three coordinates and a colour of four bytes. */
+const CORNER = 16;
+
+/** Rows of some corners, which have the colour of their row. */
 class ColoredRows {
-  /** @param {WebGL2RenderingContext} gl @param {number} floats coordinates of a row */
-  constructor(gl, floats) {
-    this.gl = gl; this.floats = floats;
-    this.stride = 4 * floats + 4;
+  /** @param {WebGL2RenderingContext} gl @param {number} corners of a row */
+  constructor(gl, corners) {
+    this.gl = gl; this.corners = corners;
+    /** Coordinates of a row. */ this.floats = 3 * corners;
+    this.stride = CORNER * corners;
     this.rows = new GrowingBuffer(gl);
     this.vao = gl.createVertexArray();
   }
@@ -77,11 +81,12 @@ class ColoredRows {
     const count = coordinates.length / this.floats;
     const bytes = new Uint8Array(count * this.stride);
     const numbers = new Float32Array(bytes.buffer);
-    const width = this.floats + 1;
     for (let i = 0; i < count; i++) {
-      for (let k = 0; k < this.floats; k++) numbers[i * width + k] = coordinates[i * this.floats + k];
       const rgba = color(i);
-      for (let k = 0; k < 4; k++) bytes[i * this.stride + 4 * this.floats + k] = Math.round(255 * rgba[k]);
+      for (let c = i * this.corners; c < (i + 1) * this.corners; c++) {
+        for (let k = 0; k < 3; k++) numbers[4 * c + k] = coordinates[3 * c + k];
+        for (let k = 0; k < 4; k++) bytes[CORNER * c + 12 + k] = Math.round(255 * rgba[k]);
+      }
     }
     return bytes;
   }
@@ -99,10 +104,19 @@ class ColoredRows {
   /** Gives a row other coordinates. @param {number} row @param {Float32Array} coordinates */
   replace(row, coordinates) {
     this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.rows.buffer);
-    this.gl.bufferSubData(this.gl.ARRAY_BUFFER, row * this.stride, coordinates);
+    for (let c = 0; c < this.corners; c++) this.gl.bufferSubData(this.gl.ARRAY_BUFFER, row * this.stride + c * CORNER, coordinates, 3 * c, 3);
   }
-  /** Tells the vertex array where the rows are, as the buffer may be a new one. */
-  bind() {}
+  /** Tells the vertex array where the corners are, as the buffer may be a new one. */
+  bind() {
+    const gl = this.gl;
+    gl.bindVertexArray(this.vao);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.rows.buffer);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, CORNER, 0);
+    gl.enableVertexAttribArray(1);
+    gl.vertexAttribPointer(1, 4, gl.UNSIGNED_BYTE, true, CORNER, 12);
+    gl.bindVertexArray(null);
+  }
 
   /** Forgets all rows. */
   clear() { this.rows.size = 0; }
@@ -114,43 +128,39 @@ class ColoredRows {
   }
 }
 
-/** Segments: two ends and a colour each. */
+/** Segments: two ends and a colour each. They are drawn as lines of one pixel, or as strips of any width: a copy of the strip for each, which
+ * takes software that draws some twenty times as long. */
 export class LineSet extends ColoredRows {
   /** @param {WebGL2RenderingContext} gl @param {WebGLBuffer | null} strip the corners of a strip */
   constructor(gl, strip) {
-    super(gl, 6);
+    super(gl, 2);
     this.strip = strip;
+    this.strips = gl.createVertexArray();
   }
   bind() {
+    super.bind();
     const gl = this.gl;
-    gl.bindVertexArray(this.vao);
+    gl.bindVertexArray(this.strips);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.strip);
     gl.enableVertexAttribArray(0);
     gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 8, 0);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.rows.buffer);
-    for (const [at, size, type, offset] of [[1, 3, gl.FLOAT, 0], [2, 3, gl.FLOAT, 12], [3, 4, gl.UNSIGNED_BYTE, 24]]) {
+    for (const [at, size, type, offset] of [[1, 3, gl.FLOAT, 0], [2, 3, gl.FLOAT, CORNER], [3, 4, gl.UNSIGNED_BYTE, 12]]) {
       gl.enableVertexAttribArray(at);
       gl.vertexAttribPointer(at, size, type, type !== gl.FLOAT, this.stride, offset);
       gl.vertexAttribDivisor(at, 1);
     }
     gl.bindVertexArray(null);
   }
+  free() {
+    super.free();
+    this.gl.deleteVertexArray(this.strips);
+  }
 }
 
 /** Points: a place and a colour each; the fourth number of the colour is the size as a part of 16 pixels. */
 export class PointSet extends ColoredRows {
-  constructor(/** @type {WebGL2RenderingContext} */ gl) { super(gl, 3); }
-
-  bind() {
-    const gl = this.gl;
-    gl.bindVertexArray(this.vao);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.rows.buffer);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, this.stride, 0);
-    gl.enableVertexAttribArray(1);
-    gl.vertexAttribPointer(1, 4, gl.UNSIGNED_BYTE, true, this.stride, 12);
-    gl.bindVertexArray(null);
-  }
+  constructor(/** @type {WebGL2RenderingContext} */ gl) { super(gl, 1); }
 }
 
 /** Numbers of a copy of a shape: pose (7), colour (4), how it is cut (1), how it is stretched (3). */

@@ -1,7 +1,7 @@
 // Mouse, pen, fingers and keys move the camera. A press that does not move is a click.
 
 /** @import { Camera } from "mp/camera.js" */
-/** @typedef {{changed: () => void, clicked: (x: number, y: number) => void, centered: (x: number, y: number) => void}} Listener */
+/** @typedef {{moved: () => void, clicked: (x: number, y: number) => void, centered: (x: number, y: number) => void}} Listener */
 
 const FLY_KEYS = new Set(["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]);
 /** Whether keys belong to the control that has the focus. @param {EventTarget | null} target */
@@ -51,7 +51,7 @@ export class Controls {
     if (this.pointers.size === 2) this.pinch(e.pointerId, x, y);
     else if (this.moved > 4 || e.pointerType === "mouse") this.drag(e, dx, dy);
     this.pointers.set(e.pointerId, { x, y });
-    this.listener.changed();
+    this.listener.moved();
   }
   /** One pointer turns the view; with Shift or another button it moves it. In a plane it is the other way round.
    * @param {PointerEvent} e @param {number} dx @param {number} dy */
@@ -78,7 +78,7 @@ export class Controls {
     e.preventDefault();
     const pixels = e.deltaY * (e.deltaMode === 1 ? 33 : e.deltaMode === 2 ? 400 : 1);
     this.camera.zoom(Math.exp(Math.max(-500, Math.min(500, pixels)) * 0.0015), ...this.at(e));
-    this.listener.changed();
+    this.listener.moved();
   }
   key(/** @type {KeyboardEvent} */ e) {
     if (isTyping(e.target) || e.ctrlKey || e.metaKey || e.altKey) return;
@@ -87,7 +87,7 @@ export class Controls {
     else if (e.key === "+" || e.key === "=") this.camera.zoom(0.85);
     else if (e.key === "-") this.camera.zoom(1 / 0.85);
     else return;
-    this.listener.changed();
+    this.listener.moved();
   }
   turn(/** @type {KeyboardEvent} */ e) {
     e.preventDefault();

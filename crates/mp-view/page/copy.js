@@ -1,8 +1,8 @@
 // A copy of what is edited, which needs no planner: it can be saved when the planner is gone, and it is offered after a crash or a reload.
 
-import { button, showNote } from "mp/dom.js";
+import { button, showError, showNote } from "mp/dom.js";
 
-/** @import { Document, DocumentBody } from "mp/document.js" */
+/** @import { Document, DocumentBody, Environment } from "mp/document.js" */
 /** @import { Editor } from "mp/editor.js" */
 
 /** Pages from files share one storage; each server has its own. */
@@ -10,7 +10,8 @@ const KEY = `mp copy ${location.protocol === "file:" ? location.pathname : ""}`;
 /** How long after a change it is kept, milliseconds. */
 const DELAY = 500;
 
-/** What the browser keeps, or null. A page in a frame may have no storage. @returns {{name: string, time: number, text: string} | null} */
+/** What the browser keeps, or null. A page in a frame may have no storage. Changes of a problem are those of the obstacles `first`.
+ * @returns {{name: string, time: number, text: string, first?: string} | null} */
 function kept() {
   try {
     return JSON.parse(localStorage.getItem(KEY) ?? "null");
@@ -52,31 +53,47 @@ export class SafeCopy {
     const document = this.last;
     // Without the planner the meshes of before are known.
     await this.learn().catch(() => {});
-    if (document && document === this.last) keep({ name: document.name, time: Date.now(), text: this.text() });
+    if (!document || document !== this.last) return;
+    const first = document.robot ? {} : { first: JSON.stringify(this.editor.first?.obstacles) };
+    keep({ name: document.name, time: Date.now(), text: this.text(), ...first });
   }
   /** Asks for the triangles of meshes that are new. */
   async learn() {
     const document = this.last;
     const unknown = (/** @type {DocumentBody} */ { shape }) => "mesh" in shape && !this.meshes.has(shape.mesh.file);
-    if (!document || ![document.robot, ...document.obstacles].some(unknown)) return;
+    if (!document?.robot) return;
+    const { robot } = document;
+    if (![robot, ...document.obstacles].some(unknown)) return;
     const { files } = await this.editor.workbench.session.request({ do: "save", format: "own", name: "copy", document, content: true });
-    /** @type {Document} */ const whole = JSON.parse(new TextDecoder().decode(files[0].bytes));
-    for (const [i, { shape }] of [document.robot, ...document.obstacles].entries()) {
+    /** @type {Environment} */ const whole = JSON.parse(new TextDecoder().decode(files[0].bytes));
+    for (const [i, { shape }] of [robot, ...document.obstacles].entries()) {
       const saved = [whole.robot, ...whole.obstacles][i].shape;
       if ("mesh" in shape && "mesh" in saved && saved.mesh.off) this.meshes.set(shape.mesh.file, saved.mesh.off);
     }
   }
   /** What is edited, as a scene file of its own. */
   text() {
-    const document = this.editor.document;
+    const { document, workbench } = this.editor;
     const whole = (/** @type {string} */ key, /** @type {any} */ value) => (key === "mesh" ? { ...value, off: this.meshes.get(value.file) } : value);
-    return `${JSON.stringify(document, whole, 1)}\n`;
+    return `${JSON.stringify(document && workbench.withEnds(document), whole, 1)}\n`;
+  }
+  /** Takes the obstacles of a problem, when it is open. @param {string} text @param {string} first its obstacles without the changes */
+  async takeProblem(text, first) {
+    const { editor } = this;
+    const copy = JSON.parse(text);
+    const { document } = editor;
+    if (document?.robot !== undefined || document?.name !== copy.name || JSON.stringify(editor.first?.obstacles) !== first) {
+      return showError(`The changes are of the obstacles of “${copy.name}”: open it as it was, then reload the page.`);
+    }
+    await editor.run("open the copy", () => copy);
+    showNote("");
   }
   /** Offers the copy of the last time, if there is one. Returns whether there is. */
   offer() {
     const copy = kept();
     if (!copy) return false;
     const take = async () => {
+      if (copy.first !== undefined) return this.takeProblem(copy.text, copy.first);
       const bytes = new TextEncoder().encode(copy.text);
       const { workbench } = this.editor;
       if (await workbench.openScene({ files: [{ name: "copy.mp.json", bytes }] })) this.editor.changedSinceOpened();

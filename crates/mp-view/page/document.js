@@ -1,15 +1,20 @@
-// The environment that is edited: a document (docs/formats/session.md), commands that make a changed one, and its history.
+// What is edited: a document (docs/formats/session.md), commands that make a changed one, and its history. A document is an environment
+// with its robot, or only the obstacles of a problem in a file, which keeps all else.
 // Documents are never changed in place, so the history keeps them as they are.
 
 /** @typedef {[number, number, number]} Three */
 /** @typedef {[number, number, number, number, number, number]} Six x y z (m) α β γ (rad) */
 /** @typedef {{sphere: {radius: number}} | {cube: {size: Three}} | {cone: {radius: number, height: number}}
  *  | {cylinder: {radius: number, height: number}} | {torus: {ring: number, tube: number}} | {tetrahedron: {edge: number}}} Figure */
-/** @typedef {Figure | {mesh: {file: string, off?: string}}} DocumentShape */
+/** @typedef {{rectangle: {size: [number, number]}} | {circle: {radius: number}} | {polygon: {rings: [number, number][][]}}} PlaneFigure */
+/** @typedef {Figure | PlaneFigure | {mesh: {file: string, off?: string}} | {given: {of: number, kind: string}}} DocumentShape  `given`: as an obstacle of the file has it */
 /** @typedef {{name: string, color?: string | null, shape: DocumentShape, scale?: Three}} DocumentBody */
-/** @typedef {DocumentBody & {pose: Six}} Obstacle */
+/** @typedef {DocumentBody & {pose: Six, of?: number}} Obstacle */
 /** @typedef {{version: 1, name: string, space: "SE3" | "SE2", bounds: [Three, Three] | null, robot: DocumentBody, start: Six,
- *  goal: Six, obstacles: Obstacle[]}} Document */
+ *  goal: Six, obstacles: Obstacle[]}} Environment */
+/** @typedef {{version: 1, name: string, plane: boolean, start: number[] | null, goals: number[][] | null, obstacles: Obstacle[],
+ *  robot?: undefined}} Problem  `plane`: a world in the plane */
+/** @typedef {Environment | Problem} Document */
 /** What a command is about: the robot at its start or its goal, or an obstacle by its index.
  * @typedef {"start" | "goal" | number} Part */
 
@@ -23,13 +28,35 @@ export const FIGURES = {
   tetrahedron: { tetrahedron: { edge: 2 } },
 };
 
+/** The figures of worlds in the plane. @type {Record<string, PlaneFigure>} */
+const PLANE_FIGURES = {
+  rectangle: { rectangle: { size: [2, 2] } },
+  circle: { circle: { radius: 1 } },
+  triangle: { polygon: { rings: [[[-1, -0.75], [1, -0.75], [0, 1]]] } },
+};
+
+/** The figures that a document can have. @param {Document} d @returns {Record<string, Figure | PlaneFigure>} */
+export const figuresOf = (d) => (!d.robot && d.plane ? PLANE_FIGURES : FIGURES);
+
+/** A figure whose sizes are larger by a factor. @template {Figure | PlaneFigure} F @param {F} figure @param {number} factor @returns {F} */
+export function enlarged(figure, factor) {
+  const larger = (/** @type {string} */ _, /** @type {unknown} */ value) => (typeof value === "number" ? Number((value * factor).toPrecision(6)) : value);
+  return JSON.parse(JSON.stringify(figure), larger);
+}
+
 /** The figure's name, or “mesh”. @param {DocumentShape} shape */
 export const shapeKind = (shape) => Object.keys(shape)[0];
 
 /** The sizes of a figure: name, value in metres, and the figure with another value. Meshes have none.
  * @param {DocumentShape} shape @returns {{name: string, value: number, set: (value: number) => DocumentShape}[]} */
 export function sizesOf(shape) {
-  if ("mesh" in shape) return [];
+  if ("mesh" in shape || "given" in shape || "polygon" in shape) return [];
+  if ("rectangle" in shape) {
+    const [x, y] = shape.rectangle.size;
+    /** @param {string} name @param {number} value @param {(v: number) => [number, number]} size */
+    const made = (name, value, size) => ({ name, value, set: (/** @type {number} */ v) => ({ rectangle: { size: size(v) } }) });
+    return [made("side x", x, (v) => [v, y]), made("side y", y, (v) => [x, v])];
+  }
   if ("cube" in shape) {
     const { size } = shape.cube;
     const set = (/** @type {number} */ i) => (/** @type {number} */ v) => ({ cube: { size: /** @type {Three} */ (size.map((old, k) => (k === i ? v : old))) } });
@@ -40,8 +67,11 @@ export function sizesOf(shape) {
   return Object.entries(sizes).map(([size, value]) => ({ name: named(size), value, set: (v) => /** @type {Figure} */ ({ [kind]: { ...sizes, [size]: v } }) }));
 }
 
-/** The distance of the figure's farthest point from its origin, metres. @param {Figure} figure */
+/** The distance of the figure's farthest point from its origin, metres. @param {Figure | PlaneFigure} figure */
 export function reachOf(figure) {
+  if ("rectangle" in figure) return Math.hypot(...figure.rectangle.size) / 2;
+  if ("circle" in figure) return figure.circle.radius;
+  if ("polygon" in figure) return Math.max(...figure.polygon.rings.flat().map((p) => Math.hypot(...p)));
   if ("sphere" in figure) return figure.sphere.radius;
   if ("cube" in figure) return Math.hypot(...figure.cube.size) / 2;
   if ("torus" in figure) return figure.torus.ring + figure.torus.tube;
@@ -53,7 +83,7 @@ export function reachOf(figure) {
 /** @type {Record<string, string>} */
 const SIZE_NAMES = { ring: "radius of the ring", tube: "radius of the tube" };
 
-/** A new environment: a tetrahedron that has to cross a room. @returns {Document} */
+/** A new environment: a tetrahedron that has to cross a room. @returns {Environment} */
 export const emptyDocument = () => ({
   version: 1,
   name: "environment",
@@ -65,18 +95,24 @@ export const emptyDocument = () => ({
   obstacles: [],
 });
 
+/** An environment, which alone has the robot as a part. @param {Document} d */
+function withRobot(d) {
+  if (!d.robot) throw new Error("The robot of this problem is not edited here.");
+  return d;
+}
+
 /** The body of a part: of start and goal the robot. @param {Document} d @param {Part} part @returns {DocumentBody} */
-export const bodyOf = (d, part) => (typeof part === "number" ? d.obstacles[part] : d.robot);
+export const bodyOf = (d, part) => (typeof part === "number" ? d.obstacles[part] : withRobot(d).robot);
 
 /** @param {Document} d @param {Part} part @returns {Six} */
-export const poseOf = (d, part) => (typeof part === "number" ? d.obstacles[part].pose : d[part]);
+export const poseOf = (d, part) => (typeof part === "number" ? d.obstacles[part].pose : withRobot(d)[part]);
 
 /** @param {DocumentBody} body @returns {Three} */
 export const scaleOf = (body) => body.scale ?? [1, 1, 1];
 
 /** A name that no body has yet: with a number behind it where it must. @param {Document} d @param {string} wanted */
 export function freeName(d, wanted) {
-  const taken = new Set([d.robot.name, ...d.obstacles.map((o) => o.name)]);
+  const taken = new Set([d.robot?.name, ...d.obstacles.map((o) => o.name)]);
   if (!taken.has(wanted)) return wanted;
   const stem = wanted.replace(/ \d+$/, "");
   let number = 2;
@@ -86,7 +122,7 @@ export function freeName(d, wanted) {
 
 /** Changes the body of a part. @param {Document} d @param {Part} part @param {Partial<Obstacle>} change @returns {Document} */
 export function changeBody(d, part, change) {
-  if (typeof part !== "number") return { ...d, robot: { ...d.robot, ...change } };
+  if (typeof part !== "number") return { ...withRobot(d), robot: { ...withRobot(d).robot, ...change } };
   return { ...d, obstacles: d.obstacles.map((o, i) => (i === part ? { ...o, ...change } : o)) };
 }
 
@@ -94,16 +130,17 @@ export function changeBody(d, part, change) {
  * @returns {Document} */
 export function movePart(d, part, pose) {
   if (typeof part === "number") return changeBody(d, part, { pose });
-  return { ...d, [part]: d.space === "SE2" ? flattened(pose) : pose };
+  const whole = withRobot(d);
+  return { ...whole, [part]: whole.space === "SE2" ? flattened(pose) : pose };
 }
 
 /** @param {Document} d @param {Part} part @param {Three} scale @returns {Document} */
 export const scalePart = (d, part, scale) => changeBody(d, part, { scale: scale.every((s) => s === 1) ? undefined : scale });
 
 /** Adds an obstacle at the end. @param {Document} d @param {string} name @param {DocumentShape} shape @param {Six} pose @returns {Document} */
-export const addObstacle = (d, name, shape, pose) => ({ ...d, obstacles: [...d.obstacles, { name: freeName(d, name), color: null, shape, pose }] });
+export const addObstacle = (d, name, shape, pose) => ({ ...d, obstacles: [...d.obstacles, { name: freeName(d, name), ...(d.robot && { color: null }), shape, pose }] });
 
-/** Gives the robot another shape, in its own size. @param {Document} d @param {string} name @param {DocumentShape} shape @returns {Document} */
+/** Gives the robot another shape, in its own size. @param {Environment} d @param {string} name @param {DocumentShape} shape @returns {Environment} */
 export const replaceRobot = (d, name, shape) => ({ ...d, robot: { name: freeName({ ...d, robot: { ...d.robot, name: "" } }, name), color: d.robot.color, shape } });
 
 /** Deletes an obstacle. @param {Document} d @param {number} index @returns {Document} */
@@ -114,17 +151,17 @@ export function duplicate(d, part, shift) {
   const { name, color, shape, scale } = bodyOf(d, part);
   const [x, y, z, ...angles] = poseOf(d, part);
   /** @type {Six} */ const pose = [x + shift[0], y + shift[1], z + shift[2], ...angles];
-  return { ...d, obstacles: [...d.obstacles, { name: freeName(d, name), color, shape, ...(scale && { scale }), pose }] };
+  return { ...d, obstacles: [...d.obstacles, { name: freeName(d, name), ...(d.robot && { color }), shape, ...(scale && { scale }), pose }] };
 }
 
-/** Where start and goal may be; in the plane only with z = 0. @param {Document} d @param {[Three, Three] | null} bounds @returns {Document} */
+/** Where start and goal may be; in the plane only with z = 0. @param {Environment} d @param {[Three, Three] | null} bounds @returns {Environment} */
 export function setBounds(d, bounds) {
   if (!bounds || d.space === "SE3") return { ...d, bounds };
   const [[a, b], [c, e]] = bounds;
   return { ...d, bounds: [[a, b, 0], [c, e, 0]] };
 }
 
-/** In space, or in the plane z = 0. @param {Document} d @param {"SE3" | "SE2"} space @returns {Document} */
+/** In space, or in the plane z = 0. @param {Environment} d @param {"SE3" | "SE2"} space @returns {Environment} */
 export function setSpace(d, space) {
   if (space === d.space) return d;
   if (space === "SE2") return setBounds({ ...d, space, start: flattened(d.start), goal: flattened(d.goal) }, d.bounds);

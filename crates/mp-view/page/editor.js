@@ -6,7 +6,7 @@ import { changedPose, changedSix, fromAngles, niceStep, poseOfSix, tidy } from "
 import { Handles } from "mp/handles.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 
-/** @import { Document, DocumentShape, Part, Six, Three } from "mp/document.js" */
+/** @import { Document, DocumentShape, Environment, Part, Six, Three } from "mp/document.js" */
 /** @import { End, Verdict } from "mp/ends.js" */
 /** @import { Change, HandleMode, Quaternion } from "mp/gizmo.js" */
 /** @import { Target } from "mp/handles.js" */
@@ -45,8 +45,8 @@ const rowOfSix = (kind, six, columns) => (kind === "rigid" ? [...six] : [six[0],
 /** @param {readonly number[]} a @param {readonly number[]} b */
 const same = (a, b) => a.every((x, i) => x === b[i]);
 
-/** Whether two documents are the same but for start and goal. @param {Document} a @param {Document} b */
-const sameBodies = (a, b) => a.name === b.name && a.space === b.space && a.bounds === b.bounds && a.robot === b.robot && a.obstacles === b.obstacles;
+/** Whether two environments are the same but for start and goal. @param {Document} a @param {Document} b */
+const sameBodies = (a, b) => a.robot && b.robot && a.name === b.name && a.space === b.space && a.bounds === b.bounds && a.robot === b.robot && a.obstacles === b.obstacles;
 
 export class Editor {
   /** @param {Workbench} workbench */
@@ -56,6 +56,7 @@ export class Editor {
     this.ends = workbench.ends;
     /** @type {doc.History | null} */ this.history = null;
     /** The document as the session has it. @type {Document | null} */ this.sent = null;
+    /** The document as it was opened. @type {Document | null} */ this.first = null;
     /** @type {Selection | null} */ this.selection = null;
     /** By which body an arm is dragged. */ this.held = 0;
     /** Called after anything changed here. @type {(() => void)[]} */ this.onchange = [];
@@ -73,13 +74,16 @@ export class Editor {
     if (workbench.open) this.opened("open");
   }
   get document() { return this.history?.document ?? null; }
+  /** The document if it is an environment with its robot, or null. @returns {Environment | null} */
+  get environment() { return this.document?.robot ? this.document : null; }
 
   /** @param {"open" | "edit"} how */
   opened(how) {
-    if (how === "open") {
+    // Later parts of a motion have no document.
+    if (how === "open" || !this.workbench.document) {
       const document = /** @type {Document | null} */ (this.workbench.document);
       this.history = document ? new doc.History(document) : null;
-      this.sent = document;
+      this.sent = this.first = document;
       this.selection = null;
     }
     this.held = this.workbench.links ? this.viewer.scene.robot - 1 : 0;
@@ -116,7 +120,8 @@ export class Editor {
   get part() {
     const s = this.selection;
     if (!s || !this.document) return null;
-    return "obstacle" in s ? s.obstacle : s.end === "start" ? "start" : "goal";
+    if ("obstacle" in s) return s.obstacle;
+    return !this.environment ? null : s.end === "start" ? "start" : "goal";
   }
   select(/** @type {Selection | null} */ selection) {
     this.selection = selection;
@@ -166,7 +171,7 @@ export class Editor {
   /** Makes the session and the page have this document. @param {Document} next @returns {Promise<boolean>} */
   async apply(next) {
     if (next === this.document) return false;
-    if (this.sent && sameBodies(next, this.sent)) {
+    if (next.robot && this.sent && sameBodies(next, this.sent)) {
       this.moveEnds(next);
       return true;
     }
@@ -179,7 +184,7 @@ export class Editor {
     this.sent = next;
     return true;
   }
-  /** Start and goal are moved without a message: the planner takes them with each run. @param {Document} next */
+  /** Start and goal are moved without a message: the planner takes them with each run. @param {Environment} next */
   moveEnds(next) {
     this.applying = true;
     for (const [end, six] of /** @type {[End, Six][]} */ ([["start", next.start], [0, next.goal]])) {
@@ -200,19 +205,19 @@ export class Editor {
   }
   /** An end was moved, by handles or by the panel of start and goal: the document follows. @param {End} end @param {boolean} settled */
   endChanged(end, settled) {
-    const { history } = this;
+    const { history, environment } = this;
     const row = this.ends.at(end)?.row;
     // A verdict may come while handles still drag.
     if (!settled || !row || this.handles.active) return;
-    if (history && !this.applying && (end === "start" || end === 0)) {
+    if (history && environment && !this.applying && (end === "start" || end === 0)) {
       const name = end === "start" ? "start" : "goal";
-      if (!same(history.document[name], row)) {
-        history.commit(doc.movePart(history.document, name, /** @type {Six} */ ([...row])), `move the ${name}`, this.byHandles ? "" : name);
+      if (!same(environment[name], row)) {
+        history.commit(doc.movePart(environment, name, /** @type {Six} */ ([...row])), `move the ${name}`, this.byHandles ? "" : name);
         this.refresh();
       }
       // Without bounds of its own the room is around all bodies: it grows with them.
       const outside = this.ends.verdicts.get(end)?.in_bounds === false;
-      if (outside && !history.document.bounds && !this.growing) this.growRoom();
+      if (outside && !environment.bounds && !this.growing) this.growRoom();
     } else if (this.selection && "end" in this.selection && this.selection.end === end) this.handles.setTarget(this.target());
   }
   growRoom() {
@@ -260,7 +265,7 @@ export class Editor {
     if (this.workbench.links) return this.linkTarget(end);
     if (!kind || !first) return null;
     const six = sixOfRow(kind, first.row);
-    const { document } = this;
+    const document = this.environment;
     /** @type {HandleMode[]} */ const modes = scene.columns.length > 2 ? ["move", "turn"] : ["move"];
     if (document) modes.push("scale");
     const frame = frameOf(six);
@@ -332,7 +337,7 @@ export class Editor {
   /** Adds a figure or a mesh, near to where the camera looks, and selects it. @param {string} name @param {DocumentShape} shape
    * @param {"obstacle" | "robot"} as @param {number} reach of the shape around its origin, metres */
   add(name, shape, as, reach) {
-    if (as === "robot") return this.run(`make ${name} the robot`, (d) => doc.replaceRobot(d, name, shape)).then(() => this.select({ end: "start" }));
+    if (as === "robot") return this.run(`make ${name} the robot`, (d) => (d.robot ? doc.replaceRobot(d, name, shape) : d)).then(() => this.select({ end: "start" }));
     const count = this.document?.obstacles.length ?? 0;
     return this.run(`add ${name}`, (d) => doc.addObstacle(d, name, shape, this.freePlace(d, reach))).then(() => this.selectNew(count));
   }
@@ -340,19 +345,23 @@ export class Editor {
   freePlace(d, reach) {
     const { shapes, ofBody, scene, camera } = this.viewer;
     const step = niceStep(Math.max(reach, camera.pixel()), 0.5);
-    const { limits } = scene;
+    const plane = d.robot ? d.space === "SE2" : d.plane;
+    // The limits of a robot of links are not of places.
+    const limits = d.robot ? scene.limits : d.plane ? scene.limits.slice(0, 2) : [0, 1, 2].map((k) => [scene.bounds[0][k], scene.bounds[1][k]]);
     const within = (/** @type {number} */ c, /** @type {number} */ k) => Math.max(limits[k]?.[0] ?? -Infinity, Math.min(limits[k]?.[1] ?? Infinity, c));
     const [x, y, z] = camera.target.map((c, k) => tidy(Math.round(within(c, k) / step) * step));
-    const height = d.space === "SE2" ? 0 : z;
-    const taken = [d.start, d.goal, ...d.obstacles.map((o) => o.pose)].map((pose, i) => {
-      const { low, high } = shapes[ofBody[Math.max(0, i - 2 + scene.robot)]];
-      return { pose, reach: Math.hypot(...[0, 1, 2].map((k) => Math.max(-low[k], high[k]))) };
-    });
+    const height = plane ? 0 : z;
+    const reachOf = (/** @type {number} */ body) => {
+      const { low, high } = shapes[ofBody[body]];
+      return Math.hypot(...[0, 1, 2].map((k) => Math.max(-low[k], high[k])));
+    };
+    const ends = [scene.start, ...scene.goals].flatMap(({ poses }) => Array.from({ length: scene.robot }, (_, b) => ({ pose: poses.slice(7 * b, 7 * b + 3), reach: reachOf(b) })));
+    const taken = [...ends, ...d.obstacles.map((o, i) => ({ pose: /** @type {number[]} */ (o.pose), reach: reachOf(scene.robot + i) }))];
     const inside = (/** @type {Six} */ place) => [0, 1, 2].every((k) => within(place[k], k) === place[k]);
     const clear = (/** @type {Six} */ place, among = taken) => inside(place) && among.every((o) => Math.hypot(...[0, 1, 2].map((k) => o.pose[k] - place[k])) > o.reach + reach);
     const places = NEARBY.map(([i, j]) => /** @type {Six} */ ([tidy(x + i * step), tidy(y + j * step), height, 0, 0, 0]));
     // A room is around all places in it: then only start and goal are kept free.
-    return places.find((place) => clear(place)) ?? places.find((place) => clear(place, taken.slice(0, 2))) ?? places[0];
+    return places.find((place) => clear(place)) ?? places.find((place) => clear(place, ends)) ?? places[0];
   }
   /** Selects the obstacle that was added. @param {number} count how many there were */
   selectNew(count) {

@@ -5,7 +5,7 @@ import * as doc from "mp/document.js";
 import { HANDLE_MODES } from "mp/editor.js";
 import { niceStep, tidy } from "mp/gizmo.js";
 
-/** @import { Document, DocumentBody, Part, Six, Three } from "mp/document.js" */
+/** @import { Document, DocumentBody, Environment, Part, Six, Three } from "mp/document.js" */
 /** @import { Editor } from "mp/editor.js" */
 /** @typedef {{label: string, hint?: string, value: number, step?: number, change: (value: number) => void}} Field */
 
@@ -22,35 +22,58 @@ export class Inspector {
     this.editor = editor;
     this.modes = HANDLE_MODES.map(([mode, label]) => button(label, () => editor.setMode(mode), { title: "Handles (H)", value: mode }));
     this.chosen = el("select", { "aria-label": "Selected", onchange: () => editor.select(editor.parts()[this.chosen.selectedIndex - 1]?.selection ?? null) });
-    this.adding = this.addControls(openMesh);
+    this.figure = el("select", { "aria-label": "Figure" });
+    this.as = select([["obstacle", "as obstacle"], ["robot", "as robot"]], "obstacle", () => {}, { "aria-label": "As obstacle or as robot" });
+    this.mesh = button("Mesh…", openMesh, { title: "Add a mesh from a file" });
+    this.adding = this.addControls();
     this.body = el("div", { class: "fields" });
     this.room = el("div", { class: "fields" });
     this.handles = el("span", { class: "segments", role: "group", "aria-label": "Handles" }, ...this.modes);
     this.roomSection = section("Room", false, [this.room]);
-    this.panel = section("Build", true, [this.adding, labelled("Selected", this.chosen), this.handles, this.body]);
+    this.unedited = el("small", {});
+    this.panel = section("Build", true, [this.adding, this.unedited, labelled("Selected", this.chosen), this.handles, this.body]);
     editor.viewer.addPanel(this.panel);
     editor.viewer.addPanel(this.roomSection);
     editor.onchange.push(() => this.update());
     editor.onpreview.push((pose, scale) => this.preview(pose, scale));
     this.update();
   }
-  /** @param {() => void} openMesh */
-  addControls(openMesh) {
+  addControls() {
     const { editor } = this;
-    /** @type {[string, string][]} */ const figures = Object.keys(doc.FIGURES).map((name) => [name, name]);
-    const figure = select(figures, "cube", () => {}, { "aria-label": "Figure" });
-    const as = select([["obstacle", "as obstacle"], ["robot", "as robot"]], "obstacle", () => {}, { "aria-label": "As obstacle or as robot" });
-    const add = () => editor.add(figure.value, doc.FIGURES[figure.value], /** @type {"obstacle" | "robot"} */ (as.value), doc.reachOf(doc.FIGURES[figure.value]));
-    return el("div", { class: "buttons", role: "group", "aria-label": "Add a body" }, figure, as, button("Add", add), button("Mesh…", openMesh, { title: "Add a mesh from a file" }));
+    const add = () => {
+      const { environment } = editor;
+      const figure = this.sized(this.figure.value);
+      return editor.add(this.figure.value, figure, environment && this.as.value === "robot" ? "robot" : "obstacle", doc.reachOf(figure));
+    };
+    return el("div", { class: "buttons", role: "group", "aria-label": "Add a body" }, this.figure, this.as, button("Add", add), this.mesh);
+  }
+  /** A new figure: of a size that suits the scene, where it is one of a file. @param {string} name */
+  sized(name) {
+    const { document, environment, viewer } = this.editor;
+    const figure = document ? doc.figuresOf(document)[name] : doc.FIGURES[name];
+    return environment || !document ? figure : doc.enlarged(figure, niceStep(viewer.camera.radius / 20, 1));
+  }
+  /** Offers the figures that the document can have. @param {Document | null} d */
+  offer(d) {
+    const names = Object.keys(d ? doc.figuresOf(d) : doc.FIGURES);
+    const { figure, as, mesh } = this;
+    if (names.join() !== [...figure.options].map((option) => option.value).join()) {
+      figure.replaceChildren(...names.map((name) => el("option", { value: name, selected: name === "cube" }, name)));
+    }
+    as.hidden = Boolean(d && !d.robot);
+    mesh.hidden = Boolean(d && !d.robot && d.plane);
   }
   /** Shows what the editor has. What has the focus keeps it. */
   update() {
     const { editor } = this;
     const { document: d, part } = editor;
     const parts = editor.parts();
-    this.panel.hidden = !parts.length;
+    const { unedited } = editor.workbench;
+    this.panel.hidden = !parts.length && !unedited;
     this.adding.hidden = !d;
-    this.roomSection.hidden = !d;
+    this.offer(d);
+    this.unedited.textContent = unedited ?? "";
+    this.roomSection.hidden = !d?.robot;
     const chosen = JSON.stringify(editor.selection);
     const options = parts.map(({ name, selection }) => el("option", { selected: JSON.stringify(selection) === chosen }, name));
     this.chosen.replaceChildren(el("option", {}, "nothing"), ...options);
@@ -61,8 +84,8 @@ export class Inspector {
       mode.setAttribute("aria-pressed", String(mode.value === shownMode));
     }
     const shape = d && part !== null ? doc.bodyOf(d, part).shape : null;
-    renew(this.body, d && part !== null ? this.bodyFields(d, part) : [], JSON.stringify([part, d?.space, shape && doc.shapeKind(shape)]));
-    renew(this.room, d ? this.roomFields(d) : [], JSON.stringify([d?.space, !d?.bounds]));
+    renew(this.body, d && part !== null ? this.bodyFields(d, part) : [], JSON.stringify([part, d?.robot && d.space, shape && doc.shapeKind(shape)]));
+    renew(this.room, d?.robot ? this.roomFields(d) : [], JSON.stringify([d?.robot && d.space, !d?.robot || !d.bounds]));
   }
   /** @param {Document} d @param {Part} part @returns {HTMLElement[]} */
   bodyFields(d, part) {
@@ -71,7 +94,8 @@ export class Inspector {
     const pose = doc.poseOf(d, part);
     const scale = doc.scaleOf(body);
     const metres = this.metres();
-    const flat = d.space === "SE2" && typeof part !== "number";
+    const plane = !d.robot && d.plane;
+    const flat = d.robot ? d.space === "SE2" && typeof part !== "number" : d.plane;
     const key = typeof part === "number" ? `#${part}` : part;
     // Fields outlive the document that they were made for, so what they change is the document of then.
     const label = (/** @type {string} */ verb) => `${verb} ${doc.bodyOf(editor.document ?? d, part).name}`;
@@ -82,14 +106,14 @@ export class Inspector {
     const place = pose.map((value, i) => this.poseField(value, i, metres, (v) =>
       editor.run(label(i < 3 ? "move" : "turn"), (now) => doc.movePart(now, part, /** @type {Six} */ (replaced(doc.poseOf(now, part), i, v))), `${key} ${i}`)))
       .filter((_, i) => !flat || i === 0 || i === 1 || i === 3);
-    const factors = scale.map((value, i) => numberField({ label: "xyz"[i], hint: SCALE_HINTS[i], value, step: 0.1, change: (v) =>
+    const factors = scale.slice(0, plane ? 2 : 3).map((value, i) => numberField({ label: "xyz"[i], hint: SCALE_HINTS[i], value, step: 0.1, change: (v) =>
       editor.run(label("scale"), (now) => doc.scalePart(now, part, /** @type {Three} */ (replaced(doc.scaleOf(doc.bodyOf(now, part)), i, v))), `${key} scale ${i}`) }));
     const copies = [button("Duplicate", () => editor.duplicate(), { title: "Ctrl + D" })];
     if (typeof part === "number") copies.push(button("Delete", () => editor.remove(), { title: "Delete" }));
     return [
       labelled("Name", rename),
-      this.colorField(body, typeof part === "number" ? "own colour" : "own colour on paths", (color) => change("colour", { color })),
-      this.shapeField(body, (shape) => change("shape of", { shape })),
+      ...(!d.robot ? [] : [this.colorField(body, typeof part === "number" ? "own colour" : "own colour on paths", (color) => change("colour", { color }))]),
+      this.shapeField(d, body, (shape) => change("shape of", { shape })),
       ...(sizes.length ? [group("Sizes, m", sizes)] : []),
       group(typeof part === "number" ? "Place, m; angles, rad" : `${part === "start" ? "Start" : "Goal"}: place, m; angles, rad`, place),
       group("Scale", factors),
@@ -108,25 +132,27 @@ export class Inspector {
     const own = checkbox(label, Boolean(color), (on) => change(on ? input.value : null));
     return el("div", { class: "row" }, own, input);
   }
-  /** @param {DocumentBody} body @param {(shape: doc.DocumentShape) => void} change */
-  shapeField({ shape }, change) {
-    /** @type {[string, string][]} */ const kinds = Object.keys(doc.FIGURES).map((name) => [name, name]);
-    if ("mesh" in shape) kinds.unshift(["mesh", `mesh ${shape.mesh.file}`]);
+  /** @param {Document} d @param {DocumentBody} body @param {(shape: doc.DocumentShape) => void} change */
+  shapeField(d, { shape }, change) {
+    const names = Object.keys(doc.figuresOf(d));
+    /** @type {[string, string][]} */ const kinds = names.map((name) => [name, name]);
     const kind = doc.shapeKind(shape);
-    return labelled("Shape", select(kinds, kind, (v) => v !== "mesh" && change(doc.FIGURES[v]), { "aria-label": "Shape" }));
+    if (!names.includes(kind)) kinds.unshift([kind, "mesh" in shape ? `mesh ${shape.mesh.file}` : "given" in shape ? `${shape.given.kind} of the file` : kind]);
+    return labelled("Shape", select(kinds, kind, (v) => names.includes(v) && change(this.sized(v)), { "aria-label": "Shape" }));
   }
-  /** @param {Document} d @returns {HTMLElement[]} */
+  /** @param {Environment} d @returns {HTMLElement[]} */
   roomFields(d) {
     const { editor } = this;
     const name = el("input", { type: "text", "aria-label": "Name of the environment", value: d.name, onchange: () => name.value.trim() && editor.run("rename the environment", (now) => ({ ...now, name: name.value.trim() })) });
-    const space = select([["SE3", "in space"], ["SE2", "in the plane z = 0"]], d.space, (v) => editor.run("change the space", (now) => doc.setSpace(now, /** @type {"SE3" | "SE2"} */ (v))), { "aria-label": "The robot moves" });
-    const own = checkbox("own bounds of the robot's origin", Boolean(d.bounds), (on) => editor.run("change the bounds", (now) => doc.setBounds(now, on ? this.presentBounds() : null)));
+    const space = select([["SE3", "in space"], ["SE2", "in the plane z = 0"]], d.space, (v) => editor.run("change the space", (now) => !now.robot ? now : doc.setSpace(now, /** @type {"SE3" | "SE2"} */ (v))), { "aria-label": "The robot moves" });
+    const own = checkbox("own bounds of the robot's origin", Boolean(d.bounds), (on) => editor.run("change the bounds", (now) => !now.robot ? now : doc.setBounds(now, on ? this.presentBounds() : null)));
     const fields = [labelled("Name", name), labelled("The robot moves", space), own];
     const { bounds } = d;
     if (!bounds) return fields;
     const rows = ["least", "greatest"].map((label, end) => group(`Bounds, ${label}, m`, bounds[end].flatMap((value, i) => (d.space === "SE2" && i === 2 ? [] : [numberField({
       label: "xyz"[i], hint: `${label} ${"xyz"[i]} of the robot's origin, metres`, value, step: this.metres(), change: (v) =>
         editor.run("change the bounds", (now) => {
+          if (!now.robot) return now;
           const corners = now.bounds ?? bounds;
           return doc.setBounds(now, /** @type {[Three, Three]} */ (replaced(corners, end, replaced(corners[end], i, v))));
         }, `bounds ${end} ${i}`) })]))));

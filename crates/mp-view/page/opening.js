@@ -99,12 +99,14 @@ export class Opening {
   async addMeshes(files) {
     if (!files.length) return;
     if (!this.editor.history) await this.editor.create();
-    if (!this.editor.history) return;
+    const { document } = this.editor;
+    if (!document) return;
+    if (!document.robot && document.plane) throw new Error("A world in the plane has no meshes. Add a rectangle, a circle or a triangle.");
     for (const file of files) {
       const { file: name, bounds } = await this.session.request({ do: "mesh", files: [file] });
       const reach = Math.hypot(...[0, 1, 2].map((k) => Math.max(-bounds[0][k], bounds[1][k])));
       const stem = file.name.replace(/\.[^.]*$/, "") || file.name;
-      await this.editor.add(stem, { mesh: { file: name } }, await askRole(file.name), reach);
+      await this.editor.add(stem, { mesh: { file: name } }, document.robot ? await askRole(file.name) : "obstacle", reach);
     }
   }
   /** @param {NamedFile[]} files */

@@ -2,7 +2,7 @@
 
 import { COPY, ImageSet, LineSet, PointSet, ShapeBuffers, program, uniforms } from "mp/buffers.js";
 import { dot, normalize, place } from "mp/math.js";
-import { IMAGE_FRAGMENT, IMAGE_VERTEX, LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGMENT, SURFACE_VERTEX } from "mp/shaders.js";
+import { IMAGE_FRAGMENT, IMAGE_VERTEX, LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGMENT, SURFACE_VERTEX, THIN_VERTEX } from "mp/shaders.js";
 
 /** @import { Camera } from "mp/camera.js" */
 /** @import { Color, Palette } from "mp/colors.js" */
@@ -33,11 +33,13 @@ export class Renderer {
     this.gl = gl;
     this.surface = program(gl, SURFACE_VERTEX, SURFACE_FRAGMENT);
     this.line = program(gl, LINE_VERTEX, LINE_FRAGMENT);
+    this.thin = program(gl, THIN_VERTEX, LINE_FRAGMENT);
     this.point = program(gl, POINT_VERTEX, POINT_FRAGMENT);
     this.imageProgram = program(gl, IMAGE_VERTEX, IMAGE_FRAGMENT);
     this.imageAt = uniforms(gl, this.imageProgram);
     this.surfaceAt = uniforms(gl, this.surface);
     this.lineAt = uniforms(gl, this.line);
+    this.thinAt = uniforms(gl, this.thin);
     this.pointAt = uniforms(gl, this.point);
     this.copies = gl.createBuffer();
     this.copyNumbers = new Float32Array(64 * COPY);
@@ -66,12 +68,13 @@ export class Renderer {
 
   image() { return new ImageSet(this.gl); }
 
-  /** @param {Picture} picture @param {Camera} camera @param {Palette} palette @param {number} ratio device pixels per pixel */
-  draw(picture, camera, palette, ratio) {
+  /** @param {Picture} picture @param {Camera} camera @param {Palette} palette @param {number} ratio device pixels per pixel
+   * @param {number} share of the lines below the traces */
+  draw(picture, camera, palette, ratio, share) {
     const gl = this.gl;
     this.calls = 0;
     this.triangles = 0;
-    this.frame = { camera, palette, ratio, ...camera.matrices() };
+    this.frame = { camera, palette, ratio, share, ...camera.matrices() };
     gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
     gl.clearColor(...palette.background, 1);
     gl.depthMask(true);
@@ -223,31 +226,34 @@ export class Renderer {
   }
   /** Lines that belong to a body: copy by copy. @param {LineSet} set @param {Batch} batch @param {Picture} picture */
   bodyLines(set, batch, picture) {
-    const gl = this.gl;
-    this.useLine(picture);
-    for (const item of batch.items) {
-      gl.uniform3f(this.lineAt.origin, item.pose[item.at], item.pose[item.at + 1], item.pose[item.at + 2]);
-      gl.uniform4f(this.lineAt.turn, item.pose[item.at + 3], item.pose[item.at + 4], item.pose[item.at + 5], item.pose[item.at + 6]);
-      gl.uniform4f(this.lineAt.paint, ...item.color, item.alpha);
-      gl.uniform1f(this.lineAt.cut, item.cut ? 1 : 0);
-      this.strips(set, set.count, item.mode === "wire" ? 1.2 : 3);
+    for (const { pose, at, color, alpha, cut, mode } of batch.items) {
+      const placed = [pose[at], pose[at + 1], pose[at + 2], pose[at + 3], pose[at + 4], pose[at + 5], pose[at + 6]];
+      this.segments({ set, count: set.count, width: mode === "wire" ? 1.2 : 3, color, alpha }, picture, placed, cut);
     }
   }
-  useLine(/** @type {Picture} */ picture) {
+  /** Lines of one pixel are drawn as such, wider ones as strips. @param {Pick<Lines, "set" | "count" | "width" | "color" | "alpha">} lines
+   * @param {Picture} picture @param {readonly number[]} placed the pose @param {boolean} cut */
+  segments({ set, count, width, color, alpha }, picture, placed, cut) {
     const gl = this.gl;
-    gl.useProgram(this.line);
-    gl.uniformMatrix4fv(this.lineAt.both, false, this.now.both);
-    gl.uniform4fv(this.lineAt.plane, picture.plane ?? [0, 0, 0, 1]);
-    gl.uniform2f(this.lineAt.size, gl.drawingBufferWidth, gl.drawingBufferHeight);
-    gl.uniform1f(this.lineAt.strength, this.hidden ? HIDDEN : 1);
-  }
-  /** @param {LineSet} set @param {number} count @param {number} width pixels */
-  strips(set, count, width) {
-    const gl = this.gl;
-    gl.uniform1f(this.lineAt.width, width * this.now.ratio);
-    gl.bindVertexArray(set.vao);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
-    this.counted(2 * count);
+    const pixels = width * this.now.ratio;
+    const thin = pixels < 1.5;
+    const at = thin ? this.thinAt : this.lineAt;
+    gl.useProgram(thin ? this.thin : this.line);
+    gl.uniformMatrix4fv(at.both, false, this.now.both);
+    gl.uniform4fv(at.plane, picture.plane ?? [0, 0, 0, 1]);
+    gl.uniform3fv(at.origin, placed, 0, 3);
+    gl.uniform4fv(at.turn, placed, 3, 4);
+    gl.uniform4f(at.paint, ...(color ?? [0, 0, 0]), color ? alpha : 0);
+    gl.uniform1f(at.cut, cut ? 1 : 0);
+    gl.uniform1f(at.strength, this.hidden ? HIDDEN : 1);
+    gl.bindVertexArray(thin ? set.vao : set.strips);
+    if (thin) gl.drawArrays(gl.LINES, 0, 2 * count);
+    else {
+      gl.uniform2f(at.size, gl.drawingBufferWidth, gl.drawingBufferHeight);
+      gl.uniform1f(at.width, pixels);
+      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
+    }
+    this.counted(thin ? 0 : 2 * count);
   }
   /** @param {Picture} picture */
   drawImages({ images }) {
@@ -272,14 +278,10 @@ export class Renderer {
   /** Trees, roadmap and traces. @param {Picture} picture @param {boolean} over */
   drawLines(picture, over) {
     const gl = this.gl;
-    this.useLine(picture);
-    gl.uniform3f(this.lineAt.origin, 0, 0, 0);
-    gl.uniform4f(this.lineAt.turn, 0, 0, 0, 1);
-    gl.uniform1f(this.lineAt.cut, 0);
     gl.enable(gl.BLEND);
-    for (const { set, count, width, color, alpha } of picture.lines.filter((l) => l.over === over && l.count)) {
-      gl.uniform4f(this.lineAt.paint, ...(color ?? [0, 0, 0]), color ? alpha : 0);
-      this.strips(set, count, width);
+    for (const lines of picture.lines.filter((l) => l.over === over && l.count)) {
+      const count = over ? lines.count : Math.ceil(lines.count * this.now.share);
+      this.segments({ ...lines, count }, picture, [0, 0, 0, 0, 0, 0, 1], false);
     }
     gl.disable(gl.BLEND);
   }

@@ -12,6 +12,7 @@ import { filmOf, pictureOf } from "mp/recording.js";
 const KINDS = [
   ["the environment, to edit again (.mp.json)", "save", "own"],
   ["the environment for GEMPA (.env and meshes)", "save", "gempa"],
+  ["the problem with its obstacles (.toml)", "save", "own"],
   ["the path, as text", "save_path", "txt"],
   ["the path, as JSON", "save_path", "json"],
   ["the path, as CSV", "save_path", "csv"],
@@ -25,6 +26,8 @@ const KINDS = [
   ["a picture of what is shown (PNG)", "picture", "png"],
   ["a film of the path, played once as it is shown", "film", ""],
 ];
+/** The one of these for a problem in a file; those before it are for environments. */
+const PROBLEM = 2;
 
 /** Gives a file to the browser to save. @param {string} name @param {Uint8Array} bytes */
 export function download(name, bytes) {
@@ -36,10 +39,11 @@ export function download(name, bytes) {
 
 /** Hands over what a request to save gave, and says where it is. @param {Message} reply @param {string | null} folder */
 export function deliver(reply, folder) {
-  if (reply.written?.length) return `Written to ${folder ?? "the folder"}: ${reply.written.join(", ")}.`;
+  const note = reply.note ? ` ${reply.note}` : "";
+  if (reply.written?.length) return `Written to ${folder ?? "the folder"}: ${reply.written.join(", ")}.${note}`;
   const files = reply.files ?? [];
   for (const { name, bytes } of files) download(name, bytes);
-  return `Saved: ${files.map((/** @type {{name: string}} */ f) => f.name).join(", ")}.`;
+  return `Saved: ${files.map((/** @type {{name: string}} */ f) => f.name).join(", ")}.${note}`;
 }
 
 /** A path's configurations, each as a list of numbers. @param {Path} path @param {number} columns @returns {number[][]} */
@@ -69,8 +73,11 @@ export class SaveDialog {
     const edited = this.document();
     /** @type {[string, string][]} */
     const options = KINDS.map(([label], i) => [String(i), label]);
-    const can = { save: edited, save_path: path, save_trajectory: path?.trajectory, export: true, picture: true, film: path };
-    const possible = options.filter((_, i) => can[KINDS[i][1]]);
+    const can = { save_path: path, save_trajectory: path?.trajectory, export: true, picture: true, film: path };
+    const possible = options.filter((_, i) => {
+      const [, request] = KINDS[i];
+      return request === "save" ? edited && (i === PROBLEM) === !edited.robot : can[request];
+    });
     const first = possible.find(([i]) => KINDS[Number(i)][1] === wanted) ?? possible[0];
     const kind = select(possible, first[0], () => {});
     const name = el("input", { type: "text", value: fileName(String(edited?.name ?? viewer.scene.name)), required: true });
@@ -108,14 +115,14 @@ export class SaveDialog {
     const path = scene.paths[settings.path];
     const edited = request === "save" ? this.document() : null;
     const what = {
-      save: { document: edited },
+      save: { document: edited && this.workbench.withEnds(edited) },
       save_path: { rows: path ? rowsOf(path, columns) : [] },
       save_trajectory: { knots: path?.trajectory?.knots },
       export: { paths: scene.paths.map((p) => ({ name: p.name, rows: rowsOf(p, columns) })), ...ends.request() },
     }[request];
     let gone = "";
     const reply = await session.request({ do: request, format, name, ...what, ...(overwrite ? { overwrite } : {}) }).catch((error) => {
-      if (!error.gone || format !== "own") throw error;
+      if (!error.gone || format !== "own" || !edited?.robot) throw error;
       gone = "The planner does not answer. ";
       return { files: [{ name: `${name}.mp.json`, bytes: new TextEncoder().encode(this.copy()) }] };
     });

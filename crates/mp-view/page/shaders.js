@@ -94,6 +94,25 @@ void main() {
   gl_Position = c;
 }`;
 
+/** Lines of one pixel, which need no corners. */
+export const THIN_VERTEX = `${HEAD}
+layout(location = 0) in vec3 at;
+layout(location = 1) in vec4 color;
+uniform mat4 both;
+uniform vec3 origin;
+uniform vec4 turn, plane, paint;
+uniform float cut;
+out vec4 tint;
+out float beyond;
+${ROTATE}
+void main() {
+  vec3 world = rotate(turn, at) + origin;
+  gl_Position = both * vec4(world, 1.0);
+  gl_Position.z -= 0.0002 * gl_Position.w;
+  beyond = cut > 0.0 ? dot(plane.xyz, world) - plane.w : -1.0;
+  tint = paint.a > 0.0 ? paint : color;
+}`;
+
 export const LINE_FRAGMENT = `${HEAD}
 in vec4 tint;
 in float beyond;

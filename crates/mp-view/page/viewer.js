@@ -6,6 +6,7 @@ import { Controls, isTyping } from "mp/controls.js";
 import { Coverage } from "mp/coverage.js";
 import { byId, showError } from "mp/dom.js";
 import { Frames } from "mp/frames.js";
+import { Pace } from "mp/pace.js";
 import { Panels, VIEWS } from "mp/panels.js";
 import { Picker } from "mp/picking.js";
 import { PictureMaker } from "mp/picture.js";
@@ -73,6 +74,7 @@ export class Viewer {
     /** Called after another scene is shown. @type {((scene: Scene) => void)[]} */ this.onshow = [];
     /** @type {Stats} */ this.stats = { drawCalls: 0, triangles: 0, milliseconds: 0, frames: 0 };
     this.waiting = false;
+    this.pace = new Pace();
     /** @type {Shape[]} */ this.shapes = [];
     /** The shape of each body. @type {number[]} */ this.ofBody = [];
     this.addLayer(new Frames(this));
@@ -80,7 +82,7 @@ export class Viewer {
     this.addLayer(this.coverage);
     this.prepare();
     const changed = () => this.changed();
-    this.controls = new Controls(this.canvas, this.camera, { changed, clicked: (x, y) => this.click(x, y), centered: (x, y) => this.center(x, y) });
+    this.controls = new Controls(this.canvas, this.camera, { moved: () => this.moved(), clicked: (x, y) => this.click(x, y), centered: (x, y) => this.center(x, y) });
     this.panels = new Panels(this.settings, this);
     this.panels.addShown(...this.coverage.elements);
     this.coverage.show();
@@ -185,24 +187,34 @@ export class Viewer {
     this.waiting = true;
     requestAnimationFrame((now) => this.frame(now));
   }
+  /** The view has moved, or something was clicked: asks for one redraw, very soon. */
+  moved() {
+    this.pace.moved(() => this.changed());
+    this.changed();
+  }
   /** @param {number} now milliseconds */
   frame(now) {
     this.waiting = false;
+    // The next frame comes when this one is drawn.
+    const begin = performance.now();
+    const { share } = this.pace;
+    requestAnimationFrame(() => this.pace.took(share, performance.now() - begin));
     const flies = this.controls?.fly(now) ?? false;
     const plays = this.timeline?.advance(now) ?? false;
     try {
-      this.draw();
+      this.draw(share);
     } catch (error) {
       return showError(error);
     }
-    if (flies || plays) this.changed();
+    if (flies) this.moved();
+    if (plays) this.changed();
   }
-  /** Draws now. */
-  draw() {
+  /** Draws now. @param {number} [share] of the lines of searches */
+  draw(share = 1) {
     if (this.lost || !this.pictures || !this.renderer) return;
     const begin = performance.now();
     this.picture = this.pictures.make(this.settings);
-    this.renderer.draw(this.picture, this.camera, palette(this.settings.dark), this.ratio ?? 1);
+    this.renderer.draw(this.picture, this.camera, palette(this.settings.dark), this.ratio ?? 1, share);
     this.timeline?.update();
     this.panels?.update();
     for (const listener of this.ondraw) listener();
@@ -248,7 +260,7 @@ export class Viewer {
     if (!picked) byId("hint").textContent = "";
     this.panels?.showPicked(picked, () => this.forget());
     this.select(picked?.item?.body ?? -1, picked?.item?.role, picked?.item?.index);
-    this.changed();
+    this.moved();
   }
   /** Chooses a body; of the robot at its start, when it is not said. @param {number} body −1 for none @param {Role} [role]
    * @param {number} [index] of a goal or a configuration */

@@ -12,7 +12,7 @@ import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 /** @typedef {{scene: string} | {files: {name: string, bytes: Uint8Array}[], main?: string}} Source  a shipped scene, or files */
 
 /** What of a document may change without the scene being another one. */
-const UNIMPORTANT = ["name", "color", "start", "goal"];
+const UNIMPORTANT = ["name", "color", "start", "goal", "goals"];
 
 export class Workbench {
   /** @param {Viewer} viewer @param {Session} session @param {Message} hello the reply of the session to `hello` */
@@ -20,6 +20,7 @@ export class Workbench {
     this.viewer = viewer; this.session = session; this.hello = hello;
     this.ends = new Ends(session);
     /** What can be edited, or null. @type {Message | null} */ this.document = null;
+    /** What of the scene is not edited, and what can be done instead, or null. @type {string | null} */ this.unedited = null;
     /** Whether the session has a scene open. */ this.open = false;
     /** Whether bodies of the robot can be put to places: docs/formats/session.md. */ this.links = false;
     /** Whether paths of the robot get times. */ this.trajectories = false;
@@ -46,9 +47,18 @@ export class Workbench {
   /** Sends the changed document, and shows the scene that it gives; the camera stays. @param {Message} document @returns {Promise<boolean>} */
   edit(document) {
     return this.attempt(async () => {
-      this.take(await this.session.request({ do: "edit", document }), "edit");
+      const { moved } = this.ends;
+      this.take(await this.session.request({ do: "edit", document: this.withEnds(document) }), "edit");
+      // The file of a problem still has its own ends.
+      if (!document.robot) this.ends.moved = moved;
       setUnsaved(true);
     });
+  }
+  /** A document with start and goals as they are now, also one of a problem. @param {Message} document @returns {Message} */
+  withEnds(document) {
+    if (document.robot) return document;
+    const { start, goals } = this.ends.request();
+    return { ...document, start: start ?? document.start, goals: goals ?? document.goals };
   }
   /** Shows what `open` or `edit` gave. @param {Message} reply @param {"open" | "edit"} how
    * @param {{paths: Path[], report: Scene["report"]}} [known] what is shown with it */
@@ -66,19 +76,24 @@ export class Workbench {
     for (const listener of this.onopened) listener(reply, how);
   }
   /** What the session says of its scene. @param {Message} reply */
-  describe({ document = null, links = false, trajectories = false, parts_left: partsLeft = 0 }) {
+  describe({ document = null, unedited = null, links = false, trajectories = false, parts_left: partsLeft = 0 }) {
     const which = JSON.stringify([partsLeft, document], (key, value) => (UNIMPORTANT.includes(key) ? undefined : value));
-    Object.assign(this, { document, links, trajectories, partsLeft, which });
+    Object.assign(this, { document, unedited, links, trajectories, partsLeft, which });
   }
 
-  /** Opens the next part of the motion. @param {number[]} row where this one ends @returns {Promise<boolean>} */
-  nextPart(row) {
-    return this.attempt(async () => this.take(await this.session.request({ do: "next", row }), "edit"));
+  /** Opens the next part of the motion, in which nothing is edited; asks first when there are unsaved changes.
+   * @param {number[]} row where this one ends @returns {Promise<boolean>} */
+  async nextPart(row) {
+    if (!(await mayDiscard())) return false;
+    return this.attempt(async () => {
+      this.take(await this.session.request({ do: "next", row }), "edit");
+      setUnsaved(false);
+    });
   }
   /** The page shows something else than the scene of the session: there is nothing to edit or to plan. */
   leave() {
     this.open = false;
-    this.document = null;
+    this.document = this.unedited = null;
     this.ends.scene = null;
     for (const listener of this.onleft) listener();
   }

@@ -16,7 +16,7 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 49] = modules!(
+const MODULES: [(&str, &str); 50] = modules!(
     "buffers",
     "camera",
     "colors",
@@ -45,6 +45,7 @@ const MODULES: [(&str, &str); 49] = modules!(
     "message",
     "milestones",
     "opening",
+    "pace",
     "packed",
     "panels",
     "picking",

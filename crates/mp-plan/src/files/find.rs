@@ -88,6 +88,8 @@ pub struct SceneFiles {
     pub file: PathBuf,
     /// The text of that file, where another is meant than the one that is there.
     pub text: Option<String>,
+    /// The problem that was made around that file, if it is a robot or a map alone: where it would be, and its text.
+    pub around: Option<(PathBuf, String)>,
     /// Whether the scene was changed after it was read, so that reading it again gives another one.
     pub changed: bool,
     /// Whether all of them are among the [shipped files](shipped_files).

@@ -109,8 +109,12 @@ impl Scene {
         };
         let recording = Recording::new(files);
         let files: &dyn Files = &recording;
+        let mut around = None;
         let scene = match without_problem::scene(files, file, named).map_err(of)? {
-            Some(scene) => scene,
+            Some((scene, problem)) => {
+                around = problem;
+                scene
+            }
             None if named == Some(Content::Toml) => match ProblemFile::load_from(files, file)? {
                 ProblemFile::World(problem) => {
                     Self::from_world_until(*problem, &files.interrupt()).map_err(of)?
@@ -139,6 +143,7 @@ impl Scene {
             file: file.to_owned(),
             shipped: false,
             text: None,
+            around,
             changed: named == Some(Content::RobotMacros),
             inputs: read.into_inner().unwrap_or_else(PoisonError::into_inner),
             folders: folders.into_inner().unwrap_or_else(PoisonError::into_inner),

@@ -9,16 +9,19 @@ use mp_io::{Content, Files, ProblemChanges};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// A scene, and the problem that was made around its file: where that would be, and its text.
+type Around = (Scene, Option<(PathBuf, String)>);
+
 /// The scene of a file that is no scene but can be made one; `None` for all other files. `named` is what its name says that it holds.
 ///
 /// # Errors
 /// When the file is such a file and cannot be read, or there is no free configuration.
-pub(crate) fn scene(files: &dyn Files, file: &Path, named: Option<Content>) -> Result<Option<Scene>, Error> {
+pub(crate) fn scene(files: &dyn Files, file: &Path, named: Option<Content>) -> Result<Option<Around>, Error> {
     match named {
         Some(Content::Robot) => robot(files, file).map(Some),
         Some(Content::Map) => map(files, file).map(Some),
         Some(Content::MapImage) => map(files, &beside(files, file)?).map(Some),
-        Some(Content::RobotMacros) => with_macros(files, file, &ProblemChanges::default()).map(Some),
+        Some(Content::RobotMacros) => Ok(Some((with_macros(files, file, &ProblemChanges::default())?, None))),
         Some(Content::RobotSemantics) => {
             Err(Error::new(format!("{} is an SRDF, not a scene", file.display()))
                 .help("name it in a robot problem: docs/formats/robot-problem.md"))
@@ -57,8 +60,9 @@ fn around(file: &Path) -> PathBuf {
     file.with_extension("toml")
 }
 
-fn robot(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
-    with_chosen_ends(files, robot_alone(files, file)?)
+fn robot(files: &dyn Files, file: &Path) -> Result<Around, Error> {
+    let scene = with_chosen_ends(files, robot_alone(files, file)?)?;
+    Ok((scene, Some(problem_around(files, file)?)))
 }
 
 /// The scene of a robot with macros. It cannot be read again elsewhere: what the macros include is not known.
@@ -100,17 +104,19 @@ pub(crate) fn problem_around(files: &dyn Files, file: &Path) -> Result<(PathBuf,
 /// The radius (m) of the disc that moves on a map alone: that of common mobile robots.
 const RADIUS: f64 = 0.2;
 
-fn map(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
+fn map(files: &dyn Files, file: &Path) -> Result<Around, Error> {
     use mp_io::{GoalPart, PlanarProblem, PlanarShape};
     let place = around(file);
     let map = quoted(file)?;
-    let text =
-        format!("[world]\nmap = {map}\n[robot]\ndisc = {RADIUS}\n[motion]\nstart = [0, 0]\ngoal = [0, 0]\n");
+    let text = |radius: f64| {
+        format!("[world]\nmap = {map}\n[robot]\ndisc = {radius:?}\n[motion]\nstart = [0, 0]\ngoal = [0, 0]\n")
+    };
     // Read first, so that errors about them name the files themselves.
     let ros = mp_io::RosMap::parse(&file.display().to_string(), &files.read(file, mp_io::MAX_TEXT_BYTES)?)?;
     let image = file.parent().unwrap_or(Path::new("")).join(&ros.image);
     mp_io::GridMap::parse(&image.display().to_string(), &files.read(&image, mp_io::MAX_MESH_BYTES)?)?;
-    let mut problem = PlanarProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?;
+    let mut problem =
+        PlanarProblem::load_from(&OneText { file: &place, text: &text(RADIUS), files }, &place)?;
     let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
     let world = mp_geom::planar::PlanarWorld::new_until(polygons, problem.walls, &files.interrupt())
         .map_err(|e| Error::new(e.to_string()))?;
@@ -134,7 +140,8 @@ fn map(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
          docs/formats/planar-world.md"
             .to_owned(),
     ];
-    Ok(Scene::from_world_until(problem, &files.interrupt())?.with_notes(notes))
+    let scene = Scene::from_world_until(problem, &files.interrupt())?.with_notes(notes);
+    Ok((scene, Some((place, text(radius)))))
 }
 
 /// How many points the longer side of a grid over a map has.

@@ -4,6 +4,7 @@ mod attached;
 mod auto;
 mod clearance;
 mod constrained;
+mod editing;
 mod field;
 mod find;
 mod fuzz;

@@ -640,6 +640,43 @@ fn edited_scenes_are_as_scenes_made_anew() {
     }
 }
 
+/// Obstacles of a world in the plane are shown where the document puts them, and saved as a problem.
+#[test]
+fn problems_are_edited_and_saved() {
+    let page = Page::new(Opening::default());
+    let opened = page.ask(json!({"do": "open", "scene": "rrs-low"}));
+    assert_eq!(opened.head["unedited"], Value::Null);
+    let mut document = opened.head["document"].clone();
+    assert!(document["plane"] == true && document.get("robot").is_none());
+    let count = document["obstacles"].as_array().unwrap().len();
+    let bar = json!({"name": "bar", "shape": {"rectangle": {"size": [0.4, 0.1]}}, "scale": [2, 1, 1], "pose": [1, 2, 0, 0.5, 0, 0]});
+    document["obstacles"].as_array_mut().unwrap().push(bar);
+    let edited = page.ask(json!({"do": "edit", "document": document}));
+    assert_eq!(edited.head["document"]["obstacles"][count]["name"], "bar");
+    let file = scene_of(&edited);
+    let drawn = file.bodies.iter().find(|body| body.name == "bar").unwrap();
+    let crate::Shape::Area(area) = drawn.shape else { panic!("an area") };
+    assert_eq!(file.areas[area].rings[0].iter().copied().fold(0.0, f32::max), 0.4);
+    assert_eq!(drawn.pose.map(|pose| [pose[0], pose[1]]), Some([1.0, 2.0]));
+    let saved = page.ask(json!({"do": "save", "document": null, "format": "own", "name": "with-bar"}));
+    assert_eq!(saved.head["note"], Value::Null);
+    let files = files_of(&saved);
+    let given: Vec<(&str, &[u8])> = files.iter().map(|f| (f.0.as_str(), f.1.as_slice())).collect();
+    let again = Page::new(Opening::default()).reply(with_files(json!({"do": "open"}), &given));
+    assert_eq!(
+        again.head["document"]["obstacles"][count]["shape"]["polygon"]["rings"][0].as_array().unwrap().len(),
+        4
+    );
+    let refused = page.refused(json!({"do": "save", "document": null, "format": "gempa", "name": "g"}));
+    assert!(refused.contains("rigid bodies only"), "{refused}");
+    document["obstacles"][count]["shape"] = json!({"circle": {"radius": 0}});
+    assert!(page.refused(json!({"do": "edit", "document": document})).contains("bar"));
+    let none = Page::new(Opening::default());
+    assert!(none.refused(json!({"do": "edit", "document": document})).contains("no scene is open"));
+    none.ask(json!({"do": "open", "scene": "easy"}));
+    assert!(none.refused(json!({"do": "edit", "document": document})).contains("of a problem in a file"));
+}
+
 #[test]
 fn meshes_and_scene_files_are_opened() {
     let page = Page::new(Opening::default());

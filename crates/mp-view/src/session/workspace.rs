@@ -6,16 +6,18 @@ use super::times::trajectory_of;
 use super::{number_of, text_of};
 use crate::bytes::{path_head, rgb};
 use crate::message::{Message, json};
-use crate::{PathTrack, SceneFile};
+use crate::{PathTrack, Role, SceneFile, Shape};
 use mp_geom::TriMesh;
-use mp_io::{Content, DocumentShape, FORMATS, SceneDocument};
+use mp_io::{Content, Disk, DocumentShape, FORMATS, Files, ProblemDocument, SceneDocument};
 use mp_plan::{
-    EditedScene, Error, Interrupt, MetricName, PathFileKind, PathRows, Request, Scene, TrajectoryKind,
+    EditedScene, Error, Interrupt, MetricName, PathFileKind, PathRows, Request, Scene, SceneProblem,
+    TrajectoryKind,
 };
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// What a session begins with.
 #[derive(Clone, Debug, Default)]
@@ -43,8 +45,22 @@ pub type Thumbnail = fn(&Scene) -> Result<Vec<u8>, Error>;
 pub(crate) struct Open {
     pub(crate) scene: Scene,
     /// What can be edited. Its meshes are in `meshes`.
-    document: Option<SceneDocument>,
+    document: Option<Document>,
+    /// The problem that a [`Document::Problem`] changes.
+    problem: Option<Arc<SceneProblem>>,
+    /// What of it is not edited, and what can be done instead.
+    unedited: Option<String>,
     path: Option<PathRows>,
+}
+
+/// What can be edited of a scene.
+#[derive(Clone, Debug, serde::Serialize)]
+#[serde(untagged)]
+enum Document {
+    /// All of a rigid body among meshes.
+    Scene(Box<SceneDocument>),
+    /// Obstacles and ends of a problem in TOML.
+    Problem(ProblemDocument),
 }
 
 /// What a session has open.
@@ -66,7 +82,11 @@ impl Workspace {
         let Opening { scene, path, shown, folder, thumbnail } = opening;
         let mut workspace = Self { folder, shown, thumbnail, ..Self::default() };
         if let Some(scene) = scene {
-            workspace.adopt(scene, path);
+            let (files, on_disk): (Arc<dyn Files>, _) = match scene.files().shipped {
+                true => (Arc::new(mp_plan::shipped_files()), false),
+                false => (Arc::new(Disk), true),
+            };
+            workspace.adopt(scene, files, on_disk, path);
         }
         workspace
     }
@@ -146,8 +166,8 @@ impl Workspace {
 
     /// Opens the scene with a shipped name, or that of the files of the request.
     fn open(&mut self, request: &Message) -> Answer {
-        let scene = match request.head.get("scene").and_then(Value::as_str) {
-            Some(name) => shipped(name)?,
+        let (scene, files): (_, Arc<dyn Files>) = match request.head.get("scene").and_then(Value::as_str) {
+            Some(name) => (shipped(name)?, Arc::new(mp_plan::shipped_files())),
             None => {
                 let files = Named::of(request)?;
                 let main = match request.head.get("main").and_then(Value::as_str) {
@@ -155,13 +175,14 @@ impl Workspace {
                     None => files.scene()?,
                 };
                 let main = Path::new(main);
-                match is_mesh(main, files.content(&main.to_string_lossy())) {
+                let scene = match is_mesh(main, files.content(&main.to_string_lossy())) {
                     true => scene_of_mesh(&files, main)?,
                     false => Scene::load_from(&files, main)?,
-                }
+                };
+                (scene, Arc::new(files))
             }
         };
-        self.adopt(scene, None);
+        self.adopt(scene, files, false, None);
         self.reply()
     }
 
@@ -174,17 +195,28 @@ impl Workspace {
         Ok(reply.with("png", png))
     }
 
-    /// Takes a scene as the one that is open.
-    fn adopt(&mut self, scene: Scene, path: Option<PathRows>) {
-        let document = scene.document().map(|EditedScene { mut document, meshes }| {
+    /// Takes a scene as the one that is open. It was read from `files`, on the disk or in memory.
+    fn adopt(&mut self, scene: Scene, files: Arc<dyn Files>, on_disk: bool, path: Option<PathRows>) {
+        if let Some(EditedScene { mut document, meshes }) = scene.document() {
             for (body, mesh) in document.bodies_mut().zip(meshes) {
                 if let (DocumentShape::Mesh { file, .. }, Some(mesh)) = (&mut body.shape, mesh) {
                     *file = self.name_mesh(file, mesh);
                 }
             }
-            document
-        });
-        self.open = Some(Open { scene, document, path });
+            let document = Some(Document::Scene(Box::new(document)));
+            self.open = Some(Open { scene, document, problem: None, unedited: None, path });
+            return;
+        }
+        let (problem, unedited) = match scene.problem(files, on_disk) {
+            Ok(problem) => {
+                let pixels = "The pixels of the map are not edited here: add obstacles beside them, or change the image.";
+                let has_map = problem.has_map().unwrap_or(false);
+                (Some(Arc::new(problem)), has_map.then(|| pixels.to_owned()))
+            }
+            Err(e) => (None, Some(not_edited(&e))),
+        };
+        let document = problem.as_ref().map(|problem| Document::Problem(problem.document().clone()));
+        self.open = Some(Open { scene, document, problem, unedited, path });
     }
 
     /// Keeps a mesh, and returns the name by which documents call it: that of its file, unless another mesh has it.
@@ -208,17 +240,38 @@ impl Workspace {
         let document = self.document(request)?;
         let meshes = &self.meshes;
         let mesh = |name: &str| known_mesh(meshes, name);
-        let scene = match &self.open {
-            Some(open) => open.scene.edited(document.clone(), &mesh)?,
-            None => Scene::from_document(document.clone(), &mesh)?,
+        let scene = match (&document, &self.open) {
+            (Document::Scene(document), Some(open)) => {
+                open.scene.edited(SceneDocument::clone(document), &mesh)?
+            }
+            (Document::Scene(document), None) => Scene::from_document(SceneDocument::clone(document), &mesh)?,
+            (Document::Problem(document), _) => {
+                self.problem()?.edited(document, &mesh, &self.opened()?.scene)?
+            }
         };
-        self.open = Some(Open { scene, document: Some(document), path: None });
+        // A document of a rigid body says all of it.
+        let of_problem = self.open.as_ref().filter(|_| matches!(document, Document::Problem(_)));
+        let (problem, unedited) =
+            of_problem.map_or((None, None), |open| (open.problem.clone(), open.unedited.clone()));
+        self.open = Some(Open { scene, document: Some(document), problem, unedited, path: None });
         self.reply()
     }
 
-    fn document(&self, request: &Message) -> Result<SceneDocument, Error> {
+    /// The problem that is edited.
+    fn problem(&self) -> Result<&SceneProblem, Error> {
+        self.opened()?.problem.as_deref().ok_or_else(|| {
+            Error::new("this document is of a problem in a file, and none is open")
+                .help("open the problem that it was made from")
+        })
+    }
+
+    fn document(&self, request: &Message) -> Result<Document, Error> {
         let document = request.head.get("document").cloned().unwrap_or_default();
-        serde_json::from_value(document).map_err(|e| {
+        let read = match document.get("plane") {
+            Some(_) => serde_json::from_value(document).map(Document::Problem),
+            None => serde_json::from_value(document).map(Document::Scene),
+        };
+        read.map_err(|e| {
             Error::new(format!("this is no document: {e}"))
                 .help("docs/formats/session.md describes documents")
         })
@@ -241,6 +294,7 @@ impl Workspace {
         members.insert("written".to_owned(), json(&open.path.as_ref().map(|path| &path.rows)));
         members.insert("scene".to_owned(), message.array(&file.to_bytes()));
         members.insert("document".to_owned(), json(&open.document));
+        members.insert("unedited".to_owned(), json(&open.unedited));
         let wrong = open.scene.wrong_ends();
         let odd = open.scene.lint().into_iter().filter(|found| !wrong.contains(found));
         let notes: Vec<String> = open.scene.notes().iter().cloned().chain(odd).collect();
@@ -254,11 +308,29 @@ impl Workspace {
         Ok(members)
     }
 
-    /// The scene file of what is open, with the colours of its document.
+    /// The scene file of what is open, with the colours of its document, and with obstacles of the plane where it puts them.
     fn scene_file(&self, open: &Open) -> Result<SceneFile, Error> {
         let mut file = SceneFile::of(&open.scene)?;
-        for (body, drawn) in open.document.iter().flat_map(SceneDocument::bodies).zip(&mut file.bodies) {
-            drawn.color = body.color.as_deref().and_then(rgb);
+        match &open.document {
+            Some(Document::Scene(document)) => {
+                for (body, drawn) in document.bodies().zip(&mut file.bodies) {
+                    drawn.color = body.color.as_deref().and_then(rgb);
+                }
+            }
+            Some(Document::Problem(document)) => {
+                let still = file.bodies.iter_mut().filter(|body| body.role == Role::Obstacle);
+                for (obstacle, drawn) in document.obstacles.iter().zip(still) {
+                    if let (Some(rings), Shape::Area(area)) = (obstacle.rings(), &drawn.shape) {
+                        let ring =
+                            |ring: Vec<[f64; 2]>| ring.as_flattened().iter().map(|x| *x as f32).collect();
+                        file.areas[*area].rings = rings.into_iter().map(ring).collect();
+                        let [x, y, _, angle, ..] = obstacle.pose;
+                        let pose = mp_geom::pose_from_six([x, y, 0.0, angle, 0.0, 0.0]);
+                        drawn.pose = Some(crate::of_scene::seven(&pose));
+                    }
+                }
+            }
+            None => {}
         }
         Ok(file)
     }
@@ -359,7 +431,10 @@ impl Workspace {
         let end = row_of(&request.head, "row")?;
         let next = self.opened()?.scene.next_part(&end, &Interrupt::never())?;
         let next = next.ok_or_else(|| Error::new("this was the last part of the motion"))?;
-        self.adopt(next, None);
+        let unedited =
+            "Obstacles are edited in the first part of the motion: open the scene again.".to_owned();
+        let unedited = Some(unedited);
+        self.open = Some(Open { scene: next, document: None, problem: None, unedited, path: None });
         self.reply()
     }
 
@@ -368,19 +443,35 @@ impl Workspace {
         let document = match request.head.get("document") {
             Some(Value::Object(_)) => self.document(request)?,
             _ => self.opened()?.document.clone().ok_or_else(|| {
-                Error::new("this kind of scene is not saved").help("only rigid bodies among meshes are")
+                Error::new("this kind of scene is not saved").help("problems that are edited here are")
             })?,
         };
         let mesh = |name: &str| known_mesh(&self.meshes, name);
-        let files = match format_of(request, &["own", "gempa"], "scenes")? {
-            "own" => {
-                let document = SceneDocument { name: name.clone(), ..document };
+        let texts =
+            |files: Vec<(String, String)>| files.into_iter().map(|(name, text)| (name, text.into_bytes()));
+        let format = format_of(request, &["own", "gempa"], "scenes")?;
+        let files = match document {
+            Document::Problem(_) if format == "gempa" => {
+                return Err(
+                    Error::new("GEMPA has rigid bodies only").help("save it as the problem that it is")
+                );
+            }
+            Document::Problem(document) => {
+                let folder = self.folder_of(request);
+                let (files, left) = self.problem()?.saved(&name, &document, &mesh, folder)?;
+                let left = (!left.is_empty()).then(|| {
+                    format!("It needs the files that the scene was opened with: {}.", left.join(", "))
+                });
+                return Ok(self.written(request, files)?.with("note", left));
+            }
+            Document::Scene(document) if format == "own" => {
+                let document = SceneDocument { name: name.clone(), ..*document };
                 document.problem(&name, &mesh)?;
                 vec![(format!("{name}.mp.json"), document.with_meshes(&mesh)?.to_text())]
             }
-            _ => document.to_gempa(&name, &mesh)?,
+            Document::Scene(document) => document.to_gempa(&name, &mesh)?,
         };
-        self.written(request, files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect())
+        self.written(request, texts(files).collect())
     }
 
     fn save_path(&self, request: &Message) -> Answer {
@@ -434,17 +525,21 @@ impl Workspace {
     fn written(&self, request: &Message, files: Vec<(String, Vec<u8>)>) -> Answer {
         let mut reply = Message::default();
         files.iter().try_for_each(|(name, _)| mp_store::check_name(name))?;
-        let flag = |name: &str| request.head.get(name).and_then(Value::as_bool).unwrap_or(false);
-        if let Some(folder) = self.folder.as_ref().filter(|_| !flag("content")) {
+        if let Some(folder) = self.folder_of(request) {
             let names: Vec<String> = files.iter().map(|file| file.0.clone()).collect();
             // The scene comes last: then all that it names is there.
             let files = files.into_iter().rev().map(|(name, bytes)| (name, [Ok::<_, Error>(bytes)]));
-            mp_store::write_all(folder, files, flag("overwrite"))?;
+            mp_store::write_all(folder, files, flag(request, "overwrite"))?;
             return Ok(reply.with("written", names));
         }
         let files: Vec<Value> =
             files.iter().map(|(name, bytes)| json!({"name": name, "bytes": reply.array(bytes)})).collect();
         Ok(reply.with("files", files))
+    }
+
+    /// The folder into which a request writes; none when it asks for the content.
+    fn folder_of(&self, request: &Message) -> Option<&Path> {
+        self.folder.as_deref().filter(|_| !flag(request, "content"))
     }
 
     /// The scene of a request to plan: the one that is open, with the start and goals of the request.
@@ -458,6 +553,17 @@ impl Workspace {
         let goals = if given("goals") { rows_of(&request.head, "goals")? } else { scene.goals() };
         scene.with_ends(&start, &goals)
     }
+}
+
+/// Why a scene cannot be edited, and what can be done instead, as sentences.
+fn not_edited(e: &Error) -> String {
+    let help = e.remedy().map(|help| format!(" Instead, {help}.")).unwrap_or_default();
+    format!("Its obstacles are not edited here: {e}.{help}")
+}
+
+/// Whether a request says so.
+fn flag(request: &Message, name: &str) -> bool {
+    request.head.get(name).and_then(Value::as_bool).unwrap_or(false)
 }
 
 fn shipped(name: &str) -> Result<Scene, Error> {

@@ -179,16 +179,16 @@ browserTest("handles turn, scale and give up; start and goal are dragged with th
   await driver.until(async (x) => (await window.mpView.planner).viewer.scene.goals[0].row[0] === x, goal[0]);
 }));
 
-browserTest("in the plane bodies keep z; a world that is no document lets start and goal be dragged", () => withPage("rrs-low", async (driver) => {
-  assert.equal((await driver.options("Selected")).length, 3);
+browserTest("in the plane bodies keep z; start and goal of a world are dragged, and its robot is not edited", () => withPage("rrs-low", async (driver) => {
+  assert.equal((await driver.options("Selected")).length, 3 + (await documentOf(driver)).obstacles.length);
   await driver.choose("Selected", "robot at the start");
   const row = () => driver.page.evaluate(async () => (await window.mpView.planner).viewer.scene.start.row);
   const before = await row();
   await driver.drag(await onHandle(driver, [...before, 0], [0.8, 0, 0]), await onHandle(driver, [...before, 0], [1.2, 0, 0]));
   await driver.until(async (x) => (await window.mpView.planner).viewer.scene.start.row[0] > x, before[0]);
   assert.equal((await row())[1], before[1]);
-  // Nothing of it can be edited.
-  assert.equal(await driver.page.$eval("[aria-label='Add a body']", (element) => element.checkVisibility()), false);
+  const visible = (label) => driver.page.$eval(`[aria-label='${label}']`, (element) => element.checkVisibility());
+  assert.deepEqual([await visible("Add a body"), await visible("As obstacle or as robot")], [true, false]);
 
   await driver.press("New");
   await driver.until(async () => (await window.mpView.planner).document?.obstacles.length === 0);

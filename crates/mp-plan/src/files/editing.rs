@@ -1,0 +1,221 @@
+//! Problems in TOML that are edited: their obstacles, start and goals.
+
+use crate::{Error, Scene, SceneFiles};
+use mp_geom::TriMesh;
+use mp_io::{Content, Files, ProblemDocument, ProblemShape, off_text};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The problem in TOML that a scene was read from, or the one that was made around a robot or a map alone: what an editor begins with.
+#[derive(Clone, Debug)]
+pub struct SceneProblem {
+    /// Where the text is, or would be: the names in it are relative to that.
+    file: PathBuf,
+    text: String,
+    files: Arc<dyn Files>,
+    /// Whether they are files of this machine.
+    on_disk: bool,
+    of: Arc<SceneFiles>,
+    document: ProblemDocument,
+}
+
+/// Meshes by the names of documents.
+type Meshes<'m> = &'m dyn Fn(&str) -> Result<TriMesh, mp_io::Error>;
+
+impl Scene {
+    /// The problem of the scene, to be edited. `files` are those that it was read from, on the disk or in memory.
+    ///
+    /// # Errors
+    /// When the scene is not from a problem in TOML, a robot or a map alone, or is another one than its files say: what can be done instead.
+    pub fn problem(&self, files: Arc<dyn Files>, on_disk: bool) -> Result<SceneProblem, Error> {
+        let of = Arc::clone(&self.files);
+        let toml = Content::of(&of.file).next() == Some(Content::Toml);
+        let (file, text) = match (&of.around, &of.text) {
+            _ if of.changed => {
+                let message = format!("{} was changed by options or macros, which no file says", self.name());
+                return Err(Error::new(message).help("write a problem in TOML that names it: docs/formats"));
+            }
+            (Some(around), _) => around.clone(),
+            (None, Some(text)) => (of.file.clone(), text.clone()),
+            (None, None) if toml => {
+                let bytes = files.read(&of.file, mp_io::MAX_TEXT_BYTES)?;
+                (of.file.clone(), String::from_utf8_lossy(&bytes).into_owned())
+            }
+            (None, None) => {
+                return Err(Error::new(format!("{} is not from a file that holds obstacles", self.name()))
+                    .help("open a problem in TOML: docs/formats"));
+            }
+        };
+        let name = file.display().to_string();
+        let mut document = ProblemDocument::of_text(self.name(), &name, &text)?;
+        // Chosen ends would be chosen again, among other obstacles.
+        if of.around.is_some() || ProblemDocument::chooses_ends(&name, &text)? {
+            (document.start, document.goals) = (Some(self.start()), Some(self.goals()));
+        }
+        Ok(SceneProblem { file, text, files, on_disk, of, document })
+    }
+}
+
+impl SceneProblem {
+    /// What can be edited.
+    #[must_use]
+    pub fn document(&self) -> &ProblemDocument {
+        &self.document
+    }
+
+    /// Whether there are obstacles beside those of the document: an image or a map of the plane.
+    ///
+    /// # Errors
+    /// When the text cannot be read any more.
+    pub fn has_map(&self) -> Result<bool, Error> {
+        let mut named = false;
+        mp_io::with_file_names(&self.file.display().to_string(), &self.text, &mut |name| {
+            let path = Path::new(name);
+            named |= Content::of(path).any(|content| matches!(content, Content::Map | Content::MapImage));
+            None
+        })?;
+        Ok(named && self.document.plane)
+    }
+
+    /// The scene of the edited document. What did not change is shared with `before`. `mesh` gives the meshes that the problem does not
+    /// name.
+    ///
+    /// # Errors
+    /// When the document makes no sense: as the readers of problems say it.
+    pub fn edited(
+        &self,
+        document: &ProblemDocument,
+        mesh: Meshes<'_>,
+        before: &Scene,
+    ) -> Result<Scene, Error> {
+        let files = self.written(&document.name, document, mesh)?;
+        let folder = self.file.parent().unwrap_or(Path::new(""));
+        let text = files.first().map(|(_, text)| text.clone()).unwrap_or_default();
+        let added = files.into_iter().skip(1).map(|(name, text)| (folder.join(name), text)).collect();
+        let files = Added { added, rest: &*self.files };
+        let of = SceneFiles {
+            file: self.file.clone(),
+            text: Some(text),
+            around: None,
+            ..SceneFiles::clone(&self.of)
+        };
+        let scene = Scene::load_again(&files, Arc::new(of), Some(before))?;
+        scene.with_file(&self.of.file).keeping(before.clearance_kept())
+    }
+
+    /// The files of the edited document: the problem `name.toml`, then those that are to stand beside it. In the folder `into` it names the
+    /// files of the problem where they are. Without a folder, and where the files are in memory, those that the problem names are among
+    /// the files; where these name others in turn, none is, and the second list has all that are needed.
+    ///
+    /// # Errors
+    /// When the document makes no sense, or a file cannot be read any more.
+    #[expect(clippy::type_complexity, reason = "two lists of files")]
+    pub fn saved(
+        &self,
+        name: &str,
+        document: &ProblemDocument,
+        mesh: Meshes<'_>,
+        into: Option<&Path>,
+    ) -> Result<(Vec<(String, Vec<u8>)>, Vec<String>), Error> {
+        let mut files = self.written(name, document, mesh)?;
+        let own: Vec<String> = files.iter().map(|file| file.0.clone()).collect();
+        let text = std::mem::take(&mut files[0].1);
+        let folder = self.file.parent().unwrap_or(Path::new(""));
+        let here = || mp_store::folder_of(&self.file).canonicalize().ok();
+        let (mut copies, mut left) = (Vec::new(), Vec::new());
+        let renamed = match (self.on_disk.then(here).flatten(), into) {
+            (Some(here), Some(into)) if here == into => text,
+            (Some(here), Some(_)) => self.renamed(&text, &mut |file| {
+                (!own.iter().any(|own| own == file)).then(|| here.join(file).display().to_string())
+            })?,
+            _ => {
+                let known = |file: &str| self.files.read(&folder.join(file), mp_io::MAX_MESH_BYTES).ok();
+                let mut named = Vec::new();
+                let renamed = self.renamed(&text, &mut |file| {
+                    let bytes = known(file).filter(|_| !own.iter().any(|own| own == file))?;
+                    let parts: Vec<&str> =
+                        file.split(['/', '\\']).filter(|part| !["", ".", ".."].contains(part)).collect();
+                    let copy = format!("{name}_{}", parts.join("_"));
+                    named.push(folder.join(file));
+                    if !copies.iter().any(|(known, _)| *known == copy) {
+                        copies.push((copy.clone(), bytes));
+                    }
+                    Some(copy)
+                })?;
+                let problem = |file: &PathBuf| *file == self.of.file || *file == self.file;
+                let further =
+                    |file: &&PathBuf| !problem(file) && !named.contains(file) && self.files.holds(file);
+                // All or none: files that name others by where they stand cannot stand elsewhere.
+                if self.of.inputs.iter().any(|file| further(&file)) {
+                    let needed = self.of.inputs.iter().filter(|file| named.contains(file) || further(file));
+                    left.extend(needed.map(|file| file.display().to_string()));
+                    copies.clear();
+                    text
+                } else {
+                    renamed
+                }
+            }
+        };
+        files[0].1 = renamed;
+        let files = files.into_iter().map(|(name, text)| (name, text.into_bytes())).chain(copies);
+        Ok((files.collect(), left))
+    }
+
+    fn renamed(&self, text: &str, name: &mut dyn FnMut(&str) -> Option<String>) -> Result<String, Error> {
+        Ok(mp_io::with_file_names(&self.file.display().to_string(), text, name)?)
+    }
+
+    /// The text of the edited problem as the file `name.toml`, and the meshes that it names beside those of the problem.
+    fn written(
+        &self,
+        name: &str,
+        document: &ProblemDocument,
+        mesh: Meshes<'_>,
+    ) -> Result<Vec<(String, String)>, Error> {
+        let file_of = |mesh: &str| format!("{name}_{}.off", mesh.replace('.', "_"));
+        let text = document.applied(&self.file.display().to_string(), &self.text, &file_of)?;
+        let mut files = vec![(format!("{name}.toml"), text)];
+        for obstacle in &document.obstacles {
+            if let ProblemShape::Solid(mp_io::DocumentShape::Mesh { file, .. }) = &obstacle.shape
+                && !files.iter().any(|(known, _)| *known == file_of(file))
+            {
+                files.push((file_of(file), off_text(&mesh(file)?)));
+            }
+        }
+        Ok(files)
+    }
+}
+
+/// Files beside others.
+#[derive(Debug)]
+struct Added<'f> {
+    added: Vec<(PathBuf, String)>,
+    rest: &'f dyn Files,
+}
+
+impl Files for Added<'_> {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
+        match self.added.iter().find(|(file, _)| file == path) {
+            Some((_, text)) => Ok(text.clone().into_bytes()),
+            None => self.rest.read(path, limit),
+        }
+    }
+    fn interrupt(&self) -> mp_cspace::Interrupt {
+        self.rest.interrupt()
+    }
+    fn note(&self, path: &Path, remark: &str) {
+        self.rest.note(path, remark);
+    }
+    fn only_reads(&self) -> bool {
+        self.rest.only_reads()
+    }
+    fn holds(&self, path: &Path) -> bool {
+        self.added.iter().any(|(file, _)| file == path) || self.rest.holds(path)
+    }
+    fn names_in(&self, folder: &Path) -> Vec<String> {
+        self.rest.names_in(folder)
+    }
+    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
+        self.rest.absolute(folder)
+    }
+}
