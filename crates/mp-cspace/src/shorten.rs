@@ -10,16 +10,19 @@
 //! | [`shortcut`] | joins random places of the path by straight motions |
 //! | [`partial_shortcut`] | the same for one factor of the space at a time |
 //! | [`bspline`] | rounds corners by cubic B-spline subdivision |
+//! | [`tauten`] | joins states of the path, and cuts corners, in turn |
 //! | [`simplify`] | all of these in a good order |
 //! | [`loosen`] | makes room where a finer check finds too little of it |
 
 mod bspline;
 mod loosen;
 mod random;
+mod taut;
 
 pub use bspline::bspline;
 pub use loosen::loosen;
 pub use random::{partial_shortcut, shortcut};
+pub use taut::tauten;
 
 use crate::{Factored, MotionValidity, Path, Rng, Space, trace};
 
@@ -108,11 +111,11 @@ fn reduced<C: Space>(
     Draft { states, free, origin: kept.iter().map(|&i| old.origin[i]).collect() }
 }
 
-/// Whether the straight motion between the ends of a piece of path is free and no longer than it.
+/// Whether the straight motion between the ends of a piece of path is free and, but for rounding, no longer than it.
 fn is_shortcut<C: Space>(space: &C, check: &mut impl MotionValidity<C::State>, piece: &[C::State]) -> bool {
     let [first, .., last] = piece else { return false };
     let along: f64 = piece.windows(2).map(|w| space.distance(&w[0], &w[1])).sum();
-    space.distance(first, last) <= along && check.check_motion(first, last).is_free()
+    space.distance(first, last) <= along * (1.0 + 1e-12) && check.check_motion(first, last).is_free()
 }
 
 /// Whether every edge through `states` is free. The first and the last one are parts of edges of which `known` says whether they were found
@@ -123,7 +126,7 @@ fn all_free<S>(check: &mut impl MotionValidity<S>, states: &[S], known: [bool; 2
     free(&states[1..n - 1]) && (known[0] || free(&states[..2])) && (known[1] || free(&states[n - 2..]))
 }
 
-/// Reduces, takes shortcuts of both kinds, reduces again and rounds the corners.
+/// Reduces, takes shortcuts of both kinds, reduces again, makes the path taut and rounds the corners.
 ///
 /// In a metric of constant speed the length does not increase.
 pub fn simplify<C: Factored>(
@@ -148,6 +151,7 @@ pub fn simplified<C: Factored>(
     let short = random::straightened(space, check, short, effort, rng);
     let short = random::straightened_by_factor(space, check, short, effort, rng);
     let short = reduced(space, check, short);
+    let short = taut::tautened(space, check, short, effort);
     let short = bspline::rounded(space, check, short, effort.rounds);
     trace::simplified([path.states.len(), short.states.len()]);
     short

@@ -1,6 +1,8 @@
 //! Shortening never leaves free space, never lengthens, and repeats itself.
 
-use mp_cspace::shorten::{Effort, bspline, loosen, partial_shortcut, reduce, shortcut, simplified, simplify};
+use mp_cspace::shorten::{
+    Effort, bspline, loosen, partial_shortcut, reduce, shortcut, simplified, simplify, tauten,
+};
 use mp_cspace::*;
 use nalgebra::Vector2;
 
@@ -62,6 +64,7 @@ fn every_kind_stays_free_and_does_not_lengthen() {
             partial_shortcut(&space, &mut check, &path, effort, &mut Rng::seed(seed)),
             bspline(&space, &mut check, &path, 3),
             simplify(&space, &mut check, &path, effort, &mut Rng::seed(seed)),
+            tauten(&space, &mut check, &path, effort),
         ];
         for result in &results {
             all_free(&space, result);
@@ -96,6 +99,24 @@ fn bspline_rounds_corners() {
     let mut never = |_: &Vector2<f64>| false;
     let mut check = FineDiscrete::new(&space, &mut never, Length::Absolute(0.1)).unwrap();
     assert_eq!(bspline(&space, &mut check, &path, 4), path);
+}
+
+/// The shortest way round a disc is two tangents and an arc. Leaving out states finds corners of the path only.
+#[test]
+fn a_taut_path_follows_what_it_leads_round() {
+    let space = Rn::<2>::new([-3.0, -3.0], [3.0, 3.0]).unwrap();
+    let outside = |q: &Vector2<f64>| q.norm() > 1.0;
+    let mut check = FineDiscrete::new(&space, outside, Length::Absolute(1e-3)).unwrap();
+    let corners = [(-2.0, 0.0), (-2.0, 2.0), (0.0, 2.5), (2.0, 2.0), (2.0, 0.0)];
+    let path = Path::straight(corners.map(|(x, y)| Vector2::new(x, y)).to_vec());
+    let shortest = 2.0 * 3.0_f64.sqrt() + std::f64::consts::PI / 3.0;
+    let taut = tauten(&space, &mut check, &path, Effort::default());
+    assert!(verify_path(&space, &taut, &mut check).is_free());
+    let part = |path: &Path<_>| path.length(&space) / shortest;
+    assert!(part(&taut) < 1.02 && part(&reduce(&space, &mut check, &path)) > 1.2, "{}", part(&taut));
+    // Without any attempt corners are cut, but no states are joined.
+    let none = Effort { attempts: 0, ..Effort::default() };
+    assert!(part(&tauten(&space, &mut check, &path, none)) > part(&taut));
 }
 
 #[test]
