@@ -375,7 +375,7 @@ impl Trajectory {
         self.with_points(self.knots.times.iter().map(|t| (*t * 1e9).round() / 1e9))
     }
 
-    /// The curve through what this one has at other times (s).
+    /// The curve through what this one has at other times (s), the last of which is its end, but for rounding: it ends as this one does.
     fn with_points(&self, times: impl Iterator<Item = f64>) -> Result<Self, TimeError> {
         let mut knots = Knots { times: times.collect(), ..Knots::default() };
         for time in &knots.times {
@@ -386,6 +386,14 @@ impl Trajectory {
             }
             if self.interpolation == Interpolation::Quintic {
                 knots.accelerations.push(sample.acceleration);
+            }
+        }
+        // Just before the end it still moves.
+        let Knots { positions, velocities, accelerations, .. } = &self.knots;
+        let rows = [(&mut knots.positions, positions), (&mut knots.velocities, velocities)];
+        for (new, old) in rows.into_iter().chain([(&mut knots.accelerations, accelerations)]) {
+            if let (Some(new), Some(old)) = (new.last_mut(), old.last()) {
+                new.clone_from(old);
             }
         }
         Self::new(self.joints(), knots, self.interpolation)
@@ -464,6 +472,19 @@ mod tests {
             assert!((slow.at(0.5 + 2.0 * 0.8).position[0] - made.at(1.3).position[0]).abs() < 1e-12);
             assert!((slow.fastest(0).amount - 0.5 * made.fastest(0).amount).abs() < 1e-12);
             assert!((slow.hardest(0).amount - 0.25 * made.hardest(0).amount).abs() < 1e-12);
+        }
+    }
+
+    /// Where the last time is rounded down, it is a little before the end.
+    #[test]
+    fn a_curve_in_nanoseconds_ends_standing_still() {
+        for end in [3.000_000_000_4, 3.000_000_000_6] {
+            let rest = knots(&[0.0, -1.0, 0.0], &[3.0, -2.0, 0.0]);
+            let given = Knots { times: vec![0.5, 1.5, end], ..rest };
+            let made = Trajectory::of_controller([("j", "rad")], given).unwrap().in_nanoseconds().unwrap();
+            let Knots { times, positions, velocities, accelerations } = made.knots();
+            assert_eq!(times[2], (end * 1e9).round() / 1e9);
+            assert_eq!([&positions[2], &velocities[2], &accelerations[2]], [&[2.0], &[0.0], &[0.0]]);
         }
     }
 
