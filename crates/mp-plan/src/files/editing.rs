@@ -81,7 +81,7 @@ impl SceneProblem {
     /// name.
     ///
     /// # Errors
-    /// When the document makes no sense: as the readers of problems say it.
+    /// When a reader of problems refuses what the document says.
     pub fn edited(
         &self,
         document: &ProblemDocument,
@@ -108,7 +108,7 @@ impl SceneProblem {
     /// the files; where these name others in turn, none is, and the second list has all that are needed.
     ///
     /// # Errors
-    /// When the document makes no sense, or a file cannot be read any more.
+    /// When a document refers to what the text does not have, or a file cannot be read any more.
     #[expect(clippy::type_complexity, reason = "two lists of files")]
     pub fn saved(
         &self,
