@@ -35,14 +35,16 @@ pub struct Effort {
     pub patience: usize,
     /// What a shortcut must gain, as a part of the length of the path.
     pub least_gain: f64,
+    /// Rounds of [pulling the path taut](tauten).
+    pub taut: usize,
     /// Rounds of corner rounding, each at most doubling the number of states; at most 10 are done.
     pub rounds: usize,
 }
 
 impl Default for Effort {
-    /// 200 attempts, patience 60, a least gain of a thousandth, 3 rounds.
+    /// 200 attempts, patience 60, a least gain of a thousandth, 5 rounds of pulling taut, 3 of rounding.
     fn default() -> Self {
-        Self { attempts: 200, patience: 60, least_gain: 1e-3, rounds: 3 }
+        Self { attempts: 200, patience: 60, least_gain: 1e-3, taut: 5, rounds: 3 }
     }
 }
 
@@ -151,7 +153,7 @@ pub fn simplified<C: Factored>(
     let short = random::straightened(space, check, short, effort, rng);
     let short = random::straightened_by_factor(space, check, short, effort, rng);
     let short = reduced(space, check, short);
-    let short = taut::tautened(space, check, short, effort);
+    let short = if effort.taut > 0 { taut::tautened(space, check, short, effort) } else { short };
     let short = bspline::rounded(space, check, short, effort.rounds);
     trace::simplified([path.states.len(), short.states.len()]);
     short

@@ -52,7 +52,7 @@ fn all_free(space: &Se2, path: &Path<Se2State>) {
 #[test]
 fn every_kind_stays_free_and_does_not_lengthen() {
     let space = space();
-    let effort = Effort { attempts: 300, patience: 100, least_gain: 0.0, rounds: 3 };
+    let effort = Effort { attempts: 300, patience: 100, least_gain: 0.0, taut: 5, rounds: 3 };
     for seed in 0..10 {
         let path = rambling(&space, seed);
         let mut check = FineDiscrete::new(&space, free, Length::Absolute(0.005)).unwrap();
@@ -145,7 +145,8 @@ fn degenerate_paths_are_left_alone() {
 /// Each shortcut of one factor adds states. They do not pile up where there is room to leave them out.
 #[test]
 fn states_do_not_pile_up() {
-    let (space, effort) = (space(), Effort { attempts: 300, patience: 300, least_gain: 0.0, rounds: 0 });
+    let (space, effort) =
+        (space(), Effort { attempts: 300, patience: 300, least_gain: 0.0, taut: 0, rounds: 0 });
     for seed in 0..10 {
         let path = rambling(&space, seed);
         let mut open = Discrete::new(&space, |_: &Se2State| true, Length::Absolute(0.5)).unwrap();

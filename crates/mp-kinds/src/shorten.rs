@@ -4,7 +4,7 @@ use crate::motion::{By, Counting, motions};
 use crate::possible::Possible;
 use crate::{Error, Robot};
 use mp_cspace::erased::{AnyCheck, AnySpace};
-use mp_cspace::shorten::{loosen, reduce, shortcut, simplified, simplify};
+use mp_cspace::shorten::{Effort, loosen, reduce, shortcut, simplified, simplify};
 use mp_cspace::{Configuration, Interrupt, Length, MotionCheck, MotionValidity, Path, Rng};
 use std::collections::HashMap;
 use std::sync::atomic::AtomicU64;
@@ -67,10 +67,12 @@ fn shorten_by_samples(
     if let Some(short) = kind.shortened(path, &mut check, kind.effort(), rng) {
         return Ok((short, false));
     }
+    // A path pulled taut is hardly shorter here, and the verifier refuses one in ten of them even when it is loose.
+    let effort = Effort { taut: 0, ..kind.effort() };
     let fine = resolution / FINER;
     let mut verifier = possible(kind, interrupt, verifier()?);
     for mut check in [possible(kind, interrupt, samples(fine)?), check] {
-        let draft = simplified(&factors, &mut check, path, kind.effort(), rng);
+        let draft = simplified(&factors, &mut check, path, effort, rng);
         if let Some(loose) = loosen(&factors, &mut verifier, path, &draft, fine / 2.0) {
             return Ok((loose, true));
         }

@@ -4,9 +4,6 @@ use super::{Draft, Effort, is_shortcut};
 use crate::shorten::random::arc_lengths;
 use crate::{MotionValidity, Path, Space};
 
-/// Rounds of shortcuts and cut corners.
-const ROUNDS: usize = 5;
-
 /// A corner that would move less than this part of the length of the path stays.
 const LEAST_MOVE: f64 = 5e-3;
 
@@ -17,7 +14,7 @@ const MOVES: [f64; 3] = [0.5, 0.25, 0.125];
 const FAILURES: usize = 10;
 
 /// Joins each state straight to the farthest one that `check` allows, then cuts all edges at their middles and moves each corner half way
-/// toward the point midway between the middles of its edges, where that is free; five times, or until nothing changes. So the path follows obstacles ever
+/// toward the point midway between the middles of its edges, where that is free; [`Effort::taut`] times, or until nothing moves. So the path follows obstacles ever
 /// more closely, where random shortcuts seldom find the few that still gain: it is how Thomason, Kingston and Kavraki 2024, *Motions in microseconds via vectorized
 /// sampling-based planning*, simplify paths.
 ///
@@ -38,9 +35,9 @@ pub(super) fn tautened<C: Space>(
     effort: Effort,
 ) -> Draft<C::State> {
     let mut failures = FAILURES * effort.attempts;
-    for round in 0..=ROUNDS {
+    for round in 0..=effort.taut {
         joined(space, check, &mut draft, &mut failures);
-        if round == ROUNDS || draft.states.len() < 3 {
+        if round == effort.taut || draft.states.len() < 3 {
             break;
         }
         let least = LEAST_MOVE * arc_lengths(space, &draft.states)[draft.states.len() - 1];
