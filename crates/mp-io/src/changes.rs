@@ -208,9 +208,9 @@ fn members(option: &'static str, what: &str, value: &str) -> Result<Value, Error
     })
 }
 
-/// A text as TOML quotes it. JSON quotes such texts in the same way.
-fn quoted(text: &str) -> String {
-    serde_json::Value::from(text).to_string()
+/// A text as TOML quotes it. JSON quotes all but one character in the same way.
+pub(crate) fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
 }
 
 /// The lines of an obstacle that an option gives.
@@ -261,6 +261,14 @@ mod tests {
             to: owned(to),
             obstacles: owned(obstacles),
             arguments: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn quoted_texts_read_back() {
+        for text in ["plain", "a \"b\" \\ c", "\u{7f}\n\t\u{1}ä"] {
+            let table: toml::Table = toml::from_str(&format!("it = {}", super::quoted(text))).unwrap();
+            assert_eq!(table["it"].as_str(), Some(text));
         }
     }
 

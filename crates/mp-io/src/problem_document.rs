@@ -1,6 +1,6 @@
 //! Problems in TOML as an editor changes them: obstacles that stand still, start and goals. All else of the text stays as it is.
 
-use crate::changes::with_ends;
+use crate::changes::{quoted, with_ends};
 use crate::document::DocumentShape;
 use crate::toml_problem::TomlText;
 use mp_formats::error::Error;
@@ -413,11 +413,6 @@ fn is_header(line: &str) -> bool {
     let header =
         line.starts_with('[') && inner.starts_with(|c: char| c.is_alphabetic() || "_\"'".contains(c));
     header && !(inner.starts_with("obstacle") && inner[8..].trim_start().starts_with('.'))
-}
-
-/// A text as TOML quotes it. JSON quotes such texts in the same way.
-fn quoted(text: &str) -> String {
-    serde_json::Value::from(text).to_string()
 }
 
 /// A number with the fewest digits that read back to the same bits.

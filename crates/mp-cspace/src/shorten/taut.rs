@@ -13,12 +13,18 @@ const MOVES: [f64; 3] = [0.5, 0.25, 0.125];
 /// Shortcuts between states that may fail, for each of [`Effort::attempts`]: paths of many states have many pairs of them.
 const FAILURES: usize = 10;
 
-/// Joins each state straight to the farthest one that `check` allows, then cuts all edges at their middles and moves each corner half way
-/// toward the point midway between the middles of its edges, where that is free; [`Effort::taut`] times, or until nothing moves. So the path follows obstacles ever
-/// more closely, where random shortcuts seldom find the few that still gain: it is how Thomason, Kingston and Kavraki 2024, *Motions in microseconds via vectorized
-/// sampling-based planning*, simplify paths.
+/// Pulls the path taut, in [`Effort::taut`] rounds at most. In each round
 ///
-/// At most ten motions for each attempt of `effort` are refused, besides those at corners. In a metric of constant speed the length does not increase.
+/// - each state is joined straight to the farthest later one that `check` allows;
+/// - each edge is cut at its middle, and each corner moves toward the point midway between the middles of its two edges: half of the way, or
+///   a quarter or an eighth if that is not free.
+///
+/// It ends when no corner moves. Random shortcuts seldom find the last few that gain; this follows obstacles ever more closely. Thomason,
+/// Kingston and Kavraki 2024, *Motions in microseconds via vectorized sampling-based planning*, simplify paths in such rounds, with moves of
+/// half the way only.
+///
+/// The first and last state stay. At most ten of the straight motions are refused for each of [`Effort::attempts`]; corners ask about six motions at most
+/// in each round. In a metric of constant speed the length does not increase.
 pub fn tauten<C: Space>(
     space: &C,
     check: &mut impl MotionValidity<C::State>,
@@ -88,7 +94,8 @@ fn halved<C: Space>(space: &C, old: &Draft<C::State>) -> Draft<C::State> {
     new
 }
 
-/// Moves each second state half way toward the point midway between its neighbours, where that is free and it moves by `least`. Whether one has moved.
+/// Moves each second state toward the point midway between its neighbours, as far as [`MOVES`] and `check` allow, but not by less than `least`.
+/// Returns whether one has moved.
 fn cut_corners<C: Space>(
     space: &C,
     check: &mut impl MotionValidity<C::State>,

@@ -1,5 +1,6 @@
 //! Problems in TOML that are edited: their obstacles, start and goals.
 
+use crate::files::load::Texts;
 use crate::{Error, Scene, SceneFiles};
 use mp_geom::TriMesh;
 use mp_io::{Content, Files, ProblemDocument, ProblemShape, off_text};
@@ -91,8 +92,10 @@ impl SceneProblem {
         let files = self.written(&document.name, document, mesh)?;
         let folder = self.file.parent().unwrap_or(Path::new(""));
         let text = files.first().map(|(_, text)| text.clone()).unwrap_or_default();
-        let added = files.into_iter().skip(1).map(|(name, text)| (folder.join(name), text)).collect();
-        let files = Added { added, rest: &*self.files };
+        let added: Vec<(PathBuf, String)> =
+            files.into_iter().skip(1).map(|(name, text)| (folder.join(name), text)).collect();
+        let texts = added.iter().map(|(file, text)| (file.as_path(), text.as_str())).collect();
+        let files = Texts { texts, files: &*self.files };
         let of = SceneFiles {
             file: self.file.clone(),
             text: Some(text),
@@ -183,39 +186,5 @@ impl SceneProblem {
             }
         }
         Ok(files)
-    }
-}
-
-/// Files beside others.
-#[derive(Debug)]
-struct Added<'f> {
-    added: Vec<(PathBuf, String)>,
-    rest: &'f dyn Files,
-}
-
-impl Files for Added<'_> {
-    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
-        match self.added.iter().find(|(file, _)| file == path) {
-            Some((_, text)) => Ok(text.clone().into_bytes()),
-            None => self.rest.read(path, limit),
-        }
-    }
-    fn interrupt(&self) -> mp_cspace::Interrupt {
-        self.rest.interrupt()
-    }
-    fn note(&self, path: &Path, remark: &str) {
-        self.rest.note(path, remark);
-    }
-    fn only_reads(&self) -> bool {
-        self.rest.only_reads()
-    }
-    fn holds(&self, path: &Path) -> bool {
-        self.added.iter().any(|(file, _)| file == path) || self.rest.holds(path)
-    }
-    fn names_in(&self, folder: &Path) -> Vec<String> {
-        self.rest.names_in(folder)
-    }
-    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
-        self.rest.absolute(folder)
     }
 }

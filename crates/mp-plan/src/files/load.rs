@@ -34,7 +34,7 @@ impl Scene {
     /// As [`load`](Self::load).
     pub fn load_again(files: &dyn Files, of: Arc<SceneFiles>, before: Option<&Self>) -> Result<Self, Error> {
         let mut scene = match &of.text {
-            Some(text) => Self::load_after(&OneText { file: &of.file, text, files }, &of.file, before)?,
+            Some(text) => Self::load_after(&Texts::one(&of.file, text, files), &of.file, before)?,
             None => Self::load_after(files, &of.file, before)?,
         };
         scene.files = of;
@@ -66,8 +66,7 @@ impl Scene {
                 .help("arguments are for robots in .xacro"));
         }
         let text = changes.applied(&place.display().to_string(), &text)?;
-        let mut scene =
-            Self::load_from(&OneText { file: &place, text: &text, files }, &place)?.with_file(file);
+        let mut scene = Self::load_from(&Texts::one(&place, &text, files), &place)?.with_file(file);
         Arc::make_mut(&mut scene.files).text = Some(text);
         Ok(scene)
     }
@@ -184,21 +183,30 @@ impl Scene {
         };
         let file = folder.join(format!("{name}.{}", content.ending()));
         let files = mp_io::Until { files: &Disk, interrupt: interrupt.clone() };
-        Self::load_changed(&OneText { file: &file, text, files: &files }, &file, changes)
+        Self::load_changed(&Texts::one(&file, text, &files), &file, changes)
     }
 }
 
-/// A text in place of one file, among other files.
+/// Texts in place of files, among other files.
 #[derive(Debug)]
-pub(crate) struct OneText<'a> {
-    pub(crate) file: &'a Path,
-    pub(crate) text: &'a str,
+pub(crate) struct Texts<'a> {
+    pub(crate) texts: Vec<(&'a Path, &'a str)>,
     pub(crate) files: &'a dyn Files,
 }
 
-impl Files for OneText<'_> {
+impl<'a> Texts<'a> {
+    /// The text of one file.
+    pub(crate) fn one(file: &'a Path, text: &'a str, files: &'a dyn Files) -> Self {
+        Self { texts: vec![(file, text)], files }
+    }
+}
+
+impl Files for Texts<'_> {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
-        if path == self.file { Ok(self.text.as_bytes().to_vec()) } else { self.files.read(path, limit) }
+        match self.texts.iter().find(|(file, _)| path == *file) {
+            Some((_, text)) => Ok(text.as_bytes().to_vec()),
+            None => self.files.read(path, limit),
+        }
     }
     fn interrupt(&self) -> mp_cspace::Interrupt {
         self.files.interrupt()
@@ -210,7 +218,7 @@ impl Files for OneText<'_> {
         self.files.only_reads()
     }
     fn holds(&self, path: &Path) -> bool {
-        path == self.file || self.files.holds(path)
+        self.texts.iter().any(|(file, _)| path == *file) || self.files.holds(path)
     }
     fn names_in(&self, folder: &Path) -> Vec<String> {
         self.files.names_in(folder)

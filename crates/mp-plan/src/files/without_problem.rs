@@ -3,7 +3,7 @@
 //! A problem that names the file is made as text and read by the ordinary reader, so that a robot or a map means the same
 //! with and without a problem around it. Then its ends are chosen, and what was chosen is said in the notes of the scene.
 
-use crate::files::load::OneText;
+use crate::files::load::Texts;
 use crate::{Error, Scene};
 use mp_io::{Content, Files, ProblemChanges};
 use std::path::{Path, PathBuf};
@@ -70,7 +70,7 @@ pub(crate) fn with_macros(files: &dyn Files, file: &Path, changes: &ProblemChang
     let text = mp_io::expand_xacro(file, &changes.arguments)?;
     // `robot.urdf.xacro`, or `robot.xacro`.
     let place = file.with_extension("").with_extension(Content::Robot.ending());
-    let files = OneText { file: &place, text: &text, files };
+    let files = Texts::one(&place, &text, files);
     let changes = ProblemChanges { arguments: Vec::new(), ..changes.clone() };
     let mut scene = Scene::load_changed(&files, &place, &changes)?.with_file(file);
     let of = Arc::make_mut(&mut scene.files);
@@ -90,7 +90,7 @@ pub(crate) fn with_chosen_ends(files: &dyn Files, problem: mp_io::RobotProblem) 
 /// When the file cannot be read.
 pub(crate) fn robot_alone(files: &dyn Files, file: &Path) -> Result<mp_io::RobotProblem, Error> {
     let (place, text) = problem_around(files, file)?;
-    Ok(mp_io::RobotProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?)
+    Ok(mp_io::RobotProblem::load_from(&Texts::one(&place, &text, files), &place)?)
 }
 
 /// The text of the problem of a URDF alone, and the name that it has.
@@ -115,8 +115,7 @@ fn map(files: &dyn Files, file: &Path) -> Result<Around, Error> {
     let ros = mp_io::RosMap::parse(&file.display().to_string(), &files.read(file, mp_io::MAX_TEXT_BYTES)?)?;
     let image = file.parent().unwrap_or(Path::new("")).join(&ros.image);
     mp_io::GridMap::parse(&image.display().to_string(), &files.read(&image, mp_io::MAX_MESH_BYTES)?)?;
-    let mut problem =
-        PlanarProblem::load_from(&OneText { file: &place, text: &text(RADIUS), files }, &place)?;
+    let mut problem = PlanarProblem::load_from(&Texts::one(&place, &text(RADIUS), files), &place)?;
     let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
     let world = mp_geom::planar::PlanarWorld::new_until(polygons, problem.walls, &files.interrupt())
         .map_err(|e| Error::new(e.to_string()))?;

@@ -166,7 +166,6 @@ fn what_must_be_changed_is_a_warning() {
     assert!(wrong.head["warnings"].to_string().contains("the goal is"), "{:?}", wrong.head);
 }
 
-/// The events of a run give the tree of its report, and the result is that of planning without a session.
 /// The body of an arm reaches a place; the path of a motion's part leads to the next part.
 #[test]
 fn bodies_of_arms_reach_places_and_motions_have_parts() {
@@ -199,6 +198,7 @@ fn bodies_of_arms_reach_places_and_motions_have_parts() {
     assert!(page.refused(json!({"do": "next", "row": [0, 0, 0, 0, 0, 0]})).contains("last part"));
 }
 
+/// The events of a run give the tree of its report, and the result is that of planning without a session.
 #[test]
 fn plans_as_the_library_does() {
     for (scene, planner) in [("easy", "rrt-connect"), ("rrs-low", "prm"), ("arm", "rrt-connect")] {
