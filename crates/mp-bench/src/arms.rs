@@ -31,6 +31,10 @@ pub(crate) struct Options {
     /// Problems of each scene [default: 10, with --quick 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     problems: Option<u32>,
+    /// Take robots as VAMP does: the balls of `ROBOT_spherized.urdf` for the links, with `ROBOT_spherized.srdf`, and capsules that contain
+    /// them for cylinders; in the scene `box`, boxes.
+    #[arg(long)]
+    spheres: bool,
     /// Measure nothing; write the scene files of the problems, and `problems.jsonl`, a list of them for `mp many`, to this folder.
     #[arg(long, value_name = "FOLDER")]
     list: Option<PathBuf>,
@@ -73,8 +77,8 @@ struct Obstacle {
 }
 
 impl Problem {
-    /// The problem file of the robot described in `folder`.
-    fn text(&self, joints: &[String], folder: &Path, robot: &str) -> String {
+    /// The problem file of the robot described in `folder`; with `spheres`, as [`Options::spheres`] says.
+    fn text(&self, joints: &[String], folder: &Path, robot: &str, (scene, spheres): (&str, bool)) -> String {
         let quoted = |path: PathBuf| Value::from(path.to_string_lossy()).to_string();
         let values = |row: &[f64]| {
             let pairs: Vec<String> = joints.iter().zip(row).map(|(j, x)| format!("{j} = {x:?}")).collect();
@@ -91,7 +95,14 @@ impl Problem {
         let shapes = [
             (&self.spheres, (|o| format!("sphere = {:?}", o.r)) as fn(&Obstacle) -> String),
             (&self.boxes, |o| format!("box = {:?}", o.h.map(|half| 2.0 * half))),
-            (&self.cylinders, |o| format!("cylinder = {:?}", [o.r, o.l])),
+            (
+                &self.cylinders,
+                match (spheres, scene) {
+                    (false, _) => |o| format!("cylinder = {:?}", [o.r, o.l]),
+                    (true, "box") => |o| format!("box = {:?}", [2.0 * o.r, 2.0 * o.r, o.l]),
+                    (true, _) => |o| format!("capsule = {:?}", [o.r, o.l]),
+                },
+            ),
         ];
         for (obstacles, shape) in shapes {
             for obstacle in obstacles {
@@ -165,14 +176,18 @@ fn measured(lab: &Lab, common: &Common, options: &Options) -> Result<bool> {
             })
         })
         .collect();
+    let urdf = if options.spheres { format!("{robot}_spherized") } else { robot.clone() };
+    let text = |case: &Case, problem: &Problem| {
+        problem.text(&set.joints, &folder, &urdf, (&case.scene, options.spheres))
+    };
     if let Some(list) = &options.list {
-        return written(list, &problems, |problem| problem.text(&set.joints, &folder, robot));
+        return written(list, &problems, text);
     }
     let cases: Vec<Case> = problems.keys().cloned().collect();
-    let name = lab.name(&format!("arms-{robot}"));
+    let name = lab.name(&format!("arms-{urdf}"));
     let mut log = lab.log(&name, common.time)?;
     let complete = lab.measure(&mut log, &name, &cases, |case| {
-        let text = problems[case].text(&set.joints, &folder, robot);
+        let text = text(case, problems[case]);
         let (changes, never) = (ProblemChanges::default(), mp_cspace::Interrupt::never());
         let scene = Scene::parse_changed(&case.scene, &text, &folder, &changes, &never)?;
         planned(&scene, case.seed, common.time, lab)
@@ -216,13 +231,13 @@ fn measured(lab: &Lab, common: &Common, options: &Options) -> Result<bool> {
 fn written(
     list: &Path,
     problems: &BTreeMap<Case, &Problem>,
-    text: impl Fn(&Problem) -> String,
+    text: impl Fn(&Case, &Problem) -> String,
 ) -> Result<bool> {
     mp_store::make_folder(list)?;
     let mut lines = String::new();
     for (case, problem) in problems {
         let scene = format!("{}-{}", case.scene, case.index);
-        mp_store::write(&list.join(format!("{scene}.toml")), text(problem).as_bytes())?;
+        mp_store::write(&list.join(format!("{scene}.toml")), text(case, problem).as_bytes())?;
         let budget = json!({ "time_s": null, "iterations": 1_000_000 });
         let line = json!({ "scene": scene, "seeds": [case.seed], "request": { "budget": budget } });
         let _ = writeln!(lines, "{line}");

@@ -96,7 +96,9 @@ pub mod reference;
 pub mod triangle;
 
 pub use counters::Counters;
-pub use cover::{Cover, MOST_BALLS, PlacedCover, WideCover, wide_apart};
+pub use cover::{
+    Contacts, Cover, MOST_BALLS, PlacedCover, WideCover, wide_apart, wide_apart_here, wide_touch,
+};
 pub use filled::FillError;
 pub use mesh::CollisionMesh;
 pub use mp_simd::Isa;

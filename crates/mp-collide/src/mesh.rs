@@ -31,7 +31,7 @@ pub struct CollisionMesh {
 
 impl CollisionMesh {
     /// Builds the tree of `mesh`: O(n log² n) for n triangles. Its [solids](TriMesh::solids) are [filled](Self::is_filled).
-    /// [Balls](TriMesh::balls) get a tree of their centres; they have one radius, that of the largest. Where there are triangles too, they are
+    /// [Balls](TriMesh::balls) get a tree of their centres. Where there are triangles too, they are
     /// [faceted](TriMesh::faceted).
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
@@ -48,9 +48,9 @@ impl CollisionMesh {
 
     fn of<E>(mesh: &TriMesh, mut go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
         let count = mesh.triangles().len();
-        if let Some(radius) = mesh.rounding() {
-            return match mesh.balls().iter().map(|(range, _)| range.len()).sum::<usize>() == count {
-                true => Self::of_cloud(mesh, radius, &mut go_on),
+        if !mesh.balls().is_empty() {
+            return match mesh.is_balls() {
+                true => Self::of_cloud(mesh, &mut go_on),
                 false => Self::of(&mesh.faceted(), go_on),
             };
         }
@@ -64,14 +64,10 @@ impl CollisionMesh {
         Ok(Self { solids: mesh.solids().into(), ..made })
     }
 
-    fn of_cloud<E>(
-        mesh: &TriMesh,
-        radius: f64,
-        go_on: &mut impl FnMut() -> Result<(), E>,
-    ) -> Result<Self, E> {
+    fn of_cloud<E>(mesh: &TriMesh, go_on: &mut impl FnMut() -> Result<(), E>) -> Result<Self, E> {
         let _span = tracing::debug_span!("build", points = mesh.triangles().len()).entered();
-        let centers = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)[0]);
-        let cloud = Cloud::build(centers, radius, go_on)?;
+        let balls: Vec<_> = mesh.each_ball().collect();
+        let cloud = Cloud::build(&balls, go_on)?;
         let corners = cloud.corners();
         let around = Self::built(8, |i| [corners[i]; 3], go_on)?;
         Ok(Self { cloud: Some(Arc::new(cloud)), ..around })

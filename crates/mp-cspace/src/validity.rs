@@ -186,6 +186,16 @@ pub trait MotionClearance<S>: Clearance<S> {
         crate::path::clearance::by_motion_bound(self, search)
     }
 
+    /// How many states it tests for [contact](Self::first_contact) together at about the cost of one. 1, the default: none.
+    fn contacts_at_once(&self) -> usize {
+        1
+    }
+
+    /// The index of a state that is [in contact](Clearance::in_contact), if one is: the first, or another one that is found sooner.
+    fn first_contact(&mut self, states: &[&S]) -> Option<usize> {
+        states.iter().position(|q| self.in_contact(q))
+    }
+
     /// Whether [`in_contact`](Clearance::in_contact) costs so much less than
     /// [`interval_clearance`](Self::interval_clearance) that [`Certified`](crate::Certified) first tests for contact at
     /// states two strides apart along the whole motion.
@@ -209,6 +219,12 @@ impl<S, V: MotionClearance<S> + ?Sized> MotionClearance<S> for &mut V {
     }
     fn least_along(&mut self, search: &ClearanceSearch<'_, S>) -> LeastClearance {
         (**self).least_along(search)
+    }
+    fn contacts_at_once(&self) -> usize {
+        (**self).contacts_at_once()
+    }
+    fn first_contact(&mut self, states: &[&S]) -> Option<usize> {
+        (**self).first_contact(states)
     }
     fn contact_first(&self) -> bool {
         (**self).contact_first()

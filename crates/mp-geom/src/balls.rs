@@ -2,14 +2,17 @@
 
 use crate::mesh::check_finite;
 use crate::primitives::positive;
-use crate::shape::icosahedron;
-use crate::{PrimitiveError, TriMesh, thin};
+use crate::shape;
+use crate::{PrimitiveError, Sphere, TriMesh, thin};
 use nalgebra::Point3;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// The most balls that are drawn: more are thinned further.
 const DRAWN: usize = 20_000;
+
+/// Of up to so many balls each is drawn round.
+const ROUND: usize = 1000;
 
 impl TriMesh {
     /// A ball of `radius` (m) around each of `centers`: its triangles are single points.
@@ -35,6 +38,19 @@ impl TriMesh {
         &self.balls
     }
 
+    /// The centre and the radius (m) of each of its [balls](Self::balls), in order.
+    pub fn each_ball(&self) -> impl Iterator<Item = Sphere> + '_ {
+        let ball = |i: u32, radius| Sphere { center: self.triangle(i as usize)[0], radius };
+        self.balls.iter().flat_map(move |(range, radius)| range.clone().map(move |i| ball(i, *radius)))
+    }
+
+    /// Whether it is balls alone.
+    #[must_use]
+    pub fn is_balls(&self) -> bool {
+        let count: usize = self.balls.iter().map(|(range, _)| range.len()).sum();
+        count > 0 && count == self.triangles.len()
+    }
+
     /// The same without its balls: points in their place.
     #[must_use]
     pub fn without_balls(self) -> Self {
@@ -51,17 +67,18 @@ impl TriMesh {
     /// each ball, larger by at most 26%. A mesh without balls is cloned.
     #[must_use]
     pub fn faceted(&self) -> Self {
-        self.with_facets(usize::MAX)
+        self.with_facets(usize::MAX, 0)
     }
 
-    /// A mesh to be drawn in its place, as [`faceted`](Self::faceted) makes it. Where there are very many balls,
-    /// fewer and larger ones stand for them: the picture looks the same.
+    /// A mesh to be drawn in its place, as [`faceted`](Self::faceted) makes it, with rounder balls where there are few. Where there are very many
+    /// balls, fewer and larger ones stand for them: the picture looks the same.
     #[must_use]
     pub fn drawn(&self) -> Self {
-        self.with_facets(DRAWN)
+        let count: usize = self.balls.iter().map(|(range, _)| range.len()).sum();
+        self.with_facets(DRAWN, if count <= ROUND { 2 } else { 0 })
     }
 
-    fn with_facets(&self, most: usize) -> Self {
+    fn with_facets(&self, most: usize, divided: u32) -> Self {
         if self.balls.is_empty() {
             return self.clone();
         }
@@ -69,22 +86,21 @@ impl TriMesh {
         for (range, radius) in &*self.balls {
             parts.extend(self.part(done..range.start));
             done = range.end;
-            parts.extend(self.facets(range, *radius, most));
+            parts.extend(self.facets(range, *radius, most, divided));
         }
         parts.extend(self.part(done..self.triangles.len() as u32));
         Self::merged(&parts).unwrap_or_else(|| self.clone())
     }
 
-    /// Icosahedra around balls: as many as there are, or fewer and larger ones where there are more than
-    /// `most`.
-    fn facets(&self, range: &Range<u32>, radius: f64, most: usize) -> Option<Self> {
+    /// Meshes around balls: as many as there are, or fewer and larger ones where there are more than `most`.
+    fn facets(&self, range: &Range<u32>, radius: f64, most: usize, divided: u32) -> Option<Self> {
         let mut centers: Vec<_> = range.clone().map(|i| self.triangle(i as usize)[0]).collect();
         let mut cell = radius;
         while centers.len() > most {
             cell *= 2.0;
             centers = thin(&centers, cell).ok()?.centers;
         }
-        let ball = icosahedron(if cell > radius { 0.5 * cell } else { radius }).ok()?;
+        let ball = shape::ball(if cell > radius { 0.5 * cell } else { radius }, divided).ok()?;
         let count = u32::try_from(centers.len()).ok()?;
         let each = ball.vertices().len() as u32;
         let vertices = centers.iter().flat_map(|p| ball.vertices().iter().map(move |v| v + p.coords));

@@ -19,7 +19,7 @@ mod torus;
 pub use height_field::HeightField;
 pub use hull::convex_hull;
 pub use points::Points;
-pub(crate) use points::icosahedron;
+pub(crate) use points::ball;
 
 use crate::{MeshError, PrimitiveError, TriMesh};
 use nalgebra::Point3;

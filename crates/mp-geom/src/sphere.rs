@@ -114,12 +114,18 @@ fn circumcenter(points: &[Point3<f64>]) -> Option<Point3<f64>> {
 }
 
 impl TriMesh {
-    /// The smallest sphere enclosing the mesh.
+    /// The smallest sphere enclosing the mesh; of [balls](TriMesh::balls), one about the middle of their centres.
     #[must_use]
     pub fn bounding_sphere(&self) -> Sphere {
-        let Sphere { center, radius } =
-            minimal_sphere(self.vertices()).unwrap_or(Sphere { center: Point3::origin(), radius: 0.0 });
-        Sphere { center, radius: radius + self.rounding().unwrap_or(0.0) }
+        let found = minimal_sphere(self.vertices());
+        let Sphere { center, radius } = found.unwrap_or(Sphere { center: Point3::origin(), radius: 0.0 });
+        let radius = match self.is_balls() {
+            true => {
+                self.each_ball().map(|ball| (ball.center - center).norm() + ball.radius).fold(0.0, f64::max)
+            }
+            false => radius + self.rounding().unwrap_or(0.0),
+        };
+        Sphere { center, radius }
     }
 
     /// The largest distance from `point` to the mesh, metres.

@@ -148,8 +148,13 @@ fn merged<'b>(
                 return Err(format!("{} is rounded, but no balls", body.name));
             }
             let center = |piece: &Vec<u32>| pose * Point3::from(body.vertices[piece[0] as usize]);
-            let points = body.pieces.iter().map(center).collect();
-            clouds.push(TriMesh::of_balls(points, body.radius).map_err(|e| e.to_string())?);
+            if body.radii.is_empty() {
+                let points = body.pieces.iter().map(center).collect();
+                clouds.push(TriMesh::of_balls(points, body.radius).map_err(|e| e.to_string())?);
+            }
+            for (piece, radius) in body.pieces.iter().zip(&body.radii) {
+                clouds.push(TriMesh::of_balls(vec![center(piece)], *radius).map_err(|e| e.to_string())?);
+            }
             continue;
         }
         let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);

@@ -4,7 +4,7 @@
 //! bits on every processor.
 
 use crate::{Isa, Kernel, Lanes, run};
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// How many numbers a [`Wide`] has.
 pub const LANES: usize = 8;
@@ -101,6 +101,13 @@ impl Wide {
         bits
     }
 
+    /// In each lane `x` where this is less than `b`, else `y`.
+    #[inline(always)]
+    #[must_use]
+    pub fn where_less(self, b: Self, x: Self, y: Self) -> Self {
+        lanes!(i => if self.0[i] < b.0[i] { x.0[i] } else { y.0[i] })
+    }
+
     /// The greatest absolute value; not a number if any is none.
     #[inline(always)]
     #[must_use]
@@ -162,6 +169,14 @@ impl Sub<f64> for Wide {
     #[inline(always)]
     fn sub(self, b: f64) -> Self {
         lanes!(i => self.0[i] - b)
+    }
+}
+
+impl Div for Wide {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, b: Self) -> Self {
+        lanes!(i => self.0[i] / b.0[i])
     }
 }
 

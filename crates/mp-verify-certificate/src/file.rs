@@ -94,6 +94,8 @@ pub(crate) struct Body {
     pub(crate) frame: usize,
     pub(crate) of_robot: bool,
     pub(crate) radius: f64,
+    #[serde(default)]
+    pub(crate) radii: Vec<f64>,
     pub(crate) vertices: Vec<[f64; 3]>,
     pub(crate) pieces: Vec<Vec<usize>>,
     pub(crate) parts: Vec<Part>,
@@ -262,6 +264,8 @@ impl Certificate {
             let right = body.pieces.iter().all(corners) && body.vertices.iter().all(vertex);
             let right = right && body.frame < model.frames.len() && !body.pieces.is_empty();
             let right = right && finite(&[body.radius]) && body.radius >= 0.0;
+            let right = right && (body.radii.is_empty() || body.radii.len() == body.pieces.len());
+            let right = right && body.radii.iter().all(|radius| (0.0..=body.radius).contains(radius));
             sound(right, &format!("the body {} is odd", body.name))?;
         }
         // The robot hangs from one frame, which moves as a whole if any does, and no obstacle is carried by

@@ -37,7 +37,10 @@ enum Below {
 pub(crate) struct Shape {
     pieces: Vec<Piece>,
     nodes: Vec<Node>,
+    /// The largest of the pieces.
     radius: f64,
+    /// Of each piece; none where all have the largest.
+    radii: Vec<f64>,
     /// The largest coordinate.
     size: f64,
 }
@@ -47,10 +50,16 @@ impl Shape {
         let corner = |i: &usize| Vec3::from_array(body.vertices[*i]);
         let pieces: Vec<Piece> = body.pieces.iter().map(|p| Piece(p.iter().map(corner).collect())).collect();
         let size = body.vertices.iter().flatten().fold(0.0_f64, |size, x| size.max(x.abs())) + body.radius;
-        let mut shape = Self { pieces, nodes: Vec::new(), radius: body.radius, size };
+        let mut shape =
+            Self { pieces, nodes: Vec::new(), radius: body.radius, radii: body.radii.clone(), size };
         let mut all: Vec<usize> = (0..shape.pieces.len()).collect();
         shape.build(&mut all);
         shape
+    }
+
+    /// How much less than the largest radius that of a piece is.
+    fn smaller(&self, piece: usize) -> f64 {
+        self.radii.get(piece).map_or(0.0, |radius| self.radius - radius)
     }
 
     /// Adds a node around pieces and gives its index.
@@ -95,6 +104,7 @@ impl Shape {
             }
             match (&a.below, &b.below) {
                 (Below::Piece(p), Below::Piece(q)) => {
+                    let enough = enough - self.smaller(*p) - other.smaller(*q);
                     let q = Piece(other.pieces[*q].0.iter().map(|c| pose.transform_point(*c)).collect());
                     if !pieces_apart(&self.pieces[*p], &q, enough) {
                         return false;

@@ -1,7 +1,8 @@
-//! Point clouds: balls of one radius, found by a tree of balls around their centres.
+//! Point clouds: balls, found by a tree of balls around their centres.
 
 mod search;
 
+use mp_geom::Sphere;
 use nalgebra::{Point3, Vector3};
 
 pub(crate) use search::{Found, Reach};
@@ -15,13 +16,15 @@ struct Node {
     center: Point3<f64>,
     /// Rounded up; with the radius of the cloud it holds the balls too.
     radius: f64,
+    /// Less where all balls are smaller than the largest of the cloud: with the radius of the cloud it holds the balls, not their centres.
+    reach: f64,
     first: u32,
     count: u32,
     /// The second child; the first one follows the node. 0 in a leaf.
     second: u32,
 }
 
-/// Balls of one radius, and the tree of their centres: halves along the longest side, leaves of at most [`LEAF`] points.
+/// Balls, and the tree of their centres: halves along the longest side, leaves of at most [`LEAF`] points.
 #[derive(Clone, Debug)]
 pub(crate) struct Cloud {
     nodes: Vec<Node>,
@@ -29,25 +32,41 @@ pub(crate) struct Cloud {
     points: Vec<Point3<f64>>,
     /// The number of each in the mesh.
     ids: Vec<u32>,
-    /// Of each ball (m).
+    /// How much (m) less than `radius` the radius of each is, in the order of the leaves; none where all have the same.
+    smaller: Vec<f64>,
+    /// Of the largest ball (m).
     pub(crate) radius: f64,
 }
 
 impl Cloud {
-    /// Of `count` points, at least one and at most `u32::MAX`. O(n log n).
+    /// Of balls, at least one and at most `u32::MAX`: their centres and radii (m). O(n log n).
     ///
     /// # Errors
     /// That of `go_on`, which is called for each node.
-    pub(crate) fn build<E>(
-        points: impl Iterator<Item = Point3<f64>>,
-        radius: f64,
-        go_on: &mut impl FnMut() -> Result<(), E>,
-    ) -> Result<Self, E> {
-        let mut order: Vec<(Point3<f64>, u32)> = points.zip(0..).collect();
+    pub(crate) fn build<E>(balls: &[Sphere], go_on: &mut impl FnMut() -> Result<(), E>) -> Result<Self, E> {
+        let radius = balls.iter().map(|ball| ball.radius).fold(0.0, f64::max);
+        let smaller = |id: u32| radius - balls[id as usize].radius;
+        let mut order: Vec<(Point3<f64>, u32)> = balls.iter().map(|ball| ball.center).zip(0..).collect();
         let mut nodes = Vec::with_capacity(order.len() / 2 + 1);
-        split(&mut order, 0, &mut nodes, go_on)?;
-        let (points, ids) = order.into_iter().unzip();
-        Ok(Self { nodes, points, ids, radius })
+        split(&mut order, 0, &smaller, &mut nodes, go_on)?;
+        let (points, ids): (Vec<_>, Vec<_>) = order.into_iter().unzip();
+        let smaller = match balls.iter().all(|ball| ball.radius == radius) {
+            true => Vec::new(),
+            false => ids.iter().map(|id| smaller(*id)).collect(),
+        };
+        Ok(Self { nodes, points, ids, smaller, radius })
+    }
+
+    /// How much (m) less than that of the largest ball the radius of ball `i` is, in the order of the leaves.
+    #[inline]
+    fn smaller(&self, i: usize) -> f64 {
+        self.smaller.get(i).copied().unwrap_or(0.0)
+    }
+
+    /// The radius (m) of the ball with this number in the mesh. O(n) where not all have the same.
+    pub(crate) fn radius_of(&self, id: usize) -> f64 {
+        let place = || self.ids.iter().position(|own| *own as usize == id);
+        self.radius - if self.smaller.is_empty() { 0.0 } else { place().map_or(0.0, |i| self.smaller(i)) }
     }
 
     /// The corners of the box around the centres.
@@ -70,7 +89,8 @@ impl Cloud {
     }
 
     pub(crate) fn memory(&self) -> usize {
-        size_of_val(&self.nodes[..]) + size_of_val(&self.points[..]) + size_of_val(&self.ids[..])
+        let own = size_of_val(&self.nodes[..]) + size_of_val(&self.points[..]);
+        own + size_of_val(&self.ids[..]) + size_of_val(&self.smaller[..])
     }
 }
 
@@ -78,6 +98,7 @@ impl Cloud {
 fn split<E>(
     order: &mut [(Point3<f64>, u32)],
     first: usize,
+    smaller: &impl Fn(u32) -> f64,
     nodes: &mut Vec<Node>,
     go_on: &mut impl FnMut() -> Result<(), E>,
 ) -> Result<(), E> {
@@ -88,7 +109,13 @@ fn split<E>(
     let farthest = order.iter().map(|(p, _)| (p - center).norm_squared()).fold(0.0, f64::max);
     let me = nodes.len();
     let radius = farthest.sqrt() * (1.0 + 1e-15);
-    nodes.push(Node { center, radius, first: first as u32, count: order.len() as u32, second: 0 });
+    let own = |(p, id): &(Point3<f64>, u32)| (p - center).norm() * (1.0 + 1e-15) - smaller(*id);
+    let reach = match order.iter().all(|(_, id)| smaller(*id) == 0.0) {
+        true => radius,
+        // Differences of radii are rounded too.
+        false => order.iter().map(own).fold(f64::NEG_INFINITY, f64::max) + 1e-15 * radius,
+    };
+    nodes.push(Node { center, radius, reach, first: first as u32, count: order.len() as u32, second: 0 });
     if order.len() > LEAF {
         let sides: Vector3<f64> = high - low;
         let longest = sides.imax();
@@ -96,9 +123,9 @@ fn split<E>(
         let half = (order.len() / 2).next_multiple_of(LEAF);
         order.select_nth_unstable_by(half, |(p, i), (q, j)| p[longest].total_cmp(&q[longest]).then(i.cmp(j)));
         let (left, right) = order.split_at_mut(half);
-        split(left, first, nodes, go_on)?;
+        split(left, first, smaller, nodes, go_on)?;
         nodes[me].second = nodes.len() as u32;
-        split(right, first + half, nodes, go_on)?;
+        split(right, first + half, smaller, nodes, go_on)?;
     }
     Ok(())
 }

@@ -13,7 +13,8 @@ const SKEW: f64 = 2e-6;
 /// A place of a mesh and a point of a cloud that are near each other, in the frame of the mesh.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
-    /// Their distance (m).
+    /// Their distance (m), and how much smaller their balls are than the largest of each cloud: what is left when the radii of the clouds
+    /// are taken away is the distance of the balls.
     pub(crate) distance: f64,
     /// The place on the other.
     pub(crate) on: Point3<f64>,
@@ -41,8 +42,8 @@ trait Other {
     fn bound(&self, node: u32, p: &Point3<f64>) -> f64;
     /// Calls `visit` with each child, and returns `true`; `false` for a leaf.
     fn children(&self, node: u32, visit: impl FnMut(u32)) -> bool;
-    /// Calls `visit` with each place in a leaf that is nearest to a point, and its number.
-    fn nearest(&self, leaf: u32, p: &Point3<f64>, visit: impl FnMut(Point3<f64>, usize));
+    /// Calls `visit` with each place in a leaf that is nearest to a point, its number, and how much smaller its ball is than the largest.
+    fn nearest(&self, leaf: u32, p: &Point3<f64>, visit: impl FnMut(Point3<f64>, usize, f64));
 }
 
 impl Other for Tree {
@@ -77,10 +78,10 @@ impl Other for Tree {
         inner
     }
 
-    fn nearest(&self, leaf: u32, p: &Point3<f64>, mut visit: impl FnMut(Point3<f64>, usize)) {
+    fn nearest(&self, leaf: u32, p: &Point3<f64>, mut visit: impl FnMut(Point3<f64>, usize, f64)) {
         let leaf = &self.leaves[(leaf & !bvh::LEAF) as usize];
         for i in leaf.first as usize..(leaf.first + leaf.count) as usize {
-            visit(closest_to_point(&self.triangles[i], p), self.ids[i] as usize);
+            visit(closest_to_point(&self.triangles[i], p), self.ids[i] as usize, 0.0);
         }
     }
 }
@@ -96,8 +97,8 @@ impl Other for Cloud {
     }
 
     fn bound(&self, node: u32, p: &Point3<f64>) -> f64 {
-        let (center, radius) = self.ball(node);
-        (p - center).norm() - radius
+        let node = &self.nodes[node as usize];
+        (p - node.center).norm() - node.reach
     }
 
     fn children(&self, node: u32, mut visit: impl FnMut(u32)) -> bool {
@@ -109,10 +110,10 @@ impl Other for Cloud {
         second > 0
     }
 
-    fn nearest(&self, leaf: u32, _: &Point3<f64>, mut visit: impl FnMut(Point3<f64>, usize)) {
+    fn nearest(&self, leaf: u32, _: &Point3<f64>, mut visit: impl FnMut(Point3<f64>, usize, f64)) {
         let node = &self.nodes[leaf as usize];
         let own = node.first as usize..(node.first + node.count) as usize;
-        own.for_each(|i| visit(self.points[i], self.ids[i] as usize));
+        own.for_each(|i| visit(self.points[i], self.ids[i] as usize, self.smaller(i)));
     }
 }
 
@@ -130,12 +131,12 @@ impl Cloud {
         if boxes {
             return Search { other: mesh, cloud: self, relative, reach, counters }.run();
         }
-        self.points.iter().zip(&self.ids).any(|(p, id)| {
+        self.points.iter().zip(&self.ids).enumerate().any(|(i, (p, id))| {
             let point = relative.point(p);
             let mut triangles = mesh.triangles.iter().zip(&mesh.ids);
             triangles.any(|(triangle, part)| {
                 let on = closest_to_point(triangle, &point);
-                let distance = (on - point).norm();
+                let distance = (on - point).norm() + self.smaller(i);
                 let found = Found { distance, on, point, part: *part as usize, id: *id as usize };
                 distance < reach.of(&mesh.center, mesh.radius_center) && reach.take(found)
             })
@@ -182,8 +183,8 @@ impl<O: Other, R: Reach> Search<'_, O, R> {
     /// A lower bound on the distance of what is in two nodes, if that is of interest.
     fn bound(&mut self, other: u32, cloud: Placed) -> Option<f64> {
         self.counters.box_tests += 1;
-        let radius = self.cloud.nodes[cloud.node as usize].radius;
-        let bound = self.other.bound(other, &cloud.center) - radius - self.relative.slack;
+        let reach = self.cloud.nodes[cloud.node as usize].reach;
+        let bound = self.other.bound(other, &cloud.center) - reach - self.relative.slack;
         let (center, around) = self.other.ball(other);
         (bound < self.reach.of(&center, around)).then_some(bound)
     }
@@ -231,21 +232,26 @@ impl<O: Other, R: Reach> Search<'_, O, R> {
         let (center, around) = self.other.ball(other);
         let slack = self.relative.slack;
         for i in first..first + count {
-            let point = self.relative.point(&self.cloud.points[i]);
-            if self.other.bound(other, &point) - slack >= self.reach.of(&center, around) {
+            let (point, smaller) = (self.relative.point(&self.cloud.points[i]), self.cloud.smaller(i));
+            if self.other.bound(other, &point) + smaller - slack >= self.reach.of(&center, around) {
                 continue;
             }
             let (mut best, mut tests): (Option<(f64, Point3<f64>, usize)>, _) = (None, 0);
-            self.other.nearest(other, &point, |on, part| {
+            self.other.nearest(other, &point, |on, part, less| {
                 tests += 1;
-                let squared = (on - point).norm_squared();
+                let mut squared = (on - point).norm_squared();
+                if less > 0.0 {
+                    let distance = squared.sqrt() + less;
+                    squared = distance * distance;
+                }
                 if best.is_none_or(|(least, ..)| squared < least) {
                     best = Some((squared, on, part));
                 }
             });
             self.counters.triangle_tests += tests;
             let Some((squared, on, part)) = best else { continue };
-            let found = Found { distance: squared.sqrt(), on, point, part, id: self.cloud.ids[i] as usize };
+            let distance = squared.sqrt() + smaller;
+            let found = Found { distance, on, point, part, id: self.cloud.ids[i] as usize };
             if found.distance < self.reach.of(&center, around) && self.reach.take(found) {
                 return true;
             }

@@ -5,8 +5,8 @@
 
 mod wide;
 
-pub(crate) use wide::LARGEST;
-pub use wide::{WideCover, wide_apart};
+pub(crate) use wide::{ALL, LARGEST};
+pub use wide::{Contacts, WideCover, wide_apart, wide_apart_here, wide_touch};
 
 use crate::pose::rotation_matrix;
 use mp_geom::{Sphere, TriMesh, minimal_sphere};
@@ -28,6 +28,12 @@ const PIECE: f64 = 0.2;
 /// Surfaces of more pieces are cut across their longest axis only, without trying the others, and their balls are not the smallest.
 const LARGE: usize = 3000;
 
+/// Groups of no more of its own balls are not divided.
+const FEW: usize = 3;
+
+/// Larger meshes (m) have one ball.
+const LARGEST_RADIUS: f64 = 1e70;
+
 /// Meshes of more corners have one ball: fitting more would take long.
 const MOST_CORNERS: usize = 300_000;
 
@@ -41,6 +47,7 @@ pub struct Cover {
     groups: Vec<Group>,
     balls: Vec<Sphere>,
     excess: f64,
+    is_exact: bool,
 }
 
 /// Balls beside each other.
@@ -53,13 +60,18 @@ struct Group {
 
 impl Cover {
     /// Fits balls to `mesh`, at most [`MOST_BALLS`] groups of as many: the ball that reaches out farthest is divided across one of three
-    /// axes, again and again. None for clouds, and for meshes of more than a hundred thousand triangles. O(n) for n triangles.
+    /// axes, again and again. None for meshes of more than a hundred thousand triangles. O(n) for n triangles. Of a mesh of
+    /// [balls](TriMesh::balls) they are its own balls; none where these are more.
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
         let radius = mesh.bounding_sphere().radius;
-        let mut cover = Self { groups: Vec::new(), balls: Vec::new(), excess: f64::INFINITY };
+        let mut cover =
+            Self { groups: Vec::new(), balls: Vec::new(), excess: f64::INFINITY, is_exact: false };
+        if mesh.is_balls() && radius < LARGEST_RADIUS && mesh.triangles().len() <= MOST_BALLS * MOST_BALLS {
+            return Self::of_balls(mesh.each_ball().collect());
+        }
         // Written so that NaN is refused.
-        let is_usual = radius > 0.0 && radius < 1e70 && mesh.rounding().is_none();
+        let is_usual = radius > 0.0 && radius < LARGEST_RADIUS && mesh.rounding().is_none();
         let pieces = if is_usual { pieces(mesh, PIECE * radius) } else { None };
         let Some(pieces) = pieces else { return cover };
         let hull = Hull::new(mesh.vertices());
@@ -71,6 +83,46 @@ impl Cover {
         }
         cover.excess = cover.balls.iter().map(|ball| hull.excess(ball)).fold(0.0, f64::max);
         cover
+    }
+
+    /// Balls that are the mesh themselves, at least one: the longest group of more than [`FEW`] is halved, until there are enough groups.
+    fn of_balls(balls: Vec<Sphere>) -> Self {
+        let mut parts = vec![balls];
+        let sides = |part: &[Sphere]| {
+            let centers = || part.iter().map(|ball| ball.center);
+            let first = part[0].center;
+            let (low, high) = centers().fold((first, first), |(low, high), p| (low.inf(&p), high.sup(&p)));
+            high - low
+        };
+        while parts.len() < MOST_BALLS {
+            let length = |i: &usize| sides(&parts[*i]).max();
+            let many = (0..parts.len()).filter(|i| parts[*i].len() > FEW);
+            let Some(longest) = many.max_by(|i, j| length(i).total_cmp(&length(j))) else { break };
+            let mut part = parts.swap_remove(longest);
+            let axis = sides(&part).imax();
+            part.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]));
+            let other = part.split_off(part.len() / 2);
+            parts.extend([part, other]);
+        }
+        let (mut groups, mut balls) = (Vec::new(), Vec::new());
+        for part in parts {
+            let middle = part.iter().map(|ball| ball.center.coords).sum::<Vector3<f64>>() / part.len() as f64;
+            let center = Point3::from(middle);
+            let reach = |ball: &Sphere| (ball.center - center).norm() + ball.radius;
+            let radius = part.iter().map(reach).fold(0.0, f64::max);
+            groups.push(Group {
+                around: enlarged(Sphere { center, radius }),
+                balls: balls.len()..balls.len() + part.len(),
+            });
+            balls.extend(part);
+        }
+        Self { groups, balls, excess: 0.0, is_exact: true }
+    }
+
+    /// Whether the balls are the mesh itself, not only around it.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.is_exact
     }
 
     /// The balls that cover the surface together: none where the ball around all is all there is.
@@ -425,9 +477,42 @@ mod tests {
     #[test]
     fn what_cannot_be_covered_has_one_ball() {
         let point = TriMesh::new(vec![Point3::origin(); 3], vec![[0, 1, 2]]).unwrap();
-        let cloud = TriMesh::of_balls(vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0)], 0.1).unwrap();
+        let many = (0..65).map(|i| Point3::new(f64::from(i), 0.0, 0.0)).collect();
+        let cloud = TriMesh::of_balls(many, 0.1).unwrap();
         for mesh in [point, cloud] {
             assert!(Cover::new(&mesh).balls().is_empty());
+        }
+    }
+
+    /// Balls are their own cover: the bound on their distance is the distance.
+    #[test]
+    fn covers_of_balls_are_exact() {
+        let mut query = crate::Query::default();
+        for count in [1, 2, 5, 17, 64] {
+            let at = |i: u32| {
+                let t = f64::from(i);
+                Point3::new(mp_math::sin(t), mp_math::cos(2.3 * t), 0.05 * t)
+            };
+            let one = |i: u32| TriMesh::of_balls(vec![at(i)], 0.02 + 0.01 * f64::from(i % 5)).unwrap();
+            let mesh = TriMesh::merged(&(0..count).map(one).collect::<Vec<_>>()).unwrap();
+            let (cover, tree) = (Cover::new(&mesh), crate::CollisionMesh::new(&mesh));
+            assert!(cover.is_exact() && cover.excess() == 0.0 && cover.balls().len() == count as usize);
+            let here = Isometry3::identity();
+            for k in 0..50 {
+                let t = f64::from(k);
+                let shift = Vector3::new(mp_math::sin(t), mp_math::cos(1.3 * t), mp_math::sin(0.7 * t)) * 4.0;
+                let pose = Isometry3::new(shift, Vector3::new(t, 0.3 * t, -t));
+                let (mut a, mut b) = (PlacedCover::default(), PlacedCover::default());
+                let around = mesh.bounding_sphere();
+                a.place(around, &here);
+                b.place(Sphere { center: pose * around.center, ..around }, &pose);
+                let distance = query.clearance(&tree, &here, &tree, &pose, f64::INFINITY);
+                let enough = distance * (1.0 - 1e-9);
+                let bound = a.apart(&cover, &mut b, &cover, enough);
+                assert!(bound.is_none_or(|bound| bound <= distance));
+                assert!(distance == 0.0 || bound.is_some(), "{count} {distance}");
+                assert!(a.apart(&cover, &mut b, &cover, distance + 1e-9).is_none_or(|_| distance == 0.0));
+            }
         }
     }
 }

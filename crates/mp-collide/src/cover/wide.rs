@@ -3,7 +3,7 @@
 use super::{Cover, ROUNDING};
 use crate::around::Around;
 use mp_geom::Sphere;
-use mp_simd::wide::{Wide, Wide3, WideFrame, WideKernel, on_widest, sub};
+use mp_simd::wide::{LANES, Wide, Wide3, WideFrame, WideKernel, on_widest, sub};
 
 /// Where coordinates are larger, products may overflow: nothing is decided then.
 pub(crate) const LARGEST: f64 = 1e100;
@@ -133,6 +133,125 @@ impl WideCover {
     }
 }
 
+/// Contact at eight places: a bit for each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Contacts {
+    /// There is contact.
+    pub touching: u32,
+    /// Balls do not tell.
+    pub open: u32,
+}
+
+/// All eight places.
+pub(crate) const ALL: u32 = (1 << LANES) - 1;
+
+impl Contacts {
+    /// Contact with either.
+    #[inline(always)]
+    pub fn add(&mut self, other: Self) {
+        self.touching |= other.touching;
+        self.open = (self.open | other.open) & !self.touching;
+    }
+}
+
+impl WideCover {
+    /// Whether the mesh is within `kept` (m) of the body that `around` is around.
+    #[inline(always)]
+    pub(crate) fn contact(&mut self, cover: &Cover, around: &Around, kept: f64, rounding: f64) -> Contacts {
+        let mut found = Contacts::default();
+        let apart = Wide::splat(kept + rounding);
+        // Written so that NaN is open.
+        let near = |gap: Wide| ALL & !apart.less(gap);
+        let mut open = near(around.wide_gap(&self.center, self.radius));
+        if open == 0 || cover.groups.is_empty() {
+            return Contacts { touching: 0, open };
+        }
+        self.place_groups(cover);
+        for k in 0..cover.groups.len() {
+            let mut group = open & near(around.wide_gap(&self.groups[k], cover.groups[k].around.radius));
+            if group == 0 {
+                continue;
+            }
+            self.place_balls(cover, k);
+            for i in cover.groups[k].balls.clone() {
+                let ball = &cover.balls[i];
+                let close = group & near(around.wide_gap(&self.balls[i], ball.radius));
+                found.open |= close;
+                if close == 0 || !cover.is_exact || !around.is_tight() {
+                    continue;
+                }
+                for lane in (0..LANES).filter(|lane| close >> lane & 1 == 1) {
+                    let center = self.balls[i].map(|x| x.0[lane]).into();
+                    let reach = around.reach(&Sphere { center, radius: ball.radius });
+                    found.touching |= u32::from(reach + rounding < kept) << lane;
+                }
+                open &= !found.touching;
+                group &= open;
+            }
+        }
+        found.open &= !found.touching;
+        found
+    }
+}
+
+/// Whether two covers touch.
+struct Touch<'a> {
+    own: (&'a Cover, &'a mut WideCover),
+    other: (&'a Cover, &'a mut WideCover),
+}
+
+impl WideKernel for Touch<'_> {
+    type Output = Contacts;
+    #[inline(always)]
+    fn run(self) -> Contacts {
+        let ((own, a), (others, b)) = (self.own, self.other);
+        let size = a.size + b.size;
+        let is_usual = size < LARGEST;
+        if !is_usual {
+            return Contacts { touching: 0, open: ALL };
+        }
+        let rounding = ROUNDING * size;
+        let near = |gap: Wide| ALL & !Wide::splat(rounding).less(gap);
+        let mut open = near(gap(&a.center, &b.center, a.radius + b.radius));
+        if open == 0 || own.groups.is_empty() || others.groups.is_empty() {
+            return Contacts { touching: 0, open };
+        }
+        let is_exact = own.is_exact && others.is_exact;
+        let mut found = Contacts::default();
+        a.place_groups(own);
+        b.place_groups(others);
+        for i in 0..own.groups.len() {
+            let radius = own.groups[i].around.radius;
+            let one = open & near(gap(&a.groups[i], &b.center, radius + b.radius));
+            for j in 0..others.groups.len() {
+                let radii = radius + others.groups[j].around.radius;
+                if one == 0 || one & near(gap(&a.groups[i], &b.groups[j], radii)) == 0 {
+                    continue;
+                }
+                a.place_balls(own, i);
+                b.place_balls(others, j);
+                for k in own.groups[i].balls.clone() {
+                    for l in others.groups[j].balls.clone() {
+                        let gap = gap(&a.balls[k], &b.balls[l], own.balls[k].radius + others.balls[l].radius);
+                        found.open |= one & near(gap);
+                        if is_exact {
+                            found.touching |= one & gap.less(Wide::splat(-rounding));
+                        }
+                    }
+                }
+            }
+            open &= !found.touching;
+        }
+        found.open &= !found.touching;
+        found
+    }
+}
+
+/// Whether two meshes at eight places touch, by their covers: that they do is known only where both are [exact](Cover::is_exact).
+pub fn wide_touch(own: (&Cover, &mut WideCover), other: (&Cover, &mut WideCover)) -> Contacts {
+    on_widest(Touch { own, other })
+}
+
 /// Of two covers.
 struct FromEachOther<'a> {
     own: (&'a Cover, &'a mut WideCover),
@@ -158,6 +277,8 @@ impl WideKernel for FromEachOther<'_> {
         if open == 0 || own.groups.is_empty() || others.groups.is_empty() {
             return whole - rounding;
         }
+        // What balls say is all there is to know then.
+        let is_exact = own.is_exact && others.is_exact;
         a.place_groups(own);
         b.place_groups(others);
         let mut least = Wide::splat(f64::INFINITY);
@@ -185,7 +306,7 @@ impl WideKernel for FromEachOther<'_> {
                 }
                 least = near.min(least);
             }
-            if least.less(self.some) & open == open {
+            if !is_exact && least.less(self.some) & open == open {
                 return whole - rounding;
             }
         }
@@ -194,7 +315,8 @@ impl WideKernel for FromEachOther<'_> {
 }
 
 /// Lower bounds (m) on the distance of two meshes by their covers: by the balls around them, and where that is less than `enough`, by
-/// smaller balls, until all of these are less than `some`.
+/// smaller balls, until all of these are less than `some`. Where both are [exact](Cover::is_exact), a bound of less than `enough` is the
+/// distance, less its rounding; where balls overlap it is negative.
 pub fn wide_apart(
     own: (&Cover, &mut WideCover),
     other: (&Cover, &mut WideCover),
@@ -202,4 +324,15 @@ pub fn wide_apart(
     some: Wide,
 ) -> Wide {
     on_widest(FromEachOther { own, other, enough, some })
+}
+
+/// As [`wide_apart`], for what is compiled for the widest instructions already.
+#[inline(always)]
+pub fn wide_apart_here(
+    own: (&Cover, &mut WideCover),
+    other: (&Cover, &mut WideCover),
+    enough: Wide,
+    some: Wide,
+) -> Wide {
+    FromEachOther { own, other, enough, some }.run()
 }

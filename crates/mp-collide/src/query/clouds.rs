@@ -181,14 +181,15 @@ pub(super) fn intersecting(query: &mut Query, a: PosedMesh<'_>, b: PosedMesh<'_>
 pub(super) fn distance(query: &mut Query, a: PosedMesh<'_>, b: PosedMesh<'_>) -> Separation {
     let nowhere = Separation { distance: 0.0, point_a: Point3::origin(), point_b: Point3::origin() };
     let Some(pair) = Pair::new(a, b) else { return nowhere };
-    let Some(Found { distance, on, point, .. }) = pair.nearest(query, f64::INFINITY, false) else {
+    let Some(Found { distance, on, point, part, id }) = pair.nearest(query, f64::INFINITY, false) else {
         return nowhere;
     };
     // From the places found to the surfaces of the balls.
-    let (own, other) = (pair.a.0.rounding(), pair.b.0.rounding());
+    let radius = |mesh: &CollisionMesh, i| mesh.cloud.as_ref().map_or(0.0, |cloud| cloud.radius_of(i));
+    let (own, other) = (radius(pair.a.0, part), radius(pair.b.0, id));
     let (from, to) = match distance > pair.radius {
         true => {
-            let way = (point - on) / distance;
+            let way = (point - on).normalize();
             (on + way * own, point - way * other)
         }
         // A place on the line between, within both.

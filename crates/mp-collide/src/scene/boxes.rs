@@ -2,7 +2,7 @@
 
 use super::{Body, Scene};
 use crate::broad;
-use crate::cover::{Cover, LARGEST, PlacedCover, ROUNDING, WideCover};
+use crate::cover::{ALL, Contacts, Cover, LARGEST, PlacedCover, ROUNDING, WideCover};
 use mp_geom::Aabb;
 use mp_simd::wide::{LANES, Wide, WideKernel, on_widest};
 use nalgebra::Point3;
@@ -40,14 +40,45 @@ impl Scene {
     }
 
     /// Lower bounds (m) on the distance of a mesh at eight places from all bodies: by the balls around it against what is around bodies,
-    /// and where that is less than `enough`, by smaller balls, until all of these are less than `some`.
-    pub fn wide_apart(&self, cover: &Cover, placed: &mut WideCover, enough: Wide, some: Wide) -> Wide {
+    /// and where that is less than `enough`, by smaller balls, until all of these are less than `some`. And whether they are nearly the
+    /// distances where they are less than `enough`: the cover is [exact](Cover::is_exact), and bodies that are near are as good as what is
+    /// around them; then `some` is not asked for.
+    pub fn wide_apart(
+        &self,
+        cover: &Cover,
+        placed: &mut WideCover,
+        enough: Wide,
+        some: Wide,
+    ) -> (Wide, bool) {
         // Bodies are no larger. Written so that NaN is refused.
         let is_usual = placed.size < LARGEST;
         if !is_usual {
-            return Wide::splat(f64::NEG_INFINITY);
+            return (Wide::splat(f64::NEG_INFINITY), false);
         }
-        let most = enough.largest() * (1.0 + 1e-9);
+        let (near, least) = self.near_places(placed, enough.largest() * (1.0 + 1e-9));
+        let mut around = near.iter().filter_map(|index| self.bodies[*index as usize].as_ref());
+        let is_tight = cover.is_exact() && around.all(|body| body.around.is_tight());
+        let some = if is_tight { Wide::splat(f64::NEG_INFINITY) } else { some };
+        let found = on_widest(FromBodies { cover, placed, near: &near, bodies: &self.bodies, enough, some });
+        placed.near = near;
+        (found.min(Wide::splat(least)), is_tight)
+    }
+
+    /// Whether a mesh at eight places touches bodies, or is within `kept` (m) of them: in which it does, and in which balls do not tell, as
+    /// bits. The search ends where it touches at one place. Where the cover is not [exact](Cover::is_exact) balls never tell that it touches.
+    pub fn wide_contact(&self, cover: &Cover, placed: &mut WideCover, kept: f64) -> Contacts {
+        let is_usual = placed.size < LARGEST;
+        if !is_usual {
+            return Contacts { touching: 0, open: ALL };
+        }
+        let (near, _) = self.near_places(placed, kept.max(f64::MIN_POSITIVE) * (1.0 + 1e-9));
+        let found = on_widest(ContactWithBodies { cover, placed, near: &near, bodies: &self.bodies, kept });
+        placed.near = near;
+        found
+    }
+
+    /// The bodies that may be nearer than `most` (m) to a mesh at one of eight places, and a lower bound on the distance of the others.
+    fn near_places(&self, placed: &mut WideCover, most: f64) -> (Vec<u32>, f64) {
         let at = |i: usize| Point3::from(placed.center().map(|x| x.0[i]));
         let (low, high) = (1..LANES).fold((at(0), at(0)), |(l, h), i| (l.inf(&at(i)), h.sup(&at(i))));
         let (own, least) = (Aabb { min: low, max: high }, Cell::new(f64::INFINITY));
@@ -70,9 +101,34 @@ impl Scene {
                 None
             });
         }
-        let found = on_widest(FromBodies { cover, placed, near: &near, bodies: &self.bodies, enough, some });
-        placed.near = near;
-        found.min(Wide::splat(least.get()))
+        (near, least.get())
+    }
+}
+
+/// Contact with several bodies.
+struct ContactWithBodies<'a> {
+    cover: &'a Cover,
+    placed: &'a mut WideCover,
+    near: &'a [u32],
+    bodies: &'a [Option<Body>],
+    kept: f64,
+}
+
+impl WideKernel for ContactWithBodies<'_> {
+    type Output = Contacts;
+    #[inline(always)]
+    fn run(self) -> Contacts {
+        let own = self.placed.size;
+        let mut all = Contacts::default();
+        for index in self.near {
+            let Some(body) = &self.bodies[*index as usize] else { continue };
+            let rounding = ROUNDING * (own + body.around.size());
+            all.add(self.placed.contact(self.cover, &body.around, self.kept, rounding));
+            if all.touching != 0 {
+                break;
+            }
+        }
+        all
     }
 }
 
@@ -109,6 +165,7 @@ mod tests {
     use super::*;
     use crate::{CollisionMesh, Query};
     use mp_geom::{Sphere, TriMesh, primitives};
+    use mp_simd::wide::WideFrame;
     use nalgebra::{Isometry3, Vector3};
 
     /// What balls decide, trees say too, at random places among boxes, cylinders and a cloud, all turned.
@@ -150,5 +207,91 @@ mod tests {
             }
         }
         assert!(decided > 1500, "{decided}");
+    }
+
+    /// Eight places at a time: balls that tell whether there is contact tell what trees do. Of balls among boxes, cylinders and capsules they
+    /// nearly always tell.
+    #[test]
+    fn contact_at_eight_places_is_that_of_trees() {
+        let way = |t: f64| Vector3::new(mp_math::sin(3.1 * t), mp_math::cos(1.3 * t), mp_math::sin(0.7 * t));
+        let pose = |t: f64, reach: f64| Isometry3::new(way(t) * reach, Vector3::new(t, 0.3 * t, -t));
+        let shape = |name: &str, lengths: &[f64]| {
+            CollisionMesh::new(&mp_geom::Shape::primitive(name, lengths).unwrap().mesh().unwrap())
+        };
+        let balls = |t: f64| {
+            let one = |i: i32| {
+                let at = Point3::from(way(t + 0.7 * f64::from(i)) * 0.15);
+                TriMesh::of_balls(vec![at], 0.02 + 0.003 * f64::from(i)).unwrap()
+            };
+            TriMesh::merged(&(0..12).map(one).collect::<Vec<_>>()).unwrap()
+        };
+        let links = [balls(0.1), balls(0.6), primitives::cylinder(0.06, 0.5, 24).unwrap().into_surface()];
+        let covers = links.each_ref().map(Cover::new);
+        assert_eq!(covers.each_ref().map(Cover::is_exact), [true, true, false]);
+        let trees = links.each_ref().map(CollisionMesh::new);
+        let (mut scene, mut query) = (Scene::new(), Query::default());
+        let shapes =
+            [shape("box", &[0.1, 0.5, 0.9]), shape("cylinder", &[0.1, 0.4]), shape("capsule", &[0.1, 0.3])];
+        for i in 0..9 {
+            scene.insert(i.to_string(), shapes[i % 3].clone(), pose(1.7 * i as f64, 1.2)).unwrap();
+        }
+        let (mut told, mut open, mut touching) = (0, 0, 0);
+        for round in 0..300 {
+            let at = |body: usize, lane: usize| {
+                pose(0.37 * f64::from(round) + 0.11 * lane as f64 + 2.0 * body as f64, 1.3)
+            };
+            let mut placed: [WideCover; 3] = Default::default();
+            for body in 0..3 {
+                let all: [Isometry3<f64>; LANES] = std::array::from_fn(|lane| at(body, lane));
+                let turn = all.map(|pose| pose.rotation.to_rotation_matrix().into_inner());
+                let frame = WideFrame {
+                    turn: std::array::from_fn(|r| {
+                        std::array::from_fn(|c| Wide(std::array::from_fn(|lane| turn[lane][(r, c)])))
+                    }),
+                    origin: std::array::from_fn(|r| {
+                        Wide(std::array::from_fn(|lane| all[lane].translation.vector[r]))
+                    }),
+                };
+                placed[body].place(&links[body].bounding_sphere(), &frame);
+            }
+            for kept in [0.0, 0.05] {
+                for body in 0..3 {
+                    let found = scene.wide_contact(&covers[body], &mut placed[body], kept);
+                    assert_eq!(found.touching & found.open, 0);
+                    for lane in 0..LANES {
+                        let expected = scene.within(&mut query, &trees[body], &at(body, lane), kept)
+                            || scene.nested(&mut query, &trees[body], &at(body, lane)).is_some();
+                        if found.touching >> lane & 1 == 1 {
+                            assert!(expected && covers[body].is_exact(), "{body} {lane}");
+                            touching += 1;
+                        } else if found.open >> lane & 1 == 1 {
+                            open += usize::from(covers[body].is_exact() && found.touching == 0);
+                        } else if found.touching == 0 {
+                            assert!(!expected, "{body} {lane}");
+                            told += 1;
+                        }
+                    }
+                }
+            }
+            for (i, j) in [(0, 1), (0, 2)] {
+                let [a, b] = placed.get_disjoint_mut([i, j]).unwrap();
+                let found = crate::wide_touch((&covers[i], a), (&covers[j], b));
+                let far = Wide::splat(f64::INFINITY);
+                let apart = crate::wide_apart((&covers[i], a), (&covers[j], b), far, Wide::splat(0.0));
+                for lane in 0..LANES {
+                    let poses = [at(i, lane), at(j, lane)];
+                    let distance = query.clearance(&trees[i], &poses[0], &trees[j], &poses[1], f64::INFINITY);
+                    let is_open = found.open >> lane & 1 == 1;
+                    assert!(apart.0[lane] <= distance, "{} {distance}", apart.0[lane]);
+                    if covers[j].is_exact() {
+                        assert!((apart.0[lane].max(0.0) - distance).abs() < 1e-9 && !is_open);
+                        assert_eq!(found.touching >> lane & 1 == 1, distance == 0.0);
+                    } else {
+                        assert!(is_open || distance > 0.0);
+                    }
+                }
+            }
+        }
+        assert!(told > 4000 && touching > 300 && open < 60, "{told} {touching} {open}");
     }
 }

@@ -13,7 +13,7 @@ use mp_stop::{Interrupt, Interrupted};
 use nalgebra::Isometry3;
 use thiserror::Error;
 
-use crate::around::{Around, Cylinder};
+use crate::around::{Around, Outline};
 use crate::broad::BroadPhase;
 use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::{LIMIT, Relative};
@@ -173,7 +173,7 @@ impl Scene {
     ) -> Result<BodyId, SceneError> {
         // A cloud has a tree of its own kind.
         let movable = movable || mesh.cloud.is_some();
-        let (bounds, around) = placed(&name, &mesh, Cylinder::around(&mesh), &pose)?;
+        let (bounds, around) = placed(&name, &mesh, Outline::of(&mesh), &pose)?;
         let index = u32::try_from(self.bodies.len()).map_err(|_| SceneError::Full)?;
         let handle = self.broad_phase(movable).insert(index, bounds);
         self.filled += usize::from(mesh.is_filled());
@@ -201,7 +201,7 @@ impl Scene {
         let Some(body) = self.bodies.get_mut(id.index()).and_then(Option::as_mut) else {
             return Err(SceneError::NoSuchBody { index: id.index() });
         };
-        (body.bounds, body.around) = placed(&body.name, &body.mesh, body.around.cylinder, &pose_wb)?;
+        (body.bounds, body.around) = placed(&body.name, &body.mesh, body.around.outline, &pose_wb)?;
         body.pose = pose_wb;
         let broad = if body.movable { &mut self.movable } else { &mut self.fixed };
         broad.remove(body.handle);
@@ -309,12 +309,12 @@ pub(crate) fn bounds(mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Option<Aabb
 fn placed(
     name: &str,
     mesh: &CollisionMesh,
-    cylinder: Cylinder,
+    outline: Outline,
     pose: &Isometry3<f64>,
 ) -> Result<(Aabb, Around), SceneError> {
     if mesh.radius() > LIMIT {
         return Err(SceneError::TooLarge { name: name.into() });
     }
-    let both = bounds(mesh, pose).zip(Around::new(mesh, cylinder, pose));
+    let both = bounds(mesh, pose).zip(Around::new(mesh, outline, pose));
     both.ok_or_else(|| SceneError::BadPose { name: name.into() })
 }

@@ -22,6 +22,21 @@ fn cloud(rng: &mut Pcg64, count: usize) -> TriMesh {
     TriMesh::of_balls(points, RADIUS).unwrap()
 }
 
+/// Balls of three radii.
+fn mixed(rng: &mut Pcg64, count: usize) -> TriMesh {
+    let all = [1.0, 0.3, 2.5].map(|scale| {
+        let centers = cloud(rng, count / 3).vertices().to_vec();
+        TriMesh::of_balls(centers, RADIUS * scale).unwrap()
+    });
+    TriMesh::merged(&all).unwrap()
+}
+
+/// The centres and radii of balls.
+fn balls(cloud: &TriMesh) -> impl Iterator<Item = (Point3<f64>, f64)> + '_ {
+    let ranges = cloud.balls().iter();
+    ranges.flat_map(|(range, radius)| range.clone().map(|i| (cloud.triangle(i as usize)[0], *radius)))
+}
+
 fn bodies(rng: &mut Pcg64) -> Vec<TriMesh> {
     let sliver = vec![Point3::origin(), Point3::new(0.3, 0.0, 0.0), Point3::new(0.3, 0.0, 0.0)];
     vec![
@@ -32,27 +47,39 @@ fn bodies(rng: &mut Pcg64) -> Vec<TriMesh> {
     ]
 }
 
-/// The distance of a mesh from the balls, all against all; below 0 within a ball.
+/// The distance of a mesh from the balls, all against all, but for what is plainly too far; below 0 within a ball.
 fn plain(mesh: &TriMesh, at: &Isometry3<f64>, cloud: &TriMesh) -> f64 {
     let placed = mesh.transformed(at);
-    let distance = |p: &Point3<f64>| {
-        let to = |i| triangle::closest(&placed.triangle(i), &[*p; 3]).distance;
-        (0..placed.triangles().len()).map(to).fold(f64::INFINITY, f64::min)
-    };
-    cloud.vertices().iter().map(distance).fold(f64::INFINITY, f64::min) - RADIUS
+    let triangles: Vec<_> = (0..placed.triangles().len()).map(|i| placed.triangle(i)).collect();
+    let reach = |[a, b, c]: &[Point3<f64>; 3]| (b - a).norm().max((c - a).norm());
+    let triangles: Vec<_> = triangles.into_iter().map(|triangle| (triangle, reach(&triangle))).collect();
+    let mut least = f64::INFINITY;
+    for (p, radius) in balls(cloud) {
+        for (triangle, reach) in &triangles {
+            if (p - triangle[0]).norm() - reach - radius <= least {
+                least = least.min(triangle::closest(triangle, &[p; 3]).distance - radius);
+            }
+        }
+    }
+    least
 }
 
 #[test]
 fn all_queries_agree_with_all_pairs() {
     let mut rng = rng(1);
-    let (cloud, mut query) = (cloud(&mut rng, 150), Query::default());
-    let (tree, reference) = (CollisionMesh::new(&cloud), RefMesh::new(&cloud));
+    let clouds = [cloud(&mut rng, 150), mixed(&mut rng, 60)];
+    clouds.iter().for_each(|cloud| queries_agree_with_all_pairs(&mut rng, cloud));
+}
+
+fn queries_agree_with_all_pairs(rng: &mut Pcg64, cloud: &TriMesh) {
+    let (mut query, own) = (Query::default(), balls(cloud).collect::<Vec<_>>());
+    let (tree, reference) = (CollisionMesh::new(cloud), RefMesh::new(cloud));
     let mut hits = 0;
-    for mesh in bodies(&mut rng) {
+    for mesh in bodies(rng) {
         let (body, plain_body) = (CollisionMesh::new(&mesh), RefMesh::new(&mesh));
         for _ in 0..cases_of(250) {
-            let (at, there) = (pose(&mut rng, 1.2), pose(&mut rng, 0.5));
-            let expected = plain(&mesh, &(there.inverse() * at), &cloud);
+            let (at, there) = (pose(rng, 1.2), pose(rng, 0.5));
+            let expected = plain(&mesh, &(there.inverse() * at), cloud);
             hits += usize::from(expected <= 0.0);
             if expected.abs() > BAND {
                 assert_eq!(query.intersects(&body, &at, &tree, &there), expected < 0.0, "{expected}");
@@ -78,9 +105,9 @@ fn all_queries_agree_with_all_pairs() {
                     assert!(right, "{found} {expected} {enough}");
                 }
             }
-            let near: Vec<usize> = (0..cloud.vertices().len())
+            let near: Vec<usize> = (0..own.len())
                 .filter(|i| {
-                    let one = TriMesh::of_balls(vec![cloud.vertices()[*i]], RADIUS).unwrap();
+                    let one = TriMesh::of_balls(vec![own[*i].0], own[*i].1).unwrap();
                     plain(&mesh, &(there.inverse() * at), &one) <= 0.05
                 })
                 .collect();
@@ -99,9 +126,9 @@ fn all_queries_agree_with_all_pairs() {
                 assert!(query.within(&body, &at, &tree, &there, expected + 1e-9));
                 assert!(!query.within(&body, &at, &tree, &there, expected - 1e-9));
                 let on_cloud = there.inverse_transform_point(&found.point_b);
-                let nearest =
-                    cloud.vertices().iter().map(|p| (p - on_cloud).norm()).fold(f64::INFINITY, f64::min);
-                assert!((nearest - RADIUS).abs() < BAND, "{nearest}");
+                let apart = balls(cloud).map(|(p, radius)| (p - on_cloud).norm() - radius);
+                let nearest = apart.fold(f64::INFINITY, f64::min);
+                assert!(nearest.abs() < BAND, "{nearest}");
             }
         }
     }
@@ -111,15 +138,23 @@ fn all_queries_agree_with_all_pairs() {
 #[test]
 fn two_clouds() {
     let (mut rng, mut query) = (rng(2), Query::default());
-    let [a, b] = [40, 90].map(|count| cloud(&mut rng, count));
-    let trees = [&a, &b].map(CollisionMesh::new);
-    let references = [&a, &b].map(RefMesh::new);
-    for _ in 0..cases_of(300) {
-        let (at, there) = (pose(&mut rng, 2.0), pose(&mut rng, 0.1));
-        let between = |p: &Point3<f64>| {
-            b.vertices().iter().map(|q| (at * p - there * q).norm()).fold(f64::INFINITY, f64::min)
+    let all = [40, 90].map(|count| cloud(&mut rng, count)).into_iter().chain([mixed(&mut rng, 60)]);
+    let all: Vec<_> = all.collect();
+    for [a, b] in [[0, 1], [0, 2], [2, 1], [2, 2]].map(|pair| pair.map(|i| &all[i])) {
+        two_clouds_agree(&mut rng, &mut query, a, b);
+    }
+}
+
+fn two_clouds_agree(rng: &mut Pcg64, query: &mut Query, a: &TriMesh, b: &TriMesh) {
+    let trees = [a, b].map(CollisionMesh::new);
+    let references = [a, b].map(RefMesh::new);
+    for _ in 0..cases_of(150) {
+        let (at, there) = (pose(rng, 2.0), pose(rng, 0.1));
+        let between = |(p, radius): (Point3<f64>, f64)| {
+            balls(b).map(|(q, other)| (at * p - there * q).norm() - other).fold(f64::INFINITY, f64::min)
+                - radius
         };
-        let expected = a.vertices().iter().map(between).fold(f64::INFINITY, f64::min) - 2.0 * RADIUS;
+        let expected = balls(a).map(between).fold(f64::INFINITY, f64::min);
         let found = query.clearance(&trees[0], &at, &trees[1], &there, f64::INFINITY);
         assert!((found - expected.max(0.0)).abs() < BAND, "{found} {expected}");
         let plain = references[0].clearance(&at, &references[1], &there, f64::INFINITY);
@@ -131,11 +166,12 @@ fn two_clouds() {
 #[test]
 fn intervals_found_free_are_free() {
     let (mut rng, mut query, mut sweep) = (rng(3), Query::default(), Sweep::default());
-    let cloud = cloud(&mut rng, 60);
-    let (tree, reference) = (CollisionMesh::new(&cloud), RefMesh::new(&cloud));
+    let clouds = [cloud(&mut rng, 60), mixed(&mut rng, 30)];
     let (mut counts, here) = ([0; 4], Isometry3::identity());
-    for mesh in bodies(&mut rng) {
-        let (body, plain_body) = (CollisionMesh::new(&mesh), RefMesh::new(&mesh));
+    let bodies = bodies(&mut rng);
+    for (mesh, cloud) in bodies.iter().flat_map(|mesh| clouds.each_ref().map(|cloud| (mesh, cloud))) {
+        let (tree, reference) = (CollisionMesh::new(cloud), RefMesh::new(cloud));
+        let (body, plain_body) = (CollisionMesh::new(mesh), RefMesh::new(mesh));
         for _ in 0..cases_of(150) {
             let middle = pose(&mut rng, 1.3);
             let size = rng.random_range(0.0..0.2);
@@ -145,9 +181,9 @@ fn intervals_found_free_are_free() {
                 let turned = UnitQuaternion::from_scaled_axis(turn * t) * middle.rotation;
                 Isometry3::from_parts((middle.translation.vector + shift * t).into(), turned)
             };
-            let least = (-8..=8).map(|i| plain(&mesh, &pose_at(f64::from(i) / 8.0), &cloud));
+            let least = (-8..=8).map(|i| plain(mesh, &pose_at(f64::from(i) / 8.0), cloud));
             let least = least.fold(f64::INFINITY, f64::min);
-            let in_middle = plain(&mesh, &middle, &cloud);
+            let in_middle = plain(mesh, &middle, cloud);
             match query.check_interval(&body, &middle, &motion, &tree, &here, margin) {
                 IntervalCheck::Free => {
                     assert!(least >= margin - BAND, "{least}");
@@ -164,11 +200,11 @@ fn intervals_found_free_are_free() {
                     counts[2] += 1;
                 }
                 SweepCheck::Collision { at } => {
-                    assert!(plain(&mesh, &pose_at(2.0 * at - 1.0), &cloud) < BAND);
+                    assert!(plain(mesh, &pose_at(2.0 * at - 1.0), cloud) < BAND);
                     counts[3] += 1;
                 }
                 SweepCheck::TooClose { at } => {
-                    assert!(plain(&mesh, &pose_at(2.0 * at - 1.0), &cloud) < margin + 1e-3 + BAND);
+                    assert!(plain(mesh, &pose_at(2.0 * at - 1.0), cloud) < margin + 1e-3 + BAND);
                 }
             }
         }

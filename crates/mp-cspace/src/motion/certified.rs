@@ -31,7 +31,7 @@ use std::collections::VecDeque;
 /// The idea is conservative advancement (Mirtich 1996), bisected as in Schwarzer, Saha and
 /// Latombe 2005, *Adaptive dynamic collision checking for single and multiple articulated robots*.
 #[derive(Clone, Debug)]
-pub struct Certified<'c, C, V> {
+pub struct Certified<'c, C: Space, V> {
     /// The space to interpolate in.
     pub space: &'c C,
     /// The robot among its obstacles.
@@ -40,6 +40,8 @@ pub struct Certified<'c, C, V> {
     stride: f64,
     /// Parts of the motion not yet covered, each from one fraction to another.
     uncovered: VecDeque<(f64, f64)>,
+    /// States that are tested for contact together: scratch memory.
+    states: [Option<C::State>; MOST_AT_ONCE - 1],
 }
 
 /// Motions longer than this many tolerances are refused: rounding would exceed the size of their parts.
@@ -71,7 +73,14 @@ where
     /// When the tolerance is not positive and finite.
     pub fn new(space: &'c C, valid: V, tolerance: f64) -> Result<Self, ParameterError> {
         let tolerance = ParameterError::positive("the tolerance", tolerance)?;
-        Ok(Self { space, valid, tolerance, stride: 0.02 * space.extent(), uncovered: VecDeque::new() })
+        Ok(Self {
+            space,
+            valid,
+            tolerance,
+            stride: 0.02 * space.extent(),
+            uncovered: VecDeque::new(),
+            states: [const { None }; MOST_AT_ONCE - 1],
+        })
     }
 
     /// The same with strides of `stride` metres: clearance queries reach no farther than that plus the
@@ -104,6 +113,21 @@ where
             self.space.interpolate_into(from, to, *at, &mut q);
             self.valid.in_contact(&q)
         })
+    }
+
+    /// The fraction of a state with contact: of `end`, which is at a fraction of the motion, and seven states evenly between the ends.
+    fn contact_of_eight(&mut self, [from, to]: [&C::State; 2], (end, at): (&C::State, f64)) -> Option<f64> {
+        const BETWEEN: [f64; MOST_AT_ONCE - 1] = [0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875];
+        for (between, state) in BETWEEN.iter().zip(&mut self.states) {
+            let state = state.get_or_insert_with(|| from.clone());
+            self.space.interpolate_into(from, to, *between, state);
+        }
+        let states: [&C::State; MOST_AT_ONCE] = std::array::from_fn(|k| match k.checked_sub(1) {
+            Some(k) => self.states[k].as_ref().unwrap_or(end),
+            None => end,
+        });
+        let found = self.valid.first_contact(&states)?;
+        Some(found.checked_sub(1).map_or(at, |k| BETWEEN[k]))
     }
 
     /// Takes the next parts to ask about from those not yet covered, and puts the middles of their intervals into `middles`. Returns how many.
@@ -181,7 +205,13 @@ where
         let mut middles = [const { None }; MOST_AT_ONCE];
         let mut parts = [Part::default(); MOST_AT_ONCE];
         self.uncovered.clear();
-        self.uncovered.push_back((0.0, 1.0));
+        match self.valid.contacts_at_once() >= MOST_AT_ONCE && at_once == MOST_AT_ONCE {
+            // Eight parts are asked about together as soon as one, and need less clearance.
+            true => self
+                .uncovered
+                .extend(bit_reversed(8).chain([0]).map(|i| (i as f64 / 8.0, (i + 1) as f64 / 8.0))),
+            false => self.uncovered.push_back((0.0, 1.0)),
+        }
         loop {
             let count = self.next_parts([from, to], pieces, &mut parts[..at_once], &mut middles);
             if count == 0 {
@@ -232,11 +262,13 @@ where
             return MotionCheck::Unproven { at: 0.0 };
         }
         // Contact is likeliest at the end that is not known to be free.
-        if known != KnownFree::To && self.valid.in_contact(to) {
-            return MotionCheck::Collision { at: 1.0 };
-        }
-        if known == KnownFree::To && self.valid.in_contact(from) {
-            return MotionCheck::Collision { at: 0.0 };
+        let (end, at) = if known == KnownFree::To { (from, 0.0) } else { (to, 1.0) };
+        if self.valid.contacts_at_once() >= MOST_AT_ONCE {
+            if let Some(at) = self.contact_of_eight([from, to], (end, at)) {
+                return MotionCheck::Collision { at };
+            }
+        } else if self.valid.in_contact(end) {
+            return MotionCheck::Collision { at };
         }
         if self.valid.contact_first()
             && let Some(at) = self.contact(from, to, travel)

@@ -34,9 +34,9 @@ impl Points {
     }
 }
 
-/// An icosahedron around a ball.
-pub(crate) fn icosahedron(radius: f64) -> Made {
-    sphere::around(radius, 0)
+/// A mesh around a ball: an icosahedron, whose triangles are divided into four so many times.
+pub(crate) fn ball(radius: f64, divided: u32) -> Made {
+    sphere::around(radius, divided)
 }
 
 #[cfg(test)]

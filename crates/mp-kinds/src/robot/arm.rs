@@ -646,7 +646,8 @@ impl<C: LinkedSpace> Appearance for LinkedScene<C> {
     fn bodies(&self) -> Vec<Body> {
         let name = |i: usize| self.arm.model().links[i].name.clone();
         let links = self.solid_links();
-        let links = links.map(|(i, mesh)| Body { name: name(i), shape: BodyShape::Mesh(mesh), pose: None });
+        let links =
+            links.map(|(i, mesh)| Body { name: name(i), shape: BodyShape::Mesh(mesh.drawn()), pose: None });
         links.chain(self.obstacles.iter().map(Body::obstacle)).collect()
     }
     fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {

@@ -152,6 +152,12 @@ impl<S, R: MotionClearance<S> + Queries> MotionClearance<S> for Counted<'_, R> {
         let ended = LeastClearance { bound: 0.0, found: search.known, at: None };
         self.query(ended, |checker| checker.least_along(search))
     }
+    fn contacts_at_once(&self) -> usize {
+        self.checker.contacts_at_once()
+    }
+    fn first_contact(&mut self, states: &[&S]) -> Option<usize> {
+        self.query(Some(0), |checker| checker.first_contact(states))
+    }
     fn contact_first(&self) -> bool {
         self.checker.contact_first()
     }

@@ -125,6 +125,9 @@ pub struct ModelBody {
     pub of_robot: bool,
     /// All that is within this distance of its pieces belongs to it, metres.
     pub radius: f64,
+    /// The distances for each of its pieces alone, of which `radius` is the largest; none where that is the one of all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub radii: Vec<f64>,
     /// The vertices in its frame, metres.
     pub vertices: Vec<[f64; 3]>,
     /// The vertices of each piece: triangles in space, those of a point thrice; edges in the plane.
@@ -144,12 +147,15 @@ pub enum ModelPart {
 }
 
 impl ModelBody {
-    /// A mesh, with its solids; of balls, their centres and radius.
+    /// A mesh, with its solids; of balls, their centres and radii.
     pub(crate) fn mesh(name: &str, frame: usize, mesh: &TriMesh) -> Self {
-        if let [(range, radius)] = mesh.balls()
-            && range.len() == mesh.triangles().len()
-        {
-            return Self { radius: *radius, ..Self::mesh(name, frame, &mesh.clone().without_balls()) };
+        if mesh.is_balls() {
+            let radius = mesh.rounding().unwrap_or(0.0);
+            let mut radii: Vec<f64> = mesh.each_ball().map(|ball| ball.radius).collect();
+            if radii.iter().all(|own| *own == radius) {
+                radii.clear();
+            }
+            return Self { radius, radii, ..Self::mesh(name, frame, &mesh.clone().without_balls()) };
         }
         let mesh = &mesh.faceted();
         Self {
@@ -157,6 +163,7 @@ impl ModelBody {
             frame,
             of_robot: false,
             radius: 0.0,
+            radii: Vec::new(),
             vertices: mesh.vertices().iter().map(|p| [p.x, p.y, p.z]).collect(),
             pieces: mesh.triangles().iter().map(|t| t.to_vec()).collect(),
             parts: parts(mesh),
@@ -177,14 +184,32 @@ impl ModelBody {
             pieces.extend((0..n).map(|i| vec![index(first + i), index(first + (i + 1) % n)]));
         }
         let parts = vec![ModelPart::Surface(pieces.len())];
-        Self { name: name.to_owned(), frame, of_robot: false, radius: 0.0, vertices, pieces, parts }
-            .solid(solid)
+        Self {
+            name: name.to_owned(),
+            frame,
+            of_robot: false,
+            radius: 0.0,
+            radii: Vec::new(),
+            vertices,
+            pieces,
+            parts,
+        }
+        .solid(solid)
     }
 
     /// A disc about the origin, in the plane z = 0.
     pub(crate) fn disc(name: &str, frame: usize, radius: f64) -> Self {
         let (vertices, pieces, parts) = (vec![[0.0; 3]], vec![vec![0]], vec![ModelPart::Surface(1)]);
-        Self { name: name.to_owned(), frame, of_robot: false, radius, vertices, pieces, parts }
+        Self {
+            name: name.to_owned(),
+            frame,
+            of_robot: false,
+            radius,
+            radii: Vec::new(),
+            vertices,
+            pieces,
+            parts,
+        }
     }
 
     pub(crate) fn robot(mut self) -> Self {

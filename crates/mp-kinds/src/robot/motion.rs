@@ -272,6 +272,12 @@ impl MotionClearance<Configuration> for AnyChecker {
     fn least_along(&mut self, search: &ClearanceSearch<'_, Configuration>) -> LeastClearance {
         self.0.least_along(search)
     }
+    fn contacts_at_once(&self) -> usize {
+        self.0.contacts_at_once()
+    }
+    fn first_contact(&mut self, states: &[&Configuration]) -> Option<usize> {
+        self.0.first_contact(states)
+    }
     fn contact_first(&self) -> bool {
         self.0.contact_first()
     }

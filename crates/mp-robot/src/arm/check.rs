@@ -4,6 +4,7 @@ use super::Arm;
 use super::robot::{LinkBody, Scratch, are_nested};
 use super::wide::{COARSE, LEAST};
 use crate::kept::beyond;
+use mp_collide::Contacts;
 use mp_cspace::{
     Clearance, ClearanceSearch, Coordinates, IntervalClearance, LeastClearance, MotionClearance,
     MotionInterval, Rng, Validity, obstacles::ObstacleHints,
@@ -59,7 +60,7 @@ impl Arm {
 
 impl<Q: Coordinates> Validity<Q> for Arm {
     fn is_valid(&mut self, q: &Q) -> bool {
-        !self.collides(q.as_slice())
+        self.first_contact(&[q]).is_none()
     }
 }
 
@@ -96,7 +97,7 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
     }
 
     fn in_contact(&mut self, q: &Q) -> bool {
-        self.collides(q.as_slice())
+        self.first_contact(&[q]).is_some()
     }
 }
 
@@ -104,18 +105,18 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
 const LESS: f64 = 1.0 - 1e-6;
 
 /// The part of a motion interval that is shown free so far.
-struct ProvenPart {
-    margin: f64,
-    half: f64,
+pub(super) struct ProvenPart {
+    pub(super) margin: f64,
+    pub(super) half: f64,
     /// How far the proven part reaches to either side of the middle, as a fraction of the motion.
-    part: f64,
+    pub(super) part: f64,
 }
 
 impl ProvenPart {
     /// How far a link or pair moves by the part of the interval that matters, where it moves by at most `near` over half the interval and
     /// proportionally less over a smaller part of it; and which distance is enough to prove that part free.
     #[inline]
-    fn wanted(&self, near: f64) -> (f64, f64) {
+    pub(super) fn wanted(&self, near: f64) -> (f64, f64) {
         // No more than what earlier links and pairs allow.
         let near = near * (self.half.min(self.part) / self.half);
         (near, near.max(self.margin) + self.margin)
@@ -124,7 +125,7 @@ impl ProvenPart {
     /// Adds a lower bound on the distance of one link or pair, which moves by at most [`near`](Self::wanted), and by at most `far` over
     /// the whole motion. Returns an answer if the remaining links and pairs need no test.
     #[inline]
-    fn add(&mut self, near: f64, far: f64, clearance: f64) -> Option<IntervalClearance> {
+    pub(super) fn add(&mut self, near: f64, far: f64, clearance: f64) -> Option<IntervalClearance> {
         let (margin, wanted) = (self.margin, self.half.min(self.part));
         let part = if clearance <= 0.0 {
             return Some(IntervalClearance::Collision { at: 0.0 });
@@ -144,7 +145,7 @@ impl ProvenPart {
 /// Whether `known`, a lower bound on a distance by covers, says enough: at least `enough`, or so much of it that the exact distance would
 /// take longer than the intervals that it saves.
 #[inline]
-fn is_of_use(known: f64, enough: f64, margin: f64) -> bool {
+pub(super) fn is_of_use(known: f64, enough: f64, margin: f64) -> bool {
     known >= enough || known >= (COARSE * enough).max(LEAST * margin)
 }
 
@@ -189,12 +190,20 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         let k = scratch.wide.find(robot, interval);
         let mut is_placed = false;
         let mut proven = ProvenPart { margin: interval.margin, half: interval.half, part: f64::INFINITY };
-        for (i, body) in robot.numbered_moving() {
+        let by_covers = scratch.wide.proven(robot, scene, *kept, k);
+        if let Some(part) = by_covers {
+            proven.part = part;
+        }
+        // All of it where covers leave something open.
+        let is_open = by_covers.is_none();
+        for (i, body) in robot.numbered_moving().filter(|_| is_open) {
             let wide = &mut scratch.wide;
             let (near, enough) = proven.wanted(wide.near(k, i, body));
             let far = wide.far[body.last()] + wide.base.far(body.chain.from_base);
-            let mut clearance = wide.link_apart(robot, scene, *kept, i, k);
-            if !is_of_use(clearance, enough, interval.margin) {
+            let (mut clearance, is_tight) = wide.link_apart(robot, scene, *kept, i, k);
+            // A bound that is nearly the distance is as good as that, but for contact.
+            let is_known = is_tight && clearance >= LEAST * interval.margin;
+            if !is_known && !is_of_use(clearance, enough, interval.margin) {
                 robot.place_once(middle, scratch, &mut is_placed);
                 let pose = &scratch.frames[body.frame];
                 let found = |limit| scene.surface_clearance(query, &body.tree, pose, limit).0;
@@ -204,13 +213,14 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
                 return answer;
             }
         }
-        for (p, pair) in robot.pairs.iter().enumerate() {
+        for (p, pair) in robot.pairs.iter().enumerate().filter(|_| is_open) {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
             let wide = &mut scratch.wide;
             let (near, enough) = proven.wanted(wide.near_pair(robot, p, k));
             let far = wide.far[a.first + pair.steps[0]] + wide.far[b.first + pair.steps[1]];
             let mut clearance = wide.pair_apart(robot, p, k);
-            if !is_of_use(clearance, enough, interval.margin) {
+            let is_known = a.cover.is_exact() && b.cover.is_exact();
+            if !is_known && !is_of_use(clearance, enough, interval.margin) {
                 robot.place_once(middle, scratch, &mut is_placed);
                 let frames = &scratch.frames;
                 clearance = query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], enough);
@@ -236,6 +246,26 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
     }
     fn intervals_at_once(&self) -> usize {
         LANES
+    }
+    fn contacts_at_once(&self) -> usize {
+        if self.robot.is_of_balls { LANES } else { 1 }
+    }
+    fn first_contact(&mut self, states: &[&Q]) -> Option<usize> {
+        if !self.robot.is_of_balls || states.is_empty() || states.len() > LANES {
+            return states.iter().position(|q| self.collides(q.as_slice()));
+        }
+        let is_none = |q: &&Q| !self.robot.kinematics.is_configuration(q.as_slice());
+        if let Some(none) = states.iter().position(is_none) {
+            return Some(none);
+        }
+        self.counters.collision_checks += states.len() as u64;
+        let Self { robot, obstacles, scratch, kept, .. } = self;
+        scratch.wide.place(robot, states);
+        let Contacts { touching, open } = scratch.wide.contacts(robot, &obstacles.scene, *kept, states.len());
+        if touching != 0 {
+            return Some(touching.trailing_zeros() as usize);
+        }
+        (0..states.len()).find(|k| open >> k & 1 == 1 && self.collides(states[*k].as_slice()))
     }
     fn look_ahead(&mut self, intervals: &[MotionInterval<'_, Q>]) {
         let Self { robot, scratch, .. } = self;
@@ -326,7 +356,7 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
 /// along, in the space of joints.
 impl<Q: Coordinates> ObstacleHints<Q> for Arm {
     fn touches(&mut self, q: &Q) -> bool {
-        self.collides(q.as_slice())
+        self.first_contact(&[q]).is_some()
     }
 
     /// Always `None`.

@@ -66,6 +66,8 @@ pub(super) struct SharedArm {
     /// In the order of the links.
     pub(super) bodies: Vec<LinkBody>,
     pub(super) pairs: Vec<LinkPair>,
+    /// Whether the covers of all links are [exact](Cover::is_exact).
+    pub(super) is_of_balls: bool,
     /// For each joint that moves.
     pub(super) turns: Vec<Turns>,
     /// Which links are not compared, and why, unless the model says so: sentences.
@@ -117,8 +119,19 @@ impl SharedArm {
         let (model, reference) = (model.clone(), OnceLock::new());
         let (none, not_compared) = (Vec::new(), Vec::new());
         let turns = kinematics.frames.iter().map(Turns::of).collect();
-        let mut robot =
-            Self { kinematics, bodies, pairs: none, turns, not_compared, reach, length, model, reference };
+        let is_of_balls = bodies.iter().all(|body| body.cover.is_exact());
+        let mut robot = Self {
+            kinematics,
+            bodies,
+            pairs: none,
+            is_of_balls,
+            turns,
+            not_compared,
+            reach,
+            length,
+            model,
+            reference,
+        };
         // Closer than this no motion can be certified.
         let close = 2.0 * robot.tolerance(0.0);
         let (pairs, notes) = pairs(&robot.kinematics, &robot.bodies, &robot.model, close, interrupt)?;
@@ -240,6 +253,7 @@ fn extent_of(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> Extent {
     // `max` would drop NaN.
     let largest = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
     let own = mesh.vertices().iter().map(|p| p.coords.norm()).fold(0.0, largest);
+    let own = own + mesh.rounding().unwrap_or(0.0);
     let (mut reach, mut turned, mut placed) = (own, None, own);
     let mut at = frame;
     while at > 0 {

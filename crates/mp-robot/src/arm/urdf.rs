@@ -33,7 +33,7 @@ impl ArmModel {
     ///
     /// A shape without volume is a sheet or a line, which can be hit; one of no extent at all is left out, and a note says so. Round
     /// shapes become meshes of flat faces that contain them. They are larger by less than 1% of the radius (2% for
-    /// spheres).
+    /// spheres). A link of spheres alone has these themselves, as [balls](TriMesh::balls).
     ///
     /// `mesh` is called with each mesh file name as written, often `package://robot/part.stl`. It returns the mesh, or a
     /// message for people.
@@ -76,7 +76,10 @@ impl ArmModel {
         for node in called("link") {
             let mut link = Link::new(reader.word(&node, "name")?);
             let inner = node.children().filter(|c| c.is_element() && is_own(c));
-            for (i, collision) in inner.filter(|c| c.tag_name().name() == "collision").enumerate() {
+            let collisions = inner.filter(|c| c.tag_name().name() == "collision");
+            // Balls alone stay what they are; beside other shapes they are meshes too.
+            let of_balls = collisions.clone().all(|c| c.descendants().any(|n| n.has_tag_name("sphere")));
+            for (i, collision) in collisions.enumerate() {
                 ask()?;
                 let fail = |message: String| UrdfError::Shape {
                     line: reader.line(&collision),
@@ -88,7 +91,10 @@ impl ArmModel {
                 let geometry = reader.geometry(&collision)?;
                 let made = match without_volume(&geometry) {
                     Some(thin) => thin,
-                    None => shape(&geometry, &mut mesh).map(Some),
+                    None => match (ball(&geometry), of_balls) {
+                        (Some(ball), true) => Ok(Some(ball)),
+                        _ => shape(&geometry, &mut mesh).map(Some),
+                    },
                 };
                 let Some(shape) = made.map_err(fail)? else {
                     empty.extend((empty.last() != Some(&link.name)).then(|| link.name.clone()));
@@ -259,6 +265,16 @@ fn without_volume(geometry: &Geometry<'_>) -> Option<Result<Option<TriMesh>, Str
         n => (1..n - 1).map(|i| [0, i, i + 1]).collect(),
     };
     Some(TriMesh::new(corners, triangles).map(Some).map_err(|error| error.to_string()))
+}
+
+/// A sphere as a ball; `None` for other shapes, and where its radius is none.
+fn ball(geometry: &Geometry<'_>) -> Option<TriMesh> {
+    match geometry {
+        Geometry::Primitive("sphere", lengths) => {
+            TriMesh::of_balls(vec![Point3::origin()], *lengths.first()?).ok()
+        }
+        _ => None,
+    }
 }
 
 /// The shape as a mesh, in its own frame.

@@ -6,10 +6,11 @@
 use super::kinematics::{BaseTravel, JointFrame};
 use super::robot::{LinkBody, SharedArm};
 use super::travel::{Chain, ROUND_UP};
-use mp_collide::{Scene, WideCover, wide_apart};
+use mp_collide::{Contacts, Scene, WideCover, wide_apart, wide_apart_here, wide_touch};
 use mp_cspace::{Coordinates, MotionInterval};
 use mp_simd::wide::{LANES, Wide, Wide3, WideFrame, WideKernel, add, cross, dot, on_widest, sub};
 use nalgebra::{Isometry3, Matrix3};
+use std::ops::Add;
 
 /// A bound by covers that is at least this part of what is enough is used as it is: it proves a part of the interval, and the exact distance
 /// would take longer than the intervals that it saves.
@@ -37,8 +38,9 @@ pub(super) struct WideIntervals {
     by_base: Vec<Wide>,
     covers: Vec<WideCover>,
     /// Lower bounds on the distance of each body from obstacles, and of each pair, where they were asked for.
-    links: Vec<Option<Wide>>,
+    links: Vec<Option<(Wide, bool)>>,
     pairs: Vec<Option<Wide>>,
+    proven: ProvenParts,
     /// For each body, how far it moves over the whole motion with the first joints of its chain: as [`Chain::far`].
     pub(super) far: Vec<f64>,
     pub(super) base: BaseTravel,
@@ -97,35 +99,16 @@ impl WideIntervals {
             self.middles.extend_from_slice(interval.middle.as_slice());
         }
         self.halves = std::array::from_fn(|k| intervals[if k < self.count { k } else { 0 }].half);
-        // Lanes that are left are as the first.
-        let n = from.len();
-        let middle = |k: usize| {
-            let k = if k < self.count { k } else { 0 };
-            &self.middles[k * n..(k + 1) * n]
-        };
-        let bases: [(Isometry3<f64>, &[f64]); LANES] = std::array::from_fn(|k| kinematics.parts(middle(k)));
-        self.frames.clear();
-        self.frames.push(wide_frame(&bases.map(|(base, _)| base)));
+        self.set_values(robot, self.count);
         self.axes.clear();
         self.near.clear();
         self.by_base.clear();
-        self.covers.resize_with(robot.bodies.len(), WideCover::default);
-        for (links, count) in [(&mut self.links, robot.bodies.len()), (&mut self.pairs, robot.pairs.len())] {
-            links.clear();
-            links.resize(count, None);
-        }
-        // Sines and cosines first, which are not computed in lanes.
-        let value = |frame: &JointFrame| {
-            let values: [f64; LANES] =
-                std::array::from_fn(|k| bases[k].1[frame.coordinate] * frame.scale + frame.offset);
-            if frame.slides {
-                return [Wide(values), Wide::splat(0.0)];
-            }
-            let both = values.map(mp_math::sin_cos);
-            [Wide(both.map(|(sin, _)| sin)), Wide(both.map(|(_, cos)| cos))]
-        };
-        self.values.clear();
-        self.values.extend(kinematics.frames.iter().map(value));
+        self.links.clear();
+        self.links.resize(robot.bodies.len(), None);
+        self.pairs.clear();
+        self.pairs.resize(robot.pairs.len(), None);
+        self.proven =
+            ProvenParts { margin: self.margin, halves: Wide(self.halves), ..ProvenParts::default() };
         self.displacements.clear();
         self.displacements
             .extend((0..kinematics.coordinates.len()).map(|i| kinematics.displacement(i, from, to)));
@@ -143,6 +126,73 @@ impl WideIntervals {
         });
     }
 
+    /// Places links at up to eight configurations.
+    pub(super) fn place<Q: Coordinates>(&mut self, robot: &SharedArm, states: &[&Q]) {
+        // No interval is prepared then.
+        (self.count, self.next) = (0, 0);
+        self.middles.clear();
+        for state in states {
+            self.middles.extend_from_slice(state.as_slice());
+        }
+        self.set_values(robot, states.len());
+        let (values, frames, covers) = (&self.values, &mut self.frames, &mut self.covers);
+        on_widest(PlaceCovers { robot, values, frames, covers });
+    }
+
+    /// The frame of the base, and what is needed to place the links, at the first `count` of `middles`, at least one.
+    fn set_values(&mut self, robot: &SharedArm, count: usize) {
+        let kinematics = &robot.kinematics;
+        // Lanes that are left are as the first.
+        let n = self.middles.len() / count;
+        let middle = |k: usize| {
+            let k = if k < count { k } else { 0 };
+            &self.middles[k * n..(k + 1) * n]
+        };
+        let bases: [(Isometry3<f64>, &[f64]); LANES] = std::array::from_fn(|k| kinematics.parts(middle(k)));
+        self.frames.clear();
+        self.frames.push(wide_frame(&bases.map(|(base, _)| base)));
+        self.covers.resize_with(robot.bodies.len(), WideCover::default);
+        // Sines and cosines first, which are not computed in lanes.
+        let value = |frame: &JointFrame| {
+            let values: [f64; LANES] =
+                std::array::from_fn(|k| bases[k].1[frame.coordinate] * frame.scale + frame.offset);
+            if frame.slides {
+                return [Wide(values), Wide::splat(0.0)];
+            }
+            let both = values.map(mp_math::sin_cos);
+            [Wide(both.map(|(sin, _)| sin)), Wide(both.map(|(_, cos)| cos))]
+        };
+        self.values.clear();
+        self.values.extend(kinematics.frames.iter().map(value));
+    }
+
+    /// Of the first `count` configurations at which links are [placed](Self::place): those with contact, one at least if it is known that
+    /// there are any, and those of which balls do not tell.
+    pub(super) fn contacts(&mut self, robot: &SharedArm, scene: &Scene, kept: f64, count: usize) -> Contacts {
+        let mut all = Contacts::default();
+        let asked = (1 << count) - 1;
+        let mut add = |found: Contacts| {
+            all.add(Contacts { touching: found.touching & asked, open: found.open & asked });
+            all.touching != 0
+        };
+        let links = robot.numbered_moving();
+        let covers = &mut self.covers;
+        let mut links = links.map(|(i, body)| scene.wide_contact(&body.cover, &mut covers[i], kept));
+        if links.any(&mut add) {
+            return all;
+        }
+        let covers = &mut self.covers;
+        let mut pairs = robot.pairs.iter().map(|pair| {
+            let [a, b] = pair.bodies.map(|i| &robot.bodies[i].cover);
+            match covers.get_disjoint_mut(pair.bodies) {
+                Ok([at_a, at_b]) => wide_touch((a, at_a), (b, at_b)),
+                Err(_) => Contacts { touching: 0, open: asked },
+            }
+        });
+        pairs.any(&mut add);
+        all
+    }
+
     /// A bound (m) on how far the points of a body move over half of interval `k`.
     pub(super) fn near(&self, k: usize, i: usize, body: &LinkBody) -> f64 {
         self.near[body.last()].0[k] + self.by_base[i].0[k]
@@ -154,19 +204,36 @@ impl WideIntervals {
     }
 
     fn near_pairs(&self, robot: &SharedArm, p: usize) -> Wide {
-        let pair = &robot.pairs[p];
-        let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
-        self.near[a.first + pair.steps[0]] + self.near[b.first + pair.steps[1]]
+        of_pair(robot, p, &self.near)
     }
 
-    /// What is enough, and what is of use at least, where bodies move as far as `near`.
-    fn enough(&self, near: Wide, kept: f64) -> (Wide, Wide) {
-        let margin = self.margin;
-        let enough = near.max(Wide::splat(margin)) + margin;
-        (enough + kept, (enough * COARSE).max(Wide::splat(LEAST * margin)) + kept)
+    /// How far to either side of its middle interval `k` is shown free by bounds that covers give alone, as a fraction of the motion; `None`
+    /// where they leave something open.
+    pub(super) fn proven(&mut self, robot: &SharedArm, scene: &Scene, kept: f64, k: usize) -> Option<f64> {
+        let lane = 1 << k;
+        let floats = robot.kinematics.floats();
+        while self.proven.links < robot.bodies.len() {
+            if self.proven.open & lane != 0 {
+                return None;
+            }
+            let i = robot.bodies.len() - 1 - self.proven.links;
+            self.proven.links += 1;
+            let body = &robot.bodies[i];
+            if !floats && body.frame == 0 {
+                continue;
+            }
+            let near = self.near[body.last()] + self.by_base[i];
+            let far = self.far[body.last()] + self.base.far(body.chain.from_base);
+            let (known, is_tight) = self.links_apart(robot, scene, kept, i);
+            self.proven.add(near, far, known - kept, is_tight.then_some(LEAST));
+        }
+        let (proven, near, far) = (&mut self.proven, &self.near, &self.far);
+        on_widest(Pairs { robot, covers: &mut self.covers, pairs: &mut self.pairs, proven, near, far, lane });
+        (self.proven.open & lane == 0).then(|| self.proven.part.0[k])
     }
 
-    /// A lower bound (m) on the distance of body `i` from obstacles in interval `k`, beyond `kept`.
+    /// A lower bound (m) on the distance of body `i` from obstacles in interval `k`, beyond `kept`; and whether it is nearly the distance where
+    /// that is not enough.
     pub(super) fn link_apart(
         &mut self,
         robot: &SharedArm,
@@ -174,17 +241,23 @@ impl WideIntervals {
         kept: f64,
         i: usize,
         k: usize,
-    ) -> f64 {
-        let found = match self.links[i] {
+    ) -> (f64, bool) {
+        let (found, is_tight) = self.links_apart(robot, scene, kept, i);
+        (found.0[k] - kept, is_tight)
+    }
+
+    /// The same in all intervals, `kept` included.
+    fn links_apart(&mut self, robot: &SharedArm, scene: &Scene, kept: f64, i: usize) -> (Wide, bool) {
+        match self.links[i] {
             Some(found) => found,
             None => {
                 let body = &robot.bodies[i];
-                let (enough, some) = self.enough(self.near[body.last()] + self.by_base[i], kept);
+                let near = self.near[body.last()] + self.by_base[i];
+                let [enough, some] = enough(near, self.margin).map(|distance| distance + kept);
                 let found = scene.wide_apart(&body.cover, &mut self.covers[i], enough, some);
                 *self.links[i].insert(found)
             }
-        };
-        found.0[k] - kept
+        }
     }
 
     /// A lower bound (m) on the distance of pair `p` in interval `k`.
@@ -192,7 +265,7 @@ impl WideIntervals {
         let found = match self.pairs[p] {
             Some(found) => found,
             None => {
-                let (enough, some) = self.enough(self.near_pairs(robot, p), 0.0);
+                let [enough, some] = enough(self.near_pairs(robot, p), self.margin);
                 let [i, j] = robot.pairs[p].bodies;
                 let [a, b] = [i, j].map(|i| &robot.bodies[i].cover);
                 let found = match self.covers.get_disjoint_mut([i, j]) {
@@ -206,6 +279,101 @@ impl WideIntervals {
     }
 }
 
+/// What is enough, and what is of use at least, where bodies move as far as `near`.
+#[inline(always)]
+fn enough(near: Wide, margin: f64) -> [Wide; 2] {
+    let enough = near.max(Wide::splat(margin)) + margin;
+    [enough, (enough * COARSE).max(Wide::splat(LEAST * margin))]
+}
+
+/// The sum of what there is for the two bodies of a pair.
+#[inline(always)]
+fn of_pair<T: Copy + Add<Output = T>>(robot: &SharedArm, p: usize, all: &[T]) -> T {
+    let pair = &robot.pairs[p];
+    let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
+    all[a.first + pair.steps[0]] + all[b.first + pair.steps[1]]
+}
+
+/// The parts of eight intervals that covers show free: link by link and pair by pair, as `ProvenPart` of one interval.
+#[derive(Clone, Debug)]
+struct ProvenParts {
+    margin: f64,
+    halves: Wide,
+    /// How far the proven part reaches to either side of the middle, as a fraction of the motion.
+    part: Wide,
+    /// Intervals, as bits, of which covers left something open. The part says nothing for these.
+    open: u32,
+    /// How many links and pairs were looked at.
+    links: usize,
+    pairs: usize,
+}
+
+impl Default for ProvenParts {
+    fn default() -> Self {
+        let (halves, part) = (Wide::splat(0.0), Wide::splat(f64::INFINITY));
+        Self { margin: 0.0, halves, part, open: 0, links: 0, pairs: 0 }
+    }
+}
+
+impl ProvenParts {
+    /// Adds lower bounds on the distance of one link or pair, which moves by at most `near` over half the intervals, and by at most `far` over
+    /// the motion. A bound that is at least `least` margins is used however little it proves.
+    #[inline(always)]
+    fn add(&mut self, near: Wide, far: f64, known: Wide, least: Option<f64>) {
+        let margin = self.margin;
+        // No more than what earlier links and pairs allow.
+        let wanted = self.halves.min(self.part);
+        let near = near * (wanted / self.halves);
+        let [enough, some] = enough(near, margin);
+        let some = least.map_or(some, |least| Wide::splat(least * margin)).min(enough);
+        // Written so that NaN is open.
+        self.open |= !some.less(known);
+        // 0/0 where nothing moves: free all along.
+        if far > 0.0 {
+            let beyond = known - margin;
+            let (all, some) = (wanted.max(beyond / Wide::splat(far)), wanted * beyond / near);
+            self.part = self.part.min(known.where_less(near + margin, some, all));
+        }
+    }
+}
+
+/// Adds pairs of links, until one leaves interval `lane` open.
+struct Pairs<'a> {
+    robot: &'a SharedArm,
+    covers: &'a mut [WideCover],
+    pairs: &'a mut [Option<Wide>],
+    proven: &'a mut ProvenParts,
+    near: &'a [Wide],
+    far: &'a [f64],
+    lane: u32,
+}
+
+impl WideKernel for Pairs<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Self { robot, covers, pairs, proven, near, far, lane } = self;
+        while proven.pairs < robot.pairs.len() && proven.open & lane == 0 {
+            let p = proven.pairs;
+            proven.pairs += 1;
+            let near = of_pair(robot, p, near);
+            let bodies = robot.pairs[p].bodies;
+            let [a, b] = bodies.map(|i| &robot.bodies[i].cover);
+            let known = match (pairs[p], covers.get_disjoint_mut(bodies)) {
+                (Some(known), _) => known,
+                (None, Ok([at_a, at_b])) => {
+                    let [enough, some] = enough(near, proven.margin);
+                    wide_apart_here((a, at_a), (b, at_b), enough, some)
+                }
+                (None, Err(_)) => Wide::splat(f64::NEG_INFINITY),
+            };
+            pairs[p] = Some(known);
+            let is_known = a.is_exact() && b.is_exact();
+            proven.add(near, of_pair(robot, p, far), known, is_known.then_some(2.0));
+        }
+    }
+}
+
 /// Eight poses as one.
 fn wide_frame(poses: &[Isometry3<f64>; LANES]) -> WideFrame {
     let turns: [Matrix3<f64>; LANES] = poses.map(|pose| pose.rotation.to_rotation_matrix().into_inner());
@@ -214,6 +382,28 @@ fn wide_frame(poses: &[Isometry3<f64>; LANES]) -> WideFrame {
     WideFrame {
         turn,
         origin: std::array::from_fn(|r| Wide(std::array::from_fn(|k| poses[k].translation.vector[r]))),
+    }
+}
+
+/// Places links.
+struct PlaceCovers<'a> {
+    robot: &'a SharedArm,
+    values: &'a [[Wide; 2]],
+    frames: &'a mut Vec<WideFrame>,
+    covers: &'a mut [WideCover],
+}
+
+impl WideKernel for PlaceCovers<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let joints = self.robot.kinematics.frames.iter().zip(&self.robot.turns);
+        for ((joint, turns), value) in joints.zip(self.values) {
+            self.frames.push(moved(&self.frames[joint.parent], joint, turns, value));
+        }
+        for (body, cover) in self.robot.bodies.iter().zip(self.covers) {
+            cover.place(&body.ball, &self.frames[body.frame]);
+        }
     }
 }
 
@@ -380,12 +570,14 @@ fn moved(parent: &WideFrame, joint: &JointFrame, turns: &Turns, value: &[Wide; 2
 
 #[cfg(test)]
 mod tests {
+    use super::super::check::{ProvenPart, is_of_use};
     use super::super::robot::{LinkBody, SharedArm};
     use super::super::travel::tests::chain;
+    use super::{LEAST, of_pair};
     use crate::{Arm, ArmModel};
     use mp_collide::Query;
     use mp_cspace::{Configuration, MotionClearance, MotionInterval, Rng, Space};
-    use mp_geom::{Aabb, primitives};
+    use mp_geom::{Aabb, TriMesh, primitives};
     use nalgebra::{Isometry3, Vector3};
     use rand::RngExt;
 
@@ -470,7 +662,7 @@ mod tests {
                     assert!(far <= wide + 1e-12 && wide <= near * (1.0 + 1e-12), "{far} {wide} {near}");
                     best = best.max(far / wide);
                     (less, more) = (less + wide, more + near);
-                    let bound = scratch.wide.link_apart(robot, &obstacles.scene, 0.0, i, k);
+                    let bound = scratch.wide.link_apart(robot, &obstacles.scene, 0.0, i, k).0;
                     let pose = &scratch.frames[body.frame];
                     let found =
                         obstacles.scene.surface_clearance(&mut query, &body.tree, pose, f64::INFINITY).0;
@@ -501,5 +693,76 @@ mod tests {
         }
         assert!(all > 1000 && known > all / 2, "{known} of {all}");
         assert!(best > 0.9 && less < 0.9 * more, "{best} {less} {more}");
+    }
+
+    /// What covers prove of eight intervals together is what they prove link by link and pair by pair, to the bit; where they leave one link or
+    /// pair open they prove nothing.
+    #[test]
+    fn covers_prove_together_what_they_prove_one_by_one() {
+        let mut rng = Rng::seed(8);
+        let (mut proved, mut open) = (0, 0);
+        for round in 0..80 {
+            let mut model = chain(&mut rng);
+            if round % 2 == 1 {
+                for link in &mut model.links {
+                    let boxes = std::mem::take(&mut link.shapes);
+                    let ball = |mesh: &TriMesh| {
+                        let around = mesh.bounding_sphere();
+                        TriMesh::of_balls(vec![around.center], 0.4 * around.radius).unwrap()
+                    };
+                    link.shapes = boxes.iter().map(ball).collect();
+                }
+            }
+            let mut vector = |scale: f64| Vector3::from_fn(|_, _| rng.random_range(-scale..scale));
+            let obstacles: Vec<_> = (0..4)
+                .map(|i| {
+                    let pose = Isometry3::new(vector(1.5), vector(3.0));
+                    (i.to_string(), primitives::cuboid(0.1, 0.3, 0.7).unwrap(), pose)
+                })
+                .collect();
+            let mut arm = Arm::new(&model, obstacles).unwrap();
+            let (from, to, middles, _) = motion(&arm, &mut rng, 8);
+            let interval = |middle| MotionInterval {
+                from: &from,
+                to: &to,
+                middle,
+                half: 1.0 / 16.0,
+                travel: 0.0,
+                margin: 1e-4,
+            };
+            let intervals: Vec<_> = middles.iter().map(interval).collect();
+            arm.look_ahead(&intervals);
+            let Arm { robot, obstacles, scratch, .. } = &mut arm;
+            let wide = &mut scratch.wide;
+            for (k, interval) in intervals.iter().enumerate() {
+                let together = wide.proven(robot, &obstacles.scene, 0.0, k);
+                let mut one_by_one =
+                    ProvenPart { margin: interval.margin, half: interval.half, part: f64::INFINITY };
+                let mut add = |near: f64, far: f64, known: f64, is_known: bool| {
+                    let (near, enough) = one_by_one.wanted(near);
+                    (is_known || is_of_use(known, enough, interval.margin))
+                        && one_by_one.add(near, far, known).is_none()
+                };
+                let links = robot.numbered_moving().all(|(i, body)| {
+                    let (known, is_tight) = wide.link_apart(robot, &obstacles.scene, 0.0, i, k);
+                    let is_known = is_tight && known >= LEAST * interval.margin;
+                    let far = wide.far[body.last()] + wide.base.far(body.chain.from_base);
+                    add(wide.near(k, i, body), far, known, is_known)
+                });
+                let pairs = links
+                    && (0..robot.pairs.len()).all(|p| {
+                        let known = wide.pair_apart(robot, p, k);
+                        add(wide.near_pair(robot, p, k), of_pair(robot, p, &wide.far), known, round % 2 == 1)
+                    });
+                let expected = pairs.then_some(one_by_one.part);
+                assert_eq!(
+                    together.map(f64::to_bits),
+                    expected.map(f64::to_bits),
+                    "{together:?} {expected:?}"
+                );
+                (proved, open) = (proved + usize::from(pairs), open + usize::from(!pairs));
+            }
+        }
+        assert!(proved > 100 && open > 100, "{proved} {open}");
     }
 }

@@ -1,7 +1,7 @@
 //! Arms the tests share.
 
 use mp_cspace::{Joints, Rng, Space, Validity};
-use mp_geom::{TriMesh, pose_from_six, primitives::cuboid};
+use mp_geom::{Shape, TriMesh, pose_from_six, primitives::cuboid};
 use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};
 use nalgebra::{Isometry3, Matrix4, Point3, SVector, Vector3};
 use rand::RngExt;
@@ -50,6 +50,36 @@ pub(crate) fn six() -> ArmModel {
         joints: joints.into_iter().enumerate().map(joint).collect(),
         ..ArmModel::default()
     }
+}
+
+/// The arm of [`six`], each link a row of balls of different sizes.
+pub(crate) fn six_of_balls() -> ArmModel {
+    let mut model = six();
+    for link in &mut model.links {
+        let bounds = link.shapes[0].aabb();
+        let (low, high) = (bounds.min, bounds.max);
+        let radius = 0.25 * (high.x - low.x + high.y - low.y);
+        let ball = |i: u32| {
+            let up = f64::from(i) / 4.0;
+            let at =
+                Point3::new(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), low.z + up * (high.z - low.z));
+            TriMesh::of_balls(vec![at], radius * (1.0 - 0.15 * up)).unwrap()
+        };
+        link.shapes = (0..5).map(ball).collect();
+    }
+    model
+}
+
+/// What is around it: solids of all forms, and the surface of a mesh.
+pub(crate) fn round_clutter() -> Vec<Obstacle> {
+    let shape = |name: &str, lengths: &[f64]| Shape::primitive(name, lengths).unwrap().mesh().unwrap();
+    vec![
+        obstacle("table", cuboid(2.0, 2.0, 0.02).unwrap(), [0.0, 0.0, -0.06, 0.0, 0.0, 0.0]),
+        obstacle("can", shape("cylinder", &[0.1, 0.3]), [0.5, 0.2, 0.4, 0.3, 0.2, 0.1]),
+        obstacle("rail", shape("capsule", &[0.04, 1.0]), [-0.4, 0.3, 0.6, 0.3, 1.2, 0.0]),
+        obstacle("ball", shape("sphere", &[0.15]), [0.1, -0.5, 0.7, 0.0, 0.0, 0.0]),
+        obstacle("sheet", cuboid(0.3, 0.8, 0.02).unwrap().into_surface(), [0.6, -0.2, 0.8, 0.0, 0.3, 0.0]),
+    ]
 }
 
 /// Things around it.

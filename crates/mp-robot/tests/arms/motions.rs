@@ -1,6 +1,8 @@
 //! Validity, clearance and certified motions, against plain triangle distances and against sampling.
 
-use crate::common::{Six, across, cases_of, clutter, obstacle, random_tree, six};
+use crate::common::{
+    Six, across, cases_of, clutter, obstacle, random_tree, round_clutter, six, six_of_balls,
+};
 use mp_collide::reference::RefMesh;
 use mp_cspace::{
     Certified, Clearance, Configuration, Coordinates, Joints, MotionCheck, MotionClearance, MotionValidity,
@@ -20,14 +22,14 @@ fn arm() -> (Arm, Joints<Six>) {
 }
 
 /// The least distance by the reference implementation, from the model and the names of the pairs only.
-fn plain_distance(arm: &Arm, q: &[f64], still: &[&str]) -> f64 {
+fn plain_distance(arm: &Arm, obstacles: &[RefMesh], q: &[f64], still: &[&str]) -> f64 {
     let identity = Isometry3::identity();
     let links: Vec<(&str, RefMesh)> =
         arm.meshes_at(q).into_iter().map(|(name, mesh)| (name, RefMesh::new(&mesh))).collect();
     let mut least = f64::INFINITY;
     for (name, link) in &links {
-        for (_, obstacle) in arm.obstacles().filter(|_| !still.contains(name)) {
-            least = least.min(link.clearance(&identity, &RefMesh::new(obstacle), &identity, f64::INFINITY));
+        for obstacle in obstacles.iter().filter(|_| !still.contains(name)) {
+            least = least.min(link.clearance(&identity, obstacle, &identity, f64::INFINITY));
         }
     }
     for [a, b] in arm.checked_pairs() {
@@ -37,14 +39,18 @@ fn plain_distance(arm: &Arm, q: &[f64], still: &[&str]) -> f64 {
     least
 }
 
+fn references(arm: &Arm) -> Vec<RefMesh> {
+    arm.obstacles().map(|(_, mesh)| RefMesh::new(mesh)).collect()
+}
+
 fn consistent(mut arm: Arm, still: &[&str], samples: usize) -> [usize; 2] {
     let space: Joints<Configuration> = arm.space().unwrap();
     let mut rng = Rng::seed(7);
-    let mut counts = [0, 0];
+    let (mut counts, obstacles) = ([0, 0], references(&arm));
     for _ in 0..samples {
         let q = space.sample_uniform(&mut rng);
         let (valid, clearance) = (arm.is_valid(&q), arm.clearance(&q, f64::INFINITY));
-        let plain = plain_distance(&arm, q.as_slice(), still);
+        let plain = plain_distance(&arm, &obstacles, q.as_slice(), still);
         assert_eq!(valid, clearance > 0.0);
         assert_eq!(valid, !arm.in_contact(&q));
         assert!((clearance - plain).abs() < 1e-11 || plain == clearance, "{clearance} {plain}");
@@ -77,6 +83,81 @@ fn answers_are_those_of_the_reference() {
         sum = [sum[0] + counts[0], sum[1] + counts[1]];
     }
     assert!(sum[0] > cases_of(50) && sum[1] >= cases_of(6), "{sum:?}");
+}
+
+/// Links of balls are compared as balls, in lanes, with all forms of solids: answers are those of the reference, of one state and of eight.
+#[test]
+fn answers_of_balls_are_those_of_the_reference() {
+    let mut arm = Arm::new(&six_of_balls(), round_clutter()).unwrap();
+    assert!(arm.tolerance() > 0.0 && MotionClearance::<Six>::contacts_at_once(&arm) == 8);
+    let counts = consistent(arm.clone(), &["base"], cases_of(400));
+    assert!(counts.into_iter().all(|n| n > cases_of(60)), "{counts:?}");
+    let (space, obstacles): (Joints<Six>, _) = (arm.space().unwrap(), references(&arm));
+    let (mut rng, mut found, mut free) = (Rng::seed(2), [0; 8], 0);
+    for round in 0..cases_of(400) {
+        // Near a state that is free, so that only some of the eight touch.
+        let near =
+            std::iter::repeat_with(|| space.sample_uniform(&mut rng)).find(|q| arm.is_valid(q)).unwrap();
+        let size = [0.1, 0.3, 1.0][round % 3];
+        let states = [(); 8].map(|()| space.interpolate(&near, &space.sample_uniform(&mut rng), size));
+        let touching = states.map(|q| plain_distance(&arm, &obstacles, q.as_slice(), &["base"]) <= 0.0);
+        match arm.first_contact(&states.each_ref()) {
+            Some(k) => {
+                assert!(touching[k], "{touching:?} {k}");
+                found[k] += 1;
+            }
+            None => {
+                assert!(touching.iter().all(|touches| !touches), "{touching:?}");
+                free += 1;
+            }
+        }
+    }
+    assert!(
+        free > cases_of(40) && found.iter().filter(|n| **n > cases_of(4)).count() > 5,
+        "{found:?} {free}"
+    );
+    let nan = Six::repeat(f64::NAN);
+    let near = std::iter::repeat_with(|| space.sample_uniform(&mut rng)).find(|q| arm.is_valid(q)).unwrap();
+    assert_eq!(arm.first_contact(&[&near, &nan]), Some(1));
+}
+
+/// What keeps a clearance from obstacles is free of what is nearer, in lanes too.
+#[test]
+fn balls_keep_a_clearance() {
+    let arm = Arm::new(&six_of_balls(), round_clutter()).unwrap();
+    let (mut keeping, mut plain) = (arm.clone().keeping(0.03), arm.clone());
+    let space: Joints<Six> = arm.space().unwrap();
+    let (mut rng, mut nearer) = (Rng::seed(6), 0);
+    for _ in 0..cases_of(1000) {
+        let q = space.sample_uniform(&mut rng);
+        let (is_free, is_kept) = (plain.is_valid(&q), keeping.is_valid(&q));
+        let clearance = Clearance::clearance(&mut keeping, &q, f64::INFINITY);
+        assert!(is_free || !is_kept);
+        assert!(is_kept == (clearance > 0.0), "{clearance}");
+        nearer += usize::from(is_free && !is_kept);
+    }
+    assert!(nearer > cases_of(50), "{nearer}");
+}
+
+#[test]
+fn certified_motions_of_balls_are_free() {
+    let arm = Arm::new(&six_of_balls(), round_clutter()).unwrap();
+    let space: Joints<Six> = arm.space().unwrap();
+    let counts = agree(&arm, &space, cases_of(900));
+    assert!(counts.into_iter().all(|n| n > cases_of(100)), "{counts:?}");
+    let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
+    let mut certified = Certified::new(&space, arm.clone(), arm.tolerance()).unwrap();
+    let (mut rng, mut proved) = (Rng::seed(12), 0);
+    while proved < cases_of(60) {
+        let a = space.sample_uniform(&mut rng);
+        let b = space.interpolate(&a, &space.sample_uniform(&mut rng), 0.3);
+        if certified.check_motion(&a, &b).is_free() {
+            assert!(verifier.check_motion(&a, &b).is_free());
+            proved += 1;
+        }
+    }
+    let least = least_clearances_agree(&arm, &space, cases_of(30));
+    assert!(least.into_iter().all(|n| n > 0), "{least:?}");
 }
 
 /// Which pairs are compared: not those a joint joins, not those that always touch, not those given.

@@ -89,6 +89,34 @@ fn everything_that_counts_is_read() {
     assert!(mesh("right").is_empty());
 }
 
+/// A link of spheres alone is these; beside other shapes spheres are meshes around them.
+#[test]
+fn links_of_spheres_are_balls() {
+    let ball = |x: f64, radius: &str| {
+        format!(
+            "<collision><origin xyz=\"{x} 0 0\"/><geometry><sphere radius=\"{radius}\"/></geometry></collision>"
+        )
+    };
+    let text = |shapes: &str| {
+        format!(
+            "<robot name=\"r\"><link name=\"a\">{shapes}</link><link name=\"b\"/><joint name=\"j\" type=\"continuous\">\
+             <parent link=\"b\"/><child link=\"a\"/></joint></robot>"
+        )
+    };
+    let shapes = |text: String| read(&text).unwrap().links.remove(0).shapes;
+    let balls = shapes(text(&format!("{}{}{}", ball(0.1, "0.06"), ball(0.3, "0.04"), ball(0.5, "0"))));
+    let found: Vec<_> = balls.iter().flat_map(TriMesh::each_ball).map(|b| (b.center.x, b.radius)).collect();
+    assert_eq!(found, [(0.1, 0.06), (0.3, 0.04)]);
+    let merged = TriMesh::merged(&balls).unwrap();
+    assert!(merged.is_balls() && merged.rounding() == Some(0.06));
+    let around = merged.bounding_sphere();
+    assert!((around.center.x - 0.2).abs() < 1e-12 && (around.radius - 0.16).abs() < 1e-12, "{around:?}");
+    let boxed = "<collision><geometry><box size=\"0.1 0.1 0.1\"/></geometry></collision>";
+    let mixed = shapes(text(&format!("{}{boxed}", ball(0.1, "0.06"))));
+    assert!(mixed.iter().all(|mesh| mesh.balls().is_empty()));
+    assert!(read(&text(&ball(0.1, "-1"))).unwrap_err().to_string().contains("radius"));
+}
+
 #[test]
 fn velocities_are_read_and_those_of_followers_count() {
     let limit = "<joint name=\"turn\" type=\"continuous\"><limit effort=\"1\" velocity=\" 2.5 \"/>";

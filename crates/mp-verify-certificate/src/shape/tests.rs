@@ -9,7 +9,16 @@ fn drawn(state: &mut u64) -> f64 {
 }
 
 fn body(vertices: Vec<[f64; 3]>, pieces: Vec<Vec<usize>>) -> Body {
-    Body { name: "it".to_owned(), frame: 0, of_robot: true, radius: 0.0, vertices, pieces, parts: vec![] }
+    Body {
+        name: "it".to_owned(),
+        frame: 0,
+        of_robot: true,
+        radius: 0.0,
+        radii: vec![],
+        vertices,
+        pieces,
+        parts: vec![],
+    }
 }
 
 /// As far apart as parry says, and no farther.

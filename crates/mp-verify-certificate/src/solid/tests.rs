@@ -2,7 +2,16 @@ use super::*;
 
 fn body(vertices: &[[f64; 3]], pieces: Vec<Vec<usize>>, parts: Vec<Part>) -> Body {
     let vertices = vertices.to_vec();
-    Body { name: "it".to_owned(), frame: 0, of_robot: true, radius: 0.0, vertices, pieces, parts }
+    Body {
+        name: "it".to_owned(),
+        frame: 0,
+        of_robot: true,
+        radius: 0.0,
+        radii: vec![],
+        vertices,
+        pieces,
+        parts,
+    }
 }
 
 /// Whether the only solid of the pieces holds a point; why there is none.

@@ -93,3 +93,52 @@ fn points_on_the_robot_are_left_out() {
     let error = scene("self_filter = 2").unwrap_err().to_string();
     assert!(error.contains("all 5 points of scan") && error.contains("scene.toml"), "{error}");
 }
+
+/// An arm of which each link is balls of several sizes: each keeps its own in the certificate.
+#[test]
+fn links_of_balls_keep_their_radii() {
+    let folder = tempfile::tempdir().unwrap();
+    let ball = |x: f64, radius: f64| {
+        format!(
+            "<collision><origin xyz='{x} 0 0'/><geometry><sphere radius='{radius}'/></geometry></collision>"
+        )
+    };
+    let link = |name: &str| {
+        format!("<link name='{name}'>{}{}{}</link>", ball(0.1, 0.06), ball(0.3, 0.04), ball(0.45, 0.02))
+    };
+    let joint = |name: &str, parent: &str, child: &str, x: f64| {
+        format!(
+            "<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/>\
+             <origin xyz='{x} 0 0'/><axis xyz='0 0 1'/><limit lower='-3' upper='3' effort='1' velocity='1'/></joint>"
+        )
+    };
+    let urdf = format!(
+        "<robot name='r'><link name='base'/>{}{}{}{}</robot>",
+        link("upper"),
+        link("lower"),
+        joint("a", "base", "upper", 0.0),
+        joint("b", "upper", "lower", 0.5)
+    );
+    std::fs::write(folder.path().join("r.urdf"), urdf).unwrap();
+    let scene = "[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = [-1.2, 0.3]\ngoal = [1.4, -0.2]\n\
+        [[obstacle]]\nname = \"post\"\ncapsule = [0.1, 1.0]\npose = [0.8, 0.1, 0, 0, 0, 0]\n";
+    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    let scene = Scene::find(folder.path().join("scene.toml").to_str().unwrap()).unwrap();
+    let (_, certificate) = certified_in(&scene);
+    assert!(verify(&certificate).unwrap().clearance > Some(0.0));
+    let model: serde_json::Value = serde_json::from_str(&certificate).unwrap();
+    let lower = model["model"]["bodies"].as_array().unwrap().iter().find(|b| b["name"] == "lower").unwrap();
+    assert_eq!((&lower["radius"], &lower["radii"]), (&0.06.into(), &serde_json::json!([0.06, 0.04, 0.02])));
+    // Balls that are too large, or not as many as there are centres, are no body of a certificate.
+    for (radii, refused) in [
+        (serde_json::json!([0.06, 0.04, 0.06]), false),
+        (serde_json::json!([0.06, 0.04, 0.07]), true),
+        (serde_json::json!([0.06, 0.04]), true),
+    ] {
+        let mut other: serde_json::Value = serde_json::from_str(&certificate).unwrap();
+        let bodies = other["model"]["bodies"].as_array_mut().unwrap();
+        bodies.iter_mut().find(|b| b["name"] == "lower").unwrap()["radii"] = radii;
+        let answer = verify(&super::sealed(other));
+        assert!(!refused || answer.unwrap_err().to_string().contains("lower"));
+    }
+}

@@ -119,6 +119,9 @@ fn body(own: &ModelBody, scene: &ModelBody) -> Option<String> {
             plain(scene.radius)
         ));
     }
+    if own.radii.iter().map(|r| r.to_bits()).ne(scene.radii.iter().map(|r| r.to_bits())) {
+        return Some("the radii of its balls are other ones in the scene".to_owned());
+    }
     for (what, a, b) in [
         ("vertices", own.vertices.len(), scene.vertices.len()),
         ("pieces", own.pieces.len(), scene.pieces.len()),
