@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 const PLANNERS: [&str; 8] = [
     "auto",
     "rrt-connect",
-    "obrrt-connect step=1% balance=1",
+    "obrrt-connect step=1% walks=0.5 balance=1",
     "obrrt-connect step=0.3% balance=1",
     "obrrt step=1%",
     "retraction-rrt",

@@ -5,7 +5,7 @@
 //! RRT-Connect as the request says, with balanced trees: the larger one waits, so that work goes to the end that is boxed in. It has a turn
 //! that is long enough for what is easy, so that such problems cost nothing more. The others are for what is hard: shorter steps for
 //! narrow places, a metric in which turning counts as
-//! much as the robot's size says, trees that grow along surfaces by steps of two lengths, roadmaps with samples between obstacles.
+//! much as the robot's size says, trees that grow along surfaces, and also on as they came, roadmaps with samples between obstacles.
 //!
 //! A turn is measured in queries and iterations, never in time: the same request gives the same path on every machine. Each search
 //! draws from a stream of its own. What a robot cannot do (a metric, hints of obstacles) is left out.
@@ -69,17 +69,30 @@ const FIRST_SHARE: f64 = 0.5;
 /// The larger tree waits for the smaller one.
 const BALANCED: (&str, &str) = (BALANCE.name, BALANCE.default);
 
+/// Half the steps go on as the tree came.
+const WALKING: (&str, &str) = ("walks", "0.5");
+
 /// The others, in the order of their turns.
 const OTHERS: &[MemberInfo] = &[
-    MemberInfo { planner: "obrrt-connect", settings: &[("step", "1%"), BALANCED], metric: None, share: 1.0 },
+    MemberInfo {
+        planner: "obrrt-connect",
+        settings: &[("step", "1%"), WALKING, BALANCED],
+        metric: None,
+        share: 1.25,
+    },
     MemberInfo {
         planner: "obrrt-connect",
         settings: &[("step", "0.3%"), BALANCED],
         metric: None,
         share: 1.0,
     },
+    MemberInfo {
+        planner: "obrrt-connect",
+        settings: &[("step", "1%"), WALKING, BALANCED],
+        metric: Some(MetricName::Scaled),
+        share: 1.0,
+    },
     MemberInfo { planner: "retraction-rrt", settings: &[], metric: None, share: 0.25 },
-    MemberInfo { planner: "rrt-connect", settings: &[("step", "1%")], metric: None, share: 1.0 },
     MemberInfo { planner: "bridge-prm", settings: &[], metric: Some(MetricName::Scaled), share: 0.25 },
 ];
 

@@ -22,7 +22,7 @@
 //! | [`UtilityRrt`](crate::UtilityRrt) | [`utility_rrt`] | from start and goal | as RRT-Connect, the most promising of several expansions |
 //! | [`RetractionRrt`](crate::RetractionRrt) | [`retraction_rrt`] | from start and goal | as RRT-Connect; what is blocked goes on along the obstacle |
 //! | [`Obrrt`](crate::Obrrt) | [`obrrt`] | from the start | one step toward a sample or along an obstacle, by hints |
-//! | [`ObrrtConnect`](crate::ObrrtConnect) | [`obrrt`] | from start and goal | as RRT-Connect, one step toward a sample or along an obstacle |
+//! | [`ObrrtConnect`](crate::ObrrtConnect) | [`obrrt`] | from start and goal | as RRT-Connect, one step toward a sample or along an obstacle; or on as the tree came: [`walks`] |
 //! | [`TRrt`](crate::TRrt) | [`t_rrt`] | from the start | one step toward a sample, if its end does not cost too much more |
 //! | [`Rrs`](crate::Rrs) | [`rrs`] | from the start, of edges that bend | one step toward a sample, around obstacles by a snake |
 //! | [`RrsConnect`](crate::RrsConnect) | [`rrs`] | from start and goal, of edges that bend | as RRT-Connect, around obstacles by snakes |
@@ -51,6 +51,7 @@ pub mod shared_bi_rrt;
 pub mod shared_tree;
 pub mod t_rrt;
 pub mod utility_rrt;
+pub mod walks;
 
 use crate::by_name::{BuildFn, Types};
 use mp_cspace::registry::PlannerInfo;
@@ -72,6 +73,7 @@ macro_rules! planners {
 
         /// The types that the crate exports.
         pub(crate) mod types {
+            pub use super::walks::Walks;
             $($(pub use super::$file::$kind;)*)+
         }
     };

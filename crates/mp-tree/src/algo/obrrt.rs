@@ -38,7 +38,8 @@
 //! through the passage and a robot that turns as it goes gets stuck. Where there are goal states and motions
 //! can be reversed, try [RRT-Connect](super::rrt_connect) first, and then [`ObrrtConnect`]: it grows two
 //! trees as RRT-Connect does, and each step toward a sample is made by one of these methods. With `balance=1`
-//! and steps of 0.3% to 1% it solves tubes, keys and assemblies that the one tree solves late or not at all.
+//! and steps of 0.3% to 1% it solves tubes, keys and assemblies that the one tree solves late or not at all;
+//! with `walks=0.5` also long threads, and bug traps.
 //! Made [by name](crate::build) both take the hints [of the problem](crate::Problem::with_obstacles).
 //!
 //! | parameter | range | default |
@@ -47,6 +48,7 @@
 //! | weights of G0 … G7 | each 0 or more, finite, some positive | see [`GrowthWeights`] |
 //! | `goal_bias`: probability of aiming at a goal | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//! | `walks`, of two trees: part of the steps that [go on as the tree came](super::walks) | \[0, 1\] | 0 |
 //! | `balance`, of two trees: one with more than this times the nodes of the other waits; 0 for strict turns | 0, or at least 1 | 0 |
 //!
 //! A point goes around discs in the unit square, along their tangents:
@@ -101,12 +103,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::algo::walks::WALKS;
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     AppendDistinct, BuildError, Connect, Extender, Growing, Grown, Inserter, NearestSelector, PlannerInfo,
-    Samples, Selector, SingleTree, TreePlannerParts, Tuning, TwoTrees,
+    Samples, Selector, SingleTree, TreePlannerParts, Tuning, TwoTrees, Walks,
 };
 use mp_cspace::{LocalPlanner, NodeId, Rng, Space, Uniform, obstacles::ObstacleHints};
 use rand::RngExt;
@@ -328,16 +331,16 @@ pub type ObrrtConnect<'c, C, L, N, H> = TwoTrees<
     L,
     Samples<Uniform<'c, C>>,
     NearestSelector<N>,
-    ObstacleGuided<H>,
+    Walks<ObstacleGuided<H>>,
     Connect,
     AppendDistinct,
 >;
 
 constructors! {
     "Two trees with the growth methods of OBRRT" ObrrtConnect<C, L, N, H> where [N: Clone, H: ObstacleHints<C::State>],
-    |problem, index, hints: H, tuning: Tuning, weights: GrowthWeights| {
+    |problem, index, hints: H, tuning: Tuning, weights: GrowthWeights; walks: f64 = [0.0]| {
         let target_sampler = Samples(Uniform(problem.space()));
-        let extender = (ObstacleGuided::new(hints, weights)?, Connect::default());
+        let extender = (Walks::new(ObstacleGuided::new(hints, weights)?, walks)?, Connect::default());
         let inserter = AppendDistinct::default();
         let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter, tuning };
         Self::assemble(connect::INFO.name, problem, parts)
@@ -353,7 +356,7 @@ pub mod connect {
         name: "obrrt-connect",
         summary: "RRT-Connect whose trees also grow along obstacles; for narrow passages between goal states",
         citation: "Rodriguez, Tang, Lien and Amato 2006; Kuffner and LaValle 2000",
-        parameters: &[STEP, GOAL_BIAS, PATIENCE, BALANCE],
+        parameters: &[STEP, WALKS, GOAL_BIAS, PATIENCE, BALANCE],
         aliases: &[],
         cannot: NEEDS_BOTH_ENDS,
     };
@@ -361,7 +364,7 @@ pub mod connect {
     pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
         let mut problem = args.problem;
         let hints = problem.take_obstacles().hints.ok_or(BuildError::NoHints { planner: INFO.name })?;
-        let weights = GrowthWeights::default();
-        Ok(Box::new(ObrrtConnect::with_index(problem, args.index, hints, args.tuning, weights)?))
+        let (weights, walks) = (GrowthWeights::default(), args.settings.number(WALKS.name)?.unwrap_or(0.0));
+        Ok(Box::new(ObrrtConnect::with_index(problem, args.index, hints, args.tuning, weights, walks)?))
     }
 }

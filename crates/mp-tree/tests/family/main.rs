@@ -17,3 +17,4 @@ mod shared_bi_rrt;
 mod shared_tree;
 mod slots;
 mod t_rrt;
+mod walks;
