@@ -16,7 +16,7 @@
 //! thirty that are blocked.
 //!
 //! Measured in `docs/results/auto.md`: [two trees of OBRRT](crate::ObrrtConnect), half of whose steps are walkers', take a nut off a
-//! thread of six turns in a second, on which nothing else here gets on in a minute.
+//! thread of six turns in seconds, and a rod out of traps; nothing else here does in a minute.
 //!
 //! Needs a space with [velocities](Space::moved); in others no walker makes a step.
 
