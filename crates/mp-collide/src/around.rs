@@ -140,7 +140,7 @@ impl Around {
         let half = &self.bounds.half;
         if self.outline.form == Form::Capsule {
             let c = (z - self.outline.straight).max(0.0);
-            return (x * x + y * y + c * c).sqrt() - self.radius - ball.radius;
+            return (x * x + y * y + c * c).sqrt() - (self.radius + ball.radius);
         }
         let [a, b, c] = [(x - half.x).max(0.0), (y - half.y).max(0.0), (z - half.z).max(0.0)];
         if self.outline.form == Form::Box {
