@@ -32,6 +32,7 @@ mod shared_bi_rrt;
 mod shared_tree;
 mod t_rrt;
 mod utility_rrt;
+mod walks;
 
 /// Its name, and what it does.
 type Example = (&'static str, fn() -> shared::Result);
@@ -65,6 +66,7 @@ const EXAMPLES: &[Example] = &[
     ("shared_tree", shared_tree::main),
     ("t_rrt", t_rrt::main),
     ("utility_rrt", utility_rrt::main),
+    ("walks", walks::main),
 ];
 
 fn main() -> shared::Result {
