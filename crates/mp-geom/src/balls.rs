@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// The most balls that are drawn: more are thinned further.
 const DRAWN: usize = 20_000;
 
-/// Of up to so many balls each is drawn round.
+/// Up to this many balls are drawn with finer facets.
 const ROUND: usize = 1000;
 
 impl TriMesh {

@@ -16,7 +16,8 @@ struct Node {
     center: Point3<f64>,
     /// Rounded up; with the radius of the cloud it holds the balls too.
     radius: f64,
-    /// Less where all balls are smaller than the largest of the cloud: with the radius of the cloud it holds the balls, not their centres.
+    /// As `radius`, but less where all balls of the node are smaller than the largest of the cloud: this and the radius of the cloud together
+    /// enclose the balls, though not all centres.
     reach: f64,
     first: u32,
     count: u32,

@@ -28,7 +28,7 @@ const PIECE: f64 = 0.2;
 /// Surfaces of more pieces are cut across their longest axis only, without trying the others, and their balls are not the smallest.
 const LARGE: usize = 3000;
 
-/// Groups of no more of its own balls are not divided.
+/// A group of at most this many balls is not divided, in the cover of a mesh of balls.
 const FEW: usize = 3;
 
 /// Larger meshes (m) have one ball.

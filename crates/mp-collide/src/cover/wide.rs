@@ -136,9 +136,9 @@ impl WideCover {
 /// Contact at eight places: a bit for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Contacts {
-    /// There is contact.
+    /// Bit i is set where there is contact at place i.
     pub touching: u32,
-    /// Balls do not tell.
+    /// Bit i is set where balls leave it open whether there is contact at place i.
     pub open: u32,
 }
 

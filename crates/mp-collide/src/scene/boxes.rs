@@ -64,8 +64,8 @@ impl Scene {
         (found.min(Wide::splat(least)), is_tight)
     }
 
-    /// Whether a mesh at eight places touches bodies, or is within `kept` (m) of them: in which it does, and in which balls do not tell, as
-    /// bits. The search ends where it touches at one place. Where the cover is not [exact](Cover::is_exact) balls never tell that it touches.
+    /// Whether a mesh at eight places touches bodies, or is within `kept` (m) of them: at which places it does, and at which balls leave it
+    /// open. The search ends where it touches at one place. Where the cover is not [exact](Cover::is_exact) balls never tell that it touches.
     pub fn wide_contact(&self, cover: &Cover, placed: &mut WideCover, kept: f64) -> Contacts {
         let is_usual = placed.size < LARGEST;
         if !is_usual {

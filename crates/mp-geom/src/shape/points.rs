@@ -34,7 +34,7 @@ impl Points {
     }
 }
 
-/// A mesh around a ball: an icosahedron, whose triangles are divided into four so many times.
+/// A mesh around a ball: an icosahedron, of which each triangle is divided into four, `divided` times.
 pub(crate) fn ball(radius: f64, divided: u32) -> Made {
     sphere::around(radius, divided)
 }
