@@ -97,7 +97,7 @@ pub mod triangle;
 
 pub use counters::Counters;
 pub use cover::{
-    Contacts, Cover, MOST_BALLS, PlacedCover, WideCover, wide_apart, wide_apart_here, wide_touch,
+    Contacts, Cover, MOST_BALLS, PlacedCover, WideCover, wide_apart, wide_apart_here, wide_within,
 };
 pub use filled::FillError;
 pub use mesh::CollisionMesh;

@@ -3,7 +3,9 @@
 mod certified;
 mod discrete;
 mod fine;
+mod spaced;
 
 pub use certified::Certified;
 pub use discrete::Discrete;
 pub use fine::FineDiscrete;
+pub use spaced::Spaced;

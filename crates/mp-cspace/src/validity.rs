@@ -186,14 +186,18 @@ pub trait MotionClearance<S>: Clearance<S> {
         crate::path::clearance::by_motion_bound(self, search)
     }
 
-    /// How many states it tests for [contact](Self::first_contact) together at about the cost of one. 1, the default: none.
+    /// How many states it tests for [contact](Self::first_within) together at about the cost of one. 1, the default: none.
     fn contacts_at_once(&self) -> usize {
         1
     }
 
-    /// The index of a state that is [in contact](Clearance::in_contact), if one is: the first, or another one that is found sooner.
-    fn first_contact(&mut self, states: &[&S]) -> Option<usize> {
-        states.iter().position(|q| self.in_contact(q))
+    /// The index of a state with less clearance than `clearance` (m), or [in contact](Clearance::in_contact) if that is zero: the first such
+    /// state, or another one that is found sooner. A wrong `None` costs time, never safety.
+    fn first_within(&mut self, states: &[&S], clearance: f64) -> Option<usize> {
+        states.iter().position(|q| match clearance > 0.0 {
+            true => self.clearance(q, clearance) < clearance,
+            false => self.in_contact(q),
+        })
     }
 
     /// Whether [`in_contact`](Clearance::in_contact) costs so much less than
@@ -223,8 +227,8 @@ impl<S, V: MotionClearance<S> + ?Sized> MotionClearance<S> for &mut V {
     fn contacts_at_once(&self) -> usize {
         (**self).contacts_at_once()
     }
-    fn first_contact(&mut self, states: &[&S]) -> Option<usize> {
-        (**self).first_contact(states)
+    fn first_within(&mut self, states: &[&S], clearance: f64) -> Option<usize> {
+        (**self).first_within(states, clearance)
     }
     fn contact_first(&self) -> bool {
         (**self).contact_first()

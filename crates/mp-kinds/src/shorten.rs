@@ -1,11 +1,13 @@
 //! Shortens paths.
 
-use crate::motion::{By, Counting, motions};
+use crate::motion::{AnyChecker, By, Counting, motions, motions_of};
 use crate::possible::Possible;
 use crate::{Error, Robot};
 use mp_cspace::erased::{AnyCheck, AnySpace};
-use mp_cspace::shorten::{Effort, loosen, reduce, shortcut, simplified, simplify};
-use mp_cspace::{Configuration, Interrupt, Length, MotionCheck, MotionValidity, Path, Rng};
+use mp_cspace::shorten::{Draft, Effort, loosen, reduce, shortcut, simplified, simplify};
+use mp_cspace::{
+    Configuration, Interrupt, Length, MotionCheck, MotionClearance, MotionValidity, Path, Rng, Space,
+};
 use std::collections::HashMap;
 use std::sync::atomic::AtomicU64;
 
@@ -19,14 +21,27 @@ const NARROW: f64 = 0.1;
 /// only if it is shorter than this part of its length.
 const FAR_SHORTER: f64 = 0.8;
 
+/// How far points of a robot that tests many states at once travel between two of these while its path is made short, as a multiple of the
+/// clearance of shortcuts.
+const SPACING: f64 = 10.0;
+
+/// Which part of the clearance of shortcuts the parts of such a robot keep from each other.
+const OWN: f64 = 0.25;
+
+/// How far states of such a path are moved back first where a certificate refuses an edge, as a part of the extent of the space.
+const LOOSENED: f64 = 5e-4;
+
 /// Motions of robots that are sampled are tested at a resolution this many times finer than that of planning: the coarser it is, the deeper
 /// short paths dip into what they graze.
 const FINER: f64 = 4.0;
 
-/// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](crate::Motion::shortcut_clearance), or leads through a
-/// passage where the given path does not keep it: there they keep a tenth of it, or are edges of the given path; so does all of it where the
+/// Shortens a path. Every edge of the result keeps half of the [clearance of shortcuts](crate::Motion::shortcut_clearance), or leads through a
+/// passage where the given path does not keep it: there they keep a twentieth of it, or are edges of the given path; so does all of it where the
 /// way is far shorter then. The same seed gives the same path, unless `interrupt` ends it early: then the path is what it is after the last
 /// change.
+///
+/// Robots that test many states at once are tested at a few states of each motion while the path is made short, for all of that clearance from
+/// obstacles. Only the motions of the short path are certified, and made [looser](loosen) where that fails.
 ///
 /// The motions of a robot that is sampled are tested at fewer states than its verifier tests. In the end the verifier tests the path, which is made
 /// [looser](loosen) where it is refused. If that does not help, the given path is shortened once more, and the verifier tests each motion of it: that
@@ -73,7 +88,8 @@ fn shorten_by_samples(
     let mut verifier = possible(kind, interrupt, verifier()?);
     for mut check in [possible(kind, interrupt, samples(fine)?), check] {
         let draft = simplified(&factors, &mut check, path, effort, rng);
-        if let Some(loose) = loosen(&factors, &mut verifier, path, &draft, fine / 2.0) {
+        let (loose, refused) = loosen(&factors, &mut verifier, path, &draft, fine / 2.0);
+        if refused.is_empty() {
             return Ok((loose, true));
         }
         if verifier.is_interrupted() {
@@ -104,19 +120,27 @@ fn shorten_by_certificates(
         return Ok(short);
     }
     let factors = kind.any_space();
-    let draft = simplified(&factors, &mut check, path, effort, rng);
-    let known = draft.free.clone();
-    let short = draft.path();
+    let mut narrow_check = possible(kind, interrupt, certified(narrow)?);
+    let spaced = spaced(kind, tolerance, &|checker, by| {
+        Ok(possible(kind, interrupt, motions_of(checker, kind, &space, by, &counting)?))
+    })?;
+    let by_spaces = spaced.and_then(|[mut spaced, mut check]| {
+        let draft = simplified(&factors, &mut spaced, path, effort, rng);
+        certified_part_by_part(&factors, [&mut check, &mut narrow_check], path, &draft)
+    });
+    let (short, roomy) = by_spaces.unwrap_or_else(|| {
+        let draft = simplified(&factors, &mut check, path, effort, rng);
+        let edges = draft.states.windows(2).zip(&draft.free);
+        let roomy = edges.map(|(w, known)| *known || check.check_motion(&w[0], &w[1]).is_free()).collect();
+        (draft.path(), roomy)
+    });
     if !has_wide {
         return Ok(short);
     }
-    let edges = short.states.windows(2).zip(known);
-    let roomy: Vec<bool> =
-        edges.map(|(w, known)| known || check.check_motion(&w[0], &w[1]).is_free()).collect();
+    let mut narrow = narrow_check;
     if roomy.iter().all(|roomy| *roomy) {
         return Ok(short);
     }
-    let mut narrow = possible(kind, interrupt, certified(narrow)?);
     let mut states: Vec<Configuration> = short.states.first().cloned().into_iter().collect();
     let mut first = 0;
     for passage in roomy.chunk_by(|a, b| a == b) {
@@ -136,6 +160,62 @@ fn shorten_by_certificates(
     let other = shortcut(&factors, &mut narrow, &other, effort, rng);
     let is_far_shorter = other.length(&space) < FAR_SHORTER * short.length(&space);
     Ok(if is_far_shorter { simplify(&factors, &mut narrow, &other, effort, rng) } else { short })
+}
+
+/// For robots that test many states at once, checks made by `make`: one that tests a few states of a motion for the clearance `wide` (m) from
+/// obstacles, and one that certifies half of it. Parts of the robot need a [quarter](OWN) from each other: some never have more than half.
+fn spaced<'c>(
+    kind: &dyn Robot,
+    wide: f64,
+    make: &dyn Fn(AnyChecker, By) -> Result<AnyCheck<'c, Configuration>, Error>,
+) -> Result<Option<[AnyCheck<'c, Configuration>; 2]>, Error> {
+    if kind.any_checker().intervals_at_once() == 1 {
+        return Ok(None);
+    }
+    let own = OWN * wide;
+    let keeping = |kept: f64| kind.any_checker_keeping(kind.kept() + kept);
+    let (Some(testing), Some(certifying)) = (keeping(wide - own), keeping(0.5 * (wide - own))) else {
+        return Ok(None);
+    };
+    let spaces = By::Spaces { clearance: own, step: SPACING * wide };
+    Ok(Some([make(testing, spaces)?, make(certifying, By::Certificates(own))?]))
+}
+
+/// Makes certified what a sampled check found free: each part of the `draft` between edges of the `given` path is [loosened](loosen) until `check`
+/// finds it free, or `narrow` those of its edges that are left. Returns the path, and of each edge whether `check` finds it free; `None` where
+/// `narrow` does not find an edge free.
+fn certified_part_by_part(
+    space: &impl Space<State = Configuration>,
+    [check, narrow]: [&mut AnyCheck<'_, Configuration>; 2],
+    given: &Path<Configuration>,
+    draft: &Draft<Configuration>,
+) -> Option<(Path<Configuration>, Vec<bool>)> {
+    let step = LOOSENED * space.extent();
+    let mut states: Vec<Configuration> = draft.states.first().cloned().into_iter().collect();
+    let mut roomy = Vec::new();
+    let mut first = 0;
+    for part in draft.free.chunk_by(|a, b| a == b) {
+        let (edges, ends) = (first..first + part.len(), first..first + part.len() + 1);
+        first += part.len();
+        let part = Draft {
+            states: draft.states[ends.clone()].to_vec(),
+            free: part.to_vec(),
+            origin: draft.origin[ends].to_vec(),
+        };
+        if !part.free[0] {
+            roomy.extend(edges.map(|i| check.check_motion(&draft.states[i], &draft.states[i + 1]).is_free()));
+            states.extend(part.states.into_iter().skip(1));
+            continue;
+        }
+        let (loose, refused) = loosen(space, check, given, &part, step);
+        let is_free = |i: &usize| narrow.check_motion(&loose.states[*i], &loose.states[i + 1]).is_free();
+        if !refused.iter().all(is_free) {
+            return None;
+        }
+        roomy.extend((0..edges.len()).map(|i| !refused.contains(&i)));
+        states.extend(loose.states.into_iter().skip(1));
+    }
+    Some((Path::straight(states), roomy))
 }
 
 /// `check`, which finds no motion free that the robot cannot make, and is asked for each motion once.

@@ -194,13 +194,14 @@ impl WideCover {
     }
 }
 
-/// Whether two covers touch.
-struct Touch<'a> {
+/// Whether two covers are within a distance.
+struct Within<'a> {
     own: (&'a Cover, &'a mut WideCover),
     other: (&'a Cover, &'a mut WideCover),
+    distance: f64,
 }
 
-impl WideKernel for Touch<'_> {
+impl WideKernel for Within<'_> {
     type Output = Contacts;
     #[inline(always)]
     fn run(self) -> Contacts {
@@ -211,7 +212,7 @@ impl WideKernel for Touch<'_> {
             return Contacts { touching: 0, open: ALL };
         }
         let rounding = ROUNDING * size;
-        let near = |gap: Wide| ALL & !Wide::splat(rounding).less(gap);
+        let near = |gap: Wide| ALL & !Wide::splat(self.distance + rounding).less(gap);
         let mut open = near(gap(&a.center, &b.center, a.radius + b.radius));
         if open == 0 || own.groups.is_empty() || others.groups.is_empty() {
             return Contacts { touching: 0, open };
@@ -235,7 +236,7 @@ impl WideKernel for Touch<'_> {
                         let gap = gap(&a.balls[k], &b.balls[l], own.balls[k].radius + others.balls[l].radius);
                         found.open |= one & near(gap);
                         if is_exact {
-                            found.touching |= one & gap.less(Wide::splat(-rounding));
+                            found.touching |= one & gap.less(Wide::splat(self.distance - rounding));
                         }
                     }
                 }
@@ -247,9 +248,14 @@ impl WideKernel for Touch<'_> {
     }
 }
 
-/// Whether two meshes at eight places touch, by their covers: that they do is known only where both are [exact](Cover::is_exact).
-pub fn wide_touch(own: (&Cover, &mut WideCover), other: (&Cover, &mut WideCover)) -> Contacts {
-    on_widest(Touch { own, other })
+/// Whether two meshes at eight places are within `distance` (m), zero for contact, by their covers: that they are is known only where both are
+/// [exact](Cover::is_exact).
+pub fn wide_within(
+    own: (&Cover, &mut WideCover),
+    other: (&Cover, &mut WideCover),
+    distance: f64,
+) -> Contacts {
+    on_widest(Within { own, other, distance })
 }
 
 /// Of two covers.

@@ -275,7 +275,8 @@ mod tests {
             }
             for (i, j) in [(0, 1), (0, 2)] {
                 let [a, b] = placed.get_disjoint_mut([i, j]).unwrap();
-                let found = crate::wide_touch((&covers[i], a), (&covers[j], b));
+                let [found, within] =
+                    [0.0, 0.07].map(|d| crate::wide_within((&covers[i], a), (&covers[j], b), d));
                 let far = Wide::splat(f64::INFINITY);
                 let apart = crate::wide_apart((&covers[i], a), (&covers[j], b), far, Wide::splat(0.0));
                 for lane in 0..LANES {
@@ -283,6 +284,10 @@ mod tests {
                     let distance = query.clearance(&trees[i], &poses[0], &trees[j], &poses[1], f64::INFINITY);
                     let is_open = found.open >> lane & 1 == 1;
                     assert!(apart.0[lane] <= distance, "{} {distance}", apart.0[lane]);
+                    match within.open >> lane & 1 == 1 {
+                        true => assert!(!covers[j].is_exact()),
+                        false => assert_eq!(within.touching >> lane & 1 == 1, distance < 0.07),
+                    }
                     if covers[j].is_exact() {
                         assert!((apart.0[lane].max(0.0) - distance).abs() < 1e-9 && !is_open);
                         assert_eq!(found.touching >> lane & 1 == 1, distance == 0.0);

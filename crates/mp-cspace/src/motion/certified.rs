@@ -126,7 +126,7 @@ where
             Some(k) => self.states[k].as_ref().unwrap_or(end),
             None => end,
         });
-        let found = self.valid.first_contact(&states)?;
+        let found = self.valid.first_within(&states, 0.0)?;
         Some(found.checked_sub(1).map_or(at, |k| BETWEEN[k]))
     }
 
@@ -205,7 +205,7 @@ where
         let mut middles = [const { None }; MOST_AT_ONCE];
         let mut parts = [Part::default(); MOST_AT_ONCE];
         self.uncovered.clear();
-        match self.valid.contacts_at_once() >= MOST_AT_ONCE && at_once == MOST_AT_ONCE {
+        match at_once == MOST_AT_ONCE {
             // Eight parts are asked about together as soon as one, and need less clearance.
             true => self
                 .uncovered

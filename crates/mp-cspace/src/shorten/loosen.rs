@@ -8,7 +8,8 @@ use crate::{MotionValidity, Path, Space};
 const ROUNDS: usize = 6;
 
 /// Moves the ends of edges that `check` does not find free toward the places of the `given` path that they have come from: by `step`, in the
-/// metric, and twice as far each time, until `check` finds all edges free; `None` if it does not after six times.
+/// metric, and twice as far each time, until `check` finds all edges free, or six times. Returns the path, and the edges of it that `check` does not
+/// find free.
 ///
 /// For paths made short by a coarser check: short paths graze what they lead round, and dip into it between the states that were tested. Asks
 /// about each edge once, and each time one of its ends has moved.
@@ -18,7 +19,7 @@ pub fn loosen<C: Space>(
     given: &Path<C::State>,
     draft: &Draft<C::State>,
     step: f64,
-) -> Option<Path<C::State>> {
+) -> (Path<C::State>, Vec<usize>) {
     let old = &draft.states;
     let arcs = arc_lengths(space, &given.states);
     let given_at = |at: f64| {
@@ -33,10 +34,7 @@ pub fn loosen<C: Space>(
     let mut blocked: Vec<usize> = (1..states.len()).collect();
     for round in 0..=ROUNDS {
         blocked.retain(|&i| !check.check_motion(&states[i - 1], &states[i]).is_free());
-        if blocked.is_empty() {
-            return Some(Path::straight(states));
-        }
-        if round == ROUNDS || check.is_interrupted() {
+        if blocked.is_empty() || round == ROUNDS || check.is_interrupted() {
             break;
         }
         let before = moved.clone();
@@ -56,7 +54,9 @@ pub fn loosen<C: Space>(
             let far = space.distance(&old[i], &place);
             states[i] = space.interpolate(&old[i], &place, if moved[i] < far { moved[i] / far } else { 1.0 });
         }
-        blocked = (1..old.len()).filter(|&i| has_moved(i - 1) || has_moved(i)).collect();
+        // An edge from start to goal stays blocked.
+        let is_asked = |i: &usize| has_moved(i - 1) || has_moved(*i) || blocked.contains(i);
+        blocked = (1..old.len()).filter(is_asked).collect();
     }
-    None
+    (Path::straight(states), blocked.into_iter().map(|i| i - 1).collect())
 }

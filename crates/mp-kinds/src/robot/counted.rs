@@ -155,8 +155,8 @@ impl<S, R: MotionClearance<S> + Queries> MotionClearance<S> for Counted<'_, R> {
     fn contacts_at_once(&self) -> usize {
         self.checker.contacts_at_once()
     }
-    fn first_contact(&mut self, states: &[&S]) -> Option<usize> {
-        self.query(Some(0), |checker| checker.first_contact(states))
+    fn first_within(&mut self, states: &[&S], clearance: f64) -> Option<usize> {
+        self.query(Some(0), |checker| checker.first_within(states, clearance))
     }
     fn contact_first(&self) -> bool {
         self.checker.contact_first()

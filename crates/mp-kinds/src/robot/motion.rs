@@ -8,7 +8,7 @@ use mp_cspace::erased::{AnyCheck, AnyFactored, AnySpace};
 use mp_cspace::{
     Certified, Clearance, ClearanceSearch, Configuration, Curve, Discrete, Factored, Interrupt,
     IntervalClearance, KnownFree, LeastClearance, Length, MotionCheck, MotionClearance, MotionInterval,
-    MotionValidity, ObstacleKnowledge, ParameterError, Space, Validity,
+    MotionValidity, ObstacleKnowledge, ParameterError, Space, Spaced, Validity,
 };
 use std::fmt::{self, Debug};
 use std::sync::Arc;
@@ -109,6 +109,13 @@ pub enum By {
     Certificates(f64),
     /// At states so far apart.
     States(Length),
+    /// At states between which no point travels farther than `step` (m), each with a clearance of `clearance` (m).
+    Spaces {
+        /// The clearance, m.
+        clearance: f64,
+        /// How far points travel at most, m.
+        step: f64,
+    },
 }
 
 /// Strides of certified checks, as a part of the extent of the robot's own space.
@@ -125,13 +132,25 @@ pub fn motions<'c>(
     by: By,
     counting: &Counting<'c>,
 ) -> Result<AnyCheck<'c, Configuration>, ParameterError> {
-    let counted = counting.of(kind.any_checker());
+    motions_of(kind.any_checker(), kind, space, by, counting)
+}
+
+/// As [`motions`], of this checker of the robot.
+pub(crate) fn motions_of<'c>(
+    checker: AnyChecker,
+    kind: &dyn Robot,
+    space: &'c AnySpace<'c, Configuration>,
+    by: By,
+    counting: &Counting<'c>,
+) -> Result<AnyCheck<'c, Configuration>, ParameterError> {
+    let counted = counting.of(checker);
     Ok(match by {
         By::Certificates(tolerance) => {
             let certified = Certified::new(space, counted, tolerance)?;
             Box::new(certified.with_stride(STRIDE * kind.any_space().extent())?)
         }
         By::States(resolution) => Box::new(Discrete::new(space, counted, resolution)?),
+        By::Spaces { clearance, step } => Box::new(Spaced::new(space, counted, clearance, step)?),
     })
 }
 
@@ -143,6 +162,10 @@ pub trait AnyMotion {
     fn any_checker(&self) -> AnyChecker;
     /// A checker that keeps no clearance: what it measures is the distance to obstacles itself.
     fn any_measure(&self) -> AnyChecker;
+    /// A checker that keeps another clearance from obstacles: [`TypedMotion::checker_keeping`]. By default `None`.
+    fn any_checker_keeping(&self, _kept: f64) -> Option<AnyChecker> {
+        None
+    }
     /// The same robot, which keeps a clearance from obstacles: [`TypedMotion::keeping`].
     ///
     /// # Errors
@@ -176,6 +199,9 @@ impl<K: TypedMotion + Robot> AnyMotion for K {
     }
     fn any_measure(&self) -> AnyChecker {
         AnyChecker::new(self.checker_keeping(0.0).unwrap_or_else(|| self.checker().clone()))
+    }
+    fn any_checker_keeping(&self, kept: f64) -> Option<AnyChecker> {
+        self.checker_keeping(kept).map(AnyChecker::new)
     }
     fn any_keeping(&self, kept: f64) -> Result<Arc<dyn Robot>, Error> {
         Ok(Arc::new(self.keeping(kept)?))
@@ -275,8 +301,8 @@ impl MotionClearance<Configuration> for AnyChecker {
     fn contacts_at_once(&self) -> usize {
         self.0.contacts_at_once()
     }
-    fn first_contact(&mut self, states: &[&Configuration]) -> Option<usize> {
-        self.0.first_contact(states)
+    fn first_within(&mut self, states: &[&Configuration], clearance: f64) -> Option<usize> {
+        self.0.first_within(states, clearance)
     }
     fn contact_first(&self) -> bool {
         self.0.contact_first()

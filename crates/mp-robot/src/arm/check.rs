@@ -1,22 +1,31 @@
 //! The checks of an arm that planners use: validity, clearance and motions.
 
 use super::Arm;
-use super::robot::{LinkBody, Scratch, are_nested};
-use super::wide::{COARSE, LEAST};
+use super::pairs::LinkPair;
+use super::robot::{LinkBody, Scratch, SharedArm, are_nested};
+use super::wide::{COARSE, LEAST, Part};
 use crate::kept::beyond;
-use mp_collide::Contacts;
+use mp_collide::{Contacts, Query, Scene};
 use mp_cspace::{
     Clearance, ClearanceSearch, Coordinates, IntervalClearance, LeastClearance, MotionClearance,
     MotionInterval, Rng, Validity, obstacles::ObstacleHints,
 };
 use mp_simd::wide::LANES;
+use nalgebra::Isometry3;
 use std::collections::VecDeque;
 
 impl Arm {
     /// Whether `q` is in collision, or no configuration. Leaves the frames at `q` in the scratch memory.
     pub(super) fn collides(&mut self, q: &[f64]) -> bool {
+        self.is_within(q, 0.0)
+    }
+
+    /// Whether `q` has less clearance than `clearance` (m), is in collision if that is zero, or is no configuration. Leaves the frames at `q`
+    /// in the scratch memory.
+    fn is_within(&mut self, q: &[f64], clearance: f64) -> bool {
         self.counters.collision_checks += 1;
         let Self { robot, obstacles, query, scratch, kept, .. } = self;
+        let kept = *kept + clearance;
         if !robot.kinematics.is_configuration(q) {
             return true;
         }
@@ -24,20 +33,18 @@ impl Arm {
         let Scratch { frames, balls, covers, undecided, .. } = scratch;
         let scene = &obstacles.scene;
         // What covers decide costs less than any tree: all of that first.
-        let apart = if *kept > 0.0 { *kept * (1.0 + 1e-9) } else { f64::MIN_POSITIVE };
+        let beyond = |distance: f64| (distance * (1.0 + 1e-9)).max(f64::MIN_POSITIVE);
         undecided.clear();
         undecided.extend(robot.numbered_moving().filter_map(|(i, body)| {
-            let by_balls = scene.apart(&body.cover, &mut covers[i], apart).is_some();
+            let by_balls = scene.apart(&body.cover, &mut covers[i], beyond(kept)).is_some();
             // Outside of all boxes it is in no solid, but solids may be in it.
             (!by_balls || body.tree.is_filled()).then_some((i, by_balls))
         }));
         let touches = undecided.iter().any(|&(i, by_balls)| {
             let body = &robot.bodies[i];
-            let (tree, pose) = (&body.tree, &frames[body.frame]);
-            match (by_balls, *kept > 0.0) {
-                (true, _) => scene.nested(query, tree, pose).is_some(),
-                (false, true) => scene.within(query, tree, pose, *kept),
-                (false, false) => scene.collides(query, tree, pose),
+            match by_balls {
+                true => scene.nested(query, &body.tree, &frames[body.frame]).is_some(),
+                false => link_within(robot, scene, query, frames, i, kept),
             }
         });
         if touches {
@@ -49,18 +56,72 @@ impl Arm {
             let by_balls = match a.tree.is_filled() || b.tree.is_filled() {
                 true => {
                     let [a, b] = pair.bodies.map(|k| &balls[k]);
-                    (a.center - b.center).norm() > a.radius + b.radius
+                    (a.center - b.center).norm() > a.radius + b.radius + clearance
                 }
-                false => robot.apart(pair, covers, f64::MIN_POSITIVE).is_some(),
+                false => robot.apart(pair, covers, beyond(clearance)).is_some(),
             };
-            !by_balls && query.meets(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame])
+            !by_balls && pair_within(robot, query, frames, pair, clearance)
         })
+    }
+
+    /// The first of the configurations, at which links are placed in lanes, where a part that balls left open is nearer than `clearance` (m).
+    fn first_of_open<Q: Coordinates>(&mut self, states: &[&Q], clearance: f64) -> Option<usize> {
+        let Self { robot, obstacles, query, scratch, kept, .. } = self;
+        let kept = *kept + clearance;
+        (0..states.len()).find(|k| {
+            let mut is_placed = false;
+            (0..scratch.wide.open.len()).any(|i| {
+                let (part, lanes) = scratch.wide.open[i];
+                if lanes >> k & 1 == 0 {
+                    return false;
+                }
+                robot.place_once(states[*k].as_slice(), scratch, &mut is_placed);
+                let frames = &scratch.frames;
+                match part {
+                    Part::Link(i) => link_within(robot, &obstacles.scene, query, frames, i, kept),
+                    Part::Pair(p) => pair_within(robot, query, frames, &robot.pairs[p], clearance),
+                }
+            })
+        })
+    }
+}
+
+/// Whether link `i` is within `kept` (m) of an obstacle, or touches one if that is zero.
+fn link_within(
+    robot: &SharedArm,
+    scene: &Scene,
+    query: &mut Query,
+    frames: &[Isometry3<f64>],
+    i: usize,
+    kept: f64,
+) -> bool {
+    let body = &robot.bodies[i];
+    let (tree, pose) = (&body.tree, &frames[body.frame]);
+    match kept > 0.0 {
+        true => scene.within(query, tree, pose, kept),
+        false => scene.collides(query, tree, pose),
+    }
+}
+
+/// Whether the links of a pair are within `clearance` (m) of each other, or touch if that is zero.
+fn pair_within(
+    robot: &SharedArm,
+    query: &mut Query,
+    frames: &[Isometry3<f64>],
+    pair: &LinkPair,
+    clearance: f64,
+) -> bool {
+    let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
+    let [pose_a, pose_b] = [a, b].map(|body| &frames[body.frame]);
+    match clearance > 0.0 {
+        true => query.within(&a.tree, pose_a, &b.tree, pose_b, clearance),
+        false => query.meets(&a.tree, pose_a, &b.tree, pose_b),
     }
 }
 
 impl<Q: Coordinates> Validity<Q> for Arm {
     fn is_valid(&mut self, q: &Q) -> bool {
-        self.first_contact(&[q]).is_none()
+        self.first_within(&[q], 0.0).is_none()
     }
 }
 
@@ -97,7 +158,7 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
     }
 
     fn in_contact(&mut self, q: &Q) -> bool {
-        self.first_contact(&[q]).is_some()
+        self.first_within(&[q], 0.0).is_some()
     }
 }
 
@@ -250,9 +311,12 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
     fn contacts_at_once(&self) -> usize {
         if self.robot.is_of_balls { LANES } else { 1 }
     }
-    fn first_contact(&mut self, states: &[&Q]) -> Option<usize> {
-        if !self.robot.is_of_balls || states.is_empty() || states.len() > LANES {
-            return states.iter().position(|q| self.collides(q.as_slice()));
+    /// With meshes for links, eight states are tested together only where a clearance is asked for: what is inside of a solid link is not found
+    /// then.
+    fn first_within(&mut self, states: &[&Q], clearance: f64) -> Option<usize> {
+        let is_wide = self.robot.is_of_balls || clearance > 0.0;
+        if !is_wide || states.is_empty() || states.len() > LANES {
+            return states.iter().position(|q| self.is_within(q.as_slice(), clearance));
         }
         let is_none = |q: &&Q| !self.robot.kinematics.is_configuration(q.as_slice());
         if let Some(none) = states.iter().position(is_none) {
@@ -261,11 +325,13 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         self.counters.collision_checks += states.len() as u64;
         let Self { robot, obstacles, scratch, kept, .. } = self;
         scratch.wide.place(robot, states);
-        let Contacts { touching, open } = scratch.wide.contacts(robot, &obstacles.scene, *kept, states.len());
+        let distances = [*kept + clearance, clearance];
+        let Contacts { touching, open } =
+            scratch.wide.contacts(robot, &obstacles.scene, distances, states.len());
         if touching != 0 {
             return Some(touching.trailing_zeros() as usize);
         }
-        (0..states.len()).find(|k| open >> k & 1 == 1 && self.collides(states[*k].as_slice()))
+        if open == 0 { None } else { self.first_of_open(states, clearance) }
     }
     fn look_ahead(&mut self, intervals: &[MotionInterval<'_, Q>]) {
         let Self { robot, scratch, .. } = self;
@@ -356,7 +422,7 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
 /// along, in the space of joints.
 impl<Q: Coordinates> ObstacleHints<Q> for Arm {
     fn touches(&mut self, q: &Q) -> bool {
-        self.first_contact(&[q]).is_some()
+        self.first_within(&[q], 0.0).is_some()
     }
 
     /// Always `None`.

@@ -6,7 +6,7 @@
 use super::kinematics::{BaseTravel, JointFrame};
 use super::robot::{LinkBody, SharedArm};
 use super::travel::{Chain, ROUND_UP};
-use mp_collide::{Contacts, Scene, WideCover, wide_apart, wide_apart_here, wide_touch};
+use mp_collide::{Contacts, Scene, WideCover, wide_apart, wide_apart_here, wide_within};
 use mp_cspace::{Coordinates, MotionInterval};
 use mp_simd::wide::{LANES, Wide, Wide3, WideFrame, WideKernel, add, cross, dot, on_widest, sub};
 use nalgebra::{Isometry3, Matrix3};
@@ -17,6 +17,15 @@ use std::ops::Add;
 pub(super) const COARSE: f64 = 0.25;
 /// No bound is used that is less than this many margins: at two margins an interval would end.
 pub(super) const LEAST: f64 = 2.5;
+
+/// What may be in contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Part {
+    /// A link, by its number among the bodies, with obstacles.
+    Link(usize),
+    /// A pair of links, by its number.
+    Pair(usize),
+}
 
 /// Up to eight intervals of a motion.
 #[derive(Clone, Debug, Default)]
@@ -41,6 +50,8 @@ pub(super) struct WideIntervals {
     links: Vec<Option<(Wide, bool)>>,
     pairs: Vec<Option<Wide>>,
     proven: ProvenParts,
+    /// What balls left open at the configurations where links are placed, with these as bits.
+    pub(super) open: Vec<(Part, u32)>,
     /// For each body, how far it moves over the whole motion with the first joints of its chain: as [`Chain::far`].
     pub(super) far: Vec<f64>,
     pub(super) base: BaseTravel,
@@ -166,30 +177,42 @@ impl WideIntervals {
         self.values.extend(kinematics.frames.iter().map(value));
     }
 
-    /// Of the first `count` configurations at which links are [placed](Self::place): those with contact, one at least if it is known that
-    /// there are any, and those that balls leave open.
-    pub(super) fn contacts(&mut self, robot: &SharedArm, scene: &Scene, kept: f64, count: usize) -> Contacts {
+    /// Of the first `count` configurations at which links are [placed](Self::place): those where a link is within `kept` (m) of an obstacle or
+    /// two links within `apart` of each other, one at least if it is known that there are any, and those that balls leave open.
+    pub(super) fn contacts(
+        &mut self,
+        robot: &SharedArm,
+        scene: &Scene,
+        [kept, apart]: [f64; 2],
+        count: usize,
+    ) -> Contacts {
         let mut all = Contacts::default();
         let asked = (1 << count) - 1;
-        let mut add = |found: Contacts| {
-            all.add(Contacts { touching: found.touching & asked, open: found.open & asked });
+        let Self { covers, open, .. } = self;
+        open.clear();
+        let mut add = |part: Part, found: Contacts| {
+            let found = Contacts { touching: found.touching & asked, open: found.open & asked };
+            if found.open != 0 {
+                open.push((part, found.open));
+            }
+            all.add(found);
             all.touching != 0
         };
-        let links = robot.numbered_moving();
-        let covers = &mut self.covers;
-        let mut links = links.map(|(i, body)| scene.wide_contact(&body.cover, &mut covers[i], kept));
-        if links.any(&mut add) {
-            return all;
-        }
-        let covers = &mut self.covers;
-        let mut pairs = robot.pairs.iter().map(|pair| {
-            let [a, b] = pair.bodies.map(|i| &robot.bodies[i].cover);
-            match covers.get_disjoint_mut(pair.bodies) {
-                Ok([at_a, at_b]) => wide_touch((a, at_a), (b, at_b)),
-                Err(_) => Contacts { touching: 0, open: asked },
+        for (i, body) in robot.numbered_moving() {
+            if add(Part::Link(i), scene.wide_contact(&body.cover, &mut covers[i], kept)) {
+                return all;
             }
-        });
-        pairs.any(&mut add);
+        }
+        for (p, pair) in robot.pairs.iter().enumerate() {
+            let [a, b] = pair.bodies.map(|i| &robot.bodies[i].cover);
+            let found = match covers.get_disjoint_mut(pair.bodies) {
+                Ok([at_a, at_b]) => wide_within((a, at_a), (b, at_b), apart),
+                Err(_) => Contacts { touching: 0, open: asked },
+            };
+            if add(Part::Pair(p), found) {
+                return all;
+            }
+        }
         all
     }
 

@@ -101,7 +101,7 @@ fn answers_of_balls_are_those_of_the_reference() {
         let size = [0.1, 0.3, 1.0][round % 3];
         let states = [(); 8].map(|()| space.interpolate(&near, &space.sample_uniform(&mut rng), size));
         let touching = states.map(|q| plain_distance(&arm, &obstacles, q.as_slice(), &["base"]) <= 0.0);
-        match arm.first_contact(&states.each_ref()) {
+        match arm.first_within(&states.each_ref(), 0.0) {
             Some(k) => {
                 assert!(touching[k], "{touching:?} {k}");
                 found[k] += 1;
@@ -118,7 +118,41 @@ fn answers_of_balls_are_those_of_the_reference() {
     );
     let nan = Six::repeat(f64::NAN);
     let near = std::iter::repeat_with(|| space.sample_uniform(&mut rng)).find(|q| arm.is_valid(q)).unwrap();
-    assert_eq!(arm.first_contact(&[&near, &nan]), Some(1));
+    assert_eq!(arm.first_within(&[&near, &nan], 0.0), Some(1));
+}
+
+/// Of eight states together: whether one is nearer than a clearance is what the reference says, for balls and for meshes.
+#[test]
+fn eight_states_within_a_clearance_are_those_of_the_reference() {
+    for of_balls in [true, false] {
+        let links = if of_balls { six_of_balls() } else { six() };
+        let mut arm = Arm::new(&links, if of_balls { round_clutter() } else { clutter() }).unwrap();
+        let (space, obstacles): (Joints<Six>, _) = (arm.space().unwrap(), references(&arm));
+        let (mut rng, mut nearer, mut free) = (Rng::seed(3), 0, 0);
+        for round in 0..cases_of(200) {
+            let near =
+                std::iter::repeat_with(|| space.sample_uniform(&mut rng)).find(|q| arm.is_valid(q)).unwrap();
+            let size = [0.03, 0.1, 0.3][round % 3];
+            let states = [(); 8].map(|()| space.interpolate(&near, &space.sample_uniform(&mut rng), size));
+            let distances = states.map(|q| plain_distance(&arm, &obstacles, q.as_slice(), &["base"]));
+            for clearance in [0.004, 0.03] {
+                match arm.first_within(&states.each_ref(), clearance) {
+                    Some(k) => {
+                        assert!(distances[k] <= clearance + 1e-9, "{distances:?} {k} {clearance}");
+                        nearer += usize::from(distances[k] > 0.0);
+                    }
+                    None => {
+                        assert!(
+                            distances.iter().all(|d| *d >= clearance - 1e-9),
+                            "{distances:?} {clearance}"
+                        );
+                        free += 1;
+                    }
+                }
+            }
+        }
+        assert!(nearer > cases_of(10) && free > cases_of(20), "{nearer} {free}");
+    }
 }
 
 /// What keeps a clearance from obstacles is free of what is nearer, in lanes too.
