@@ -1,7 +1,6 @@
 //! The mesh with its tree, which queries compare.
 
-use mp_stop::Interrupt;
-use std::convert::Infallible;
+use mp_stop::{Interrupt, Interrupted};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
@@ -35,41 +34,46 @@ impl CollisionMesh {
     /// [faceted](TriMesh::faceted).
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
-        let Ok(made) = Self::of(mesh, || Ok::<(), Infallible>(()));
-        made
+        match Self::of(mesh, &mut || Ok(())) {
+            Ok(made) => made,
+            Err(Interrupted) => unreachable!("nothing interrupts it"),
+        }
     }
 
     /// As [`new`](Self::new); `None` when `interrupt` says to end.
     #[must_use]
     pub fn new_until(mesh: &TriMesh, interrupt: &Interrupt) -> Option<Self> {
         let mut interrupt = interrupt.clone();
-        Self::of(mesh, || interrupt.go_on()).ok()
+        Self::of(mesh, &mut || interrupt.go_on()).ok()
     }
 
-    fn of<E>(mesh: &TriMesh, mut go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
+    fn of(mesh: &TriMesh, go_on: &mut dyn FnMut() -> Result<(), Interrupted>) -> Result<Self, Interrupted> {
         let count = mesh.triangles().len();
         if !mesh.balls().is_empty() {
             return match mesh.is_balls() {
-                true => Self::of_cloud(mesh, &mut go_on),
+                true => Self::of_cloud(mesh, go_on),
                 false => Self::of(&mesh.faceted(), go_on),
             };
         }
         let made = if count > SMALL {
-            Self::built(count, |i| mesh.triangle(i), go_on)?
+            Self::with_tree(count, &|i| mesh.triangle(i), go_on)?
         } else {
             // A copy in one piece is a little faster.
             let copied: Vec<Triangle> = (0..count).map(|i| mesh.triangle(i)).collect();
-            Self::built(count, |i| copied[i], go_on)?
+            Self::with_tree(count, &|i| copied[i], go_on)?
         };
         Ok(Self { solids: mesh.solids().into(), ..made })
     }
 
-    fn of_cloud<E>(mesh: &TriMesh, go_on: &mut impl FnMut() -> Result<(), E>) -> Result<Self, E> {
+    fn of_cloud(
+        mesh: &TriMesh,
+        go_on: &mut dyn FnMut() -> Result<(), Interrupted>,
+    ) -> Result<Self, Interrupted> {
         let _span = tracing::debug_span!("build", points = mesh.triangles().len()).entered();
         let balls: Vec<_> = mesh.each_ball().collect();
         let cloud = Cloud::build(&balls, go_on)?;
         let corners = cloud.corners();
-        let around = Self::built(8, |i| [corners[i]; 3], go_on)?;
+        let around = Self::with_tree(8, &|i| [corners[i]; 3], go_on)?;
         Ok(Self { cloud: Some(Arc::new(cloud)), ..around })
     }
 
@@ -80,8 +84,24 @@ impl CollisionMesh {
     pub(crate) fn built<E>(
         count: usize,
         triangle: impl Fn(usize) -> Triangle,
-        go_on: impl FnMut() -> Result<(), E>,
+        mut go_on: impl FnMut() -> Result<(), E>,
     ) -> Result<Self, E> {
+        let mut error = None;
+        let mut ask = || go_on().map_err(|e| error = Some(e)).map_err(|()| Interrupted);
+        let made = Self::with_tree(count, &triangle, &mut ask);
+        match (made, error) {
+            (Ok(made), _) => Ok(made),
+            (Err(_), Some(error)) => Err(error),
+            (Err(Interrupted), None) => unreachable!("it ends by an error alone"),
+        }
+    }
+
+    /// As [`built`](Self::built): compiled once for all closures.
+    fn with_tree(
+        count: usize,
+        triangle: &dyn Fn(usize) -> Triangle,
+        go_on: &mut dyn FnMut() -> Result<(), Interrupted>,
+    ) -> Result<Self, Interrupted> {
         let _span = tracing::debug_span!("build", triangles = count).entered();
         let tree = Arc::new(Tree::build(count, triangle, go_on)?);
         Ok(Self { tree, cloud: None, solids: Arc::default(), parts: Arc::default() })

@@ -1,6 +1,7 @@
 //! Building: a binary tree by the surface-area heuristic, collapsed to eight children where dynamic
 //! programming finds it cheapest.
 
+use mp_stop::Interrupted;
 use nalgebra::{Point3, Vector3};
 
 use crate::bvh::collapse::{Choice, children, choose};
@@ -18,13 +19,13 @@ impl Tree {
     /// Triangles of which there are more than a million take at most 200 bytes each meanwhile, with those of the finished tree.
     ///
     /// # Errors
-    /// That of `go_on`, which is called after each pass over all triangles, and for each node.
-    pub(crate) fn build<E>(
+    /// When `go_on` says so, which is called after each pass over all triangles, and for each node.
+    pub(crate) fn build(
         count: usize,
-        triangle: impl Fn(usize) -> Triangle,
-        mut go_on: impl FnMut() -> Result<(), E>,
-    ) -> Result<Self, E> {
-        let all = || (0..count).map(&triangle);
+        triangle: &dyn Fn(usize) -> Triangle,
+        go_on: &mut dyn FnMut() -> Result<(), Interrupted>,
+    ) -> Result<Self, Interrupted> {
+        let all = || (0..count).map(triangle);
         let corners = || all().flatten();
         let (mut lo, mut hi) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
         for p in corners() {
@@ -48,7 +49,7 @@ impl Tree {
         };
         let items = all().enumerate().map(|(i, t)| BuildTriangle { corners: t.map(in_unit), id: i as u32 });
         let mut items: Vec<BuildTriangle> = items.collect();
-        let binary = split_all(&mut items, &mut go_on)?;
+        let binary = split_all(&mut items, go_on)?;
         let choices = choose(&binary);
         go_on()?;
         let leaves = binary.iter().filter(|b| b.children() == 0).count();
@@ -58,7 +59,7 @@ impl Tree {
             node_boxes: Vec::new(),
             leaf_boxes: Vec::with_capacity(leaves),
             root: 0,
-            bounding: RootBox::fit(all(), &mut go_on)?,
+            bounding: RootBox::fit(all(), go_on)?,
             triangles: Vec::new(),
             ids: Vec::new(),
             center,
@@ -71,7 +72,7 @@ impl Tree {
         if count <= SMALL {
             tree.triangles = items.iter().map(in_order).collect();
         }
-        tree.root = tree.emit(&triangle, &items, &binary, &choices, 0, obb, &mut go_on)?;
+        tree.root = tree.emit(triangle, &items, &binary, &choices, 0, obb, go_on)?;
         drop((binary, choices));
         tree.nodes.shrink_to_fit();
         tree.node_boxes.shrink_to_fit();
@@ -85,16 +86,16 @@ impl Tree {
 
     /// Adds binary node `n`, whose box is `obb`, and all below; returns the reference to it.
     #[expect(clippy::too_many_arguments, reason = "it calls itself with all of them but two")]
-    fn emit<E>(
+    fn emit(
         &mut self,
-        triangle: &impl Fn(usize) -> Triangle,
+        triangle: &dyn Fn(usize) -> Triangle,
         items: &[BuildTriangle],
         binary: &[BinaryNode],
         choices: &[Choice],
         n: usize,
         obb: NodeBox,
-        go_on: &mut impl FnMut() -> Result<(), E>,
-    ) -> Result<u32, E> {
+        go_on: &mut dyn FnMut() -> Result<(), Interrupted>,
+    ) -> Result<u32, Interrupted> {
         go_on()?;
         let b = &binary[n];
         if b.children() == 0 {
@@ -194,17 +195,17 @@ mod tests {
             mesh.triangle(i)
         };
         let mut last = 0;
-        let all = Tree::build(count, triangle, || {
+        let all = Tree::build(count, &triangle, &mut || {
             assert!(looked.get() - last <= 2 * count, "{} after {asked} questions", looked.get() - last);
             (last, asked) = (looked.get(), asked + 1);
-            Ok::<(), ()>(())
+            Ok(())
         });
         assert!(all.is_ok() && asked * 8 > count, "{asked}");
         for end in [1, 2, 3, 4, 5, 8, asked / 3, asked / 2, asked - 10, asked] {
             let (mut questions, mut last) = (0, 0);
-            let ended = Tree::build(count, triangle, || {
+            let ended = Tree::build(count, &triangle, &mut || {
                 (questions, last) = (questions + 1, looked.get());
-                if questions == end { Err(()) } else { Ok(()) }
+                if questions == end { Err(Interrupted) } else { Ok(()) }
             });
             assert!(ended.is_err() && questions == end && looked.get() == last, "{end}");
         }
@@ -223,11 +224,7 @@ mod tests {
                     let place = |p: Point3<f64>| (turn * p * scale) + Vector3::repeat(far * scale);
                     let triangles: Vec<Triangle> =
                         (0..mesh.triangles().len()).map(|i| mesh.triangle(i).map(place)).collect();
-                    let Ok(tree) = Tree::build(
-                        triangles.len(),
-                        |i| triangles[i],
-                        || Ok::<(), std::convert::Infallible>(()),
-                    );
+                    let tree = Tree::build(triangles.len(), &|i| triangles[i], &mut || Ok(())).unwrap();
                     assert_eq!(below(&tree, tree.root).len(), triangles.len());
                 }
             }

@@ -3,6 +3,7 @@
 //! Gottschalk, Lin, Manocha, *OBBTree: A Hierarchical Structure for Rapid Interference Detection*,
 //! SIGGRAPH 1996.
 
+use mp_stop::Interrupted;
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use crate::bvh::fit::orthonormal;
@@ -22,10 +23,10 @@ impl RootBox {
     ///
     /// # Errors
     /// That of `go_on`, which is called after each pass.
-    pub(crate) fn fit<E>(
+    pub(crate) fn fit(
         triangles: impl Iterator<Item = Triangle> + Clone,
-        go_on: &mut impl FnMut() -> Result<(), E>,
-    ) -> Result<Self, E> {
+        go_on: &mut dyn FnMut() -> Result<(), Interrupted>,
+    ) -> Result<Self, Interrupted> {
         let principal = principal_axes(triangles.clone());
         go_on()?;
         let of_largest = largest_triangle_axes(triangles.clone());

@@ -2,6 +2,7 @@
 //!
 //! All coordinates here are relative to the centre of the mesh, in units of its radius, in `f32`.
 
+use mp_stop::Interrupted;
 use std::ops::Range;
 
 use crate::bvh::fit::{self, Axes};
@@ -107,10 +108,10 @@ impl BinaryNode {
 ///
 /// # Errors
 /// That of `go_on`, which is called for each node.
-pub(crate) fn split_all<E>(
+pub(crate) fn split_all(
     items: &mut [BuildTriangle],
-    mut go_on: impl FnMut() -> Result<(), E>,
-) -> Result<Vec<BinaryNode>, E> {
+    go_on: &mut dyn FnMut() -> Result<(), Interrupted>,
+) -> Result<Vec<BinaryNode>, Interrupted> {
     let mut own = Vec::with_capacity(items.len().min(KEPT));
     let mut aside = Vec::new();
     let mut binary = Vec::with_capacity(items.len() / 2 + 1);

@@ -3,6 +3,7 @@
 mod search;
 
 use mp_geom::Sphere;
+use mp_stop::Interrupted;
 use nalgebra::{Point3, Vector3};
 
 pub(crate) use search::{Found, Reach};
@@ -44,7 +45,10 @@ impl Cloud {
     ///
     /// # Errors
     /// That of `go_on`, which is called for each node.
-    pub(crate) fn build<E>(balls: &[Sphere], go_on: &mut impl FnMut() -> Result<(), E>) -> Result<Self, E> {
+    pub(crate) fn build(
+        balls: &[Sphere],
+        go_on: &mut dyn FnMut() -> Result<(), Interrupted>,
+    ) -> Result<Self, Interrupted> {
         let radius = balls.iter().map(|ball| ball.radius).fold(0.0, f64::max);
         let smaller = |id: u32| radius - balls[id as usize].radius;
         let mut order: Vec<(Point3<f64>, u32)> = balls.iter().map(|ball| ball.center).zip(0..).collect();
@@ -96,13 +100,13 @@ impl Cloud {
 }
 
 /// Adds the nodes of `order`, which begins at the place `first` of all.
-fn split<E>(
+fn split(
     order: &mut [(Point3<f64>, u32)],
     first: usize,
     smaller: &impl Fn(u32) -> f64,
     nodes: &mut Vec<Node>,
-    go_on: &mut impl FnMut() -> Result<(), E>,
-) -> Result<(), E> {
+    go_on: &mut dyn FnMut() -> Result<(), Interrupted>,
+) -> Result<(), Interrupted> {
     go_on()?;
     let corner = order[0].0;
     let (low, high) = order.iter().fold((corner, corner), |(low, high), (p, _)| (low.inf(p), high.sup(p)));

@@ -14,11 +14,10 @@ mod swept_triangle;
 mod triangle;
 
 use mp_geom::{Aabb, TriMesh};
-use mp_stop::Interrupt;
+use mp_stop::{Interrupt, Interrupted};
 use nalgebra::{Isometry3, IsometryMatrix3, Point3, Vector3};
 use std::cmp::Ordering;
 use std::collections::HashSet;
-use std::convert::Infallible;
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -94,8 +93,10 @@ impl RefMesh {
     /// 9 to 15 bytes each, and 16 more while it is built; then answers take two to three times as long, and building nearly twice.
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
-        let Ok(made) = Self::storing(mesh, few_of(mesh), &mut || Ok::<(), Infallible>(()));
-        made
+        match Self::storing(mesh, few_of(mesh), &mut || Ok(())) {
+            Ok(made) => made,
+            Err(Interrupted) => unreachable!("nothing interrupts it"),
+        }
     }
 
     /// As [`new`](Self::new); `None` when `interrupt` says to end.
@@ -109,7 +110,11 @@ impl RefMesh {
     ///
     /// # Errors
     /// That of `go_on`, which is called for each ball.
-    fn storing<E>(mesh: &TriMesh, few: u32, go_on: &mut impl FnMut() -> Result<(), E>) -> Result<Self, E> {
+    fn storing(
+        mesh: &TriMesh,
+        few: u32,
+        go_on: &mut dyn FnMut() -> Result<(), Interrupted>,
+    ) -> Result<Self, Interrupted> {
         let count = mesh.triangles().len();
         let triangles = || (0..count).map(|i| mesh.triangle(i));
         let mut tree = Self {
@@ -139,7 +144,11 @@ impl RefMesh {
     }
 
     /// Puts triangles in the order of the leaves: those on the lower side of the median first, and so on within both halves.
-    fn sort<E>(&self, order: &mut [u32], go_on: &mut impl FnMut() -> Result<(), E>) -> Result<(), E> {
+    fn sort(
+        &self,
+        order: &mut [u32],
+        go_on: &mut dyn FnMut() -> Result<(), Interrupted>,
+    ) -> Result<(), Interrupted> {
         go_on()?;
         if order.len() < 2 {
             return Ok(());
@@ -168,13 +177,13 @@ impl RefMesh {
     }
 
     /// Adds the balls around `count` triangles from the place `first` of the order on, children first. Returns that around them all.
-    fn store<E>(
+    fn store(
         &mut self,
         first: u32,
         count: u32,
         few: u32,
-        go_on: &mut impl FnMut() -> Result<(), E>,
-    ) -> Result<Node, E> {
+        go_on: &mut dyn FnMut() -> Result<(), Interrupted>,
+    ) -> Result<Node, Interrupted> {
         go_on()?;
         if count <= few {
             return Ok(Node::Few { first, count: count as u16 });
@@ -467,7 +476,7 @@ mod tests {
     /// One mesh with a tree for each number of balls stored; the first one stores them all.
     fn trees(mesh: &TriMesh) -> [RefMesh; 4] {
         let trees = [0, 1, FEW, 1000].map(|few| {
-            let Ok(tree) = RefMesh::storing(mesh, few, &mut || Ok::<(), Infallible>(()));
+            let tree = RefMesh::storing(mesh, few, &mut || Ok(())).unwrap();
             tree
         });
         let (all, stored) = (2 * mesh.triangles().len() - 1, trees.each_ref().map(|tree| tree.balls.len()));

@@ -135,12 +135,22 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
     /// distance between them is not finite; when there is no goal at all.
     pub fn new(
         space: &'c C,
-        mut local: L,
-        mut verifier: impl Verify<C::State, L::Edge> + Send + 'c,
+        local: L,
+        verifier: impl Verify<C::State, L::Edge> + Send + 'c,
         start: C::State,
         goal: impl Into<Goals<'c, C::State>>,
     ) -> Result<Self, BuildError> {
-        let mut goals = goal.into();
+        Self::checked(space, local, Box::new(verifier), start, goal.into())
+    }
+
+    /// As [`new`](Self::new): compiled once for all verifiers.
+    fn checked(
+        space: &'c C,
+        mut local: L,
+        mut verify: BoxedVerify<'c, C, L>,
+        start: C::State,
+        mut goals: Goals<'c, C::State>,
+    ) -> Result<Self, BuildError> {
         if goals.is_empty() {
             return Err(BuildError::NoGoal);
         }
@@ -149,7 +159,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
             if !space.contains(q) {
                 return Err(BuildError::Outside { endpoint, state: state() });
             }
-            let check = verifier.verify_state(q);
+            let check = verify.verify_state(q);
             if !check.is_free() {
                 return Err(BuildError::NotFree { endpoint, state: state(), check });
             }
@@ -176,7 +186,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
             _ => Ok(Self {
                 space,
                 local,
-                verify: Box::new(verifier),
+                verify,
                 start,
                 goals,
                 obstacles: ObstacleKnowledge::default(),

@@ -4,6 +4,8 @@ use super::BuildError;
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 use std::sync::Arc;
+#[cfg(feature = "parallel")]
+use std::sync::Mutex;
 
 #[cfg(feature = "parallel")]
 type Pool = rayon::ThreadPool;
@@ -61,9 +63,22 @@ impl Workers {
         match &self.0 {
             None => items.iter_mut().for_each(work),
             #[cfg(feature = "parallel")]
-            Some(pool) => pool.install(|| items.par_iter_mut().with_max_len(1).for_each(work)),
+            Some(pool) => {
+                let items: Vec<_> = items.iter_mut().map(Mutex::new).collect();
+                in_parallel(pool, items.len(), &|i| {
+                    if let Ok(mut item) = items[i].lock() {
+                        work(&mut item);
+                    }
+                });
+            }
             #[cfg(not(feature = "parallel"))]
             Some(pool) => match **pool {},
         }
     }
+}
+
+/// Calls `work` with each number below `count`. Not generic: what rayon has of it is large, and compiled once.
+#[cfg(feature = "parallel")]
+fn in_parallel(pool: &Pool, count: usize, work: &(dyn Fn(usize) + Sync)) {
+    pool.install(|| (0..count).into_par_iter().with_max_len(1).for_each(work));
 }

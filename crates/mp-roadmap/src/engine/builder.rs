@@ -152,7 +152,7 @@ where
                 observer.on(Event::Sampled(&candidate.state));
                 last = self.take(candidate, answers, last, observer);
             }
-            self.insert(prefetched.piece, observer);
+            insert(prefetched.piece, (&mut self.map, &mut self.index), &mut self.checker, observer);
             return before..self.map.len() as NodeId;
         }
         let mut candidates = std::mem::take(&mut self.candidates);
@@ -166,7 +166,7 @@ where
             last = self.take(candidate, Vec::new(), last, observer);
         }
         self.candidates = candidates;
-        self.insert(piece, observer);
+        insert(piece, (&mut self.map, &mut self.index), &mut self.checker, observer);
         before..self.map.len() as NodeId
     }
 
@@ -211,30 +211,6 @@ where
         }
         let (connector, mut growing) = self.growing(answers, observer);
         connector.connect(candidate, &mut growing)
-    }
-
-    /// Adds a piece of the roadmap. Its motions count now; where the local planner is not trusted any more,
-    /// its edges are verified.
-    fn insert(&mut self, piece: Option<Piece<C::State, L::Edge>>, observer: &mut dyn Observer<C::State>) {
-        let Some(piece) = piece else { return };
-        let Self { map, index, checker, .. } = self;
-        let (nodes, edges) = (map.len() as NodeId, map.all_edges().len());
-        let blocked = piece.motions() - piece.edges() as u64;
-        piece.insert(map, |from, link, to| {
-            let motion = link.edge.clone().map(|edge| Motion { end: to.clone(), edge, cost: link.length });
-            checker.replay(from, motion, to).is_some()
-        });
-        for id in nodes..map.len() as NodeId {
-            index.inserted(checker.space(), map.states(), id);
-            let kind = Some(map.tag(id).kind.name());
-            observer.on(Event::Rooted { tree: 0, id, state: map.state(id), kind });
-        }
-        for (_, [from, to], _) in map.all_edges().skip(edges) {
-            observer.on(Event::Linked { from, to });
-        }
-        if let Some(q) = map.states().first() {
-            (0..blocked).for_each(|_| drop(checker.replay(q, None, q)));
-        }
     }
 
     /// The connector, and what it works with.
@@ -290,6 +266,38 @@ where
         let mut progress = Progress::new(self.attempts, self.map.len(), self.checker.motions());
         (progress.rejected, progress.exhausted) = (self.checker.rejected(), self.connector.exhausted());
         progress
+    }
+}
+
+/// Adds a piece to the roadmap. Its motions count now; where the local planner is not trusted any more, its
+/// edges are verified.
+fn insert<C, L, N>(
+    piece: Option<Piece<C::State, L::Edge>>,
+    (map, index): (&mut Roadmap<C::State, L::Edge>, &mut N),
+    checker: &mut EdgeChecker<'_, C, L>,
+    observer: &mut dyn Observer<C::State>,
+) where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    N: NearestNeighbors<C>,
+{
+    let Some(piece) = piece else { return };
+    let (nodes, edges) = (map.len() as NodeId, map.all_edges().len());
+    let blocked = piece.motions() - piece.edges() as u64;
+    piece.insert_kept(map, &mut |from, link, to| {
+        let motion = link.edge.clone().map(|edge| Motion { end: to.clone(), edge, cost: link.length });
+        checker.replay(from, motion, to).is_some()
+    });
+    for id in nodes..map.len() as NodeId {
+        index.inserted(checker.space(), map.states(), id);
+        let kind = Some(map.tag(id).kind.name());
+        observer.on(Event::Rooted { tree: 0, id, state: map.state(id), kind });
+    }
+    for (_, [from, to], _) in map.all_edges().skip(edges) {
+        observer.on(Event::Linked { from, to });
+    }
+    if let Some(q) = map.states().first() {
+        (0..blocked).for_each(|_| drop(checker.replay(q, None, q)));
     }
 }
 

@@ -8,7 +8,9 @@
 //! The end of the step becomes a node of the roadmap, and is connected as others are.
 
 use super::settings::length;
-use super::{Builder, Candidate, Connector, MilestoneKind, NodeGenerator, ParentMotion};
+use super::{
+    Builder, Candidate, Connector, EdgeChecker, MilestoneKind, NodeGenerator, ParentMotion, Roadmap,
+};
 use mp_cspace::{
     BuildError, Direction, Extension, Length, LocalPlanner, NearestNeighbors, NodeId, Observer, Reach,
     Reversible, Rng, Space,
@@ -117,12 +119,26 @@ impl EndTrees {
         K: Connector<C, L>,
         N: NearestNeighbors<C>,
     {
-        self.grown += 1;
-        let turn = (self.grown % 2) as usize;
-        let tree =
-            if self.trees[turn].is_empty() { &mut self.trees[1 - turn] } else { &mut self.trees[turn] };
         let Builder { map, checker, .. } = &mut *builder;
         let before = map.len() as NodeId;
+        let Some((tree, candidate)) = self.step(map, checker, rng) else { return before..before };
+        builder.adopt(candidate, observer);
+        let after = builder.map.len() as NodeId;
+        self.trees[tree].extend(before..after);
+        before..after
+    }
+
+    /// A step of one of the trees, and of which.
+    fn step<C: Space, L: LocalPlanner<C::State>>(
+        &mut self,
+        map: &Roadmap<C::State, L::Edge>,
+        checker: &mut EdgeChecker<'_, C, L>,
+        rng: &mut Rng,
+    ) -> Option<(usize, Candidate<C::State, L::Edge>)> {
+        self.grown += 1;
+        let turn = (self.grown % 2) as usize;
+        let turn = if self.trees[turn].is_empty() { 1 - turn } else { turn };
+        let tree = &self.trees[turn];
         let (space, q) = (checker.space(), checker.space().sample_uniform(rng));
         let distance = |id: &NodeId| space.distance(map.state(*id), &q);
         let nearer = |a: &NodeId, b: &NodeId| distance(a).total_cmp(&distance(b));
@@ -131,19 +147,16 @@ impl EndTrees {
         } else {
             (0..LOOKS).map(|_| tree[rng.random_range(0..tree.len())]).min_by(nearer)
         };
-        let Some(near) = near else { return before..before };
+        let near = near?;
         let from = map.state(near).clone();
         let step = checker.extend(&from, &q, Direction::Forward, Reach::Step(self.growth.step));
-        let (Extension::Advanced(motion) | Extension::Reached(motion)) = step else { return before..before };
+        let (Extension::Advanced(motion) | Extension::Reached(motion)) = step else { return None };
         // A step may vanish in rounding.
         if motion.end == from {
-            return before..before;
+            return None;
         }
         let mut candidate = Candidate::new(motion.end.clone(), MilestoneKind::Expanded);
         candidate.parent = Some(ParentMotion { from: Some(near), motion });
-        builder.adopt(candidate, observer);
-        let after = builder.map.len() as NodeId;
-        tree.extend(before..after);
-        before..after
+        Some((turn, candidate))
     }
 }

@@ -120,6 +120,15 @@ impl<S, E> Piece<S, E> {
     /// Adds it to the roadmap that has its members, without the edges that `keeps` refuses, given the states
     /// of their ends.
     pub fn insert(self, map: &mut Roadmap<S, E>, mut keeps: impl FnMut(&S, &Link<E>, &S) -> bool) {
+        self.insert_kept(map, &mut keeps);
+    }
+
+    /// As [`insert`](Self::insert): compiled once for all closures.
+    pub(crate) fn insert_kept(
+        self,
+        map: &mut Roadmap<S, E>,
+        keeps: &mut dyn FnMut(&S, &Link<E>, &S) -> bool,
+    ) {
         let mut ids = self.members;
         for (&id, [tried, failed]) in ids.iter().zip(self.tries).filter(|(_, [tried, _])| *tried > 0) {
             map.tried_often(id, tried, failed);

@@ -9,6 +9,7 @@ use mp_cspace::{
     BuildError, Direction, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, PathOf, Planner,
     Problem, Progress, Reversible, Rng, Space, Stop, StopReason, Workers,
 };
+use std::ops::Range;
 
 /// Rejected paths after which each new motion is verified.
 pub const PATIENCE: u64 = 10;
@@ -146,39 +147,20 @@ where
     /// A verified path from the start to a goal, if the roadmap has one. Tells of edges that turn out to be
     /// blocked.
     fn answer(&mut self, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
-        let before = self.builder.map.blocked();
-        let path = self.find_path(observer);
-        let map = &self.builder.map;
+        let (start, goals) = self.ends.as_ref()?;
+        let Builder { map, checker, .. } = &mut self.builder;
+        let before = map.blocked();
+        self.looked = map.len();
+        let better = self.improves.then_some(self.best * (1.0 - 1e-9));
+        let found = find_path(&mut self.query, map, checker, (*start, goals.as_slice()), better, observer);
+        let path = found.map(|(path, length)| {
+            self.best = length;
+            path
+        });
         for [from, to] in map.blocked_after(before).iter().map(|&edge| map.ends(edge)) {
             observer.on(Event::Unlinked { from, to });
         }
         path
-    }
-
-    fn find_path(&mut self, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
-        let (start, goals) = self.ends.as_ref()?;
-        let (start, goals) = (*start, goals.clone());
-        self.looked = self.builder.map.len();
-        loop {
-            let Builder { map, checker, .. } = &mut self.builder;
-            let near: Vec<_> =
-                goals.iter().filter(|&&goal| map.connected(start, goal)).map(|&goal| (goal, 0.0)).collect();
-            if near.is_empty() {
-                return None;
-            }
-            let path = self.query.search(map, checker, &[(start, 0.0)], &near)?;
-            if self.improves && path.length >= self.best * (1.0 - 1e-9) {
-                return None;
-            }
-            if verify(map, checker, &path) {
-                self.best = path.length;
-                return map.path(&path);
-            }
-            if checker.is_interrupted() {
-                return None;
-            }
-            observer.on(Event::Rejected);
-        }
     }
 
     /// One iteration, which may have been cut short.
@@ -195,8 +177,7 @@ where
             false => self.builder.step(rng, observer),
         };
         if self.goals.has_region() {
-            let arrived: Vec<_> =
-                new.filter(|&id| self.goals.reached(self.builder.map().state(id))).collect();
+            let arrived = reached(&self.goals, self.builder.map().states(), new);
             self.add_goals(&arrived);
         }
         if self.goals.has_sampler() && self.iterations % GOAL_EVERY == 1 {
@@ -211,6 +192,45 @@ where
         let nodes = self.builder.map.len();
         let better = if self.best.is_finite() && self.improves { self.looked / 10 } else { 0 };
         nodes >= self.pace.first && nodes - self.looked >= self.pace.more.max(better)
+    }
+}
+
+/// Which of these states are in the goal.
+fn reached<S>(goals: &Goals<'_, S>, states: &[S], ids: Range<NodeId>) -> Vec<NodeId> {
+    ids.filter(|&id| goals.reached(&states[id as usize])).collect()
+}
+
+/// A verified path from the start to a goal, shorter than `better`, and its length; if the roadmap has one.
+fn find_path<C, L, Q>(
+    query: &mut Q,
+    map: &mut Roadmap<C::State, L::Edge>,
+    checker: &mut EdgeChecker<'_, C, L>,
+    (start, goals): (NodeId, &[NodeId]),
+    better: Option<f64>,
+    observer: &mut dyn Observer<C::State>,
+) -> Option<(PathOf<C, L>, f64)>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    Q: Query<C, L>,
+{
+    loop {
+        let near: Vec<_> =
+            goals.iter().filter(|&&goal| map.connected(start, goal)).map(|&goal| (goal, 0.0)).collect();
+        if near.is_empty() {
+            return None;
+        }
+        let path = query.search(map, checker, &[(start, 0.0)], &near)?;
+        if better.is_some_and(|better| path.length >= better) {
+            return None;
+        }
+        if verify(map, checker, &path) {
+            return map.path(&path).map(|found| (found, path.length));
+        }
+        if checker.is_interrupted() {
+            return None;
+        }
+        observer.on(Event::Rejected);
     }
 }
 

@@ -60,6 +60,12 @@ impl QueryMeter<'_> {
         (done, now() - before)
     }
 
+    /// Takes the queries of what was prefetched from the count, until it is used.
+    fn unused<S, E>(&self, prefetched: &[PrefetchedAttempt<S, E>]) {
+        let queries = prefetched.iter().map(PrefetchedAttempt::all_queries).sum();
+        self.common.fetch_sub(queries, Ordering::Relaxed);
+    }
+
     /// Counts the queries of what was prefetched and is used.
     pub(crate) fn used(&self, queries: u64) {
         self.common.fetch_add(queries, Ordering::Relaxed);
@@ -218,11 +224,12 @@ where
                 next = end;
             }
             workers.each(&mut tasks, |task| task.work(&job));
-            let prefetched: Prefetches<C, L> =
-                tasks.iter_mut().flat_map(|task| task.prefetched.drain(..)).collect();
+            let mut prefetched: Prefetches<C, L> = Vec::new();
+            for task in &mut tasks {
+                prefetched.append(&mut task.prefetched);
+            }
             if let Some(meter) = job.meter {
-                let queries = prefetched.iter().map(PrefetchedAttempt::all_queries).sum();
-                meter.common.fetch_sub(queries, Ordering::Relaxed);
+                meter.unused(&prefetched);
             }
             prefetched
         }));

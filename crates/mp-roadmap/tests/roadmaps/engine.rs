@@ -1,6 +1,7 @@
 //! What the engine promises.
 
 use crate::common::*;
+use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_roadmap::*;
@@ -25,6 +26,35 @@ pub(crate) fn problem<'c>(
 }
 
 pub(crate) const ENDS: [[f64; 2]; 2] = [[0.1, 0.2], [0.9, 0.2]];
+
+/// The square in rows: planners of these are compiled in the library already.
+pub(crate) struct Rows {
+    space: AsVectors<Rn<2>>,
+    erased: AnySpace<'static, Configuration>,
+}
+
+impl Rows {
+    pub(crate) fn new() -> Self {
+        let space = AsVectors(square());
+        Self { erased: AnySpace::new(&space), space }
+    }
+
+    /// A planner by its name, of a point among boxes with an exact check of motions.
+    pub(crate) fn build<'c>(
+        &'c self,
+        name: &str,
+        boxes: &Boxes<2>,
+        start: [f64; 2],
+        goals: impl Into<Goals<'c, Configuration>>,
+        settings: &Settings,
+    ) -> Result<AnyPlanner<'c, Configuration, ()>, BuildError> {
+        let exact = || OnVectors::<_, Point>::new(Exact(boxes.clone()));
+        let check: AnyCheck<'_, Configuration> = Box::new(exact());
+        let local = Straight::new(&self.erased, check);
+        let problem = Problem::new(&self.erased, local, exact(), start.into(), goals).unwrap();
+        mp_roadmap::erased::build(name, problem.into(), AnyIndex::of(&self.space), settings)
+    }
+}
 
 pub(crate) fn prm<'c>(
     space: &'c Rn<2>,
@@ -110,36 +140,37 @@ fn the_same_seed_gives_the_same_and_stopping_changes_nothing() {
 
 #[test]
 fn goals_may_be_regions_or_sampled() {
-    let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
-    let beyond = |q: &Point| q.x > 0.8;
+    let (rows, boxes) = (Rows::new(), slit(0.2, 0.8, 0.1));
+    let beyond = |q: &Configuration| q[0] > 0.8;
     for sampled in [false, true] {
-        let corner = Ball::new(&space, Point::new(0.9, 0.2), 0.05).unwrap();
+        let corner = Ball::new(&rows.space, [0.9, 0.2].into(), 0.05).unwrap();
         let goals = match sampled {
             true => Goals::sampled(corner),
             false => Goals::region(beyond),
         };
-        let local: Local<'_> = Straight::new(&space, Box::new(Exact(boxes.clone())));
-        let problem = Problem::new(&space, local, Exact(boxes.clone()), ENDS[0].into(), goals).unwrap();
-        let mut planner = build("prm", problem, &Settings::default()).unwrap();
+        let mut planner = rows.build("prm", &boxes, ENDS[0], goals, &Settings::default()).unwrap();
         let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(5_000), &mut ());
         let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
-        assert_eq!(path.states[0], Point::from(ENDS[0]));
+        assert_eq!(path.states[0], ENDS[0].into());
         assert!(beyond(path.states.last().unwrap()));
     }
 }
 
 #[test]
 fn a_start_in_the_goal_is_a_path() {
-    let (space, boxes) = (square(), Boxes::default());
+    let (rows, here) = (Rows::new(), Configuration::from([0.3; 2]));
     let mut planner =
-        build("prm", problem(&space, &boxes, [[0.3; 2]; 2], false), &Settings::default()).unwrap();
+        rows.build("prm", &Boxes::default(), [0.3; 2], here.clone(), &Settings::default()).unwrap();
     let path = planner.step(&mut Rng::seed(1), &mut ()).unwrap();
-    assert_eq!(path.states, [Point::new(0.3, 0.3)]);
+    assert_eq!(path.states, [here]);
 }
 
 #[test]
 fn bad_settings_are_refused() {
-    let (space, boxes) = (square(), Boxes::default());
+    let rows = Rows::new();
+    let build = |name: &str, settings: &Settings| {
+        rows.build(name, &Boxes::default(), ENDS[0], Configuration::from(ENDS[1]), settings)
+    };
     for (text, part) in [
         ("neighbours=0", "neighbours is 0"),
         ("radius=-1", "above zero"),
@@ -152,7 +183,7 @@ fn bad_settings_are_refused() {
         ("neighbors=3", "did you mean `neighbours`"),
     ] {
         let settings = Settings::parse([text]).unwrap();
-        let error = build("prm", problem(&space, &boxes, ENDS, false), &settings).err().unwrap().to_string();
+        let error = build("prm", &settings).err().unwrap().to_string();
         assert!(error.contains(part), "{text}: {error}");
     }
     let error = planner("prn").err().unwrap().to_string();
@@ -160,7 +191,7 @@ fn bad_settings_are_refused() {
     for info in crate::blind() {
         let defaults = info.parameters.iter().map(|p| format!("{}={}", p.name, p.default));
         let settings = Settings::parse(defaults).unwrap();
-        assert!(build(info.name, problem(&space, &boxes, ENDS, false), &settings).is_ok(), "{}", info.name);
+        assert!(build(info.name, &settings).is_ok(), "{}", info.name);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Roadmaps that are built once: queries, files, merging.
 
 use crate::common::*;
-use crate::engine::{ENDS, prm};
+use crate::engine::{ENDS, Rows, prm};
 use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_roadmap::*;
@@ -315,11 +315,11 @@ fn threads_change_nothing() {
 /// A planner goes on with what another has built: the second query finds its way at once.
 #[test]
 fn planners_go_on_with_a_roadmap() {
-    let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
+    let (rows, boxes) = (Rows::new(), slit(0.2, 0.8, 0.1));
     for info in crate::blind() {
         let planner = || {
-            let problem = crate::engine::problem(&space, &boxes, ENDS, false);
-            build(info.name, problem, &Settings::default()).unwrap()
+            let goal = Configuration::from(ENDS[1]);
+            rows.build(info.name, &boxes, ENDS[0], goal, &Settings::default()).unwrap()
         };
         let mut first = planner();
         let outcome = first.solve(&mut Rng::seed(1), &mut Iterations(5_000), &mut ());

@@ -271,7 +271,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
                 return None;
             }
         }
-        let [a, b] = [0, 1].map(|i| self.trees[i].nodes());
+        let [a, b] = self.trees();
         if a.cost(meeting[0]) + b.cost(meeting[1]) >= self.best * (1.0 - GAIN) {
             return None;
         }

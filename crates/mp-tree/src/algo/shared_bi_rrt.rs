@@ -115,7 +115,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedBiRr
     /// The trees from the start and from the goal; empty before the first step.
     #[must_use]
     pub fn trees(&self) -> [&Tree<C::State, L::Edge>; 2] {
-        self.pair.trees.each_ref().map(|tree| tree.nodes())
+        [self.pair.trees[0].nodes(), self.pair.trees[1].nodes()]
     }
 
     /// How many samples were lost to a panic of the local planner, without batches in which all were.
@@ -128,7 +128,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedBiRr
     fn arrive(&mut self, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         while !self.met.is_empty() {
             let meeting = self.met.remove(0);
-            let path = self.pair.candidate(meeting, observer, renaming(&mut self.met));
+            let path = self.pair.candidate(meeting, observer, &mut renaming(&mut self.met));
             if path.is_some() {
                 return path;
             }
@@ -187,7 +187,7 @@ where
 
     fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         self.batch.take_seed(rng);
-        if let Some(path) = self.pair.begin(true, rng, observer, renaming(&mut self.met)) {
+        if let Some(path) = self.pair.begin(true, rng, observer, &mut renaming(&mut self.met)) {
             return Some(path);
         }
         if let Some(path) = self.arrive(observer) {

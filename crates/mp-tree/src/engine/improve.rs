@@ -107,17 +107,13 @@ where
             self.tested += 1;
         }
         loop {
-            let tree = self.tree.nodes();
-            let costs = self.arrived.iter().map(|&id| (tree.cost(id), id));
-            let (cost, id) = costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+            let (cost, id) = cheapest(self.tree.nodes(), &self.arrived)?;
             if self.best < f64::INFINITY && cost >= self.best - GAIN * self.best.abs() {
                 return None;
             }
             let pruned = |survivors: &[NodeId]| {
                 self.extender.pruned(Direction::Forward, survivors);
-                self.tested = survivors.partition_point(|&id| id < self.tested) as NodeId;
-                let renamed = |id: &NodeId| survivors.binary_search(id).ok().map(|new| new as NodeId);
-                self.arrived = self.arrived.iter().filter_map(renamed).collect();
+                rename(&mut self.arrived, &mut self.tested, survivors);
             };
             if let Some(path) = self.core.path(&mut self.tree, id, observer, pruned) {
                 self.best = cost;
@@ -130,6 +126,19 @@ where
             }
         }
     }
+}
+
+/// The cheapest of some nodes, and its cost.
+fn cheapest<S, E>(tree: &Tree<S, E>, nodes: &[NodeId]) -> Option<(f64, NodeId)> {
+    let costs = nodes.iter().map(|&id| (tree.cost(id), id));
+    costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+}
+
+/// Gives nodes their new ids, after others were pruned.
+fn rename(arrived: &mut Vec<NodeId>, tested: &mut NodeId, survivors: &[NodeId]) {
+    *tested = survivors.partition_point(|&id| id < *tested) as NodeId;
+    let renamed = |id: &NodeId| survivors.binary_search(id).ok().map(|new| new as NodeId);
+    *arrived = arrived.iter().filter_map(renamed).collect();
 }
 
 impl<C, L, P, Se, G, A> Planner<C::State> for Improving<'_, C, L, P, Se, G, A>

@@ -144,9 +144,18 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         observer: &mut dyn Observer<C::State>,
         mut pruned: impl FnMut(&[NodeId]),
     ) -> bool {
-        let doubtful: Vec<NodeId> =
-            self.tree.lineage(id).filter(|&node| !self.tree.is_verified(node)).collect();
-        for &node in doubtful.iter().rev() {
+        self.verify_and_tell(id, checker, observer, &mut pruned)
+    }
+
+    /// As [`verify`](Self::verify): compiled once for all closures.
+    pub(super) fn verify_and_tell(
+        &mut self,
+        id: NodeId,
+        checker: &mut EdgeChecker<'_, C, L>,
+        observer: &mut dyn Observer<C::State>,
+        pruned: &mut dyn FnMut(&[NodeId]),
+    ) -> bool {
+        for &node in self.tree.doubtful(id).iter().rev() {
             if self.passes(node, checker) {
                 self.tree.set_verified(node);
                 continue;

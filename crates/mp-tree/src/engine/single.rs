@@ -4,8 +4,8 @@ use super::{
     Core, Extender, Grown, Inserter, Purpose, SearchTree, Selector, TargetSampler, Tree, TreePlannerParts,
 };
 use mp_cspace::{
-    BuildError, Direction, EdgeChecker, Event, LocalPlanner, NodeId, Observer, PathOf, Planner, Problem,
-    Progress, Rng, Space,
+    BuildError, Direction, EdgeChecker, Event, Goals, LocalPlanner, NodeId, Observer, PathOf, Planner,
+    Problem, Progress, Rng, Space,
 };
 
 /// A planner that grows one tree from the start until it enters the goal.
@@ -105,9 +105,9 @@ where
             return self.candidate(id, observer);
         }
         if self.core.goals.has_region() {
-            let mut new = before as NodeId..self.tree.nodes().len() as NodeId;
-            let entered = new.find(|&id| self.core.goals.reached(self.tree.nodes().state(id)))?;
-            return self.candidate(entered, observer);
+            let new = &self.tree.nodes().states()[before..];
+            let entered = before + first_reached(&self.core.goals, new)?;
+            return self.candidate(entered as NodeId, observer);
         }
         None
     }
@@ -117,6 +117,11 @@ where
         let pruned = |survivors: &[NodeId]| self.extender.pruned(Direction::Forward, survivors);
         self.core.path(&mut self.tree, id, observer, pruned)
     }
+}
+
+/// The place of the first of some states that is in the goal.
+fn first_reached<S>(goals: &Goals<'_, S>, states: &[S]) -> Option<usize> {
+    states.iter().position(|q| goals.reached(q))
 }
 
 impl<C, L, P, Se, G, A> Planner<C::State> for SingleTree<'_, C, L, P, Se, G, A>

@@ -238,6 +238,11 @@ impl<S, E> Tree<S, E> {
         std::iter::successors(Some(id), |&node| self.parent(node))
     }
 
+    /// The nodes from `id` up to its root whose edges are not verified.
+    pub(super) fn doubtful(&self, id: NodeId) -> Vec<NodeId> {
+        self.lineage(id).filter(|&node| !self.is_verified(node)).collect()
+    }
+
     /// The path between a node and its root, in forward time: from the root in a forward tree, to the root in
     /// a backward tree.
     #[must_use]

@@ -65,7 +65,7 @@ where
         may_connect: bool,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
-        mut pruned: impl FnMut(Direction, &[NodeId]),
+        pruned: &mut dyn FnMut(Direction, &[NodeId]),
     ) -> Option<PathOf<C, L>> {
         self.core.iterations += 1;
         if let Some(root) = self.core.add_start(&mut self.trees[0], observer) {
@@ -86,7 +86,7 @@ where
             let goal = backward.nodes().state(goal_root);
             let grown = forward.connect_directly(0, goal, &mut self.core.checker, rng, observer);
             let Grown::Reached(id) = grown else { continue };
-            if let Some(path) = self.candidate([id, goal_root], observer, &mut pruned) {
+            if let Some(path) = self.candidate([id, goal_root], observer, pruned) {
                 return Some(path);
             }
         }
@@ -113,16 +113,17 @@ where
         &mut self,
         meeting: [NodeId; 2],
         observer: &mut dyn Observer<C::State>,
-        mut pruned: impl FnMut(Direction, &[NodeId]),
+        pruned: &mut dyn FnMut(Direction, &[NodeId]),
     ) -> Option<PathOf<C, L>> {
         for (tree, id) in self.trees.iter_mut().zip(meeting) {
             let direction = tree.nodes().direction();
-            let pruned = |survivors: &[NodeId]| pruned(direction, survivors);
-            if !tree.verify(id, &mut self.core.checker, observer, pruned) {
+            let mut pruned = |survivors: &[NodeId]| pruned(direction, survivors);
+            if !tree.verify_and_tell(id, &mut self.core.checker, observer, &mut pruned) {
                 return None;
             }
         }
-        Some(joined([0, 1].map(|i| self.trees[i].nodes().path(meeting[i]))))
+        let [forward, backward] = &self.trees;
+        Some(joined([forward.nodes().path(meeting[0]), backward.nodes().path(meeting[1])]))
     }
 
     pub(crate) fn progress(&self) -> Progress {

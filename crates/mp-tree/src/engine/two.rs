@@ -58,7 +58,7 @@ where
     /// The trees from the start and from the goal; empty before the first step.
     #[must_use]
     pub fn trees(&self) -> [&Tree<C::State, L::Edge>; 2] {
-        self.pair.trees.each_ref().map(|tree| tree.nodes())
+        [self.pair.trees[0].nodes(), self.pair.trees[1].nodes()]
     }
 }
 
@@ -77,7 +77,7 @@ where
     fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Option<PathOf<C, L>> {
         let Self { pair, target_sampler, explore, join } = self;
         let may_connect = explore.allows_direct() && join.allows_direct();
-        if let Some(path) = pair.begin(may_connect, rng, observer, both::<C, L>(explore, join)) {
+        if let Some(path) = pair.begin(may_connect, rng, observer, &mut both::<C, L>(explore, join)) {
             return Some(path);
         }
         let turn = pair.next_turn();
@@ -90,7 +90,7 @@ where
         let joined = b.toward(a.nodes().state(i), Purpose::Join, checker, join, rng, observer);
         let Grown::Reached(j) = joined else { return None };
         let meeting = if turn == 0 { [i, j] } else { [j, i] };
-        pair.candidate(meeting, observer, both::<C, L>(explore, join))
+        pair.candidate(meeting, observer, &mut both::<C, L>(explore, join))
     }
 
     fn progress(&self) -> Progress {

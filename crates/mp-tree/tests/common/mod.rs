@@ -6,6 +6,7 @@ use mp_cspace::obstacles::ObstacleHints;
 use mp_cspace::*;
 use nalgebra::{SVector, Vector2};
 use rand::RngExt;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Closed boxes in R^n, and points among them.
 #[derive(Clone, Debug, Default)]
@@ -75,6 +76,19 @@ pub(crate) fn certified<'c, C: Space, V: MotionClearance<C::State> + Send + 'c>(
     tolerance: f64,
 ) -> Checked<'c, C> {
     checked(space, Certified::new(space, robot, tolerance).unwrap())
+}
+
+/// A check that panics on each extension while its number is above zero.
+pub(crate) struct Fragile<'a, V>(pub(crate) V, pub(crate) &'a AtomicU64);
+
+impl<S, V: MotionValidity<S>> MotionValidity<S> for Fragile<'_, V> {
+    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
+        self.0.check_motion(from, to)
+    }
+    fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
+        assert!(self.1.load(Relaxed) == 0, "trouble");
+        self.0.check_extension(from, to, known)
+    }
 }
 
 /// The exact verifier of straight motions among boxes.

@@ -1,6 +1,7 @@
 //! RRT with cycles, and the alternatives it lists.
 
 use crate::common::*;
+use crate::engine::Remembers;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;
@@ -12,30 +13,6 @@ const START: Point = Point::new(0.1, 0.5);
 const GOAL: Point = Point::new(0.9, 0.5);
 const STEP: f64 = 0.1;
 const TOLERANCE: f64 = 0.5;
-
-/// Straight motions that remember where they run; `least` is what x must gain.
-struct Recording<'c> {
-    straight: Straight<'c, Rn<2>, Discrete<'c, Rn<2>, Boxes<2>>>,
-    least: f64,
-}
-
-impl LocalPlanner<Point> for Recording<'_> {
-    type Edge = Ends;
-    fn extend(&mut self, from: &Point, to: &Point, way: Direction, reach: Reach) -> Extension<Point, Ends> {
-        let noted = |Motion { end, cost, .. }| Motion { end, edge: [*from, end], cost };
-        let extension = match self.straight.extend(from, to, way, reach) {
-            Extension::Trapped => Extension::Trapped,
-            Extension::Advanced(motion) => Extension::Advanced(noted(motion)),
-            Extension::Reached(motion) => Extension::Reached(noted(motion)),
-        };
-        match &extension {
-            Extension::Advanced(m) | Extension::Reached(m) if m.end.x - from.x < self.least => {
-                Extension::Trapped
-            }
-            _ => extension,
-        }
-    }
-}
 
 /// Verifies exactly, and that an edge is where it was.
 struct Replayed(Boxes<2>);
@@ -50,20 +27,20 @@ impl Verify<Point, Ends> for Replayed {
     }
 }
 
-type Cyclic<'c> = CyclicRrt<'c, Rn<2>, Recording<'c>, KdTree<2>>;
+type Cyclic<'c> = CyclicRrt<'c, Rn<2>, Remembers<'c>, KdTree<2>>;
 
-fn planner<'c>(space: &'c Rn<2>, boxes: &Boxes<2>, (resolution, least): (f64, f64)) -> Cyclic<'c> {
-    biased(space, boxes, (resolution, least), 0.05)
+fn planner<'c>(space: &'c Rn<2>, boxes: &Boxes<2>, (resolution, gain): (f64, f64)) -> Cyclic<'c> {
+    biased(space, boxes, (resolution, gain), 0.05)
 }
 
 fn biased<'c>(
     space: &'c Rn<2>,
     boxes: &Boxes<2>,
-    (resolution, least): (f64, f64),
+    (resolution, gain): (f64, f64),
     goal_bias: f64,
 ) -> Cyclic<'c> {
     let check = Discrete::new(space, boxes.clone(), Length::Absolute(resolution)).unwrap();
-    let local = Recording { straight: Straight::new(space, check), least };
+    let local = Remembers { straight: checked(space, check), gain };
     let problem = Problem::new(space, local, Replayed(boxes.clone()), START, GOAL).unwrap();
     let tuning = Tuning { step: Length::Absolute(STEP), patience: 1_000_000, goal_bias, ..Tuning::default() };
     CyclicRrt::new(problem, tuning, TOLERANCE).unwrap()

@@ -249,13 +249,19 @@ fn finitely_many_moves_make_no_duplicates_either() {
     assert!((80..=169).contains(&planner.tree().len()), "{}", planner.tree().len());
 }
 
-type Remembering<'c> = Remembers<Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>>;
+/// Straight motions that remember their ends, in forward time; `gain` is what x must gain.
+pub(crate) struct Remembers<'c> {
+    pub(crate) straight: Local<'c>,
+    pub(crate) gain: f64,
+}
 
-/// Straight motions that remember their ends, in forward time.
-#[derive(Clone, Debug)]
-pub(crate) struct Remembers<L>(pub(crate) L);
+impl<'c> Remembers<'c> {
+    pub(crate) fn new(straight: Local<'c>) -> Self {
+        Self { straight, gain: f64::NEG_INFINITY }
+    }
+}
 
-impl<L: LocalPlanner<Point, Edge = ()>> LocalPlanner<Point> for Remembers<L> {
+impl LocalPlanner<Point> for Remembers<'_> {
     type Edge = [Point; 2];
     fn extend(
         &mut self,
@@ -272,7 +278,10 @@ impl<L: LocalPlanner<Point, Edge = ()>> LocalPlanner<Point> for Remembers<L> {
             },
             cost: motion.cost,
         };
-        match self.0.extend(from, toward, direction, reach) {
+        match self.straight.extend(from, toward, direction, reach) {
+            Extension::Advanced(m) | Extension::Reached(m) if m.end.x - from.x < self.gain => {
+                Extension::Trapped
+            }
             Extension::Trapped => Extension::Trapped,
             Extension::Advanced(motion) => Extension::Advanced(with_edge(motion)),
             Extension::Reached(motion) => Extension::Reached(with_edge(motion)),
@@ -315,7 +324,7 @@ const REMEMBERING: [&str; 14] = [
 /// Planners by type, of a local planner that no planner by name has.
 fn remembering<'c>(
     name: &str,
-    problem: Problem<'c, Rn<2>, Remembering<'c>>,
+    problem: Problem<'c, Rn<2>, Remembers<'c>>,
     boxes: &Boxes<2>,
     tuning: Tuning,
 ) -> Result<Remembered<'c>, BuildError> {
@@ -335,7 +344,7 @@ fn remembering<'c>(
         "add-rrt" => Box::new(DdRrt::with_index(problem, index, tuning, Domain::adaptive())?),
         "mvb-rrt" => Box::new(MvbRrt::with_index(problem, index, tuning, 5)?),
         "utility-rrt" => Box::new(UtilityRrt::with_index(problem, index, tuning, 4)?),
-        "cyclic-rrt" => Box::new(CyclicRrt::with_index(problem, index, tuning, 0.0)?),
+        "cyclic-rrt" => Box::new(CyclicRrt::new(problem, tuning, 0.0)?),
         _ => Box::new(Obrrt::with_index(problem, index, boxes.clone(), tuning, GrowthWeights::default())?),
     })
 }
@@ -345,8 +354,7 @@ fn edges_are_in_forward_time() {
     let (space, boxes) = (square(), slit(0.1, 0.8, 0.1));
     for name in REMEMBERING {
         for patience in [0, 10] {
-            let check = Certified::new(&space, boxes.clone(), 1e-3).unwrap();
-            let local = Remembers(Straight::new(&space, check));
+            let local = Remembers::new(local(&space, &boxes));
             let start = Point::new(0.1, 0.2);
             let problem = Problem::new(&space, local, Replays(boxes.clone()), start, goal()).unwrap();
             let mut planner = remembering(name, problem, &boxes, Tuning { patience, ..short() }).unwrap();

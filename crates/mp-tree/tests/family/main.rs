@@ -1,5 +1,5 @@
-//! Tests of the whole family. One program, so that what they share is compiled once; spaces that only few
-//! have are in `spaces`.
+//! Tests of the whole family. One program, so that what they share is compiled once: all planners by name of
+//! one space, above all.
 
 mod bad_input;
 #[path = "../common/mod.rs"]
@@ -7,7 +7,9 @@ mod common;
 mod conformance;
 mod cyclic;
 mod engine;
+mod erased;
 mod goals;
+mod inputs;
 mod obrrt;
 mod optimal;
 mod panics;
@@ -16,5 +18,6 @@ mod retraction;
 mod shared_bi_rrt;
 mod shared_tree;
 mod slots;
+mod snakes;
 mod t_rrt;
 mod walks;

@@ -115,7 +115,7 @@ fn events_tell_of_rewiring_and_costs_add_up() {
     let (space, boxes) = (square(), slit::<2>(1e-3, 0.6, 0.05));
     for patience in [0, 3, u64::MAX] {
         let check = Discrete::new(&space, boxes.clone(), Length::Absolute(0.05)).unwrap();
-        let local = Straight::new(&space, check);
+        let local = checked(&space, check);
         let problem =
             Problem::new(&space, local, Exact(boxes.clone()), START.into(), Point::from(GOAL)).unwrap();
         let tuning = Tuning { step: Length::Absolute(0.1), patience, ..Tuning::default() };
@@ -156,7 +156,8 @@ impl Verify<Point, [Point; 2]> for Anything {
 fn rewired_edges_are_in_forward_time_in_trees_of_both_directions() {
     let (space, (boxes, _)) = (square(), wall());
     let local = certified(&space, boxes, 1e-3);
-    let problem = Problem::new(&space, Remembers(local), Anything, START.into(), Point::from(GOAL)).unwrap();
+    let problem =
+        Problem::new(&space, Remembers::new(local), Anything, START.into(), Point::from(GOAL)).unwrap();
     let parts = TreePlannerParts {
         target_sampler: Samples(Uniform(&space)),
         selector: NearestSelector(Linear::new()),

@@ -109,31 +109,14 @@ fn parallel_runs_can_be_cancelled_and_go_on() {
     assert_eq!(planner.solve(&mut rng, &mut Iterations(100_000), &mut ()), whole);
 }
 
-/// Panics on each call while `trouble` is above zero.
-struct Fragile<'a, L>(L, &'a AtomicU64);
-
-impl<L: LocalPlanner<Point>> LocalPlanner<Point> for Fragile<'_, L> {
-    type Edge = L::Edge;
-    fn extend(
-        &mut self,
-        from: &Point,
-        to: &Point,
-        direction: Direction,
-        reach: Reach,
-    ) -> Extension<Point, L::Edge> {
-        assert!(self.1.load(Relaxed) == 0, "trouble");
-        self.0.extend(from, to, direction, reach)
-    }
-}
-
 #[test]
 fn a_run_that_panics_does_not_take_the_others_along() {
     let (space, boxes) = (square(), narrow());
     let (well, ill) = (AtomicU64::new(0), AtomicU64::new(1));
     for threads in [1, 2] {
         let run = |i| {
-            let local = certified(&space, boxes.clone(), 1e-3);
-            let local = Fragile(local, if i == 0 { &ill } else { &well });
+            let check = Certified::new(&space, boxes.clone(), 1e-3).unwrap();
+            let local = checked(&space, Fragile(check, if i == 0 { &ill } else { &well }));
             let (start, goal) = (Point::new(0.1, 0.2), Point::new(0.9, 0.2));
             RrtConnect::new(Problem::new(&space, local, Exact(boxes.clone()), start, goal)?, tuning())
         };

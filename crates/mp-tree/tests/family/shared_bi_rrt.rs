@@ -1,7 +1,7 @@
 //! Two trees grown by several threads.
 
 use crate::common::*;
-use crate::shared_tree::{Fragile, GOAL, Local, Log, Point, START, STEP, local, tuning};
+use crate::shared_tree::{GOAL, Local, Log, Point, START, STEP, fragile, local, tuning};
 use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_tree::*;
@@ -9,14 +9,14 @@ use rand::RngExt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-type Shared<'c, L> = SharedBiRrt<'c, Rn<2>, L, KdTree<2>>;
+type Shared<'c> = SharedBiRrt<'c, Rn<2>, Local<'c>, KdTree<2>>;
 
 fn make<'c>(
     space: &'c Rn<2>,
     boxes: &Boxes<2>,
     (batch, threads): (u64, usize),
     resolution: f64,
-) -> Shared<'c, Local<'c>> {
+) -> Shared<'c> {
     let problem = |_| Problem::new(space, local(space, boxes, resolution), Exact(boxes.clone()), START, GOAL);
     SharedBiRrt::new(batch, Workers::new(threads).unwrap(), tuning(0.05), problem).unwrap()
 }
@@ -139,7 +139,7 @@ fn a_panic_on_a_thread_loses_its_sample_and_no_tree() {
     for threads in [1, 2] {
         let (well, ill) = (AtomicU64::new(0), AtomicU64::new(1));
         let problem = |i| {
-            let local = Fragile(local(&space, &boxes, 1e-3), if i == 2 { &ill } else { &well });
+            let local = fragile(&space, &boxes, if i == 2 { &ill } else { &well });
             Problem::new(&space, local, Exact(boxes.clone()), START, GOAL)
         };
         let workers = Workers::new(threads).unwrap();
@@ -149,8 +149,7 @@ fn a_panic_on_a_thread_loses_its_sample_and_no_tree() {
             assert_eq!(planner.step(&mut rng, &mut ()), None);
             assert_eq!(planner.panics(), batch);
         }
-        let nodes =
-            |planner: &Shared<'_, Fragile<'_, '_>>| planner.trees().map(|tree| tree.states().to_vec());
+        let nodes = |planner: &Shared<'_>| planner.trees().map(|tree| tree.states().to_vec());
         let before = nodes(&planner);
         assert!(before.iter().all(|tree| tree.len() > 5));
 

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 pub(crate) type Point = Vector2<f64>;
 pub(crate) type Local<'c> = Straight<'c, Rn<2>, mp_cspace::erased::AnyCheck<'c, Vector2<f64>>>;
-type Shared<'c, L> = SharedTree<'c, Rn<2>, L, KdTree<2>>;
+type Shared<'c> = SharedTree<'c, Rn<2>, Local<'c>, KdTree<2>>;
 
 pub(crate) const START: Point = Point::new(0.1, 0.2);
 pub(crate) const GOAL: Point = Point::new(0.9, 0.2);
@@ -31,7 +31,7 @@ fn make<'c>(
     boxes: &Boxes<2>,
     (batch, threads): (u64, usize),
     resolution: f64,
-) -> Shared<'c, Local<'c>> {
+) -> Shared<'c> {
     let problem = |_| Problem::new(space, local(space, boxes, resolution), Exact(boxes.clone()), START, GOAL);
     SharedTree::new(batch, Workers::new(threads).unwrap(), tuning(0.05), problem).unwrap()
 }
@@ -159,15 +159,9 @@ fn several_goals_may_be_reached_in_one_batch() {
     assert!(nodes.iter().enumerate().all(|(i, q)| !nodes[..i].contains(q)));
 }
 
-/// Panics on each call while `trouble` is above zero.
-pub(crate) struct Fragile<'a, 'c>(pub(crate) Local<'c>, pub(crate) &'a AtomicU64);
-
-impl LocalPlanner<Point> for Fragile<'_, '_> {
-    type Edge = ();
-    fn extend(&mut self, from: &Point, to: &Point, way: Direction, reach: Reach) -> Extension<Point, ()> {
-        assert!(self.1.load(Relaxed) == 0, "trouble");
-        self.0.extend(from, to, way, reach)
-    }
+/// Panics on each extension while `trouble` is above zero.
+pub(crate) fn fragile<'c>(space: &'c Rn<2>, boxes: &Boxes<2>, trouble: &'c AtomicU64) -> Local<'c> {
+    checked(space, Fragile(local(space, boxes, 1e-3).check, trouble))
 }
 
 #[test]
@@ -176,7 +170,7 @@ fn a_panic_on_a_thread_loses_its_sample_and_no_tree() {
     for threads in [1, 2] {
         let (well, ill) = (AtomicU64::new(0), AtomicU64::new(1));
         let problem = |i| {
-            let local = Fragile(local(&space, &boxes, 1e-3), if i == 2 { &ill } else { &well });
+            let local = fragile(&space, &boxes, if i == 2 { &ill } else { &well });
             Problem::new(&space, local, Exact(boxes.clone()), START, GOAL)
         };
         let workers = Workers::new(threads).unwrap();

@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use mp_control::*;
+use mp_cspace::erased::AnySpace;
 use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_tree::*;
@@ -17,6 +18,10 @@ fn tuning(step: f64) -> Tuning {
     Tuning { step: Length::Absolute(step), ..Tuning::default() }
 }
 
+/// What planners ask of motions of a point by velocities.
+trait Moves: LocalPlanner<Point, Edge = ControlSegment<Point>> + InputChoice {}
+impl<L: LocalPlanner<Point, Edge = ControlSegment<Point>> + InputChoice> Moves for L {}
+
 /// A point moved by velocities among boxes, straight edges that remember their input.
 fn plan_positions<C>(
     space: &C,
@@ -25,7 +30,7 @@ fn plan_positions<C>(
     seed: u64,
 ) -> Run<Point, ControlSegment<SVector<f64, 2>>>
 where
-    C: DefaultNn + Space<State = Point>,
+    C: DefaultNn<Nn: 'static> + Space<State = Point> + Clone + Send + 'static,
 {
     let flow = Kinematic::new(space).unwrap();
     let check = Certified::new(space, boxes.clone(), 1e-3).unwrap();
@@ -35,10 +40,13 @@ where
     let verifier = ReplayMotions::new(flow, Exact(boxes.clone()));
     let goal = Goals::region(Ball::new(space, Point::new(0.9, 0.2), 0.05).unwrap())
         .with_sampler(Exactly(Point::new(0.9, 0.2)));
-    let problem = Problem::new(space, &mut local, verifier, Point::new(0.1, 0.2), goal).unwrap();
+    // Erased, so that the planners are compiled once for all metrics.
+    let (any, index) = (AnySpace::new(space), AnyIndex::of(space));
+    let moves: &mut dyn Moves = &mut local;
+    let problem = Problem::new(&any, moves, verifier, Point::new(0.1, 0.2), goal).unwrap();
     let (path, progress) = match order {
-        Order::TestAll => run(RrtInputs::new(problem, tuning(0.1)).unwrap(), seed),
-        Order::SortFirst => run(Rsrt::new(problem, tuning(0.1)).unwrap(), seed),
+        Order::TestAll => run(RrtInputs::with_index(problem, index, tuning(0.1)).unwrap(), seed),
+        Order::SortFirst => run(Rsrt::with_index(problem, index, tuning(0.1)).unwrap(), seed),
     };
     for (pair, leg) in path.states.windows(2).zip(&path.edges) {
         assert_eq!(flow.integrate(&pair[0], &leg.input, leg.duration), pair[1], "an edge does not run again");
@@ -56,7 +64,10 @@ fn run<S, P: Planner<S>>(mut planner: P, seed: u64) -> (Path<S, P::Edge>, Progre
 
 #[test]
 fn positions_under_every_metric_by_fewer_tests() {
-    fn both<C: DefaultNn + Space<State = Point>>(space: &C) {
+    fn both<C>(space: &C)
+    where
+        C: DefaultNn<Nn: 'static> + Space<State = Point> + Clone + Send + 'static,
+    {
         let boxes = slit(0.2, 0.8, 0.1);
         for seed in 0..4 {
             let rates = [Order::TestAll, Order::SortFirst].map(|order| {

@@ -1,13 +1,14 @@
 //! Trees whose edges bend, by name, of a point and of a rod: what they find is free, and what cannot be found
 //! is not.
 
-mod common;
-use common::*;
+use crate::common::*;
+use mp_cspace::erased::AnySpace;
 use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_snake::*;
 use mp_tree::*;
 use nalgebra::{SVector, Vector2};
+use std::sync::Arc;
 
 type Point = Vector2<f64>;
 
@@ -29,22 +30,6 @@ fn field(boxes: &Boxes<2>) -> impl FnMut(&Point, f64, &mut [f64]) -> f64 + Clone
         let (distance, slope) = nearest.unwrap_or((f64::INFINITY, Point::zeros()));
         gradient.copy_from_slice(slope.as_slice());
         distance
-    }
-}
-
-/// The clearance of a rod, and its gradient by central differences.
-fn rod_field(rod: &Rod, space: &Se2) -> impl FnMut(&Se2State, f64, &mut [f64]) -> f64 + use<> {
-    let (rod, space) = (rod.clone(), space.clone());
-    move |q, _, gradient| {
-        let clearance = |q: &Se2State| rod.clone().clearance(q, f64::INFINITY);
-        for (k, slope) in gradient.iter_mut().enumerate() {
-            let mut velocity = [0.0; 3];
-            velocity[k] = 1.0;
-            let [before, after] =
-                [-1e-5, 1e-5].map(|t| space.moved(q, &velocity, t).map_or(0.0, |q| clearance(&q)));
-            *slope = (after - before) / 2e-5;
-        }
-        clearance(q)
     }
 }
 
@@ -185,18 +170,24 @@ fn edges_of_the_tree_are_curves() {
     assert!(matches!(verdict, MotionCheck::Collision { at } if (0.0..=1.0).contains(&at)), "{verdict:?}");
 }
 
+/// In rows, whose planners are compiled in the library already.
 #[test]
 fn a_rod_bends_and_turns() {
-    let space = Se2::new([0.0; 2], [1.0; 2]).unwrap();
-    let rod = Rod { boxes: orchard(), half_length: 0.03, radius: 0.005 };
-    let (start, goal) = (Se2State::new(0.05, 0.05, 0.0), Se2State::new(0.95, 0.95, 1.0));
+    let space = AsVectors(Se2::new([0.0; 2], [1.0; 2]).unwrap());
+    let rod = OnVectors::<_, Se2State>::new(Rod { boxes: orchard(), half_length: 0.03, radius: 0.005 });
+    let ends = [Se2State::new(0.05, 0.05, 0.0), Se2State::new(0.95, 0.95, 1.0)];
+    let (any, [start, goal]) = (AnySpace::new(&space), ends.each_ref().map(Configuration::of));
     let settings = Settings::parse(["step=0.5", "range=0.02"]).unwrap();
     for (name, seed) in [("rrs", 1), ("rrs-connect", 2)] {
-        let local = certified(&space, rod.clone(), 1e-3);
-        let verifier = FineDiscrete::new(&space, rod.clone(), Length::Absolute(1e-4)).unwrap();
-        let problem = Problem::new(&space, local, verifier, start, goal).unwrap();
-        let problem = bending(problem, rod_field(&rod, &space));
-        let mut planner = build(name, problem, &settings).unwrap();
+        let problem = || {
+            let local = checked(&any, Certified::new(&space, rod.clone(), 1e-3).unwrap());
+            let verifier = FineDiscrete::new(&space, rod.clone(), Length::Absolute(1e-4)).unwrap();
+            let problem = Problem::new(&any, local, verifier, start.clone(), goal.clone())?;
+            Ok(problem.with_obstacles(knowledge(&space, &rod)))
+        };
+        let (index, workers) = (AnyIndex::of(&space), Workers::single());
+        let mut planner =
+            mp_tree::erased::build(name, Arc::new(problem), index, &settings, &workers).unwrap();
         let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(20_000), &mut ());
         let Outcome::Solved(path) = outcome else { panic!("{name}: {outcome:?}") };
         assert_path(&space, &path, &start, |q| *q == goal, |q| rod.clone().is_valid(q));
