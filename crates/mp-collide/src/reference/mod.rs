@@ -475,10 +475,7 @@ mod tests {
 
     /// One mesh with a tree for each number of balls stored; the first one stores them all.
     fn trees(mesh: &TriMesh) -> [RefMesh; 4] {
-        let trees = [0, 1, FEW, 1000].map(|few| {
-            let tree = RefMesh::storing(mesh, few, &mut || Ok(())).unwrap();
-            tree
-        });
+        let trees = [0, 1, FEW, 1000].map(|few| RefMesh::storing(mesh, few, &mut || Ok(())).unwrap());
         let (all, stored) = (2 * mesh.triangles().len() - 1, trees.each_ref().map(|tree| tree.balls.len()));
         assert!(stored[0] == all && stored[1] < all && stored[2] < all / 3, "{stored:?}");
         let counted = |few| larger_balls(mesh.triangles().len(), few as usize);

@@ -121,23 +121,24 @@ impl EndTrees {
     {
         let Builder { map, checker, .. } = &mut *builder;
         let before = map.len() as NodeId;
-        let Some((tree, candidate)) = self.step(map, checker, rng) else { return before..before };
-        builder.adopt(candidate, observer);
-        let after = builder.map.len() as NodeId;
-        self.trees[tree].extend(before..after);
-        before..after
-    }
-
-    /// A step of one of the trees, and of which.
-    fn step<C: Space, L: LocalPlanner<C::State>>(
-        &mut self,
-        map: &Roadmap<C::State, L::Edge>,
-        checker: &mut EdgeChecker<'_, C, L>,
-        rng: &mut Rng,
-    ) -> Option<(usize, Candidate<C::State, L::Edge>)> {
         self.grown += 1;
         let turn = (self.grown % 2) as usize;
         let turn = if self.trees[turn].is_empty() { 1 - turn } else { turn };
+        let Some(candidate) = self.step(turn, map, checker, rng) else { return before..before };
+        builder.adopt(candidate, observer);
+        let after = builder.map.len() as NodeId;
+        self.trees[turn].extend(before..after);
+        before..after
+    }
+
+    /// A step of a tree.
+    fn step<C: Space, L: LocalPlanner<C::State>>(
+        &self,
+        turn: usize,
+        map: &Roadmap<C::State, L::Edge>,
+        checker: &mut EdgeChecker<'_, C, L>,
+        rng: &mut Rng,
+    ) -> Option<Candidate<C::State, L::Edge>> {
         let tree = &self.trees[turn];
         let (space, q) = (checker.space(), checker.space().sample_uniform(rng));
         let distance = |id: &NodeId| space.distance(map.state(*id), &q);
@@ -157,6 +158,6 @@ impl EndTrees {
         }
         let mut candidate = Candidate::new(motion.end.clone(), MilestoneKind::Expanded);
         candidate.parent = Some(ParentMotion { from: Some(near), motion });
-        Some((turn, candidate))
+        Some(candidate)
     }
 }
