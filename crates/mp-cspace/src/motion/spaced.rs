@@ -15,8 +15,8 @@ const MAX_STEPS: f64 = 1e9;
 /// [`Certified`](super::Certified), for robots that [test eight states](MotionClearance::first_within) at about the cost of one: where motions
 /// pass near obstacles it asks for a few of these where a certificate takes many intervals.
 ///
-/// The ends and the middle are tested first, then states evenly between in bit-reversed order. All of eight states are used, however short the
-/// motion is.
+/// The ends and the middle are tested first, then states evenly between in bit-reversed order. Of the shortest motion eight states are tested
+/// too, as they cost no more than one.
 #[derive(Clone, Debug)]
 pub struct Spaced<'c, C: Space, V> {
     /// The space to interpolate in.
