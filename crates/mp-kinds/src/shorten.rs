@@ -109,10 +109,10 @@ fn shorten_by_certificates(
     let (space, unused) = (AnySpace::new(&kind.any_space()), AtomicU64::new(0));
     let counting = Counting::new(&unused, interrupt.clone());
     let wide = kind.shortcut_clearance();
-    let narrow = (NARROW * wide).max(kind.tolerance());
+    let least = (NARROW * wide).max(kind.tolerance());
     // A clearance that was asked for is enough.
     let has_wide = kind.kept() == 0.0;
-    let tolerance = if has_wide { wide } else { narrow };
+    let tolerance = if has_wide { wide } else { least };
     let certified = |tolerance| motions(kind, &space, By::Certificates(tolerance), &counting);
     let mut check = possible(kind, interrupt, certified(tolerance)?);
     let effort = kind.effort();
@@ -120,13 +120,13 @@ fn shorten_by_certificates(
         return Ok(short);
     }
     let factors = kind.any_space();
-    let mut narrow_check = possible(kind, interrupt, certified(narrow)?);
+    let mut narrow = possible(kind, interrupt, certified(least)?);
     let spaced = spaced(kind, tolerance, &|checker, by| {
         Ok(possible(kind, interrupt, motions_of(checker, kind, &space, by, &counting)?))
     })?;
     let by_spaces = spaced.and_then(|[mut spaced, mut check]| {
         let draft = simplified(&factors, &mut spaced, path, effort, rng);
-        certified_part_by_part(&factors, [&mut check, &mut narrow_check], path, &draft)
+        certified_part_by_part(&factors, [&mut check, &mut narrow], path, &draft)
     });
     let (short, roomy) = by_spaces.unwrap_or_else(|| {
         let draft = simplified(&factors, &mut check, path, effort, rng);
@@ -137,7 +137,6 @@ fn shorten_by_certificates(
     if !has_wide {
         return Ok(short);
     }
-    let mut narrow = narrow_check;
     if roomy.iter().all(|roomy| *roomy) {
         return Ok(short);
     }
