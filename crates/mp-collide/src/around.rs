@@ -1,9 +1,11 @@
 //! What is around a body: a box, a cylinder or a capsule.
 
 use crate::bvh::root_box::RootBox;
+use crate::cover::ALL;
 use crate::mesh::CollisionMesh;
 use crate::pose::Relative;
 use mp_geom::Sphere;
+use mp_simd::Lanes;
 use mp_simd::wide::{Wide, Wide3};
 use nalgebra::{Isometry3, Point3, Vector3};
 
@@ -185,18 +187,33 @@ impl Around {
     /// As [`gap`](Self::gap), for balls at eight places.
     #[inline(always)]
     pub(crate) fn wide_gap(&self, center: &Wide3, radius: f64) -> Wide {
+        let (square, own) = self.wide_square(center);
+        square.sqrt() - (own + radius)
+    }
+
+    /// The places, as bits, where a ball is not farther than `within` (m), which is not negative; also where that cannot be compared.
+    #[inline(always)]
+    pub(crate) fn wide_near<L: Lanes>(&self, center: &Wide3, radius: f64, within: f64) -> u32 {
+        let (square, own) = self.wide_square(center);
+        let far = within + (own + radius);
+        ALL & !Wide::splat(far * far).less::<L>(square)
+    }
+
+    /// The square of a lower bound on the distance of eight points from what is left without its rounding, and the radius of that.
+    #[inline(always)]
+    fn wide_square(&self, center: &Wide3) -> (Wide, f64) {
         let (half, zero) = (&self.bounds.half, Wide::splat(0.0));
         let [x, y, z] = self.wide_place(center);
         if self.outline.form == Form::Capsule {
             let c = (z - self.outline.straight).max(zero);
-            return (x * x + y * y + c * c).sqrt() - (self.radius + radius);
+            return (x * x + y * y + c * c, self.radius);
         }
         let [a, b, c] = [(x - half.x).max(zero), (y - half.y).max(zero), (z - half.z).max(zero)];
         if self.outline.form == Form::Box {
-            return (a * a + b * b + c * c).sqrt() - radius;
+            return (a * a + b * b + c * c, 0.0);
         }
         let across = ((x * x + y * y).sqrt() - self.radius).max(zero);
-        ((a * a + b * b).max(across * across) + c * c).sqrt() - radius
+        ((a * a + b * b).max(across * across) + c * c, 0.0)
     }
 
     #[inline(always)]

@@ -4,6 +4,10 @@
 //! *Dynamic Bounding Volume Hierarchies*, GDC 2019.
 
 use mp_geom::Aabb;
+use mp_simd::wide::{LANES, Wide, Wide3};
+
+/// Of no more boxes than this a list is kept beside the tree.
+const FEW: usize = 64;
 
 /// Room for a traversal: the tree is balanced, so that 2³² boxes are less than 50 levels.
 const STACK: usize = 96;
@@ -36,12 +40,59 @@ enum Content {
     Free,
 }
 
+/// Up to eight boxes.
+#[derive(Clone, Debug)]
+pub(crate) struct EightBoxes {
+    pub(crate) items: [u32; LANES],
+    /// Bit i is set where there is a box.
+    pub(crate) taken: u32,
+    low: Wide3,
+    high: Wide3,
+    /// The largest absolute coordinates.
+    pub(crate) size: Wide,
+}
+
+impl EightBoxes {
+    const NONE: Self = Self {
+        items: [0; LANES],
+        taken: 0,
+        low: [Wide::splat(f64::INFINITY); 3],
+        high: [Wide::splat(f64::NEG_INFINITY); 3],
+        size: Wide::splat(0.0),
+    };
+
+    fn push(&mut self, item: u32, bounds: &Aabb) {
+        let i = self.taken.count_ones() as usize;
+        self.taken |= 1 << i;
+        self.items[i] = item;
+        for k in 0..3 {
+            (self.low[k].0[i], self.high[k].0[i]) = (bounds.min[k], bounds.max[k]);
+        }
+        self.size.0[i] = bounds.min.coords.amax().max(bounds.max.coords.amax());
+    }
+
+    /// The distances of a box, 0 where it overlaps.
+    #[inline(always)]
+    pub(crate) fn distance(&self, low: &[f64; 3], high: &[f64; 3]) -> Wide {
+        let mut square = Wide::splat(0.0);
+        let mut k = 0;
+        while k < 3 {
+            let gap = (self.low[k] - high[k]).max(Wide::splat(low[k]) - self.high[k]).max(Wide::splat(0.0));
+            square = square + gap * gap;
+            k += 1;
+        }
+        square.sqrt()
+    }
+}
+
 /// A set of numbered boxes that finds those which overlap a box, or are near it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BroadPhase {
     nodes: Vec<Node>,
     free: Vec<usize>,
     root: Option<usize>,
+    /// All boxes in the order in which they are found, where they are few.
+    list: Vec<EightBoxes>,
 }
 
 impl BroadPhase {
@@ -50,8 +101,45 @@ impl BroadPhase {
         self.root.is_none()
     }
 
+    /// All boxes in the order in which [`find`](Self::find) finds them; `None` where they are many.
+    pub(crate) fn few(&self) -> Option<&[EightBoxes]> {
+        (self.is_empty() || !self.list.is_empty()).then_some(&self.list)
+    }
+
+    /// Makes the list anew: of few boxes that takes no longer than changing the tree.
+    fn relist(&mut self) {
+        let Self { nodes, free, root, list } = self;
+        list.clear();
+        let Some(root) = root.filter(|_| nodes.len() - free.len() < 2 * FEW) else { return };
+        let (mut stack, mut top) = ([root; STACK], 1);
+        while top > 0 {
+            top -= 1;
+            match &nodes[stack[top]] {
+                Node { content: Content::Leaf(item), bounds, .. } => {
+                    if list.last().is_none_or(|last| last.taken.count_ones() as usize == LANES) {
+                        list.push(EightBoxes::NONE);
+                    }
+                    if let Some(last) = list.last_mut() {
+                        last.push(*item, bounds);
+                    }
+                }
+                Node { content: Content::Inner([x, y]), .. } => {
+                    (stack[top], stack[top + 1]) = (*y, *x);
+                    top += 2;
+                }
+                Node { content: Content::Free, .. } => {}
+            }
+        }
+    }
+
     /// Adds a box; returns the handle to remove it by.
     pub(crate) fn insert(&mut self, item: u32, bounds: Aabb) -> usize {
+        let leaf = self.add(item, bounds);
+        self.relist();
+        leaf
+    }
+
+    fn add(&mut self, item: u32, bounds: Aabb) -> usize {
         let leaf = self.allocate(Node { bounds, parent: None, content: Content::Leaf(item), height: 0 });
         let Some(root) = self.root else {
             self.root = Some(leaf);
@@ -74,6 +162,11 @@ impl BroadPhase {
 
     /// Removes the box for which [`BroadPhase::insert`] returned `leaf`.
     pub(crate) fn remove(&mut self, leaf: usize) {
+        self.take(leaf);
+        self.relist();
+    }
+
+    fn take(&mut self, leaf: usize) {
         let parent = self.nodes[leaf].parent;
         self.release(leaf);
         let Some(parent) = parent else {
@@ -269,7 +362,7 @@ mod tests {
         let mut broad = BroadPhase::default();
         let mut all: Vec<(u32, usize, Aabb)> = Vec::new();
         for step in 0..3000_u32 {
-            if all.len() > 150 || (!all.is_empty() && rng.random_bool(0.4)) {
+            if all.len() > if step < 1000 { 40 } else { 150 } || (!all.is_empty() && rng.random_bool(0.4)) {
                 let (_, handle, _) = all.swap_remove(rng.random_range(0..all.len()));
                 broad.remove(handle);
             } else {
@@ -286,10 +379,33 @@ mod tests {
                 },
             );
             assert_eq!(stopped, None);
+            let in_order = found.clone();
             found.sort_unstable();
             let mut expected: Vec<u32> =
                 all.iter().filter(|(_, _, b)| b.intersects(&probe)).map(|(item, ..)| *item).collect();
             expected.sort_unstable();
+            let Some(list) = broad.few() else {
+                assert!(all.len() > FEW);
+                assert_eq!(found, expected, "step {step}");
+                continue;
+            };
+            assert!(all.len() <= FEW);
+            // In the same order, each with its distance.
+            let (low, high) = (probe.min.coords.into(), probe.max.coords.into());
+            let listed = list.iter().flat_map(|eight| {
+                let far = eight.distance(&low, &high);
+                let taken = move |i: &usize| eight.taken >> i & 1 == 1;
+                (0..LANES).filter(taken).map(move |i| (eight.items[i], far.0[i]))
+            });
+            let listed: Vec<(u32, f64)> = listed.collect();
+            for (item, far) in &listed {
+                let own = all.iter().find(|(own, ..)| own == item).unwrap().2;
+                assert_eq!(*far, distance(&probe, &own));
+            }
+            assert_eq!(listed.len(), all.len());
+            let near: Vec<u32> =
+                listed.iter().filter(|(_, far)| *far == 0.0).map(|(item, _)| *item).collect();
+            assert_eq!(near, in_order, "step {step}");
             assert_eq!(found, expected, "step {step}");
         }
     }

@@ -98,6 +98,7 @@ pub mod triangle;
 pub use counters::Counters;
 pub use cover::{
     Contacts, Cover, MOST_BALLS, PlacedCover, WideCover, wide_apart, wide_apart_here, wide_within,
+    wide_within_here,
 };
 pub use filled::FillError;
 pub use mesh::CollisionMesh;

@@ -182,6 +182,16 @@ pub trait Lanes: Copy {
     fn le(self, b: Self) -> Self::Mask;
     /// Where `self` < `b`.
     fn lt(self, b: Self) -> Self::Mask;
+    /// Of eight `f64`: bit `i` is set where `a[i]` < `b[i]`; not where they cannot be compared.
+    #[inline(always)]
+    fn less(a: &[f64; 8], b: &[f64; 8]) -> u32 {
+        let (mut bits, mut i) = (0, 0);
+        while i < 8 {
+            bits |= u32::from(a[i] < b[i]) << i;
+            i += 1;
+        }
+        bits
+    }
 }
 
 /// A computation generic over the lanes. Its `run` and all that this calls must be `#[inline(always)]`: only then is it compiled for the

@@ -20,7 +20,7 @@ pub trait WideKernel {
     /// What it computes.
     type Output;
     /// Computes it.
-    fn run(self) -> Self::Output;
+    fn run<L: Lanes>(self) -> Self::Output;
 }
 
 /// Runs `kernel` with the widest instructions of the processor. The results are the same on all.
@@ -29,14 +29,14 @@ pub fn on_widest<K: WideKernel>(kernel: K) -> K::Output {
     run(Isa::detect(), AnyLanes(kernel))
 }
 
-/// A kernel that uses no lanes of `f32`.
+/// A kernel that compares in lanes, and uses no `f32`.
 struct AnyLanes<K>(K);
 
 impl<K: WideKernel> Kernel for AnyLanes<K> {
     type Output = K::Output;
     #[inline(always)]
     fn run<L: Lanes>(self) -> K::Output {
-        self.0.run()
+        self.0.run::<L>()
     }
 }
 
@@ -49,6 +49,23 @@ macro_rules! lanes {
             $i += 1;
         }
         Wide(out)
+    }};
+}
+
+mod sin_cos;
+
+/// The first of eight by this comparison, of which one half is compared with the other, and so on.
+macro_rules! halved {
+    ($all:expr, $before:tt) => {{
+        macro_rules! first {
+                                        ($x:expr, $y:expr) => {
+                                            if $x $before $y { $x } else { $y }
+                                        };
+                                    }
+        let [a, b, c, d, e, f, g, h] = $all;
+        let (a, b, c, d) = (first!(a, e), first!(b, f), first!(c, g), first!(d, h));
+        let (a, b) = (first!(a, c), first!(b, d));
+        first!(a, b)
     }};
 }
 
@@ -91,14 +108,8 @@ impl Wide {
     /// Bit `i` is set where lane `i` is less than that of `b`; not where they cannot be compared.
     #[inline(always)]
     #[must_use]
-    pub fn less(self, b: Self) -> u32 {
-        let mut bits = 0;
-        let mut i = 0;
-        while i < LANES {
-            bits |= u32::from(self.0[i] < b.0[i]) << i;
-            i += 1;
-        }
-        bits
+    pub fn less<L: Lanes>(self, b: Self) -> u32 {
+        L::less(&self.0, &b.0)
     }
 
     /// In each lane `x` where this is less than `b`, else `y`.
@@ -108,19 +119,24 @@ impl Wide {
         lanes!(i => if self.0[i] < b.0[i] { x.0[i] } else { y.0[i] })
     }
 
+    /// The least and the greatest; anything where one is no number.
+    #[inline(always)]
+    #[must_use]
+    pub fn range(self) -> [f64; 2] {
+        [halved!(self.0, <), halved!(self.0, >)]
+    }
+
     /// The greatest absolute value; not a number if any is none.
     #[inline(always)]
     #[must_use]
     pub fn largest(self) -> f64 {
-        let mut most: f64 = 0.0;
-        let mut i = 0;
+        // As integers they are in the same order, and what is no number is above all.
+        let (mut bits, mut i) = ([0; LANES], 0);
         while i < LANES {
-            // `max` would drop NaN.
-            let x = self.0[i].abs();
-            most = if x <= most || most.is_nan() { most } else { x };
+            bits[i] = self.0[i].abs().to_bits();
             i += 1;
         }
-        most
+        f64::from_bits(halved!(bits, >))
     }
 }
 
@@ -253,6 +269,7 @@ impl WideFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Scalar;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
@@ -262,13 +279,13 @@ mod tests {
     impl WideKernel for All {
         type Output = ([Wide3; 3], u32, f64);
         #[inline(always)]
-        fn run(self) -> Self::Output {
+        fn run<L: Lanes>(self) -> Self::Output {
             let [a, b, c, d, e, f, g, h, i, x, y, z] = self.0;
             let frame = WideFrame { turn: [[a, b, c], [d, e, f], [g, h, i]], origin: [x, y, z] };
             let p = frame.point(&[0.3, -1.7, 11.1]);
             let q = cross(&p, &frame.vector(&[3.7, 0.1, -0.9]));
             let r = [dot(&p, &q).abs().sqrt(), (-q[1] * 1.1).min(p[0]).max(a + 0.7), p[2] - 0.3];
-            ([p, q, sub(&q, &r)], p[0].less(q[0]), r[0].largest())
+            ([p, q, sub(&q, &r)], p[0].less::<L>(q[0]), r[0].largest())
         }
     }
 
@@ -285,26 +302,40 @@ mod tests {
             let bits = |(vectors, less, largest): ([Wide3; 3], u32, f64)| {
                 (vectors.map(|v| v.map(|x| x.0.map(f64::to_bits))), less, largest.to_bits())
             };
-            let expected = bits(All(numbers).run());
+            let expected = bits(All(numbers).run::<Scalar>());
             for isa in Isa::available() {
                 assert_eq!(bits(run(isa, AnyLanes(All(numbers)))), expected, "{isa:?}");
             }
-            let one = bits(All(numbers.map(|x| Wide::splat(x.0[5]))).run());
+            let one = bits(All(numbers.map(|x| Wide::splat(x.0[5]))).run::<Scalar>());
             for (all, one) in expected.0.iter().flatten().zip(one.0.iter().flatten()) {
                 assert_eq!(all[5], one[0]);
             }
         }
     }
 
+    struct Less(Wide, Wide);
+
+    impl WideKernel for Less {
+        type Output = u32;
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> u32 {
+            self.0.less::<L>(self.1)
+        }
+    }
+
     #[test]
     fn what_cannot_be_compared_is_not_less() {
         let nan = Wide::splat(f64::NAN);
-        assert_eq!(nan.less(Wide::splat(1.0)) | Wide::splat(1.0).less(nan), 0);
+        for isa in Isa::available() {
+            assert_eq!(run(isa, AnyLanes(Less(nan, Wide::splat(1.0)))), 0);
+            assert_eq!(run(isa, AnyLanes(Less(Wide::splat(1.0), nan))), 0);
+        }
         for k in 0..LANES {
             let one = Wide(std::array::from_fn(|i| if i == k { f64::NAN } else { -3.0 }));
             assert!(one.largest().is_nan());
         }
-        assert_eq!(Wide([1.0, -4.0, 3.0, 0.0, 0.0, 2.0, 0.0, -1.0]).largest(), 4.0);
+        let all = Wide([1.0, -4.0, 3.0, 0.0, 0.0, 2.0, 0.0, -1.0]);
+        assert_eq!((all.largest(), all.range()), (4.0, [-4.0, 3.0]));
         assert_eq!(nan.min(Wide::splat(1.0)).0, [1.0; LANES]);
     }
 }

@@ -106,6 +106,17 @@ impl Lanes for Avx2 {
         // SAFETY: see `Avx2`.
         Avx2Mask(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, b.0) })
     }
+    #[inline(always)]
+    fn less(a: &[f64; 8], b: &[f64; 8]) -> u32 {
+        // SAFETY: see `Avx2`.
+        let (low, high) = unsafe {
+            let (a_low, a_high) = (_mm256_loadu_pd(a.as_ptr()), _mm256_loadu_pd(a.as_ptr().add(4)));
+            let (b_low, b_high) = (_mm256_loadu_pd(b.as_ptr()), _mm256_loadu_pd(b.as_ptr().add(4)));
+            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a_low, b_low));
+            (low, _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a_high, b_high)))
+        };
+        (low | high << 4).cast_unsigned()
+    }
 }
 
 /// What comparing [`Avx2`]s gives: all bits of a lane or none.
@@ -226,6 +237,20 @@ impl Lanes for Sse2 {
     fn lt(self, b: Self) -> Sse2Mask {
         // SAFETY: see `Sse2`.
         unsafe { Sse2Mask(_mm_cmplt_ps(self.0, b.0), _mm_cmplt_ps(self.1, b.1)) }
+    }
+    #[inline(always)]
+    fn less(a: &[f64; 8], b: &[f64; 8]) -> u32 {
+        let (mut bits, mut k) = (0, 0);
+        while k < 8 {
+            // SAFETY: see `Sse2`.
+            let pair = unsafe {
+                let (a, b) = (_mm_loadu_pd(a.as_ptr().add(k)), _mm_loadu_pd(b.as_ptr().add(k)));
+                _mm_movemask_pd(_mm_cmplt_pd(a, b))
+            };
+            bits |= pair.cast_unsigned() << k;
+            k += 2;
+        }
+        bits
     }
 }
 

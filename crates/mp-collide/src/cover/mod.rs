@@ -6,7 +6,7 @@
 mod wide;
 
 pub(crate) use wide::{ALL, LARGEST};
-pub use wide::{Contacts, WideCover, wide_apart, wide_apart_here, wide_within};
+pub use wide::{Contacts, WideCover, wide_apart, wide_apart_here, wide_within, wide_within_here};
 
 use crate::pose::rotation_matrix;
 use mp_geom::{Sphere, TriMesh, minimal_sphere};

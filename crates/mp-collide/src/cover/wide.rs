@@ -3,7 +3,8 @@
 use super::{Cover, ROUNDING};
 use crate::around::Around;
 use mp_geom::Sphere;
-use mp_simd::wide::{LANES, Wide, Wide3, WideFrame, WideKernel, on_widest, sub};
+use mp_simd::Lanes;
+use mp_simd::wide::{LANES, Wide, Wide3, WideFrame, WideKernel, dot, on_widest, sub};
 
 /// Where coordinates are larger, products may overflow: nothing is decided then.
 pub(crate) const LARGEST: f64 = 1e100;
@@ -57,6 +58,13 @@ fn gap(a: &Wide3, b: &Wide3, radii: f64) -> Wide {
     (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt() - radii
 }
 
+/// The places, as bits, where two points are not farther than `far` (m) from each other; also where that cannot be compared.
+#[inline(always)]
+fn within<L: Lanes>(a: &Wide3, b: &Wide3, far: f64) -> u32 {
+    let d = sub(a, b);
+    ALL & !Wide::splat(far * far).less::<L>(dot(&d, &d))
+}
+
 impl WideCover {
     /// Puts a mesh to eight places, where `around` is the ball around it in its own frame.
     #[inline(always)]
@@ -104,9 +112,15 @@ impl WideCover {
     /// Lower bounds on the distance from what `around` is around: by the ball around the mesh; where that is less than `enough`, by those
     /// around groups of balls; and where one of these is less, by its balls.
     #[inline(always)]
-    pub(crate) fn apart_from(&mut self, cover: &Cover, around: &Around, enough: Wide, some: Wide) -> Wide {
+    pub(crate) fn apart_from<L: Lanes>(
+        &mut self,
+        cover: &Cover,
+        around: &Around,
+        enough: Wide,
+        some: Wide,
+    ) -> Wide {
         let whole = around.wide_gap(&self.center, self.radius);
-        let open = whole.less(enough);
+        let open = whole.less::<L>(enough);
         if open == 0 || cover.groups.is_empty() {
             return whole;
         }
@@ -115,7 +129,7 @@ impl WideCover {
         for k in 0..cover.groups.len() {
             let group = around.wide_gap(&self.groups[k], cover.groups[k].around.radius);
             let mut near = group;
-            if group.less(enough) & open != 0 {
+            if group.less::<L>(enough) & open != 0 {
                 self.place_balls(cover, k);
                 let mut balls = Wide::splat(f64::INFINITY);
                 for i in cover.groups[k].balls.clone() {
@@ -125,7 +139,7 @@ impl WideCover {
             }
             least = near.min(least);
             // Too little in all lanes that are open: the groups left would say no more.
-            if least.less(some) & open == open {
+            if least.less::<L>(some) & open == open {
                 return whole;
             }
         }
@@ -157,25 +171,30 @@ impl Contacts {
 impl WideCover {
     /// Whether the mesh is within `kept` (m) of the body that `around` is around.
     #[inline(always)]
-    pub(crate) fn contact(&mut self, cover: &Cover, around: &Around, kept: f64, rounding: f64) -> Contacts {
+    pub(crate) fn contact<L: Lanes>(
+        &mut self,
+        cover: &Cover,
+        around: &Around,
+        kept: f64,
+        rounding: f64,
+    ) -> Contacts {
         let mut found = Contacts::default();
-        let apart = Wide::splat(kept + rounding);
-        // Written so that NaN is open.
-        let near = |gap: Wide| ALL & !apart.less(gap);
-        let mut open = near(around.wide_gap(&self.center, self.radius));
+        let near = kept + rounding;
+        let mut open = around.wide_near::<L>(&self.center, self.radius, near);
         if open == 0 || cover.groups.is_empty() {
             return Contacts { touching: 0, open };
         }
         self.place_groups(cover);
         for k in 0..cover.groups.len() {
-            let mut group = open & near(around.wide_gap(&self.groups[k], cover.groups[k].around.radius));
+            let mut group =
+                open & around.wide_near::<L>(&self.groups[k], cover.groups[k].around.radius, near);
             if group == 0 {
                 continue;
             }
             self.place_balls(cover, k);
             for i in cover.groups[k].balls.clone() {
                 let ball = &cover.balls[i];
-                let close = group & near(around.wide_gap(&self.balls[i], ball.radius));
+                let close = group & around.wide_near::<L>(&self.balls[i], ball.radius, near);
                 found.open |= close;
                 if close == 0 || !cover.is_exact || !around.is_tight() {
                     continue;
@@ -204,7 +223,7 @@ struct Within<'a> {
 impl WideKernel for Within<'_> {
     type Output = Contacts;
     #[inline(always)]
-    fn run(self) -> Contacts {
+    fn run<L: Lanes>(self) -> Contacts {
         let ((own, a), (others, b)) = (self.own, self.other);
         let size = a.size + b.size;
         let is_usual = size < LARGEST;
@@ -212,8 +231,8 @@ impl WideKernel for Within<'_> {
             return Contacts { touching: 0, open: ALL };
         }
         let rounding = ROUNDING * size;
-        let near = |gap: Wide| ALL & !Wide::splat(self.distance + rounding).less(gap);
-        let mut open = near(gap(&a.center, &b.center, a.radius + b.radius));
+        let (near, touching) = (self.distance + rounding, self.distance - rounding);
+        let mut open = within::<L>(&a.center, &b.center, near + a.radius + b.radius);
         if open == 0 || own.groups.is_empty() || others.groups.is_empty() {
             return Contacts { touching: 0, open };
         }
@@ -223,20 +242,29 @@ impl WideKernel for Within<'_> {
         b.place_groups(others);
         for i in 0..own.groups.len() {
             let radius = own.groups[i].around.radius;
-            let one = open & near(gap(&a.groups[i], &b.center, radius + b.radius));
+            let one = open & within::<L>(&a.groups[i], &b.center, near + radius + b.radius);
             for j in 0..others.groups.len() {
                 let radii = radius + others.groups[j].around.radius;
-                if one == 0 || one & near(gap(&a.groups[i], &b.groups[j], radii)) == 0 {
+                if one == 0 || one & within::<L>(&a.groups[i], &b.groups[j], near + radii) == 0 {
                     continue;
                 }
                 a.place_balls(own, i);
                 b.place_balls(others, j);
                 for k in own.groups[i].balls.clone() {
+                    let radius = own.balls[k].radius;
+                    let wide = radius + others.groups[j].around.radius;
+                    let some = one & within::<L>(&a.balls[k], &b.groups[j], near + wide);
+                    if some == 0 {
+                        continue;
+                    }
                     for l in others.groups[j].balls.clone() {
-                        let gap = gap(&a.balls[k], &b.balls[l], own.balls[k].radius + others.balls[l].radius);
-                        found.open |= one & near(gap);
-                        if is_exact {
-                            found.touching |= one & gap.less(Wide::splat(self.distance - rounding));
+                        let radii = radius + others.balls[l].radius;
+                        let close = some & within::<L>(&a.balls[k], &b.balls[l], near + radii);
+                        found.open |= close;
+                        if is_exact && close != 0 && touching + radii > 0.0 {
+                            // Written so that NaN is open.
+                            let (d, reach) = (sub(&a.balls[k], &b.balls[l]), touching + radii);
+                            found.touching |= close & dot(&d, &d).less::<L>(Wide::splat(reach * reach));
                         }
                     }
                 }
@@ -258,6 +286,16 @@ pub fn wide_within(
     on_widest(Within { own, other, distance })
 }
 
+/// As [`wide_within`], for what is compiled for the widest instructions already.
+#[inline(always)]
+pub fn wide_within_here<L: Lanes>(
+    own: (&Cover, &mut WideCover),
+    other: (&Cover, &mut WideCover),
+    distance: f64,
+) -> Contacts {
+    Within { own, other, distance }.run::<L>()
+}
+
 /// Of two covers.
 struct FromEachOther<'a> {
     own: (&'a Cover, &'a mut WideCover),
@@ -269,7 +307,7 @@ struct FromEachOther<'a> {
 impl WideKernel for FromEachOther<'_> {
     type Output = Wide;
     #[inline(always)]
-    fn run(self) -> Wide {
+    fn run<L: Lanes>(self) -> Wide {
         let ((own, a), (others, b)) = (self.own, self.other);
         let size = a.size + b.size;
         let is_usual = size < LARGEST;
@@ -279,7 +317,7 @@ impl WideKernel for FromEachOther<'_> {
         let rounding = ROUNDING * size;
         let enough = self.enough + rounding;
         let whole = gap(&a.center, &b.center, a.radius + b.radius);
-        let open = whole.less(enough);
+        let open = whole.less::<L>(enough);
         if open == 0 || own.groups.is_empty() || others.groups.is_empty() {
             return whole - rounding;
         }
@@ -291,14 +329,14 @@ impl WideKernel for FromEachOther<'_> {
         for i in 0..own.groups.len() {
             let radius = own.groups[i].around.radius;
             let group = gap(&a.groups[i], &b.center, radius + b.radius);
-            if group.less(enough) & open == 0 {
+            if group.less::<L>(enough) & open == 0 {
                 least = group.min(least);
                 continue;
             }
             for j in 0..others.groups.len() {
                 let groups = gap(&a.groups[i], &b.groups[j], radius + others.groups[j].around.radius);
                 let mut near = groups;
-                if groups.less(enough) & open != 0 {
+                if groups.less::<L>(enough) & open != 0 {
                     a.place_balls(own, i);
                     b.place_balls(others, j);
                     let mut balls = Wide::splat(f64::INFINITY);
@@ -312,7 +350,7 @@ impl WideKernel for FromEachOther<'_> {
                 }
                 least = near.min(least);
             }
-            if !is_exact && least.less(self.some) & open == open {
+            if !is_exact && least.less::<L>(self.some) & open == open {
                 return whole - rounding;
             }
         }
@@ -334,11 +372,11 @@ pub fn wide_apart(
 
 /// As [`wide_apart`], for what is compiled for the widest instructions already.
 #[inline(always)]
-pub fn wide_apart_here(
+pub fn wide_apart_here<L: Lanes>(
     own: (&Cover, &mut WideCover),
     other: (&Cover, &mut WideCover),
     enough: Wide,
     some: Wide,
 ) -> Wide {
-    FromEachOther { own, other, enough, some }.run()
+    FromEachOther { own, other, enough, some }.run::<L>()
 }

@@ -15,6 +15,12 @@ impl RefMesh {
         (root.center, root.radius)
     }
 
+    /// Whether it is nothing but [balls](mp_geom::TriMesh::balls).
+    #[must_use]
+    pub fn is_balls(&self) -> bool {
+        self.mesh.is_balls()
+    }
+
     /// A lower bound (m) on the distance of this mesh at `pose` from a ball: that of the box around it. At most 0 where the ball overlaps
     /// the box.
     #[must_use]
@@ -103,6 +109,12 @@ mod tests {
                 assert!(bound <= distance, "{bound} {distance}");
                 decided += u32::from(bound >= search.best);
                 assert_eq!(a.at_least(&here, b, &pose, enough).is_ok(), distance >= search.best);
+                let nearly = a.nearly(&here, b, &pose, enough);
+                assert!(
+                    nearly <= distance && nearly >= 0.8 * distance.min(search.best),
+                    "{nearly} {distance}"
+                );
+                assert_eq!(nearly >= search.best, distance >= search.best);
             }
         }
         assert!(decided > 600, "{decided}");

@@ -16,6 +16,12 @@ pub fn triangle_distance(a: &[Point3<f64>; 3], b: &[Point3<f64>; 3]) -> f64 {
 ///
 /// The least of: corners to the other triangle; common perpendiculars of edges.
 pub(super) fn triangle_gap(a: &Triangle, b: &Triangle) -> Vector3<f64> {
+    if is_point(a) {
+        return to_point(&a[0], b);
+    }
+    if is_point(b) {
+        return -to_point(&b[0], a);
+    }
     let mut least = Shortest::default();
     for p in a {
         least.offer(to_point(p, b));
@@ -57,12 +63,20 @@ impl Shortest {
     }
 }
 
+/// Whether it is a single point: the middle of a ball.
+fn is_point(t: &Triangle) -> bool {
+    t[0] == t[1] && t[1] == t[2]
+}
+
 /// The distance from a point to a triangle.
 pub(super) fn point_triangle(p: &Point3<f64>, t: &Triangle) -> f64 {
     to_point(p, t).norm()
 }
 
 fn to_point(p: &Point3<f64>, t: &Triangle) -> Vector3<f64> {
+    if is_point(t) {
+        return p - t[0];
+    }
     let (u, v) = (t[1] - t[0], t[2] - t[0]);
     let normal = u.cross(&v);
     let square = normal.norm_squared();

@@ -1,11 +1,11 @@
 //! Lower bounds on the distance of covers from the bodies of a scene, by the box and the cylinder around each: a tight broad phase.
 
-use super::{Body, Scene};
-use crate::broad;
+use super::Scene;
+use crate::broad::{self, BroadPhase};
 use crate::cover::{ALL, Contacts, Cover, LARGEST, PlacedCover, ROUNDING, WideCover};
 use mp_geom::Aabb;
-use mp_simd::wide::{LANES, Wide, WideKernel, on_widest};
-use nalgebra::Point3;
+use mp_simd::Lanes;
+use mp_simd::wide::{Wide, WideKernel, on_widest};
 use std::cell::Cell;
 
 impl Scene {
@@ -50,113 +50,157 @@ impl Scene {
         enough: Wide,
         some: Wide,
     ) -> (Wide, bool) {
-        // Bodies are no larger. Written so that NaN is refused.
-        let is_usual = placed.size < LARGEST;
-        if !is_usual {
-            return (Wide::splat(f64::NEG_INFINITY), false);
-        }
-        let (near, least) = self.near_places(placed, enough.largest() * (1.0 + 1e-9));
-        let mut around = near.iter().filter_map(|index| self.bodies[*index as usize].as_ref());
-        let is_tight = cover.is_exact() && around.all(|body| body.around.is_tight());
-        let some = if is_tight { Wide::splat(f64::NEG_INFINITY) } else { some };
-        let found = on_widest(FromBodies { cover, placed, near: &near, bodies: &self.bodies, enough, some });
-        placed.near = near;
-        (found.min(Wide::splat(least)), is_tight)
+        on_widest(FromBodies { scene: self, cover, placed, enough, some })
+    }
+
+    /// As [`wide_apart`](Self::wide_apart), for what is compiled for the widest instructions already.
+    #[inline(always)]
+    pub fn wide_apart_here<L: Lanes>(
+        &self,
+        cover: &Cover,
+        placed: &mut WideCover,
+        enough: Wide,
+        some: Wide,
+    ) -> (Wide, bool) {
+        FromBodies { scene: self, cover, placed, enough, some }.run::<L>()
     }
 
     /// Whether a mesh at eight places touches bodies, or is within `kept` (m) of them: at which places it does, and at which balls leave it
     /// open. The search ends where it touches at one place. Where the cover is not [exact](Cover::is_exact) balls never tell that it touches.
     pub fn wide_contact(&self, cover: &Cover, placed: &mut WideCover, kept: f64) -> Contacts {
-        let is_usual = placed.size < LARGEST;
-        if !is_usual {
-            return Contacts { touching: 0, open: ALL };
-        }
-        let (near, _) = self.near_places(placed, kept.max(f64::MIN_POSITIVE) * (1.0 + 1e-9));
-        let found = on_widest(ContactWithBodies { cover, placed, near: &near, bodies: &self.bodies, kept });
-        placed.near = near;
-        found
+        on_widest(ContactWithBodies { scene: self, cover, placed, kept })
+    }
+
+    /// As [`wide_contact`](Self::wide_contact), for what is compiled for the widest instructions already.
+    #[inline(always)]
+    pub fn wide_contact_here<L: Lanes>(&self, cover: &Cover, placed: &mut WideCover, kept: f64) -> Contacts {
+        ContactWithBodies { scene: self, cover, placed, kept }.run::<L>()
     }
 
     /// The bodies that may be nearer than `most` (m) to a mesh at one of eight places, and a lower bound on the distance of the others.
-    fn near_places(&self, placed: &mut WideCover, most: f64) -> (Vec<u32>, f64) {
-        let at = |i: usize| Point3::from(placed.center().map(|x| x.0[i]));
-        let (low, high) = (1..LANES).fold((at(0), at(0)), |(l, h), i| (l.inf(&at(i)), h.sup(&at(i))));
-        let (own, least) = (Aabb { min: low, max: high }, Cell::new(f64::INFINITY));
-        let radius = placed.radius() + ROUNDING * placed.size;
-        // Comparisons are written so that NaN is near.
-        let enter = |bounds: &Aabb| {
-            let size = bounds.min.coords.amax().max(bounds.max.coords.amax());
-            let bound = broad::distance(&own, bounds) - radius - ROUNDING * size;
-            let is_far = bound >= most;
-            if is_far {
-                least.set(least.get().min(bound));
-            }
-            !is_far
-        };
+    #[inline(always)]
+    fn near_places<L: Lanes>(&self, placed: &mut WideCover, most: f64) -> (Vec<u32>, f64) {
         let mut near = std::mem::take(&mut placed.near);
         near.clear();
+        let [x, y, z] = placed.center();
+        let (x, y, z) = (x.range(), y.range(), z.range());
+        let (low, high) = ([x[0], y[0], z[0]], [x[1], y[1], z[1]]);
+        let radius = placed.radius() + ROUNDING * placed.size;
+        let mut least = f64::INFINITY;
         for broad in [&self.fixed, &self.movable] {
-            let _: Option<()> = broad.find(enter, |index| {
-                near.push(index);
-                None
-            });
+            let Some(list) = broad.few() else {
+                let own = Aabb { min: low.into(), max: high.into() };
+                least = least.min(near_of_many(broad, &own, [radius, most], &mut near));
+                continue;
+            };
+            for eight in list {
+                let bound = eight.distance(&low, &high) - radius - eight.size * ROUNDING;
+                // Written so that NaN is near.
+                let far = Wide::splat(most).less::<L>(bound);
+                let mut close = eight.taken & !far;
+                while close != 0 {
+                    near.push(eight.items[close.trailing_zeros() as usize]);
+                    close &= close - 1;
+                }
+                if far != 0 {
+                    let bound = Wide::splat(most).where_less(bound, bound, Wide::splat(f64::INFINITY));
+                    least = least.min(bound.range()[0]);
+                }
+            }
         }
-        (near, least.get())
+        (near, least)
     }
 }
 
-/// Contact with several bodies.
+/// The same of more boxes than are listed, by their tree: for the box `own` around the centres of balls of this radius.
+#[inline(never)]
+fn near_of_many(broad: &BroadPhase, own: &Aabb, [radius, most]: [f64; 2], near: &mut Vec<u32>) -> f64 {
+    let least = Cell::new(f64::INFINITY);
+    // Comparisons are written so that NaN is near.
+    let enter = |bounds: &Aabb| {
+        let size = bounds.min.coords.amax().max(bounds.max.coords.amax());
+        let bound = broad::distance(own, bounds) - radius - ROUNDING * size;
+        let is_far = bound >= most;
+        if is_far {
+            least.set(least.get().min(bound));
+        }
+        !is_far
+    };
+    let _: Option<()> = broad.find(enter, |index| {
+        near.push(index);
+        None
+    });
+    least.get()
+}
+
+/// Contact with the bodies of a scene.
 struct ContactWithBodies<'a> {
+    scene: &'a Scene,
     cover: &'a Cover,
     placed: &'a mut WideCover,
-    near: &'a [u32],
-    bodies: &'a [Option<Body>],
     kept: f64,
 }
 
 impl WideKernel for ContactWithBodies<'_> {
     type Output = Contacts;
     #[inline(always)]
-    fn run(self) -> Contacts {
-        let own = self.placed.size;
+    fn run<L: Lanes>(self) -> Contacts {
+        let Self { scene, cover, placed, kept } = self;
+        let own = placed.size;
+        // Bodies are no larger. Written so that NaN is refused.
+        let is_usual = own < LARGEST;
+        if !is_usual {
+            return Contacts { touching: 0, open: ALL };
+        }
+        let (near, _) = scene.near_places::<L>(placed, kept.max(f64::MIN_POSITIVE) * (1.0 + 1e-9));
         let mut all = Contacts::default();
-        for index in self.near {
-            let Some(body) = &self.bodies[*index as usize] else { continue };
+        for index in &near {
+            let Some(body) = &scene.bodies[*index as usize] else { continue };
             let rounding = ROUNDING * (own + body.around.size());
-            all.add(self.placed.contact(self.cover, &body.around, self.kept, rounding));
+            all.add(placed.contact::<L>(cover, &body.around, kept, rounding));
             if all.touching != 0 {
                 break;
             }
         }
+        placed.near = near;
         all
     }
 }
 
-/// Of several bodies.
+/// Distances from the bodies of a scene.
 struct FromBodies<'a> {
+    scene: &'a Scene,
     cover: &'a Cover,
     placed: &'a mut WideCover,
-    near: &'a [u32],
-    bodies: &'a [Option<Body>],
     enough: Wide,
     some: Wide,
 }
 
 impl WideKernel for FromBodies<'_> {
-    type Output = Wide;
+    type Output = (Wide, bool);
     #[inline(always)]
-    fn run(self) -> Wide {
-        let own = self.placed.size;
-        let mut least = Wide::splat(f64::INFINITY);
-        for index in self.near {
-            let Some(body) = &self.bodies[*index as usize] else { continue };
+    fn run<L: Lanes>(self) -> (Wide, bool) {
+        let Self { scene, cover, placed, enough, some } = self;
+        let own = placed.size;
+        // Bodies are no larger. Written so that NaN is refused.
+        let is_usual = own < LARGEST;
+        if !is_usual {
+            return (Wide::splat(f64::NEG_INFINITY), false);
+        }
+        let (near, least) = scene.near_places::<L>(placed, enough.largest() * (1.0 + 1e-9));
+        let mut around = near.iter().filter_map(|index| scene.bodies[*index as usize].as_ref());
+        let is_tight = cover.is_exact() && around.all(|body| body.around.is_tight());
+        let some = if is_tight { Wide::splat(f64::NEG_INFINITY) } else { some };
+        let mut least = Wide::splat(least);
+        for index in &near {
+            let Some(body) = &scene.bodies[*index as usize] else { continue };
             let around = &body.around;
             let rounding = ROUNDING * (own + around.size());
-            let wanted = self.enough + rounding;
-            let apart = self.placed.apart_from(self.cover, around, wanted, self.some) - rounding;
+            let apart = placed.apart_from::<L>(cover, around, enough + rounding, some) - rounding;
             least = apart.min(least);
         }
-        least
+        placed.near = near;
+        (least, is_tight)
     }
 }
 
@@ -165,8 +209,8 @@ mod tests {
     use super::*;
     use crate::{CollisionMesh, Query};
     use mp_geom::{Sphere, TriMesh, primitives};
-    use mp_simd::wide::WideFrame;
-    use nalgebra::{Isometry3, Vector3};
+    use mp_simd::wide::{LANES, WideFrame};
+    use nalgebra::{Isometry3, Point3, Vector3};
 
     /// What balls decide, trees say too, at random places among boxes, cylinders and a cloud, all turned.
     #[test]

@@ -324,10 +324,8 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         }
         self.counters.collision_checks += states.len() as u64;
         let Self { robot, obstacles, scratch, kept, .. } = self;
-        scratch.wide.place(robot, states);
         let distances = [*kept + clearance, clearance];
-        let Contacts { touching, open } =
-            scratch.wide.contacts(robot, &obstacles.scene, distances, states.len());
+        let Contacts { touching, open } = scratch.wide.contacts(robot, &obstacles.scene, distances, states);
         if touching != 0 {
             return Some(touching.trailing_zeros() as usize);
         }

@@ -152,19 +152,21 @@ impl ReferenceArm {
         for link in &self.links {
             let above = link.parent.map_or(base, |p| out[p]);
             let value = q[link.value.0] * link.value.1 + link.value.2;
-            let mut motion = Matrix4::identity();
-            match link.motion {
-                JointMotion::Fixed => {}
-                JointMotion::Slides => motion.fixed_view_mut::<3, 1>(0, 3).copy_from(&(link.axis * value)),
-                JointMotion::Turns => {
-                    let across = link.axis.cross_matrix();
-                    let turn = Matrix3::identity()
-                        + across * mp_math::sin(value)
-                        + across * across * (1.0 - mp_math::cos(value));
-                    motion.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
-                }
+            let still = above * link.origin;
+            if link.motion == JointMotion::Fixed {
+                out.push(still);
+                continue;
             }
-            out.push(above * link.origin * motion);
+            let mut motion = Matrix4::identity();
+            if link.motion == JointMotion::Slides {
+                motion.fixed_view_mut::<3, 1>(0, 3).copy_from(&(link.axis * value));
+            } else {
+                let across = link.axis.cross_matrix();
+                let (sin, cos) = mp_math::sin_cos(value);
+                let turn = Matrix3::identity() + across * sin + across * across * (1.0 - cos);
+                motion.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
+            }
+            out.push(still * motion);
         }
     }
 
@@ -308,6 +310,9 @@ pub struct ArmVerifier<'c, C> {
 /// Motions of a coordinate longer than this (rad or m) are refused.
 const MAX_TRAVEL: f64 = 1e6;
 
+/// The share of a distance that is used to prove a part of a motion whose ends it does not reach: what is left is clearance that is shown.
+const USED: f64 = 0.7;
+
 /// Motions are not cut into more parts than this.
 const MAX_PARTS: u64 = 1_000_000;
 
@@ -332,11 +337,19 @@ enum PartCheck {
     /// All pairs keep apart.
     Apart,
     /// These pairs come too near to tell.
-    Near(Vec<usize>),
+    Near(Near),
     /// Touching in the middle.
     Collision,
     /// Too near to contact in the middle, or interrupted.
     Unproven,
+}
+
+/// Pairs that come too near over a part of a motion.
+struct Near {
+    pairs: Vec<usize>,
+    /// Over which part of it, about the middle, they keep apart if coordinates go at constant speed; and by how much (m).
+    free: f64,
+    clearance: f64,
 }
 
 /// Between which numbers a polynomial stays where its variable is in \[a, b\]: the least and the largest of its Bernstein coefficients
@@ -441,19 +454,46 @@ where
     /// A lower bound on the distance of a pair that is at least `enough`; else, as an error, the distance of two of their
     /// triangles that is less.
     fn distance(&self, pair: &CheckedPair, poses: &[Matrix4<f64>], enough: f64) -> Result<f64, f64> {
+        self.least(pair, poses, enough, |[mesh, other], [pose, at], enough| {
+            mesh.at_least(pose, other, at, enough)
+        })
+    }
+
+    /// A lower bound on the distance of a pair that is at least `enough`, or at least four fifths of the distance; 0 where they touch.
+    fn nearly(&self, pair: &CheckedPair, poses: &[Matrix4<f64>], enough: f64) -> f64 {
+        let mut least = f64::INFINITY;
+        let nearest = self.least(pair, poses, enough, |[mesh, other], [pose, at], enough| {
+            least = least.min(mesh.nearly(pose, other, at, enough.min(least)));
+            Ok(least)
+        });
+        nearest.unwrap_or(0.0)
+    }
+
+    /// The least of what `bound` says of the link of a pair and each that it must not touch, unless that is surely at least `enough`.
+    ///
+    /// # Errors
+    /// That of `bound`.
+    fn least(
+        &self,
+        pair: &CheckedPair,
+        poses: &[Matrix4<f64>],
+        enough: f64,
+        mut bound: impl FnMut([&RefMesh; 2], [&Isometry3<f64>; 2], f64) -> Result<f64, f64>,
+    ) -> Result<f64, f64> {
         let Some((mesh, pose)) = self.mesh(pair.link, poses) else { return Ok(f64::INFINITY) };
         if pair.other.is_some() {
             let other = self.others(pair, poses).next();
-            return other.map_or(Ok(f64::INFINITY), |(other, at)| mesh.at_least(&pose, other, &at, enough));
+            return other.map_or(Ok(f64::INFINITY), |(other, at)| bound([mesh, other], [&pose, &at], enough));
         }
         // Most obstacles are far from the ball around a link.
         let (center, radius) = mesh.around();
         let center = pose * center;
         let mut least = f64::INFINITY;
         for (obstacle, at) in self.world.iter() {
-            let bound = obstacle.distance_bound(at, &center, radius);
-            let bound = if bound >= enough { bound } else { mesh.at_least(&pose, obstacle, at, enough)? };
-            least = least.min(bound);
+            let far = obstacle.distance_bound(at, &center, radius);
+            let far =
+                if far >= enough.min(least) { far } else { bound([mesh, obstacle], [&pose, at], enough)? };
+            least = least.min(far);
         }
         Ok(least)
     }
@@ -512,8 +552,10 @@ where
                 PartCheck::Collision => return MotionCheck::Collision { at },
                 PartCheck::Unproven => return MotionCheck::Unproven { at },
             };
-            open.push_back((a, at, near.clone()));
-            open.push_back((at, b, near));
+            least = least.min(near.clearance);
+            let free = 0.5 * (b - a) * near.free;
+            open.push_back((a, at - free, near.pairs.clone()));
+            open.push_back((at + free, b, near.pairs));
         }
         MotionCheck::Free { clearance: least }
     }
@@ -529,7 +571,7 @@ where
         least: &mut f64,
     ) -> PartCheck {
         self.tree.poses_into(middle.as_slice(), poses);
-        let mut near = Vec::new();
+        let mut near = Near { pairs: Vec::new(), free: 1.0, clearance: f64::INFINITY };
         for &i in pairs {
             let pair = &self.pairs[i];
             let approach = self.approach(pair, travels, poses);
@@ -537,15 +579,37 @@ where
                 return PartCheck::Unproven;
             }
             let kept = self.kept_from(pair);
-            match self.distance(pair, poses, approach + kept + self.tolerance) {
-                Ok(distance) => *least = least.min(distance - approach),
-                // The first distance found need not be the least.
-                Err(_) if self.distance(pair, poses, kept).is_err() => return PartCheck::Collision,
-                Err(distance) if distance < kept + 2.0 * self.tolerance => return PartCheck::Unproven,
-                Err(_) => near.push(i),
+            let (enough, needed) = (approach + kept + self.tolerance, kept + 2.0 * self.tolerance);
+            let is_of_balls = self.tree.links[pair.link].mesh.as_ref().is_some_and(RefMesh::is_balls);
+            let found = match is_of_balls {
+                // A lower bound.
+                true => self.nearly(pair, poses, enough),
+                // The first distance of two triangles: of meshes a bound takes longer than it saves.
+                false => {
+                    self.distance(pair, poses, enough).unwrap_or_else(|found| found.min(enough.next_down()))
+                }
+            };
+            if found >= enough {
+                *least = least.min(found - approach);
+                continue;
             }
+            // It need not be the distance.
+            if (found < needed || !is_of_balls) && self.distance(pair, poses, kept).is_err() {
+                return PartCheck::Collision;
+            }
+            if found < needed && (!is_of_balls || self.distance(pair, poses, needed).is_err()) {
+                return PartCheck::Unproven;
+            }
+            let beyond = if is_of_balls { found.max(needed) - kept - self.tolerance } else { 0.0 };
+            let free = USED * beyond / approach;
+            // Written so that nothing is free where that is not a number.
+            near.free = if free >= near.free { near.free } else { free.max(0.0) };
+            if is_of_balls {
+                near.clearance = near.clearance.min((1.0 - USED) * beyond + kept + self.tolerance);
+            }
+            near.pairs.push(i);
         }
-        if near.is_empty() { PartCheck::Apart } else { PartCheck::Near(near) }
+        if near.pairs.is_empty() { PartCheck::Apart } else { PartCheck::Near(near) }
     }
 
     /// Proves a curve in parts, the first ones first. What is found at a part ends the search behind it only: the fault is the first one.
@@ -564,8 +628,8 @@ where
             match self.part(&middle, &travels, &pairs, &mut poses, &mut least) {
                 PartCheck::Apart => continue,
                 PartCheck::Near(near) => {
-                    open.push((at, b, near.clone()));
-                    open.push((a, at, near));
+                    open.push((at, b, near.pairs.clone()));
+                    open.push((a, at, near.pairs));
                     continue;
                 }
                 PartCheck::Collision => (hit, near_contact) = (Some(at), None),

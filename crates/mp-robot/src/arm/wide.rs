@@ -6,8 +6,9 @@
 use super::kinematics::{BaseTravel, JointFrame};
 use super::robot::{LinkBody, SharedArm};
 use super::travel::{Chain, ROUND_UP};
-use mp_collide::{Contacts, Scene, WideCover, wide_apart, wide_apart_here, wide_within};
+use mp_collide::{Contacts, Scene, WideCover, wide_apart, wide_apart_here, wide_within_here};
 use mp_cspace::{Coordinates, MotionInterval};
+use mp_simd::Lanes;
 use mp_simd::wide::{LANES, Wide, Wide3, WideFrame, WideKernel, add, cross, dot, on_widest, sub};
 use nalgebra::{Isometry3, Matrix3};
 use std::ops::Add;
@@ -55,8 +56,8 @@ pub(super) struct WideIntervals {
     /// For each body, how far it moves over the whole motion with the first joints of its chain: as [`Chain::far`].
     pub(super) far: Vec<f64>,
     pub(super) base: BaseTravel,
-    /// For each joint, sines and cosines; of those that slide, how far.
-    values: Vec<[Wide; 2]>,
+    /// For each joint its angle (rad), or how far it slides (m).
+    values: Vec<Wide>,
     /// How far each coordinate goes, with its sign.
     displacements: Vec<f64>,
 }
@@ -137,8 +138,15 @@ impl WideIntervals {
         });
     }
 
-    /// Places links at up to eight configurations.
-    pub(super) fn place<Q: Coordinates>(&mut self, robot: &SharedArm, states: &[&Q]) {
+    /// Places links at up to eight configurations. Returns those where a link is within `kept` (m) of an obstacle or two links within `apart`
+    /// of each other, one at least if it is known that there are any, and those that balls leave open.
+    pub(super) fn contacts<Q: Coordinates>(
+        &mut self,
+        robot: &SharedArm,
+        scene: &Scene,
+        [kept, apart]: [f64; 2],
+        states: &[&Q],
+    ) -> Contacts {
         // No interval is prepared then.
         (self.count, self.next) = (0, 0);
         self.middles.clear();
@@ -146,11 +154,13 @@ impl WideIntervals {
             self.middles.extend_from_slice(state.as_slice());
         }
         self.set_values(robot, states.len());
-        let (values, frames, covers) = (&self.values, &mut self.frames, &mut self.covers);
-        on_widest(PlaceCovers { robot, values, frames, covers });
+        self.open.clear();
+        let Self { values, frames, covers, open, .. } = self;
+        let place = PlaceCovers { robot, values, frames, covers };
+        on_widest(Within { place, scene, kept, apart, open, asked: (1 << states.len()) - 1 })
     }
 
-    /// The frame of the base, and what is needed to place the links, at the first `count` of `middles`, at least one.
+    /// The frame of the base, and the values of the joints, at the first `count` of `middles`, at least one.
     fn set_values(&mut self, robot: &SharedArm, count: usize) {
         let kinematics = &robot.kinematics;
         // Lanes that are left are as the first.
@@ -159,61 +169,18 @@ impl WideIntervals {
             let k = if k < count { k } else { 0 };
             &self.middles[k * n..(k + 1) * n]
         };
-        let bases: [(Isometry3<f64>, &[f64]); LANES] = std::array::from_fn(|k| kinematics.parts(middle(k)));
-        self.frames.clear();
-        self.frames.push(wide_frame(&bases.map(|(base, _)| base)));
+        if kinematics.floats() || self.frames.is_empty() {
+            self.frames.clear();
+            self.frames.push(wide_frame(&std::array::from_fn(|k| kinematics.parts(middle(k)).0)));
+        }
+        self.frames.truncate(1);
         self.covers.resize_with(robot.bodies.len(), WideCover::default);
-        // Sines and cosines first, which are not computed in lanes.
+        let first = kinematics.first();
         let value = |frame: &JointFrame| {
-            let values: [f64; LANES] =
-                std::array::from_fn(|k| bases[k].1[frame.coordinate] * frame.scale + frame.offset);
-            if frame.slides {
-                return [Wide(values), Wide::splat(0.0)];
-            }
-            let both = values.map(mp_math::sin_cos);
-            [Wide(both.map(|(sin, _)| sin)), Wide(both.map(|(_, cos)| cos))]
+            Wide(std::array::from_fn(|k| middle(k)[first + frame.coordinate] * frame.scale + frame.offset))
         };
         self.values.clear();
         self.values.extend(kinematics.frames.iter().map(value));
-    }
-
-    /// Of the first `count` configurations at which links are [placed](Self::place): those where a link is within `kept` (m) of an obstacle or
-    /// two links within `apart` of each other, one at least if it is known that there are any, and those that balls leave open.
-    pub(super) fn contacts(
-        &mut self,
-        robot: &SharedArm,
-        scene: &Scene,
-        [kept, apart]: [f64; 2],
-        count: usize,
-    ) -> Contacts {
-        let mut all = Contacts::default();
-        let asked = (1 << count) - 1;
-        let Self { covers, open, .. } = self;
-        open.clear();
-        let mut add = |part: Part, found: Contacts| {
-            let found = Contacts { touching: found.touching & asked, open: found.open & asked };
-            if found.open != 0 {
-                open.push((part, found.open));
-            }
-            all.add(found);
-            all.touching != 0
-        };
-        for (i, body) in robot.numbered_moving() {
-            if add(Part::Link(i), scene.wide_contact(&body.cover, &mut covers[i], kept)) {
-                return all;
-            }
-        }
-        for (p, pair) in robot.pairs.iter().enumerate() {
-            let [a, b] = pair.bodies.map(|i| &robot.bodies[i].cover);
-            let found = match covers.get_disjoint_mut(pair.bodies) {
-                Ok([at_a, at_b]) => wide_within((a, at_a), (b, at_b), apart),
-                Err(_) => Contacts { touching: 0, open: asked },
-            };
-            if add(Part::Pair(p), found) {
-                return all;
-            }
-        }
-        all
     }
 
     /// A bound (m) on how far the points of a body move over half of interval `k`.
@@ -233,25 +200,9 @@ impl WideIntervals {
     /// How far to either side of its middle interval `k` is shown free by bounds that covers give alone, as a fraction of the motion; `None`
     /// where they leave something open.
     pub(super) fn proven(&mut self, robot: &SharedArm, scene: &Scene, kept: f64, k: usize) -> Option<f64> {
-        let lane = 1 << k;
-        let floats = robot.kinematics.floats();
-        while self.proven.links < robot.bodies.len() {
-            if self.proven.open & lane != 0 {
-                return None;
-            }
-            let i = robot.bodies.len() - 1 - self.proven.links;
-            self.proven.links += 1;
-            let body = &robot.bodies[i];
-            if !floats && body.frame == 0 {
-                continue;
-            }
-            let near = self.near[body.last()] + self.by_base[i];
-            let far = self.far[body.last()] + self.base.far(body.chain.from_base);
-            let (known, is_tight) = self.links_apart(robot, scene, kept, i);
-            self.proven.add(near, far, known - kept, is_tight.then_some(LEAST));
-        }
-        let (proven, near, far) = (&mut self.proven, &self.near, &self.far);
-        on_widest(Pairs { robot, covers: &mut self.covers, pairs: &mut self.pairs, proven, near, far, lane });
+        let Self { covers, links, pairs, proven, near, far, by_base, base, .. } = self;
+        let (bodies, lane) = ((&mut covers[..], &mut links[..]), 1 << k);
+        on_widest(Proving { robot, scene, kept, bodies, pairs, proven, near, far, by_base, base, lane });
         (self.proven.open & lane == 0).then(|| self.proven.part.0[k])
     }
 
@@ -342,7 +293,7 @@ impl ProvenParts {
     /// Adds lower bounds on the distance of one link or pair, which moves by at most `near` over half the intervals, and by at most `far` over
     /// the motion. A bound that is at least `least` margins is used however little it proves.
     #[inline(always)]
-    fn add(&mut self, near: Wide, far: f64, known: Wide, least: Option<f64>) {
+    fn add<L: Lanes>(&mut self, near: Wide, far: f64, known: Wide, least: Option<f64>) {
         let margin = self.margin;
         // No more than what earlier links and pairs allow.
         let wanted = self.halves.min(self.part);
@@ -350,7 +301,7 @@ impl ProvenParts {
         let [enough, some] = enough(near, margin);
         let some = least.map_or(some, |least| Wide::splat(least * margin)).min(enough);
         // Written so that NaN is open.
-        self.open |= !some.less(known);
+        self.open |= !some.less::<L>(known);
         // 0/0 where nothing moves: free all along.
         if far > 0.0 {
             let beyond = known - margin;
@@ -360,22 +311,47 @@ impl ProvenParts {
     }
 }
 
-/// Adds pairs of links, until one leaves interval `lane` open.
-struct Pairs<'a> {
+/// Adds links and pairs of links, until one leaves the interval of `lane`, a bit, open.
+struct Proving<'a> {
     robot: &'a SharedArm,
-    covers: &'a mut [WideCover],
+    scene: &'a Scene,
+    kept: f64,
+    /// The covers of bodies, and what is known of each.
+    bodies: (&'a mut [WideCover], &'a mut [Option<(Wide, bool)>]),
     pairs: &'a mut [Option<Wide>],
     proven: &'a mut ProvenParts,
     near: &'a [Wide],
     far: &'a [f64],
+    by_base: &'a [Wide],
+    base: &'a BaseTravel,
     lane: u32,
 }
 
-impl WideKernel for Pairs<'_> {
+impl WideKernel for Proving<'_> {
     type Output = ();
     #[inline(always)]
-    fn run(self) {
-        let Self { robot, covers, pairs, proven, near, far, lane } = self;
+    fn run<L: Lanes>(self) {
+        let Self { robot, scene, kept, bodies, pairs, proven, near, far, by_base, base, lane } = self;
+        let ((covers, links), floats) = (bodies, robot.kinematics.floats());
+        while proven.links < robot.bodies.len() && proven.open & lane == 0 {
+            let i = robot.bodies.len() - 1 - proven.links;
+            proven.links += 1;
+            let body = &robot.bodies[i];
+            if !floats && body.frame == 0 {
+                continue;
+            }
+            let near = near[body.last()] + by_base[i];
+            let far = far[body.last()] + base.far(body.chain.from_base);
+            let (known, is_tight) = match links[i] {
+                Some(known) => known,
+                None => {
+                    let [enough, some] = enough(near, proven.margin).map(|distance| distance + kept);
+                    scene.wide_apart_here::<L>(&body.cover, &mut covers[i], enough, some)
+                }
+            };
+            links[i] = Some((known, is_tight));
+            proven.add::<L>(near, far, known - kept, is_tight.then_some(LEAST));
+        }
         while proven.pairs < robot.pairs.len() && proven.open & lane == 0 {
             let p = proven.pairs;
             proven.pairs += 1;
@@ -386,13 +362,13 @@ impl WideKernel for Pairs<'_> {
                 (Some(known), _) => known,
                 (None, Ok([at_a, at_b])) => {
                     let [enough, some] = enough(near, proven.margin);
-                    wide_apart_here((a, at_a), (b, at_b), enough, some)
+                    wide_apart_here::<L>((a, at_a), (b, at_b), enough, some)
                 }
                 (None, Err(_)) => Wide::splat(f64::NEG_INFINITY),
             };
             pairs[p] = Some(known);
             let is_known = a.is_exact() && b.is_exact();
-            proven.add(near, of_pair(robot, p, far), known, is_known.then_some(2.0));
+            proven.add::<L>(near, of_pair(robot, p, far), known, is_known.then_some(2.0));
         }
     }
 }
@@ -411,18 +387,17 @@ fn wide_frame(poses: &[Isometry3<f64>; LANES]) -> WideFrame {
 /// Places links.
 struct PlaceCovers<'a> {
     robot: &'a SharedArm,
-    values: &'a [[Wide; 2]],
+    values: &'a [Wide],
     frames: &'a mut Vec<WideFrame>,
     covers: &'a mut [WideCover],
 }
 
-impl WideKernel for PlaceCovers<'_> {
-    type Output = ();
+impl PlaceCovers<'_> {
     #[inline(always)]
-    fn run(self) {
+    fn run<L: Lanes>(self) {
         let joints = self.robot.kinematics.frames.iter().zip(&self.robot.turns);
         for ((joint, turns), value) in joints.zip(self.values) {
-            self.frames.push(moved(&self.frames[joint.parent], joint, turns, value));
+            self.frames.push(moved::<L>(&self.frames[joint.parent], joint, turns, *value));
         }
         for (body, cover) in self.robot.bodies.iter().zip(self.covers) {
             cover.place(&body.ball, &self.frames[body.frame]);
@@ -430,11 +405,55 @@ impl WideKernel for PlaceCovers<'_> {
     }
 }
 
+/// Places links, and finds where they are within a distance of obstacles or of each other.
+struct Within<'a> {
+    place: PlaceCovers<'a>,
+    scene: &'a Scene,
+    kept: f64,
+    apart: f64,
+    open: &'a mut Vec<(Part, u32)>,
+    asked: u32,
+}
+
+impl WideKernel for Within<'_> {
+    type Output = Contacts;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Contacts {
+        let Self { place, scene, kept, apart, open, asked } = self;
+        let PlaceCovers { robot, values, frames, covers } = place;
+        PlaceCovers { robot, values, frames, covers: &mut *covers }.run::<L>();
+        let mut all = Contacts::default();
+        let mut add = |part: Part, found: Contacts| {
+            let found = Contacts { touching: found.touching & asked, open: found.open & asked };
+            if found.open != 0 {
+                open.push((part, found.open));
+            }
+            all.add(found);
+            all.touching != 0
+        };
+        for (i, body) in robot.numbered_moving() {
+            if add(Part::Link(i), scene.wide_contact_here::<L>(&body.cover, &mut covers[i], kept)) {
+                return all;
+            }
+        }
+        for (p, pair) in robot.pairs.iter().enumerate() {
+            let [a, b] = pair.bodies.map(|i| &robot.bodies[i].cover);
+            let found = match covers.get_disjoint_mut(pair.bodies) {
+                Ok([at_a, at_b]) => wide_within_here::<L>((a, at_a), (b, at_b), apart),
+                Err(_) => Contacts { touching: 0, open: asked },
+            };
+            if add(Part::Pair(p), found) {
+                return all;
+            }
+        }
+        all
+    }
+}
+
 /// Places links, and bounds how far they move.
 struct Place<'a> {
     robot: &'a SharedArm,
-    /// For each joint, sines and cosines; of those that slide, how far.
-    values: &'a [[Wide; 2]],
+    values: &'a [Wide],
     displacements: &'a [f64],
     halves: Wide,
     base: &'a BaseTravel,
@@ -448,11 +467,11 @@ struct Place<'a> {
 impl WideKernel for Place<'_> {
     type Output = ();
     #[inline(always)]
-    fn run(mut self) {
+    fn run<L: Lanes>(mut self) {
         let joints = self.robot.kinematics.frames.iter().zip(&self.robot.turns);
         for ((joint, turns), value) in joints.zip(self.values) {
             let parent = self.frames[joint.parent];
-            let frame = moved(&parent, joint, turns, value);
+            let frame = moved::<L>(&parent, joint, turns, *value);
             let axis = joint.axis.as_ref();
             self.axes.push(frame.vector(&[axis.x, axis.y, axis.z]));
             self.frames.push(frame);
@@ -566,11 +585,24 @@ impl Turns {
 
 /// The frame behind a joint.
 #[inline(always)]
-fn moved(parent: &WideFrame, joint: &JointFrame, turns: &Turns, value: &[Wide; 2]) -> WideFrame {
+fn moved<L: Lanes>(parent: &WideFrame, joint: &JointFrame, turns: &Turns, value: Wide) -> WideFrame {
     let t = joint.origin.translation.vector;
     let (mut origin, mut turn) = (parent.point(&[t.x, t.y, t.z]), parent.turn);
-    // Of joints that slide both matrices are zero.
-    let [sin, cos] = *value;
+    if joint.slides {
+        for c in 0..3 {
+            for r in 0..3 {
+                let (row, m) = (&parent.turn[r], &turns.still);
+                turn[r][c] = row[0] * m[(0, c)] + row[1] * m[(1, c)] + row[2] * m[(2, c)];
+            }
+        }
+        let axis = joint.axis.as_ref();
+        for r in 0..3 {
+            let along = turn[r][0] * axis.x + turn[r][1] * axis.y + turn[r][2] * axis.z;
+            origin[r] = origin[r] + along * value;
+        }
+        return WideFrame { turn, origin };
+    }
+    let [sin, cos] = value.sin_cos::<L>();
     for c in 0..3 {
         let mut m = [Wide::splat(0.0); 3];
         for r in 0..3 {
@@ -579,13 +611,6 @@ fn moved(parent: &WideFrame, joint: &JointFrame, turns: &Turns, value: &[Wide; 2
         for r in 0..3 {
             let row = &parent.turn[r];
             turn[r][c] = row[0] * m[0] + row[1] * m[1] + row[2] * m[2];
-        }
-    }
-    if joint.slides {
-        let axis = joint.axis.as_ref();
-        for r in 0..3 {
-            let along = turn[r][0] * axis.x + turn[r][1] * axis.y + turn[r][2] * axis.z;
-            origin[r] = origin[r] + along * value[0];
         }
     }
     WideFrame { turn, origin }
