@@ -162,8 +162,8 @@ pub fn simplified<C: Factored>(
     short
 }
 
-/// Reduces, takes shortcuts of which each is chosen before it is tested, and rounds the corners, for robots that take long to answer: a tenth of the
-/// states is tested that [`simplified`] tests. Shortcuts keep the distance `near`, in the metric of the space, from states that are known not to be free.
+/// Reduces, takes shortcuts of which each is chosen before it is tested, and rounds the corners, for robots that take long to answer: a fifth of the
+/// states is tested that [`simplified`] tests, or fewer. Shortcuts keep the distance `near`, in the metric of the space, from states that are known not to be free.
 pub fn simplified_by_samples<C: Factored, V: Validity<C::State>>(
     space: &C,
     check: &mut CoarseToFine<'_, C, V>,

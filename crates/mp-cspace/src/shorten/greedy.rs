@@ -2,7 +2,7 @@
 
 use super::random::{Piece, arc_lengths, random_piece};
 use super::{Draft, Effort};
-use crate::{CoarseToFine, Factored, Rng, Validity};
+use crate::{CoarseToFine, Factored, MotionValidity, Rng, Validity};
 use rand::RngExt;
 
 /// From how many random shortcuts the one to be tested is chosen.
@@ -42,8 +42,7 @@ pub(super) fn chosen<C: Factored, V: Validity<C::State>>(
 ) -> Draft<C::State> {
     let mut failed = 0;
     for _ in 0..effort.attempts {
-        if failed >= effort.patience || draft.states.len() < 3 || crate::MotionValidity::is_interrupted(check)
-        {
+        if failed >= effort.patience || draft.states.len() < 3 || check.is_interrupted() {
             break;
         }
         failed += 1;
