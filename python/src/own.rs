@@ -12,7 +12,7 @@ use mp_cspace::{
 };
 use mp_plan::{
     Appearance, Body, Column, Contact, Description, Deviation, Error, Length, Measured, MetricName, Motion,
-    TypedMotion,
+    Robot, TypedMotion,
 };
 use nalgebra::Isometry3;
 use pyo3::prelude::*;
@@ -200,6 +200,10 @@ impl Motion for Own {
     }
     fn sampled(&self) -> Option<Length> {
         (!self.check.knows_clearance()).then_some(self.resolution)
+    }
+    fn remembering(&self) -> Option<Arc<dyn Robot>> {
+        self.sampled()?;
+        Some(Arc::new(Self { check: self.check.remembering(), ..self.clone() }))
     }
     fn measured(&self, metric: MetricName) -> Result<Measured<'_>, Error> {
         let joints = self.space.space();

@@ -110,6 +110,48 @@ def test_all_calls_are_reported() -> None:
     assert mp.Scene("easy").plan().calls is None
 
 
+def test_each_state_of_the_proof_was_asked_and_few_others() -> None:
+    found_free: list[Array] = []
+    asked = 0
+
+    def kept(q: Array) -> bool:
+        nonlocal asked
+        asked += 1
+        if free(q):
+            found_free.append(q.copy())
+        return free(q)
+
+    # A twentieth of a hundredth of the diagonal.
+    step, others = np.hypot(4, 4) / 2000, []
+    for seed in range(1, 11):
+        found_free.clear()
+        asked = 0
+        report = mp.Scene.own(mp.Robot(SPACE, valid=kept), [1, 1], [3, 1]).plan("rrt-connect", seed=seed)
+        assert report.shortened and report.calls == asked
+        assert report.path is not None
+        states = [report.path[0]]
+        for a, b in pairwise(report.path):
+            parts = int(np.ceil(np.linalg.norm(b - a) / step))
+            states.extend(a + (b - a) * (i / parts) for i in range(1, parts + 1))
+        near = np.array(sorted(map(tuple, found_free)))
+        for q in states:
+            first, last = np.searchsorted(near[:, 0], [q[0] - 1e-8, q[0] + 1e-8])
+            assert np.any(np.abs(near[first:last, 1] - q[1]) < 1e-8)
+        others.append(asked - len(states) - report.collision_checks)
+    # Those of shortening that are none of the proof.
+    assert np.mean(others) < 900
+
+
+def test_no_answer_outlives_a_run() -> None:
+    blocked = False
+    scene = scene_of(mp.Robot(SPACE, valid=lambda q: free(q) and not (blocked and q[1] > 3)))
+    first = scene.plan("rrt-connect", seed=1)
+    assert first.solved
+    blocked = True
+    assert not scene.check(first)
+    assert not scene.plan("rrt-connect", seed=1, iterations=50).solved
+
+
 def test_the_same_on_any_number_of_threads() -> None:
     scene = scene_of(ROBOTS["valid"])
     assert scene.plan("or-rrt", threads=1).fingerprint == scene.plan("or-rrt", threads=3).fingerprint

@@ -101,7 +101,7 @@ pub use local::{
 pub use metric::{
     Euclidean, Manhattan, MaxDisplacement, Metric, MetricFn, ScaledEuclidean, SweptVolume, WithMetric,
 };
-pub use motion::{Certified, Discrete, FineDiscrete, Spaced};
+pub use motion::{Certified, CoarseToFine, Discrete, FineDiscrete, Spaced};
 pub use mp_stop::{Cancel, Clock, Interrupt, Interrupted, SparseClock, StopReason};
 pub use nn::{DefaultNn, Embed, Hit, KdTree, Linear, MetricTree, NearestNeighbors, NodeId};
 pub use numbers::StateVector;

@@ -1,7 +1,8 @@
 //! Shortening never leaves free space, never lengthens, and repeats itself.
 
 use mp_cspace::shorten::{
-    Effort, bspline, loosen, partial_shortcut, reduce, shortcut, simplified, simplify, tauten,
+    Draft, Effort, bspline, bypass, loosen, partial_shortcut, reduce, shortcut, simplified,
+    simplified_by_samples, simplify, tauten,
 };
 use mp_cspace::*;
 use nalgebra::Vector2;
@@ -198,4 +199,67 @@ fn loosening_says_which_edges_stay_refused() {
     let mut fine = Discrete::new(&space, low, Length::Absolute(0.01)).unwrap();
     let (path, refused) = loosen(&space, &mut fine, &given, &draft, 0.05);
     assert_eq!((path.states, refused), (vec![a, c], vec![0]));
+}
+
+/// Beside the shortening that tests each shortcut as it comes, and must do so more finely as it follows obstacles more closely: few tests, and paths
+/// as short.
+#[test]
+fn chosen_shortcuts_take_few_tests() {
+    let space = Rn::<2>::new([0.0, 0.0], [4.0, 4.0]).unwrap();
+    let free = |q: &Vector2<f64>| !((1.9..=2.1).contains(&q.x) && q.y <= 3.0);
+    let given = [(1.0, 1.0), (0.5, 3.5), (1.5, 3.9), (3.0, 3.4), (3.0, 1.0)];
+    let path = Path::straight(given.map(|(x, y)| Vector2::new(x, y)).to_vec());
+    let effort = Effort { taut: 0, ..Effort::default() };
+    let (mut tests, mut lengths) = ([0_u32; 2], [0.0; 2]);
+    for seed in 0..40 {
+        let counted = |q: &Vector2<f64>| {
+            tests[0] += 1;
+            free(q)
+        };
+        let mut check = Discrete::new(&space, counted, Length::Fraction(0.0025)).unwrap();
+        let draft = simplified(&space, &mut check, &path, effort, &mut Rng::seed(seed));
+        lengths[0] += draft.path().length(&space);
+        let short = |tests: &mut u32| {
+            let counted = |q: &Vector2<f64>| {
+                *tests += 1;
+                free(q)
+            };
+            let mut check = CoarseToFine::new(&space, counted, Length::Fraction(0.0005), 4).unwrap();
+            let effort = Effort { patience: 30, rounds: 1, ..effort };
+            simplified_by_samples(&space, &mut check, &path, 0.05, effort, &mut Rng::seed(seed))
+        };
+        let draft = short(&mut tests[1]);
+        assert_eq!((draft.states.len(), draft.states.len()), (draft.free.len() + 1, draft.origin.len()));
+        assert_eq!((draft.states.first(), draft.states.last()), (path.states.first(), path.states.last()));
+        assert!(draft.origin.is_sorted(), "seed {seed}");
+        assert_eq!(draft.states, short(&mut 0).states, "seed {seed}");
+        let short = draft.path();
+        assert!(short.length(&space) < path.length(&space));
+        // An edge is free, or a part of one that was, at states no farther apart than this.
+        let mut check = Discrete::new(&space, free, Length::Fraction(0.008)).unwrap();
+        let hit = |w: &[Vector2<f64>]| check.check_motion(&w[0], &w[1]).failed_at();
+        assert!(short.states.windows(2).filter_map(hit).count() <= 2, "seed {seed}");
+        lengths[1] += short.length(&space);
+    }
+    assert!(5 * tests[1] < tests[0], "{tests:?}");
+    assert!(lengths[1] < 1.02 * lengths[0], "{lengths:?}");
+}
+
+/// The given path goes through a corner, as its planner has tested only its ends.
+#[test]
+fn what_given_paths_hit_is_led_round() {
+    let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0]).unwrap();
+    let [a, b, c] = [[0.1, 0.6], [0.45, 0.55], [0.55, 0.45]].map(Vector2::from);
+    let given = Path::straight(vec![a, b, c, [0.9, 0.45].into()]);
+    let free = |q: &Vector2<f64>| q.x <= 0.49 || q.y <= 0.49;
+    let fine = &mut Discrete::new(&space, free, Length::Absolute(0.001)).unwrap();
+    let (loose, refused) = loosen(&space, fine, &given, &Draft::of(&space, &given), 0.01);
+    assert_eq!(refused, [1]);
+    let mut draft = Draft { states: loose.states, ..Draft::of(&space, &given) };
+    let far = bypass(&space, fine, &mut draft.clone(), &refused, 1e-3, &mut Rng::seed(1));
+    assert!(!far, "it must go farther");
+    assert!(bypass(&space, fine, &mut draft, &refused, 0.1, &mut Rng::seed(1)));
+    assert_eq!((draft.states.len(), draft.free.len(), draft.origin.len()), (5, 4, 5));
+    assert!((draft.states[2] - (b + c) / 2.0).norm() <= 0.1 && draft.origin.is_sorted());
+    assert!(verify_path(&space, &draft.path(), fine).is_free());
 }

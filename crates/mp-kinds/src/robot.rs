@@ -41,6 +41,7 @@ use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The text form of the paths of a robot: docs/formats/path.md describes both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -170,6 +171,9 @@ impl Measured<'_> {
     }
 }
 
+/// How many times finer than planners the verifiers of robots that are [sampled](Motion::sampled) test motions.
+pub const VERIFIED_FINER: f64 = 20.0;
+
 /// A robot of some kind among its obstacles, with start and goals: a scene to plan in. What it is asked is cut in three by who asks:
 /// planners its [`Motion`], messages and files its [`Description`], pictures its [`Appearance`].
 ///
@@ -249,9 +253,16 @@ pub trait Motion: AnyMotion {
     }
 
     /// How far apart configurations are tested along motions, where no clearance is known that could certify them: then only
-    /// [`Validity`] is asked, a request for `certified` motions means this, and reports give no clearance. By default motions are
+    /// [`Validity`] is asked, a request for `certified` motions means this, and reports give no clearance. The verifier should cut a motion into the
+    /// fewest equal parts that are [`VERIFIED_FINER`] times shorter: shortening tests some of the same configurations. By default motions are
     /// certified.
     fn sampled(&self) -> Option<Length> {
+        None
+    }
+
+    /// The same robot, which remembers of which configurations it has said that they are free, and of which that they are not, as long as it lives: for
+    /// robots that take long to answer. Shortening and verifying a path ask about many configurations more than once. By default there is none.
+    fn remembering(&self) -> Option<Arc<dyn Robot>> {
         None
     }
 

@@ -2,11 +2,14 @@
 
 use crate::motion::{AnyChecker, By, Counting, motions, motions_of};
 use crate::possible::Possible;
-use crate::{Error, Robot};
+use crate::{Error, Robot, VERIFIED_FINER};
 use mp_cspace::erased::{AnyCheck, AnySpace};
-use mp_cspace::shorten::{Draft, Effort, loosen, reduce, shortcut, simplified, simplify};
+use mp_cspace::shorten::{
+    Draft, Effort, bypass, loosen, reduce, shortcut, simplified, simplified_by_samples, simplify,
+};
 use mp_cspace::{
-    Configuration, Interrupt, Length, MotionCheck, MotionClearance, MotionValidity, Path, Rng, Space,
+    CoarseToFine, Configuration, Interrupt, Length, MotionCheck, MotionClearance, MotionValidity, Path, Rng,
+    Space,
 };
 use std::collections::HashMap;
 use std::sync::atomic::AtomicU64;
@@ -31,9 +34,12 @@ const OWN: f64 = 0.25;
 /// How far states of such a path are moved back first where a certificate refuses an edge, as a part of the extent of the space.
 const LOOSENED: f64 = 5e-4;
 
-/// Motions of robots that are sampled are tested at a resolution this many times finer than that of planning: the coarser it is, the deeper
-/// short paths dip into what they graze.
-const FINER: f64 = 4.0;
+/// Motions of robots that are sampled are tested at every 16th of the states that the verifier tests, somewhat finer than while planning: the coarser
+/// that is, the deeper short paths dip into what they graze.
+const LEVEL: u32 = 4;
+
+/// How far states of such a path are moved back first where a finer test refuses an edge, as a part of the resolution.
+const FIRST_MOVE: f64 = 0.125;
 
 /// Shortens a path. Every edge of the result keeps half of the [clearance of shortcuts](crate::Motion::shortcut_clearance), or leads through a
 /// passage where the given path does not keep it: there they keep a twentieth of it, or are edges of the given path; so does all of it where the
@@ -43,9 +49,9 @@ const FINER: f64 = 4.0;
 /// Robots that test many states at once are tested at a few states of each motion while the path is made short, for all of that clearance from
 /// obstacles. Only the motions of the short path are certified, and made [looser](loosen) where that fails.
 ///
-/// The motions of a robot that is sampled are tested at fewer states than its verifier tests. In the end the verifier tests the path, which is made
-/// [looser](loosen) where it is refused. If that does not help, the given path is shortened once more, and the verifier tests each motion of it: that
-/// takes many times as many states.
+/// The motions of a robot that is sampled are tested at [few](simplified_by_samples) of the states that its verifier tests. Then the path is tested at
+/// twice as many, four and eight times, and in the end by the verifier at all of them, and made [looser](loosen) where it is refused, or [led round](bypass) what it hits. If that
+/// does not help, the given path is shortened once more, and the verifier tests each motion of it: that takes many times as many states.
 ///
 /// Returns the path, and whether the verifier has found each of its edges free.
 ///
@@ -75,25 +81,34 @@ fn shorten_by_samples(
     let (factors, unused) = (kind.any_space(), AtomicU64::new(0));
     let (space, counting) = (AnySpace::new(&factors), Counting::new(&unused, interrupt.clone()));
     let resolution = resolution.resolution_in(&factors)?;
-    let samples = |resolution| motions(kind, &space, By::States(Length::Absolute(resolution)), &counting);
-    let verifier = || Ok::<_, Error>(Box::new(kind.any_verifier()?));
-    let each = || Ok::<_, Error>(Box::new(Both { check: samples(resolution)?, verifier: verifier()? }));
-    let mut check = possible(kind, interrupt, each()?);
-    if let Some(short) = kind.shortened(path, &mut check, kind.effort(), rng) {
+    let verifier = || Ok::<_, Error>(possible(kind, interrupt, Box::new(kind.any_verifier()?)));
+    let samples = motions(kind, &space, By::States(Length::Absolute(resolution)), &counting)?;
+    let mut both = possible(kind, interrupt, Box::new(Both { check: samples, verifier: verifier()? }));
+    if let Some(short) = kind.shortened(path, &mut both, kind.effort(), rng) {
         return Ok((short, false));
     }
-    // A path pulled taut is hardly shorter here, and the verifier refuses one in ten of them even when it is loose.
-    let effort = Effort { taut: 0, ..kind.effort() };
-    let fine = resolution / FINER;
-    let mut verifier = possible(kind, interrupt, verifier()?);
-    for mut check in [possible(kind, interrupt, samples(fine)?), check] {
-        let draft = simplified(&factors, &mut check, path, effort, rng);
-        let (loose, refused) = loosen(&factors, &mut verifier, path, &draft, fine / 2.0);
-        if refused.is_empty() {
-            return Ok((loose, true));
-        }
-        if verifier.is_interrupted() {
-            return Ok((draft.path(), false));
+    // With more patience and more rounds paths are hardly shorter here.
+    let effort = kind.effort();
+    let effort = Effort { patience: effort.patience / 2, rounds: effort.rounds.min(1), ..effort };
+    let mut whole = verifier()?;
+    for proves in [false, false, true] {
+        let mut each = verifier()?;
+        let also = move |from: &Configuration, to: &Configuration| {
+            kind.can_move(from, to) && (!proves || each.check_motion(from, to).is_free())
+        };
+        let step = Length::Absolute(resolution / VERIFIED_FINER);
+        let mut check = CoarseToFine::new(&factors, counting.of(kind.any_checker()), step, LEVEL)?.and(also);
+        check.interrupt_by(interrupt);
+        let mut draft = simplified_by_samples(&factors, &mut check, path, resolution, effort, rng);
+        let free = (0..LEVEL).rev().all(|level| {
+            check.set_level(level);
+            let finer: &mut dyn MotionValidity<_> = if level == 0 { &mut whole } else { &mut check };
+            let (loose, refused) = loosen(&factors, &mut &mut *finer, path, &draft, FIRST_MOVE * resolution);
+            draft.states = loose.states;
+            bypass(&factors, &mut &mut *finer, &mut draft, &refused, resolution, rng)
+        });
+        if free || whole.is_interrupted() {
+            return Ok((draft.path(), free));
         }
     }
     tracing::info!("the verifier refuses each shorter path");

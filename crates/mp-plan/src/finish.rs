@@ -100,6 +100,8 @@ pub(crate) fn finish(
     left: Option<Duration>,
     stages: &mut Vec<StageTime>,
 ) -> Result<Result<Finished, StoppedBy>, Error> {
+    let remembering = kind.remembering();
+    let kind = remembering.as_deref().unwrap_or(kind);
     let found = proposed.path;
     let measured =
         |written: &Written, finished: Finished, interrupt: &Interrupt| match request.sharp_clearance {

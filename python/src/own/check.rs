@@ -9,7 +9,8 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// At most this number of configurations are given to one call of `valid_many`.
 const BATCH: usize = 64;
@@ -25,12 +26,16 @@ pub(super) enum Functions {
     Clearance { clearance: Callback, displacement: Callback },
 }
 
-/// The check. Clones share the functions.
+/// Which configurations were found free and which not, by their bits.
+type Memory = Mutex<HashMap<Box<[u64]>, bool>>;
+
+/// The check. Clones share the functions, and the memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Check {
     functions: Arc<Functions>,
     numbers: Arc<Numbers>,
     queries: u64,
+    memory: Option<Arc<Memory>>,
 }
 
 /// Configurations as arguments, one array of shape (columns,) each.
@@ -89,7 +94,12 @@ fn wrong(name: &str, expected: &str, result: &Bound<'_, PyAny>) -> PyErr {
 
 impl Check {
     pub(super) fn new(functions: Functions, numbers: Arc<Numbers>) -> Self {
-        Self { functions: Arc::new(functions), numbers, queries: 0 }
+        Self { functions: Arc::new(functions), numbers, queries: 0, memory: None }
+    }
+
+    /// The same check, which remembers its answers about configurations, as long as a clone of it lives.
+    pub(super) fn remembering(&self) -> Self {
+        Self { memory: Some(Arc::default()), ..self.clone() }
     }
 
     pub(super) fn functions(&self) -> &Functions {
@@ -118,10 +128,20 @@ impl Check {
         };
         function.call(|py| batch(py, &self.numbers, states), read).unwrap_or(Some(0))
     }
-}
 
-impl Validity<Configuration> for Check {
-    fn is_valid(&mut self, q: &Configuration) -> bool {
+    /// What is remembered of a configuration.
+    fn known(&self, q: &Configuration) -> Option<bool> {
+        let memory = self.memory.as_ref()?;
+        memory.lock().unwrap_or_else(PoisonError::into_inner).get(&bits(q)).copied()
+    }
+
+    fn remember(&self, q: &Configuration, free: bool) {
+        if let Some(memory) = &self.memory {
+            memory.lock().unwrap_or_else(PoisonError::into_inner).insert(bits(q), free);
+        }
+    }
+
+    fn ask(&mut self, q: &Configuration) -> bool {
         self.queries += 1;
         match &*self.functions {
             Functions::One(valid) => is_free(valid, &self.numbers, "valid", q),
@@ -131,13 +151,47 @@ impl Validity<Configuration> for Check {
             }
         }
     }
-    fn first_invalid(&mut self, states: &[Configuration]) -> Option<usize> {
-        match &*self.functions {
-            Functions::Many(valid) => {
-                let found = self.first_of_many(valid, states);
-                self.queries += states.len() as u64;
-                found
+
+    /// The index of the first state that is not free. What is remembered is not asked.
+    fn first_of_new(&mut self, valid: &Callback, states: &[Configuration]) -> Option<usize> {
+        let known: Vec<_> = states.iter().map(|q| self.known(q)).collect();
+        let hit = known.iter().position(|known| *known == Some(false));
+        let before = &known[..hit.unwrap_or(known.len())];
+        let (new, asked): (Vec<_>, Vec<_>) =
+            (0..before.len()).filter(|i| before[*i].is_none()).map(|i| (i, states[i].clone())).unzip();
+        if asked.is_empty() {
+            return hit;
+        }
+        self.queries += asked.len() as u64;
+        let found = self.first_of_many(valid, &asked);
+        // Of those behind the first one that is not free nothing is said.
+        asked[..found.unwrap_or(asked.len())].iter().for_each(|q| self.remember(q, true));
+        match found {
+            None => hit,
+            Some(found) => {
+                self.remember(&asked[found], false);
+                Some(new[found])
             }
+        }
+    }
+}
+
+/// A configuration by its bits.
+fn bits(q: &Configuration) -> Box<[u64]> {
+    q.iter().map(|x| x.to_bits()).collect()
+}
+
+impl Validity<Configuration> for Check {
+    fn is_valid(&mut self, q: &Configuration) -> bool {
+        self.known(q).unwrap_or_else(|| {
+            let free = self.ask(q);
+            self.remember(q, free);
+            free
+        })
+    }
+    fn first_invalid(&mut self, states: &[Configuration]) -> Option<usize> {
+        match &*Arc::clone(&self.functions) {
+            Functions::Many(valid) => self.first_of_new(valid, states),
             _ => states.iter().position(|q| !self.is_valid(q)),
         }
     }

@@ -5,10 +5,8 @@ use super::Own;
 use super::check::{Functions, is_free, number};
 use mp_cspace::Configuration;
 use mp_cspace::{Interrupt, MotionCheck, MotionValidity, Space, Validity};
-use mp_plan::Length;
+use mp_plan::{Length, VERIFIED_FINER};
 
-/// How many times finer than the planner the verifier tests configurations.
-const FINER: f64 = 20.0;
 /// The part of the clearance that the robot moves before the clearance is asked again. The rest is the clearance that is proved.
 const PART: f64 = 0.8;
 /// How many configurations are tested at a time: a run can be stopped in between.
@@ -60,12 +58,12 @@ impl<'k> Verifier<'k> {
         let step = match own.resolution {
             Length::Absolute(length) => length,
             Length::Fraction(fraction) => fraction * own.space.extent(),
-        } / FINER;
-        let steps = (own.space.distance(from, to) / step).ceil().max(1.0);
+        } / VERIFIED_FINER;
+        let steps = (own.space.distance(from, to) / step).ceil();
         if steps.is_nan() || steps > 1e10 {
             return MotionCheck::Unproven { at: 0.0 };
         }
-        let steps = steps as u64;
+        let steps = (steps as u64).max(1);
         let fraction = |i: u64| i as f64 / steps as f64;
         let mut check = own.check.clone();
         for first in (0..=steps).step_by(CHUNK as usize) {

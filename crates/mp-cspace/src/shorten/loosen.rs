@@ -2,7 +2,8 @@
 
 use super::Draft;
 use super::random::arc_lengths;
-use crate::{MotionValidity, Path, Space};
+use crate::{MotionValidity, Path, Rng, Space};
+use rand::RngExt;
 
 /// How often states are moved, twice as far each time.
 const ROUNDS: usize = 6;
@@ -59,4 +60,40 @@ pub fn loosen<C: Space>(
         blocked = (1..old.len()).filter(is_asked).collect();
     }
     (Path::straight(states), blocked.into_iter().map(|i| i - 1).collect())
+}
+
+/// How many random states are tried to lead round what an edge hits.
+const TRIES: usize = 40;
+
+/// Leads the edges of `draft` that were `refused` round what they hit: by a state no farther than `reach` from the middle of the edge, in a random
+/// direction, where `check` finds both new edges free. Returns whether all were led round.
+///
+/// For what [`loosen`] leaves: there the given path hits something too, between the states that its planner has tested.
+pub fn bypass<C: Space>(
+    space: &C,
+    check: &mut impl MotionValidity<C::State>,
+    draft: &mut Draft<C::State>,
+    refused: &[usize],
+    reach: f64,
+    rng: &mut Rng,
+) -> bool {
+    // Edges before them keep their numbers.
+    for &edge in refused.iter().rev() {
+        let [from, to] = [&draft.states[edge], &draft.states[edge + 1]];
+        let middle = space.interpolate(from, to, 0.5);
+        let beside = (0..TRIES).find_map(|_| {
+            let other = space.sample_uniform(rng);
+            let (far, moved) = (space.distance(&middle, &other), reach * rng.random::<f64>());
+            let q = if moved < far { space.interpolate(&middle, &other, moved / far) } else { other };
+            (!check.is_interrupted()
+                && check.check_motion(from, &q).is_free()
+                && check.check_motion(&q, to).is_free())
+            .then_some(q)
+        });
+        let Some(q) = beside else { return false };
+        draft.states.insert(edge + 1, q);
+        draft.origin.insert(edge + 1, 0.5 * (draft.origin[edge] + draft.origin[edge + 1]));
+        draft.free.splice(edge..=edge, [true; 2]);
+    }
+    true
 }

@@ -9,13 +9,13 @@ const CROWDED: usize = 4;
 
 /// A piece of a path: it begins on edge `first` and ends on edge `last`, at the arc lengths `s`, the states `from` and `to`, and the
 /// [origins](Draft::origin) `origin`.
-struct Piece<S> {
-    first: usize,
-    last: usize,
-    s: (f64, f64),
-    from: S,
-    to: S,
-    origin: (f64, f64),
+pub(super) struct Piece<S> {
+    pub(super) first: usize,
+    pub(super) last: usize,
+    pub(super) s: (f64, f64),
+    pub(super) from: S,
+    pub(super) to: S,
+    pub(super) origin: (f64, f64),
 }
 
 /// Of each state, the length of the path up to it.
@@ -28,7 +28,7 @@ pub(super) fn arc_lengths<C: Space>(space: &C, states: &[C::State]) -> Vec<f64> 
 }
 
 /// A random piece over two edges or more.
-fn random_piece<C: Space>(
+pub(super) fn random_piece<C: Space>(
     space: &C,
     draft: &Draft<C::State>,
     s: &[f64],

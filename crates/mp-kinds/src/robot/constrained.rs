@@ -267,6 +267,9 @@ impl Motion for Constrained {
     ) -> Option<mp_cspace::Path<Configuration>> {
         self.robot.shortened(path, check, effort, rng)
     }
+    fn remembering(&self) -> Option<Arc<dyn Robot>> {
+        Some(self.around(self.robot.remembering()?))
+    }
     fn nearest_free(&self, q: &Configuration) -> Option<Configuration> {
         self.robot.nearest_free(q).filter(|q| self.holds(q))
     }

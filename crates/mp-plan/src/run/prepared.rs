@@ -105,9 +105,10 @@ impl<'k> Prepared<'k> {
     }
 
     /// Whether the path of a run may be proved after it, once, as it is written. Where motions are certified, the proof has nothing to reject,
-    /// as a rule. What a roadmap keeps is proved as it grows, and so is what `patience` says.
+    /// as a rule. Where a robot is sampled, a proof asks it more often than the search, and the path as found is hardly ever what is written. What a
+    /// roadmap keeps is proved as it grows, and so is what `patience` says.
     pub(crate) fn can_prove_later(&self) -> bool {
-        motion(self.kind, &self.request) == MotionValidator::Certified
+        (motion(self.kind, &self.request) == MotionValidator::Certified || self.kind.sampled().is_some())
             && self.kind.input_system().is_none()
             && !self.counts_exactly
             && !self.request.settings.contains_key(mp_tree::PATIENCE.name)
