@@ -106,7 +106,7 @@ impl BroadPhase {
         (self.is_empty() || !self.list.is_empty()).then_some(&self.list)
     }
 
-    /// Makes the list anew: of few boxes that takes no longer than changing the tree.
+    /// Makes the list anew, O(n) for n boxes.
     fn relist(&mut self) {
         let Self { nodes, free, root, list } = self;
         list.clear();

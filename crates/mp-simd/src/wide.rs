@@ -58,10 +58,10 @@ mod sin_cos;
 macro_rules! halved {
     ($all:expr, $before:tt) => {{
         macro_rules! first {
-                                        ($x:expr, $y:expr) => {
-                                            if $x $before $y { $x } else { $y }
-                                        };
-                                    }
+                                                        ($x:expr, $y:expr) => {
+                                                            if $x $before $y { $x } else { $y }
+                                                        };
+                                                    }
         let [a, b, c, d, e, f, g, h] = $all;
         let (a, b, c, d) = (first!(a, e), first!(b, f), first!(c, g), first!(d, h));
         let (a, b) = (first!(a, c), first!(b, d));

@@ -201,8 +201,21 @@ impl WideIntervals {
     /// where they leave something open.
     pub(super) fn proven(&mut self, robot: &SharedArm, scene: &Scene, kept: f64, k: usize) -> Option<f64> {
         let Self { covers, links, pairs, proven, near, far, by_base, base, .. } = self;
-        let (bodies, lane) = ((&mut covers[..], &mut links[..]), 1 << k);
-        on_widest(Proving { robot, scene, kept, bodies, pairs, proven, near, far, by_base, base, lane });
+        let lane = 1 << k;
+        on_widest(Proving {
+            robot,
+            scene,
+            kept,
+            covers,
+            links,
+            pairs,
+            proven,
+            near,
+            far,
+            by_base,
+            base,
+            lane,
+        });
         (self.proven.open & lane == 0).then(|| self.proven.part.0[k])
     }
 
@@ -316,8 +329,9 @@ struct Proving<'a> {
     robot: &'a SharedArm,
     scene: &'a Scene,
     kept: f64,
-    /// The covers of bodies, and what is known of each.
-    bodies: (&'a mut [WideCover], &'a mut [Option<(Wide, bool)>]),
+    covers: &'a mut [WideCover],
+    /// What is known of bodies, and of pairs.
+    links: &'a mut [Option<(Wide, bool)>],
     pairs: &'a mut [Option<Wide>],
     proven: &'a mut ProvenParts,
     near: &'a [Wide],
@@ -331,8 +345,8 @@ impl WideKernel for Proving<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { robot, scene, kept, bodies, pairs, proven, near, far, by_base, base, lane } = self;
-        let ((covers, links), floats) = (bodies, robot.kinematics.floats());
+        let Self { robot, scene, kept, covers, links, pairs, proven, near, far, by_base, base, lane } = self;
+        let floats = robot.kinematics.floats();
         while proven.links < robot.bodies.len() && proven.open & lane == 0 {
             let i = robot.bodies.len() - 1 - proven.links;
             proven.links += 1;

@@ -2,29 +2,29 @@
 
 use super::{LANES, Wide};
 use crate::Lanes;
+use std::f64::consts::FRAC_2_PI;
 
 /// The polynomials of fdlibm for the sine and the cosine between −π/4 and π/4 (S. Moshier and K. C. Ng), each by falling powers.
 const SIN: [f64; 6] = [
-    1.589_690_995_211_550_102_21e-10,
-    -2.505_076_025_340_686_341_95e-8,
-    2.755_731_370_707_006_767_89e-6,
-    -1.984_126_982_985_794_931_34e-4,
-    8.333_333_333_322_489_461_24e-3,
-    -1.666_666_666_666_663_243_48e-1,
+    1.589_690_995_211_55e-10,
+    -2.505_076_025_340_686_3e-8,
+    2.755_731_370_707_006_8e-6,
+    -0.000_198_412_698_298_579_5,
+    0.008_333_333_333_322_49,
+    -0.166_666_666_666_666_32,
 ];
 const COS: [f64; 6] = [
-    -1.135_964_755_778_819_482_65e-11,
-    2.087_572_321_298_174_827_90e-9,
-    -2.755_731_435_139_066_330_35e-7,
-    2.480_158_728_947_672_941_78e-5,
-    -1.388_888_888_887_410_957_49e-3,
-    4.166_666_666_666_660_190_37e-2,
+    -1.135_964_755_778_819_5e-11,
+    2.087_572_321_298_175e-9,
+    -2.755_731_435_139_066_3e-7,
+    2.480_158_728_947_673e-5,
+    -0.001_388_888_888_887_411,
+    0.041_666_666_666_666_6,
 ];
 /// Added and taken away again it rounds to an integer, the last bits of which are those of the sum.
 const TO_INTEGER: f64 = 6_755_399_441_055_744.0;
-const TWO_BY_PI: f64 = 6.366_197_723_675_813_824_33e-1;
 /// π/2 in two parts: products of the first with small integers are exact.
-const QUARTER: [f64; 2] = [1.570_796_326_734_125_614_17, 6.077_100_506_506_192_249_32e-11];
+const QUARTER: [f64; 2] = [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11];
 /// Angles that are no larger, and of which the rest is in this range, are computed in lanes. fdlibm reduces others in another way.
 const LARGEST: f64 = 50.0;
 const REST: [f64; 2] = [2e-3, 0.785];
@@ -46,7 +46,7 @@ impl Wide {
     #[inline(always)]
     #[must_use]
     pub fn sin_cos<L: Lanes>(self) -> [Self; 2] {
-        let shifted = self * TWO_BY_PI + TO_INTEGER;
+        let shifted = self * FRAC_2_PI + TO_INTEGER;
         let turns = shifted - TO_INTEGER;
         // The rest of the angle, in two parts.
         let (near, little) = (self - turns * QUARTER[0], turns * QUARTER[1]);
@@ -127,15 +127,11 @@ mod tests {
             let expected = angles.0.map(mp_math::sin_cos).map(|(sin, cos)| [sin, cos].map(f64::to_bits));
             for isa in Isa::available() {
                 let [sin, cos] = run(isa, AnyLanes(SinCos(angles)));
-                for i in 0..LANES {
+                for (i, expected) in expected.iter().enumerate() {
                     let found = [sin.0[i], cos.0[i]];
-                    let is_none = expected[i].map(f64::from_bits).iter().all(|x| x.is_nan());
-                    let same = found.map(f64::to_bits) == expected[i];
-                    assert!(
-                        same || is_none && found.iter().all(|x| x.is_nan()),
-                        "{isa:?} {} {found:?}",
-                        angles.0[i]
-                    );
+                    let is_none = found.iter().chain(&expected.map(f64::from_bits)).all(|x| x.is_nan());
+                    let same = found.map(f64::to_bits) == *expected;
+                    assert!(same || is_none, "{isa:?} {} {found:?}", angles.0[i]);
                 }
             }
         }
