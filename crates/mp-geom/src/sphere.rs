@@ -35,6 +35,9 @@ impl Sphere {
 /// More iterations than any input has been seen to need; only rounding could require more.
 const MAX_TURNS: usize = 1000;
 
+/// A sphere that does not grow is gone on from where its reach is less by more than this part.
+const MOVED: f64 = 1e-12;
+
 /// The smallest sphere enclosing `points`, exact up to rounding; `None` when there are no points.
 ///
 /// Every point satisfies [`Sphere::contains`].
@@ -56,7 +59,8 @@ pub fn minimal_sphere(points: &[Point3<f64>]) -> Option<Sphere> {
         support.push(points[far]);
         let (next_support, next_center) = pivot(&support);
         let next_radius = farthest(&next_support, &next_center).1;
-        if next_radius <= basis_radius {
+        // The same radius, as computed: in a flat set the sphere may still have been moved to where it encloses more.
+        if next_radius <= basis_radius && farthest(points, &next_center).1 >= best.radius * (1.0 - MOVED) {
             break;
         }
         (support, center, basis_radius) = (next_support, next_center, next_radius);
@@ -206,6 +210,10 @@ mod tests {
         assert_eq!(minimal_sphere(&[p; 5]), Some(Sphere { center: p, radius: 0.0 }));
         let s = minimal_sphere(&[p, p, p + Vector3::x() * 4.0]).unwrap();
         assert_eq!(s, Sphere { center: Point3::new(3.0, 2.0, 3.0), radius: 2.0 });
+        // Flat, hardly acute: the circle about all three is as large, as computed, as that about the long side, which the third is outside of.
+        let y = mp_math::powf(10.0, -4.260_763_230_555_386);
+        let flat = [[0.0, y, 0.0], [-2.0, y, -1.0], [0.0, 2.0 * y, -1.0]].map(Point3::from);
+        assert!(minimal_sphere(&flat).unwrap().radius <= brute_force(&flat) * (1.0 + 1e-12));
         // An obtuse triangle: the long side decides.
         let s = minimal_sphere(&[Point3::origin(), Point3::new(10.0, 0.0, 0.0), Point3::new(5.0, 1.0, 0.0)])
             .unwrap();

@@ -54,18 +54,20 @@ macro_rules! lanes {
 
 mod sin_cos;
 
+macro_rules! first {
+    ($before:tt, $x:expr, $y:expr) => {
+        if $x $before $y { $x } else { $y }
+    };
+}
+
 /// The first of eight by this comparison, of which one half is compared with the other, and so on.
 macro_rules! halved {
     ($all:expr, $before:tt) => {{
-        macro_rules! first {
-                                                        ($x:expr, $y:expr) => {
-                                                            if $x $before $y { $x } else { $y }
-                                                        };
-                                                    }
         let [a, b, c, d, e, f, g, h] = $all;
-        let (a, b, c, d) = (first!(a, e), first!(b, f), first!(c, g), first!(d, h));
-        let (a, b) = (first!(a, c), first!(b, d));
-        first!(a, b)
+        let (a, b) = (first!($before, a, e), first!($before, b, f));
+        let (c, d) = (first!($before, c, g), first!($before, d, h));
+        let (a, b) = (first!($before, a, c), first!($before, b, d));
+        first!($before, a, b)
     }};
 }
 
