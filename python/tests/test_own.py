@@ -122,7 +122,8 @@ def test_each_state_of_the_proof_was_asked_and_few_others() -> None:
         return free(q)
 
     # A twentieth of a hundredth of the diagonal.
-    step, others = np.hypot(4, 4) / 2000, []
+    step = np.hypot(4, 4) / 2000
+    others: list[int] = []
     for seed in range(1, 11):
         found_free.clear()
         asked = 0
