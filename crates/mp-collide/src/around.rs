@@ -199,7 +199,8 @@ impl Around {
         ALL & !Wide::splat(far * far).less::<L>(square)
     }
 
-    /// The square of a lower bound on the distance of eight points from what is left without its rounding, and the radius of that.
+    /// The squares of lower bounds on the distances (m) of eight points from the axis of the capsule, or else from box and cylinder; and how far (m) the
+    /// capsule reaches from its axis, 0 for the others.
     #[inline(always)]
     fn wide_square(&self, center: &Wide3) -> (Wide, f64) {
         let (half, zero) = (&self.bounds.half, Wide::splat(0.0));

@@ -54,6 +54,7 @@ macro_rules! lanes {
 
 mod sin_cos;
 
+/// The first of two by this comparison, the second where they cannot be compared.
 macro_rules! first {
     ($before:tt, $x:expr, $y:expr) => {
         if $x $before $y { $x } else { $y }

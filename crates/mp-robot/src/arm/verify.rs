@@ -347,8 +347,9 @@ enum PartCheck {
 /// Pairs that come too near over a part of a motion.
 struct Near {
     pairs: Vec<usize>,
-    /// Over which part of it, about the middle, they keep apart if coordinates go at constant speed; and by how much (m).
+    /// Over which share of it, about the middle, they keep apart if coordinates go at constant speed.
     free: f64,
+    /// The least clearance (m) there.
     clearance: f64,
 }
 
@@ -582,7 +583,7 @@ where
             let (enough, needed) = (approach + kept + self.tolerance, kept + 2.0 * self.tolerance);
             let is_of_balls = self.tree.links[pair.link].mesh.as_ref().is_some_and(RefMesh::is_balls);
             let found = match is_of_balls {
-                // A lower bound.
+                // A lower bound on the distance.
                 true => self.nearly(pair, poses, enough),
                 // The first distance of two triangles: of meshes a bound takes longer than it saves.
                 false => {
