@@ -1,0 +1,281 @@
+//! The arm as verifiers see it.
+
+use crate::arm::{ArmModel, JointKind, Link};
+use mp_collide::reference::RefMesh;
+use mp_geom::TriMesh;
+use nalgebra::{Matrix3, Matrix4, Vector3};
+use std::collections::HashMap;
+
+/// An arm: built from the model a second time, by the names of links and joints.
+#[derive(Debug)]
+pub(crate) struct ReferenceArm {
+    /// Parents before children.
+    pub(super) links: Vec<ReferenceLink>,
+    /// The pairs of links that must not touch.
+    pub(super) pairs: Vec<CheckedPair>,
+    pub(super) coordinates: Vec<bool>,
+    base: Matrix4<f64>,
+    /// How many numbers of a configuration are the pose of the base.
+    pub(super) pose: usize,
+}
+
+/// How many numbers of a configuration are the pose of a base that floats: place, then quaternion.
+pub(super) const POSE: usize = 7;
+
+/// A link and the joint above it.
+#[derive(Debug)]
+pub(super) struct ReferenceLink {
+    parent: Option<usize>,
+    /// How many links are above it.
+    depth: usize,
+    origin: Matrix4<f64>,
+    axis: Vector3<f64>,
+    motion: JointMotion,
+    /// The value of the joint: coordinate, factor, offset.
+    value: (usize, f64, f64),
+    pub(super) mesh: Option<RefMesh>,
+    /// The largest distance of a point of its mesh from its origin.
+    radius: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum JointMotion {
+    Fixed,
+    Turns,
+    Slides,
+}
+
+impl ReferenceArm {
+    /// `checked` are the names of the links of each pair that must not touch, and `make` makes the tree of a mesh.
+    ///
+    /// # Errors
+    /// That of `make`, or of `go_on`, which is called for each link and each pair.
+    pub(crate) fn new<'n, E>(
+        model: &ArmModel,
+        checked: impl Iterator<Item = [&'n str; 2]>,
+        mut make: impl FnMut(&TriMesh) -> Result<RefMesh, E>,
+        mut go_on: impl FnMut() -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let own = model.joints.iter().filter(|j| j.kind != JointKind::Fixed && j.mimic.is_none());
+        let own: Vec<_> = own.filter(|j| j.kind.held().is_none()).collect();
+        let mut tree = Self {
+            links: Vec::new(),
+            pairs: Vec::new(),
+            coordinates: own.iter().map(|j| j.kind == JointKind::Continuous).collect(),
+            base: model.base.to_homogeneous(),
+            pose: if model.floating.is_some() { POSE } else { 0 },
+        };
+        let coordinate = |name: &str| own.iter().position(|j| j.name == name);
+        // Follows mimics to the end. The model has been checked: there are no loops.
+        let value = |name: &str| {
+            let (mut at, mut factor, mut offset) = (name.to_owned(), 1.0, 0.0);
+            loop {
+                if let Some(i) = coordinate(&at) {
+                    return (i, factor, offset);
+                }
+                let joint = model.joints.iter().find(|j| j.name == at);
+                let Some(mimic) = joint.and_then(|j| j.mimic.as_ref()) else {
+                    // A fixed or held joint has at most one value.
+                    let held = joint.and_then(|j| j.kind.held()).unwrap_or(0.0);
+                    return (0, 0.0, offset + factor * held);
+                };
+                (offset, factor) = (offset + factor * mimic.offset, factor * mimic.multiplier);
+                at.clone_from(&mimic.joint);
+            }
+        };
+        let above: HashMap<&str, _> = model.joints.iter().map(|j| (j.child.as_str(), j)).collect();
+        let mut places: HashMap<&str, usize> = HashMap::new();
+        let mut todo: Vec<&Link> = model.links.iter().collect();
+        while !todo.is_empty() {
+            let before = todo.len();
+            for link in std::mem::take(&mut todo) {
+                go_on()?;
+                let joint = above.get(link.name.as_str()).copied();
+                let parent = joint.and_then(|j| places.get(j.parent.as_str()).copied());
+                if joint.is_some() && parent.is_none() {
+                    todo.push(link);
+                    continue;
+                }
+                let mesh = TriMesh::merged(&link.shapes);
+                let motion = match joint.map(|j| j.kind) {
+                    None | Some(JointKind::Fixed) => JointMotion::Fixed,
+                    Some(JointKind::Prismatic { .. }) => JointMotion::Slides,
+                    Some(_) => JointMotion::Turns,
+                };
+                places.insert(&link.name, tree.links.len());
+                tree.links.push(ReferenceLink {
+                    parent,
+                    depth: parent.map_or(0, |p| tree.links[p].depth + 1),
+                    origin: joint.map_or_else(Matrix4::identity, |j| j.origin.to_homogeneous()),
+                    axis: joint.map_or_else(Vector3::x, |j| j.axis.normalize()),
+                    motion,
+                    value: joint.map_or((0, 0.0, 0.0), |j| value(&j.name)),
+                    radius: mesh
+                        .iter()
+                        .flat_map(|m| m.vertices())
+                        .map(|p| p.coords.norm())
+                        .fold(0.0, f64::max),
+                    mesh: mesh.as_ref().map(&mut make).transpose()?,
+                });
+            }
+            if todo.len() == before {
+                break;
+            }
+        }
+        for [a, b] in checked {
+            go_on()?;
+            if let (Some(&link), Some(&other)) = (places.get(a), places.get(b)) {
+                tree.pairs.push(CheckedPair { link, other: Some(other), meet: tree.meet(link, other) });
+            }
+        }
+        Ok(tree)
+    }
+
+    /// The nearest link above both, which may be one of them.
+    fn meet(&self, mut a: usize, mut b: usize) -> Option<usize> {
+        while a != b {
+            let lower = if self.links[a].depth < self.links[b].depth { &mut b } else { &mut a };
+            *lower = self.links[*lower].parent?;
+        }
+        Some(a)
+    }
+
+    /// The poses of the links in the world, as homogeneous matrices.
+    pub(super) fn poses_into(&self, q: &[f64], out: &mut Vec<Matrix4<f64>>) {
+        out.clear();
+        let (pose, q) = q.split_at(self.pose);
+        let base = if self.pose == 0 { self.base } else { base_matrix(pose) };
+        for link in &self.links {
+            let above = link.parent.map_or(base, |p| out[p]);
+            let value = q[link.value.0] * link.value.1 + link.value.2;
+            let still = above * link.origin;
+            if link.motion == JointMotion::Fixed {
+                out.push(still);
+                continue;
+            }
+            let mut motion = Matrix4::identity();
+            if link.motion == JointMotion::Slides {
+                motion.fixed_view_mut::<3, 1>(0, 3).copy_from(&(link.axis * value));
+            } else {
+                let across = link.axis.cross_matrix();
+                let (sin, cos) = mp_math::sin_cos(value);
+                let turn = Matrix3::identity() + across * sin + across * across * (1.0 - cos);
+                motion.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
+            }
+            out.push(still * motion);
+        }
+    }
+
+    /// An upper bound (m) on how far the joints below the link `stop` move a point of `link` relative to `stop` (all joints
+    /// when it is `None`), while every coordinate goes as far as `travels` says and the links start at `poses`.
+    ///
+    /// A joint that turns by w moves a point no farther than w times its distance from the origin of the joint.
+    /// That distance is at most the one at `poses` plus how far the joints nearer to the link have moved the point. A base
+    /// that floats is one more such joint above the root, for pairs that do not `stop` below it.
+    pub(super) fn travel(
+        &self,
+        link: usize,
+        stop: Option<usize>,
+        travels: &Travels,
+        poses: &[Matrix4<f64>],
+    ) -> f64 {
+        let origin = |i: usize| Vector3::from(poses[i].fixed_view::<3, 1>(0, 3));
+        let Travels { joints: travels, base } = travels;
+        let tip = origin(link);
+        let mut moved = 0.0;
+        let mut at = Some(link);
+        while at != stop {
+            let Some(i) = at else { break };
+            let part = &self.links[i];
+            let travel = travels[part.value.0] * part.value.1.abs();
+            match part.motion {
+                JointMotion::Fixed => {}
+                JointMotion::Slides => moved += travel,
+                JointMotion::Turns => {
+                    let now = (tip - origin(i)).norm() + self.links[link].radius;
+                    moved += travel * (now + moved);
+                }
+            }
+            at = part.parent;
+        }
+        if let (None, Some([slide, turn]), Some(root)) = (stop, base, self.above(link).last()) {
+            let now = (tip - origin(*root)).norm() + self.links[link].radius;
+            moved += turn * (now + moved) + slide;
+        }
+        // Enlarged against rounding.
+        moved * (1.0 + 1e-9)
+    }
+
+    /// The links from `link` up to the root, `link` first.
+    fn above(&self, link: usize) -> Vec<usize> {
+        std::iter::successors(Some(link), |&i| self.links[i].parent).collect()
+    }
+
+    /// Whether any joint above the link moves it: one that is held does not.
+    pub(super) fn is_moved(&self, link: usize) -> bool {
+        let moves = |link: &ReferenceLink| link.motion != JointMotion::Fixed && link.value.1 != 0.0;
+        self.above(link).into_iter().any(|i| moves(&self.links[i]))
+    }
+}
+
+/// How far each coordinate goes over a part of a motion (rad or m), and how far (m) and by which angle (rad) a base that
+/// floats does.
+pub(super) struct Travels {
+    pub(super) joints: Vec<f64>,
+    pub(super) base: Option<[f64; 2]>,
+}
+
+impl Travels {
+    /// The larger of each.
+    pub(super) fn max(&self, other: &Self) -> Self {
+        let joints = self.joints.iter().zip(&other.joints).map(|(x, y)| x.max(*y)).collect();
+        let base = self.base.zip(other.base).map(|([s, t], [u, v])| [s.max(u), t.max(v)]);
+        Self { joints, base }
+    }
+}
+
+/// The homogeneous matrix of a place and a quaternion.
+fn base_matrix(pose: &[f64]) -> Matrix4<f64> {
+    let &[x, y, z, i, j, k, w] = pose else { return Matrix4::identity() };
+    Matrix4::new(
+        1.0 - 2.0 * (j * j + k * k),
+        2.0 * (i * j - w * k),
+        2.0 * (i * k + w * j),
+        x,
+        2.0 * (i * j + w * k),
+        1.0 - 2.0 * (i * i + k * k),
+        2.0 * (j * k - w * i),
+        y,
+        2.0 * (i * k - w * j),
+        2.0 * (j * k + w * i),
+        1.0 - 2.0 * (i * i + j * j),
+        z,
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+    )
+}
+
+/// How far the place of a base goes between two configurations, and the angle of its turn.
+pub(super) fn base_travel(a: &[f64], b: &[f64]) -> [f64; 2] {
+    let (&[ax, ay, az, ai, aj, ak, aw], &[bx, by, bz, bi, bj, bk, bw]) = (a, b) else { return [f64::NAN; 2] };
+    let slide = mp_math::hypot(mp_math::hypot(bx - ax, by - ay), bz - az);
+    // The quaternion of the turn: the conjugate of one times the other.
+    let real = aw * bw + ai * bi + aj * bj + ak * bk;
+    let [i, j, k] = [
+        aw * bi - ai * bw - aj * bk + ak * bj,
+        aw * bj - aj * bw - ak * bi + ai * bk,
+        aw * bk - ak * bw - ai * bj + aj * bi,
+    ];
+    [slide, 2.0 * mp_math::atan2(mp_math::hypot(mp_math::hypot(i, j), k), real.abs())]
+}
+
+/// A link and another link, or a link and the obstacles: they must not touch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CheckedPair {
+    pub(super) link: usize,
+    pub(super) other: Option<usize>,
+    /// The nearest link above both.
+    pub(super) meet: Option<usize>,
+}
