@@ -57,7 +57,7 @@ async function connect(session, viewer) {
   const gallery = new Gallery(workbench);
   const saving = new SaveDialog(workbench);
   opening.saveBy(saving);
-  saving.copy = () => copy.text();
+  saving.copy = (name) => copy.saved(name);
   new Inspector(editor, () => opening.chooseMesh());
   new PlanningPanel(workbench);
   new TimingPanel(workbench, () => saving.show("save_trajectory"));

@@ -50,14 +50,14 @@ export function deliver(reply, folder) {
 export const rowsOf = (path, columns) => path.written ?? Array.from({ length: path.count }, (_, i) => [...path.rows.subarray(i * columns, (i + 1) * columns)]);
 
 /** A file name made of a scene's name. @param {string} name */
-const fileName = (name) => name.replace(/[^\p{L}\p{N}._-]+/gu, "-").replace(/^[.-]+|[.-]+$/g, "") || "scene";
+export const fileName = (name) => name.replace(/[^\p{L}\p{N}._-]+/gu, "-").replace(/^[.-]+|[.-]+$/g, "") || "scene";
 
 /** The dialog that saves. */
 export class SaveDialog {
   constructor(/** @type {Workbench} */ workbench) {
     this.workbench = workbench;
     /** The document as it is now, edited or not. @type {() => Message | null} */ this.document = () => workbench.document;
-    /** The document as a file, for when the planner is gone. @type {() => string} */ this.copy = () => "";
+    /** The document as files of this name, for when the planner is gone. @type {(name: string) => Message} */ this.copy = () => ({});
     /** Called when a document was saved. @type {(document: Message) => void} */ this.onsaved = () => {};
     this.opener = button("Save…", () => this.show(), { "aria-haspopup": "dialog", title: "Save (Ctrl + S)" });
     this.opener.disabled = true;
@@ -122,9 +122,9 @@ export class SaveDialog {
     }[request];
     let gone = "";
     const reply = await session.request({ do: request, format, name, ...what, ...(overwrite ? { overwrite } : {}) }).catch((error) => {
-      if (!error.gone || format !== "own" || !edited?.robot) throw error;
+      if (!error.gone || format !== "own" || !edited) throw error;
       gone = "The planner does not answer. ";
-      return { files: [{ name: `${name}.mp.json`, bytes: new TextEncoder().encode(this.copy()) }] };
+      return this.copy(name);
     });
     if (edited) this.onsaved(edited);
     return gone + deliver(reply, hello.folder);

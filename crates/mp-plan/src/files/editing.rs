@@ -106,9 +106,9 @@ impl SceneProblem {
         scene.with_file(&self.of.file).keeping(before.clearance_kept())
     }
 
-    /// The files of the edited document: the problem `name.toml`, then those that are to stand beside it. In the folder `into` it names the
-    /// files of the problem where they are. Without a folder, and where the files are in memory, those that the problem names are among
-    /// the files; where these name others in turn, none is, and the second list has all that are needed.
+    /// The files of the edited document: the problem `name.toml`, then those that are to stand beside it, in the folder `into` or in one that
+    /// is not known yet. It names files of this machine where they are. Of files in memory, those that the problem names are among the
+    /// files; where these name others in turn, none is, and the second list has all that are needed.
     ///
     /// # Errors
     /// When a document refers to what the text does not have, or a file cannot be read any more.
@@ -128,7 +128,7 @@ impl SceneProblem {
         let (mut copies, mut left) = (Vec::new(), Vec::new());
         let renamed = match (self.on_disk.then(here).flatten(), into) {
             (Some(here), Some(into)) if here == into => text,
-            (Some(here), Some(_)) => self.renamed(&text, &mut |file| {
+            (Some(here), _) => self.renamed(&text, &mut |file| {
                 (!own.iter().any(|own| own == file)).then(|| here.join(file).display().to_string())
             })?,
             _ => {

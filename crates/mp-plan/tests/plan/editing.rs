@@ -192,6 +192,11 @@ fn plans_avoid_new_obstacles() {
             problem.saved("here", &document, &no_mesh, Some(&dir.path().canonicalize().unwrap())).unwrap();
         let text = String::from_utf8(files[0].1.clone()).unwrap();
         assert!(files.len() == 1 && text.contains(&format!("\"{file}\"")), "{text}");
+        // For a folder that is not known the files are named where they are.
+        let (files, _) = problem.saved("away", &document, &no_mesh, None).unwrap();
+        let text = String::from_utf8(files[0].1.clone()).unwrap();
+        let place = dir.path().canonicalize().unwrap().join(file);
+        assert!(files.len() == 1 && text.contains(&*place.to_string_lossy()), "{text}");
     }
 }
 

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
+import { fileURLToPath } from "node:url";
 import { browserTest, mp, withPage } from "./browser.mjs";
 
 const untilObstacles = (driver, count) => driver.until(async (n) => (await window.mpView.planner).document?.obstacles.length === n, count);
@@ -10,6 +11,8 @@ const begin = async (driver) => {
   await driver.press("New");
   await untilObstacles(driver, 0);
 };
+/** A mesh. */
+const SPIKE = { name: "spike.off", content: "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n" };
 /** Lets downloads go into a folder. */
 async function downloadsTo(driver, folder) {
   const client = await driver.page.createCDPSession();
@@ -66,7 +69,7 @@ browserTest("changes outlive a reload", () => withPage("easy", async (driver) =>
   await begin(driver);
   await driver.press("Add");
   await untilObstacles(driver, 1);
-  await driver.drop({ name: "spike.off", content: "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n" });
+  await driver.drop(SPIKE);
   await driver.press("An obstacle");
   await untilObstacles(driver, 2);
   const made = await driver.page.evaluate(async () => (await window.mpView.planner).document);
@@ -98,6 +101,47 @@ browserTest("without the server the environment is saved as a download", () => w
   assert.equal(obstacles.length, 1);
   assert.match(mp("info", join(folder, "environment.mp.json")), /environment/);
 }, { expected: /Failed to (load|fetch)|ERR_CONNECTION|ERR_INCOMPLETE/ }));
+
+browserTest("without the server a problem is saved as a download, with its meshes and its ends", () => {
+  const robot = fileURLToPath(new URL("../../../../mp-scenes/assets/robots/arm-6.urdf", import.meta.url));
+  return withPage(robot, async (driver, folder, server) => {
+    await downloadsTo(driver, folder);
+    // What the page has the text of.
+    await driver.page.evaluate(async () => {
+      const { session } = await window.mpView.planner;
+      const request = session.request.bind(session);
+      session.request = async (asked) => {
+        const reply = await request(asked);
+        if (asked.content) window.keptForTests = asked.document;
+        return reply;
+      };
+    });
+    await driver.drop(SPIKE);
+    await untilObstacles(driver, 1);
+    await driver.until(() => window.keptForTests?.obstacles.length === 1);
+    await driver.fill("spinbutton", "z, metres", "7");
+    await driver.until(() => window.keptForTests.obstacles[0].pose[2] === 7);
+    const start = await driver.page.evaluate(async () => {
+      const { ends } = await window.mpView.planner;
+      const row = [...ends.at("start").row];
+      row[0] += 0.0625;
+      ends.set("start", row);
+      return row;
+    });
+    await driver.until((x) => window.keptForTests.start[0] === x, start[0]);
+    await server.end();
+    await driver.untilAlert(/server does not answer/);
+    await save(driver, "the problem with its obstacles", /does not answer.*Saved/);
+    const text = String(await untilFile(folder, "arm-6.toml"));
+    assert.ok(text.includes(robot) && text.includes(`start = [${start[0]},`) && /at = \[.*, 7\]/.test(text), text);
+    await untilFile(folder, "arm-6_spike_off.off");
+    assert.match(mp("info", join(folder, "arm-6.toml")), /obstacle/);
+    assert.ok(await driver.page.evaluate(() => !document.body.classList.contains("unsaved")));
+    // The planner does not say any more what a later change gives.
+    await driver.page.evaluate(async (row) => (await window.mpView.planner).ends.set("start", row), start.map((x) => x / 2));
+    await save(driver, "the problem with its obstacles", /before the page had the text/);
+  }, { expected: /Failed to (load|fetch)|ERR_CONNECTION|ERR_INCOMPLETE/ });
+});
 
 browserTest("what is shown is saved as a picture, a film and a scene for Blender", () => withPage("easy", async (driver, folder) => {
   await downloadsTo(driver, folder);
