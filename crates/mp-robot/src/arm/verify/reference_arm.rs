@@ -6,7 +6,7 @@ use mp_geom::TriMesh;
 use nalgebra::{Matrix3, Matrix4, Vector3};
 use std::collections::HashMap;
 
-/// An arm: built from the model a second time, by the names of links and joints.
+/// The links and joints of an arm, built from its model a second time, by their names.
 #[derive(Debug)]
 pub(crate) struct ReferenceArm {
     /// Parents before children.
