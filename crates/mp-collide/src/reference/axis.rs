@@ -13,16 +13,19 @@ const MOST_AXES: usize = 16;
 /// as soon as it is known to be less.
 ///
 /// Any axis bounds the distance, by the gap between the two sets along it. Which axes to try, the algorithm of Gilbert,
-/// Johnson and Keerthi (1988) says: from the origin to the nearest point of a simplex of differences of corners.
+/// Johnson and Keerthi (1988) says: from the origin to the nearest point of a simplex of differences of corners. `best` becomes the axis with
+/// the largest gap, as a unit vector in the frame of `b` from `b` to `a`; where there is one already, the search begins with its corners.
 pub(super) fn separation(
     a: &[Point3<f64>],
     b: &[Point3<f64>],
     pose_ab: &IsometryMatrix3<f64>,
     enough: f64,
+    best: &mut Option<Vector3<f64>>,
 ) -> f64 {
     let (Some(first_a), Some(first_b)) = (a.first(), b.first()) else { return 0.0 };
     let mut bound = 0.0;
-    let mut simplex = vec![first_a - pose_ab * first_b];
+    let first = best.take().map(|axis| end(a, b, pose_ab, axis));
+    let mut simplex = vec![first.unwrap_or_else(|| first_a - pose_ab * first_b)];
     for _ in 0..MOST_AXES {
         let Some(nearest) = reduce(&mut simplex) else { break };
         let length = nearest.norm();
@@ -32,13 +35,11 @@ pub(super) fn separation(
         }
         let axis = nearest / length;
         let axis_b = pose_ab.rotation.inverse() * axis;
-        let end = |points: &[Point3<f64>], axis: Vector3<f64>| {
-            let along = points.iter().map(|p| p.coords.dot(&axis));
-            along.enumerate().fold((0, f64::INFINITY), |least, x| if x.1 < least.1 { x } else { least }).0
-        };
-        let corner = a[end(a, axis)] - pose_ab * b[end(b, -axis_b)];
+        let corner = end(a, b, pose_ab, axis_b);
         let gap = corner.dot(&axis);
-        bound = gap.max(bound);
+        if gap > bound {
+            (bound, *best) = (gap, Some(axis_b));
+        }
         // No corner is nearer along the axis than the point found: it is the nearest.
         if bound >= enough || gap >= length * (1.0 - 1e-9) {
             break;
@@ -46,6 +47,48 @@ pub(super) fn separation(
         simplex.push(corner);
     }
     bound
+}
+
+/// The gap between two sets along an axis, a unit vector in the frame of `b` from `b` to `a`; negative where they overlap.
+pub(super) fn gap(
+    a: &[Point3<f64>],
+    b: &[Point3<f64>],
+    pose_ab: &IsometryMatrix3<f64>,
+    axis: Vector3<f64>,
+) -> f64 {
+    if a.is_empty() || b.is_empty() {
+        return 0.0;
+    }
+    let axis_a = pose_ab.rotation * axis;
+    lowest(a, axis_a) - pose_ab.translation.vector.dot(&axis_a) + lowest(b, -axis)
+}
+
+/// How low corners are along an axis.
+fn lowest(points: &[Point3<f64>], axis: Vector3<f64>) -> f64 {
+    // Four at a time, so that none waits for the one before it.
+    let mut least = [f64::INFINITY; 4];
+    let mut take = |k: usize, p: &Point3<f64>| {
+        let x = p.coords.dot(&axis);
+        least[k] = if x < least[k] { x } else { least[k] };
+    };
+    let (fours, rest) = points.as_chunks::<4>();
+    fours.iter().for_each(|four| (0..4).for_each(|k| take(k, &four[k])));
+    rest.iter().for_each(|p| take(0, p));
+    least.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// The difference of the lowest corner of `a` and the highest of `b` along an axis of `b`, of which neither is empty.
+fn end(
+    a: &[Point3<f64>],
+    b: &[Point3<f64>],
+    pose_ab: &IsometryMatrix3<f64>,
+    axis: Vector3<f64>,
+) -> Vector3<f64> {
+    let lowest = |points: &[Point3<f64>], axis: Vector3<f64>| {
+        let along = points.iter().map(|p| p.coords.dot(&axis));
+        along.enumerate().fold((0, f64::INFINITY), |least, x| if x.1 < least.1 { x } else { least }).0
+    };
+    a[lowest(a, pose_ab.rotation * axis)] - pose_ab * b[lowest(b, -axis)]
 }
 
 /// The point of a simplex of up to four corners nearest to the origin, `None` when the origin is inside. Keeps the corners
@@ -134,7 +177,7 @@ mod tests {
                 let pose = Isometry3::new(at, Vector3::new(turn, -0.4 * turn, 0.8 * turn));
                 let (mesh_a, mesh_b) = (RefMesh::new(a), RefMesh::new(b));
                 let distance = mesh_a.clearance(&Isometry3::identity(), &mesh_b, &pose, f64::INFINITY);
-                let bound = |enough| separation(&corners(a), &corners(b), &matrix(&pose), enough);
+                let bound = |enough| separation(&corners(a), &corners(b), &matrix(&pose), enough, &mut None);
                 let apart_at_all = bound(1e-9) > 0.0;
                 // Inside of each other they are apart as surfaces, and not as solids.
                 if apart_at_all {
@@ -160,13 +203,13 @@ mod tests {
         let ring = primitives::torus(1.0, 0.2, 24, 12).unwrap();
         let ball = primitives::sphere(0.3, 1).unwrap();
         let here = IsometryMatrix3::identity();
-        assert_eq!(separation(&corners(&ring), &corners(&ball), &here, 0.1), 0.0);
-        assert_eq!(separation(&[], &corners(&ball), &here, 0.1), 0.0);
+        assert_eq!(separation(&corners(&ring), &corners(&ball), &here, 0.1, &mut None), 0.0);
+        assert_eq!(separation(&[], &corners(&ball), &here, 0.1, &mut None), 0.0);
         // Flat sets: all in one plane, and one point.
         let plane = [Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)];
         let above = [Point3::new(0.2, 0.2, 0.5)];
-        let height = separation(&plane, &above, &here, 0.499_999);
+        let height = separation(&plane, &above, &here, 0.499_999, &mut None);
         assert!((height - 0.5).abs() < 1e-12, "{height}");
-        assert_eq!(separation(&plane, &plane, &here, 0.1), 0.0);
+        assert_eq!(separation(&plane, &plane, &here, 0.1, &mut None), 0.0);
     }
 }

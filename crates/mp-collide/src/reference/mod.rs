@@ -5,7 +5,9 @@
 //! It is not exact at contact: whatever is nearer than about 1e-13 of the coordinates counts as touching.
 
 mod axis;
+mod cuboid;
 pub mod exact;
+mod hint;
 mod nested;
 mod pairs;
 mod parts;
@@ -15,15 +17,17 @@ mod triangle;
 
 use mp_geom::{Aabb, TriMesh};
 use mp_stop::{Interrupt, Interrupted};
-use nalgebra::{Isometry3, IsometryMatrix3, Point3, Vector3};
+use nalgebra::{Isometry3, IsometryMatrix3, Matrix3, Point3, Vector3};
 use std::cmp::Ordering;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::OnceLock;
 
+pub use hint::Hint;
 pub use sweep::{Sweep, SweepCheck};
 pub use triangle::triangle_distance;
 
+use cuboid::{Beside, Cuboid};
 use triangle::{Triangle, point_triangle};
 
 /// Anything nearer than this fraction of the coordinates counts as touching.
@@ -58,7 +62,7 @@ enum Content {
 }
 
 /// Names a ball.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Node {
     /// The number of a stored ball.
     Stored(u32),
@@ -89,6 +93,8 @@ pub struct RefMesh {
     around_solids: OnceLock<(Point3<f64>, f64)>,
     /// Few balls around all of it, taken from the tree.
     parts: Vec<(Point3<f64>, f64)>,
+    /// If it is a box.
+    cuboid: Option<Cuboid>,
 }
 
 impl RefMesh {
@@ -134,6 +140,7 @@ impl RefMesh {
             components: OnceLock::new(),
             around_solids: OnceLock::new(),
             parts: Vec::new(),
+            cuboid: Cuboid::of(mesh),
         };
         let mut order = std::mem::take(&mut tree.order);
         tree.sort(&mut order, go_on)?;
@@ -303,7 +310,7 @@ impl RefMesh {
         pose_wb: &Isometry3<f64>,
         enough: f64,
     ) -> f64 {
-        self.search(pose_wa, other, pose_wb, enough).map_or(0.0, Search::run)
+        self.search(pose_wa, other, pose_wb, enough).map_or(0.0, |mut search| search.run())
     }
 
     /// A lower bound on the distance that is at least `enough` (metres), or at least four fifths of the distance; 0 when they intersect or
@@ -338,7 +345,19 @@ impl RefMesh {
         let touching = TOUCHING * scale;
         // A little more than `enough`, so that touching is always found.
         let best = if enough.is_nan() { f64::INFINITY } else { enough.max(2.0 * touching) };
-        Some(Search { a: self, b: other, pose_ab, touching, best, limit: best, share: 1.0, any: false })
+        Some(Search {
+            a: self,
+            b: other,
+            pose_ab,
+            spread: pose_ab.rotation.matrix().abs(),
+            touching,
+            best,
+            limit: best,
+            passed: f64::INFINITY,
+            share: 1.0,
+            any: false,
+            hint: None,
+        })
     }
 }
 
@@ -347,43 +366,83 @@ struct Search<'a> {
     a: &'a RefMesh,
     b: &'a RefMesh,
     pose_ab: IsometryMatrix3<f64>,
+    /// The absolute values of its rotation: times the half sides of a box of `b` those of the box around it along the axes of `a`.
+    spread: Matrix3<f64>,
     touching: f64,
     /// The smallest distance so far; at first, the distance that is enough.
     best: f64,
     /// What is farther than this is not looked at: a share of the smallest distance found.
     limit: f64,
     share: f64,
+    /// The least bound of what was not looked at.
+    passed: f64,
     /// Whether the first distance below `enough` ends the search.
     any: bool,
+    /// What the last search left, and this one leaves for the next one.
+    hint: Option<Hint>,
 }
 
 impl Search<'_> {
     /// The share of the distance found, 0 for touching; a lower bound when the roots are farther apart than is enough.
-    fn run(mut self) -> f64 {
+    fn run(&mut self) -> f64 {
         let (root_a, root_b) = (self.a.root, self.b.root);
         let bound = self.bound(root_a, root_b);
         if bound >= self.best {
             return bound;
+        }
+        if let Some(found) = self.by_hint() {
+            return found;
         }
         if self.any || self.share < 1.0 {
             let bound = self.parts_apart();
             if bound >= self.best {
                 return bound;
             }
-            let (a, b) = (&self.a.corners, &self.b.corners);
-            let bound = axis::separation(a, b, &self.pose_ab, self.best + self.touching) - self.touching;
+            let bound = self.by_axis(self.best);
             if bound >= self.best {
                 return bound;
             }
         }
         self.visit(root_a, root_b);
+        self.found()
+    }
+
+    /// The share of the distance found, 0 for touching.
+    fn found(&self) -> f64 {
         if self.best <= self.touching { 0.0 } else { self.limit }
+    }
+
+    /// A lower bound on the distance by an axis between the corners, as good as it gets below `enough`; at most 0 where there is no such axis.
+    fn by_axis(&mut self, enough: f64) -> f64 {
+        let mut apart = self.hint.and_then(|hint| hint.apart);
+        let (a, b) = (&self.a.corners, &self.b.corners);
+        let bound = axis::separation(a, b, &self.pose_ab, enough + self.touching, &mut apart) - self.touching;
+        if let Some(hint) = &mut self.hint {
+            hint.apart = apart;
+        }
+        bound
+    }
+
+    /// The distance of two triangles, or of the corners of one from a box.
+    fn distance_of(&self, near: [u32; 2]) -> f64 {
+        if let Some(distance) = self.corners_from_box(near) {
+            return distance;
+        }
+        let [k, l] = near;
+        let triangle_b = self.b.triangle(l, &mut None).map(|p| self.pose_ab * p);
+        let distance = triangle_distance(self.a.triangle(k, &mut None), &triangle_b);
+        distance - self.a.rounding(k) - self.b.rounding(l)
     }
 
     /// A lower bound on the distance of the triangles of two balls.
     fn bound(&self, i: Node, j: Node) -> f64 {
+        if let Some(bound) = self.bound_by_box(i, j) {
+            return bound;
+        }
         let (mut made_a, mut made_b, mut made) = (None, None, None);
         let (ball_a, ball_b) = (self.a.ball(i, &mut made_a), self.b.ball(j, &mut made_b));
+        // From the second ball to the first.
+        let way = self.pose_ab * ball_b.center - ball_a.center;
         // For a ball against a single triangle, the triangle itself is the better bound.
         let distance = match (ball_a.content, ball_b.content) {
             (Content::Triangle(k), Content::Parts(_)) => {
@@ -395,9 +454,19 @@ impl Search<'_> {
                 let center = self.pose_ab.inverse_transform_point(&ball_a.center);
                 point_triangle(&center, self.b.triangle(l, &mut made)) - ball_a.radius - self.b.rounding(l)
             }
-            _ => (self.pose_ab * ball_b.center - ball_a.center).norm() - ball_a.radius - ball_b.radius,
+            _ => way.norm() - ball_a.radius - ball_b.radius,
         };
-        distance - self.touching
+        if distance - self.touching >= self.limit {
+            return distance - self.touching;
+        }
+        // The boxes around the triangles, each beside a box along its axes around the other.
+        let turn = self.pose_ab.rotation.matrix();
+        let beyond = |way: Vector3<f64>, half: Vector3<f64>, other: Vector3<f64>| {
+            (way.abs() - half - other).sup(&Vector3::zeros()).norm()
+        };
+        let in_a = beyond(way, ball_a.half, self.spread * ball_b.half);
+        let in_b = beyond(turn.tr_mul(&way), ball_b.half, self.spread.tr_mul(&ball_a.half));
+        distance.max(in_a).max(in_b) - self.touching
     }
 
     /// The parts of the larger of two balls, each with the other ball.
@@ -406,6 +475,9 @@ impl Search<'_> {
     /// The triangles, where each ball holds one.
     #[inline]
     fn split(&self, i: Node, j: Node) -> Result<[(Node, Node); 2], [u32; 2]> {
+        if let Some(parts) = self.split_beside_box(i, j) {
+            return Ok(parts);
+        }
         let (mut made_a, mut made_b) = (None, None);
         let (ball_a, ball_b) = (self.a.ball(i, &mut made_a), self.b.ball(j, &mut made_b));
         Ok(match (ball_a.content, ball_b.content) {
@@ -421,31 +493,45 @@ impl Search<'_> {
     /// Lowers `best` to the distance of the triangles of two balls, if that is smaller.
     /// Returns whether the search is over.
     fn visit(&mut self, i: Node, j: Node) -> bool {
+        match self.beside_box(i, j) {
+            Some(Beside::At(near, distance)) => return self.offer(near, distance),
+            Some(Beside::Apart(bound)) => {
+                self.passed = self.passed.min(bound);
+                return false;
+            }
+            None => {}
+        }
         let pairs = match self.split(i, j) {
             Ok(pairs) => pairs,
-            Err([k, l]) => {
-                let triangle_b = self.b.triangle(l, &mut None).map(|p| self.pose_ab * p);
-                let distance = triangle_distance(self.a.triangle(k, &mut None), &triangle_b)
-                    - self.a.rounding(k)
-                    - self.b.rounding(l);
-                let nearer = distance < self.best;
-                if nearer {
-                    self.best = distance;
-                    self.limit = self.limit.min(distance * self.share);
-                }
-                return self.best <= self.touching || (nearer && self.any);
-            }
+            Err(near) => return self.offer(near, self.distance_of(near)),
         };
         let mut bounds = pairs.map(|(k, l)| (self.bound(k, l), k, l));
         if bounds[1].0 < bounds[0].0 {
             bounds.swap(0, 1);
         }
         for (bound, k, l) in bounds {
-            if bound < self.limit && self.visit(k, l) {
+            if bound >= self.limit {
+                self.passed = self.passed.min(bound);
+            } else if self.visit(k, l) {
                 return true;
             }
         }
         false
+    }
+
+    /// A distance of triangles. Returns whether the search is over.
+    fn offer(&mut self, near: [u32; 2], distance: f64) -> bool {
+        let nearer = distance < self.best;
+        if nearer {
+            self.best = distance;
+            self.limit = self.limit.min(distance * self.share);
+            if let Some(hint) = &mut self.hint {
+                hint.near = Some(near);
+            }
+        } else {
+            self.passed = self.passed.min(distance);
+        }
+        self.best <= self.touching || (nearer && self.any)
     }
 }
 

@@ -7,7 +7,7 @@ pub(super) use reference_arm::ReferenceArm;
 
 use super::Arm;
 use crate::obstacles::PlacedReference;
-use mp_collide::reference::RefMesh;
+use mp_collide::reference::{Hint, RefMesh};
 use mp_cspace::{Coordinates, Curve, Interrupt, MotionCheck, MotionValidity, ParameterError, Space};
 use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion, Vector3};
 use reference_arm::{CheckedPair, POSE, Travels, base_travel};
@@ -35,6 +35,9 @@ pub struct ArmVerifier<'c, C> {
     /// The obstacles and their poses.
     world: Arc<[PlacedReference]>,
     pairs: Vec<CheckedPair>,
+    /// For each pair, what the last search left for the next one: of a link and the obstacles, one for each of them. They are forgotten
+    /// with each motion, so that an answer depends on that alone.
+    hints: Vec<Vec<Hint>>,
     tolerance: f64,
     /// The clearance (m) that the arm keeps from obstacles, to which the tolerance is added.
     kept: f64,
@@ -106,7 +109,12 @@ where
             }
         }
         pairs.extend_from_slice(&tree.pairs);
+        let hints = pairs.iter().map(|pair| match pair.other {
+            Some(_) => vec![Hint::default()],
+            None => vec![Hint::default(); world.len()],
+        });
         Ok(Self {
+            hints: hints.collect(),
             space,
             tree,
             world,
@@ -151,25 +159,29 @@ where
         if pair.other.is_none() { self.kept } else { 0.0 }
     }
 
-    /// A lower bound on the distance of a pair that is at least `enough`; else, as an error, the distance of two of their
-    /// triangles that is less.
-    fn distance(&self, pair: &CheckedPair, poses: &[Matrix4<f64>], enough: f64) -> Result<f64, f64> {
-        self.least(pair, poses, enough, |[mesh, other], [pose, at], enough| {
-            mesh.at_least(pose, other, at, enough)
-        })
+    /// A lower bound on the distance of pair `i` that is at least `enough`, if possible at least `wanted`; else, as an error, the distance of
+    /// two of their triangles that is less.
+    fn distance(&mut self, i: usize, poses: &[Matrix4<f64>], [enough, wanted]: [f64; 2]) -> Result<f64, f64> {
+        let mut hints = std::mem::take(&mut self.hints[i]);
+        let found = self.least(&self.pairs[i], poses, enough, |k, [mesh, other], [pose, at], enough| {
+            mesh.at_least_from(pose, other, at, [enough, wanted], &mut hints[k])
+        });
+        self.hints[i] = hints;
+        found
     }
 
     /// A lower bound on the distance of a pair that is at least `enough`, or at least four fifths of the distance; 0 where they touch.
     fn nearly(&self, pair: &CheckedPair, poses: &[Matrix4<f64>], enough: f64) -> f64 {
         let mut least = f64::INFINITY;
-        let nearest = self.least(pair, poses, enough, |[mesh, other], [pose, at], enough| {
+        let nearest = self.least(pair, poses, enough, |_, [mesh, other], [pose, at], enough| {
             least = least.min(mesh.nearly(pose, other, at, enough.min(least)));
             Ok(least)
         });
         nearest.unwrap_or(0.0)
     }
 
-    /// The least of what `bound` says of the link of a pair and each that it must not touch, unless that is surely at least `enough`.
+    /// The least of what `bound` says of the link of a pair and each that it must not touch, by its number, unless that is surely at
+    /// least `enough`.
     ///
     /// # Errors
     /// That of `bound`.
@@ -178,21 +190,22 @@ where
         pair: &CheckedPair,
         poses: &[Matrix4<f64>],
         enough: f64,
-        mut bound: impl FnMut([&RefMesh; 2], [&Isometry3<f64>; 2], f64) -> Result<f64, f64>,
+        mut bound: impl FnMut(usize, [&RefMesh; 2], [&Isometry3<f64>; 2], f64) -> Result<f64, f64>,
     ) -> Result<f64, f64> {
         let Some((mesh, pose)) = self.mesh(pair.link, poses) else { return Ok(f64::INFINITY) };
         if pair.other.is_some() {
             let other = self.others(pair, poses).next();
-            return other.map_or(Ok(f64::INFINITY), |(other, at)| bound([mesh, other], [&pose, &at], enough));
+            return other
+                .map_or(Ok(f64::INFINITY), |(other, at)| bound(0, [mesh, other], [&pose, &at], enough));
         }
         // Most obstacles are far from the ball around a link.
         let (center, radius) = mesh.around();
         let center = pose * center;
         let mut least = f64::INFINITY;
-        for (obstacle, at) in self.world.iter() {
+        for (k, (obstacle, at)) in self.world.iter().enumerate() {
             let far = obstacle.distance_bound(at, &center, radius);
             let far =
-                if far >= enough.min(least) { far } else { bound([mesh, obstacle], [&pose, at], enough)? };
+                if far >= enough.min(least) { far } else { bound(k, [mesh, obstacle], [&pose, at], enough)? };
             least = least.min(far);
         }
         Ok(least)
@@ -231,8 +244,14 @@ where
         moved(pair.link) + pair.other.map_or(0.0, moved)
     }
 
+    /// Forgets what searches have left for the next ones.
+    fn forget(&mut self) {
+        self.hints.iter_mut().flatten().for_each(|hint| *hint = Hint::default());
+    }
+
     /// Proves the motion in parts, longer parts first.
     fn prove(&mut self, from: &C::State, to: &C::State) -> MotionCheck {
+        self.forget();
         let mut least = f64::INFINITY;
         let mut poses = Vec::new();
         let all: Vec<usize> = (0..self.pairs.len()).collect();
@@ -273,31 +292,31 @@ where
         self.tree.poses_into(middle.as_slice(), poses);
         let mut near = Near { pairs: Vec::new(), free: 1.0, clearance: f64::INFINITY };
         for &i in pairs {
-            let pair = &self.pairs[i];
-            let approach = self.approach(pair, travels, poses);
+            let pair = self.pairs[i];
+            let approach = self.approach(&pair, travels, poses);
             if self.interrupt.ask() {
                 return PartCheck::Unproven;
             }
-            let kept = self.kept_from(pair);
+            let kept = self.kept_from(&pair);
             let (enough, needed) = (approach + kept + self.tolerance, kept + 2.0 * self.tolerance);
             let is_of_balls = self.tree.links[pair.link].mesh.as_ref().is_some_and(RefMesh::is_balls);
             let found = match is_of_balls {
                 // A lower bound on the distance.
-                true => self.nearly(pair, poses, enough),
+                true => self.nearly(&pair, poses, enough),
                 // The first distance of two triangles: of meshes a bound takes longer than it saves.
-                false => {
-                    self.distance(pair, poses, enough).unwrap_or_else(|found| found.min(enough.next_down()))
-                }
+                false => self
+                    .distance(i, poses, [enough, *least + approach])
+                    .unwrap_or_else(|found| found.min(enough.next_down())),
             };
             if found >= enough {
                 *least = least.min(found - approach);
                 continue;
             }
             // It need not be the distance.
-            if (found < needed || !is_of_balls) && self.distance(pair, poses, kept).is_err() {
+            if (found < needed || !is_of_balls) && self.distance(i, poses, [kept; 2]).is_err() {
                 return PartCheck::Collision;
             }
-            if found < needed && (!is_of_balls || self.distance(pair, poses, needed).is_err()) {
+            if found < needed && (!is_of_balls || self.distance(i, poses, [needed; 2]).is_err()) {
                 return PartCheck::Unproven;
             }
             let beyond = if is_of_balls { found.max(needed) - kept - self.tolerance } else { 0.0 };
@@ -313,14 +332,14 @@ where
     }
 
     /// Whether any pair touches at `q`.
-    fn touches(&self, q: &C::State) -> bool {
+    fn touches(&mut self, q: &C::State) -> bool {
+        self.forget();
         let mut poses = Vec::new();
         self.tree.poses_into(q.as_slice(), &mut poses);
-        let touching = |pair| {
-            let kept = self.kept_from(pair);
-            self.distance(pair, &poses, kept + self.tolerance).is_err_and(|d| d <= kept)
-        };
-        self.pairs.iter().any(touching)
+        (0..self.pairs.len()).any(|i| {
+            let kept = self.kept_from(&self.pairs[i]);
+            self.distance(i, &poses, [kept + self.tolerance; 2]).is_err_and(|d| d <= kept)
+        })
     }
 }
 

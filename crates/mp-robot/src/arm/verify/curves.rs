@@ -71,6 +71,7 @@ where
 
     /// Proves a curve in parts, the first ones first. What is found at a part ends the search behind it only: the fault is the first one.
     fn prove_curve(&mut self, curve: &dyn Curve) -> MotionCheck {
+        self.forget();
         let pieces = curve.pieces() as f64;
         let (mut least, mut hit, mut near_contact, mut poses) = (f64::INFINITY, None, None, Vec::new());
         let mut open = vec![(0.0, pieces, (0..self.pairs.len()).collect::<Vec<_>>())];
@@ -112,7 +113,7 @@ where
 
     /// Where a curve first touches something between two parameters, at the first of which it is too near to contact to tell and at the second
     /// in contact; `None` where it is clear of everything in between.
-    fn first_contact(&self, curve: &dyn Curve, mut near: f64, mut hit: f64) -> Option<f64> {
+    fn first_contact(&mut self, curve: &dyn Curve, mut near: f64, mut hit: f64) -> Option<f64> {
         while hit - near > FIRST_FAULT {
             let at = 0.5 * (near + hit);
             let (q, _) = self.around(curve, at, at);
@@ -153,10 +154,12 @@ where
     }
 
     /// Whether any pair is too near to contact to tell at `q`.
-    fn is_near(&self, q: &C::State) -> bool {
+    fn is_near(&mut self, q: &C::State) -> bool {
         let mut poses = Vec::new();
         self.tree.poses_into(q.as_slice(), &mut poses);
-        let near = |pair| self.distance(pair, &poses, self.kept_from(pair) + 2.0 * self.tolerance).is_err();
-        self.pairs.iter().any(near)
+        (0..self.pairs.len()).any(|i| {
+            let needed = self.kept_from(&self.pairs[i]) + 2.0 * self.tolerance;
+            self.distance(i, &poses, [needed; 2]).is_err()
+        })
     }
 }
