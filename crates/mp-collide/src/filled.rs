@@ -95,7 +95,7 @@ impl CollisionMesh {
         !self.solids.is_empty()
     }
 
-    /// The connected components; computed on first use.
+    /// The connected components; computed on first use, where building has not found that there are few.
     fn parts(&self) -> &Parts {
         self.parts.get_or_init(|| {
             if let Some(cloud) = &self.cloud {
@@ -109,7 +109,7 @@ impl CollisionMesh {
     }
 }
 
-/// A corner of each connected component of a mesh. Where surfaces are apart, a component is inside if its corner is.
+/// At least one corner of each connected component of a mesh. Where surfaces are apart, a component is inside if its corner is.
 #[derive(Clone, Debug)]
 pub(crate) struct Parts {
     corners: Vec<Point3<f64>>,
@@ -121,7 +121,7 @@ pub(crate) struct Parts {
 const FEW: usize = 8;
 
 impl Parts {
-    fn new(corners: Vec<Point3<f64>>) -> Self {
+    pub(crate) fn new(corners: Vec<Point3<f64>>) -> Self {
         let mut near = BroadPhase::default();
         if corners.len() > FEW {
             for (i, p) in corners.iter().enumerate() {

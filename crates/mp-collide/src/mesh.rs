@@ -62,6 +62,9 @@ impl CollisionMesh {
             let copied: Vec<Triangle> = (0..count).map(|i| mesh.triangle(i)).collect();
             Self::with_tree(count, &|i| copied[i], go_on)?
         };
+        if let Some(corners) = mesh.vertices_of_few_parts() {
+            made.parts.get_or_init(|| Parts::new(corners));
+        }
         Ok(Self { solids: mesh.solids().into(), ..made })
     }
 

@@ -8,6 +8,9 @@ use std::ops::Range;
 use std::sync::Arc;
 use thiserror::Error;
 
+/// So many parts of a mesh are few.
+const FEW: usize = 32;
+
 /// Why a mesh is no solid.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
@@ -142,7 +145,19 @@ impl TriMesh {
     /// place are connected.
     #[must_use]
     pub fn component_vertices(&self) -> Vec<Point3<f64>> {
-        let names = self.names();
+        self.first_of_components(&self.names())
+    }
+
+    /// A vertex of each part of the mesh whose triangles are connected by shared vertices, where there are few such parts; places are not
+    /// compared. So each [component](Self::component_vertices) has at least one. O(n).
+    #[must_use]
+    pub fn vertices_of_few_parts(&self) -> Option<Vec<Point3<f64>>> {
+        let by_number: Vec<u32> = (0..self.vertices.len() as u32).collect();
+        Some(self.first_of_components(&by_number)).filter(|found| found.len() <= FEW)
+    }
+
+    /// A vertex of each connected component, where vertices of one name are in one place.
+    fn first_of_components(&self, names: &[u32]) -> Vec<Point3<f64>> {
         let mut above: Vec<u32> = (0..names.len() as u32).collect();
         let root = |above: &mut Vec<u32>, v: u32| {
             let mut i = names[v as usize];
@@ -260,6 +275,9 @@ mod tests {
         let soup: Vec<_> = (0..merged.triangles().len()).map(|i| merged.triangle(i)).collect();
         let indices = (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let unwelded = TriMesh::new(soup.concat(), indices).unwrap();
+        let of_all = meshes.each_ref().map(|mesh| mesh.triangle(0)[0]);
+        assert_eq!(merged.vertices_of_few_parts().unwrap(), of_all, "those that touch too");
+        assert_eq!(unwelded.vertices_of_few_parts(), None);
         for mesh in [&merged, &unwelded] {
             let firsts = [0, 1, 3].map(|i: usize| meshes[i].triangle(0)[0]);
             assert_eq!(mesh.component_vertices(), firsts);

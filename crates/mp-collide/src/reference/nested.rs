@@ -34,7 +34,8 @@ impl RefMesh {
         }
         let pose = pose_ws.inverse() * pose_wo;
         let vertices = other.components.get_or_init(|| {
-            let mut vertices = other.mesh.component_vertices();
+            let few = other.mesh.vertices_of_few_parts();
+            let mut vertices = few.unwrap_or_else(|| other.mesh.component_vertices());
             vertices.sort_by(|p, q| p.x.total_cmp(&q.x));
             vertices
         });
