@@ -173,13 +173,16 @@ pub struct PlacedCover {
     are_placed: u32,
     pose: Isometry3<f64>,
     turn: Matrix3<f64>,
+    /// Bodies that are near: scratch memory.
+    pub(crate) near: Vec<u32>,
 }
 
 impl Default for PlacedCover {
     fn default() -> Self {
         let around = Sphere { center: Point3::origin(), radius: f64::NAN };
         let (pose, turn) = (Isometry3::identity(), Matrix3::identity());
-        Self { around, groups: Vec::new(), balls: Vec::new(), are_placed: 0, pose, turn }
+        let (groups, balls, near) = (Vec::new(), Vec::new(), Vec::new());
+        Self { around, groups, balls, are_placed: 0, pose, turn, near }
     }
 }
 

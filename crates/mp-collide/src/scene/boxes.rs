@@ -13,30 +13,26 @@ impl Scene {
     /// around bodies: by the ball around the mesh, else by the smaller balls. Infinite without bodies; `None` where balls leave it undecided.
     pub fn apart(&self, cover: &Cover, placed: &mut PlacedCover, enough: f64) -> Option<f64> {
         let ball = placed.around;
-        let rounding = |size: f64| ROUNDING * (size + ball.center.coords.amax() + ball.radius);
-        let least = Cell::new(f64::INFINITY);
-        // Comparisons are written so that NaN is undecided.
-        let enter = |bounds: &Aabb| {
-            let size = bounds.min.coords.amax().max(bounds.max.coords.amax());
-            let bound = bounds.distance(&ball.center) - ball.radius - rounding(size);
-            let is_far = bound >= enough;
-            if is_far {
-                least.set(least.get().min(bound));
-            }
-            !is_far
-        };
-        let mut undecided = |index: u32| {
-            let around = &self.bodies[index as usize].as_ref()?.around;
-            let rounding = rounding(around.size());
-            match placed.apart_from(cover, enough + rounding, |ball| around.gap(ball)) {
-                Some(bound) => least.set(least.get().min(bound - rounding)),
-                None => return Some(()),
-            }
-            None
-        };
-        let both =
-            self.fixed.find(enter, &mut undecided).or_else(|| self.movable.find(enter, &mut undecided));
-        both.is_none().then(|| least.get())
+        let own = ball.center.coords.amax() + ball.radius;
+        let center = <[f64; 3]>::from(ball.center);
+        let mut near = std::mem::take(&mut placed.near);
+        near.clear();
+        let far = on_widest(NearBodies {
+            scene: self,
+            low: center,
+            high: center,
+            radius: ball.radius + ROUNDING * own,
+            most: enough,
+            near: &mut near,
+        });
+        let mut bodies = near.iter().filter_map(|index| self.bodies[*index as usize].as_ref());
+        let least = bodies.try_fold(far, |least: f64, body| {
+            let rounding = ROUNDING * (body.around.size() + own);
+            let apart = placed.apart_from(cover, enough + rounding, |ball| body.around.gap(ball))?;
+            Some(least.min(apart - rounding))
+        });
+        placed.near = near;
+        least
     }
 
     /// Lower bounds (m) on the distance of a mesh at eight places from all bodies: by the balls around it against what is around bodies,
@@ -82,15 +78,41 @@ impl Scene {
     fn near_places<L: Lanes>(&self, placed: &mut WideCover, most: f64) -> (Vec<u32>, f64) {
         let mut near = std::mem::take(&mut placed.near);
         near.clear();
-        let [x, y, z] = placed.center();
-        let (x, y, z) = (x.range(), y.range(), z.range());
-        let (low, high) = ([x[0], y[0], z[0]], [x[1], y[1], z[1]]);
-        let radius = placed.radius() + ROUNDING * placed.size;
+        let [x, y, z] = placed.center().map(|x| x.range());
+        let least = NearBodies {
+            scene: self,
+            low: [x[0], y[0], z[0]],
+            high: [x[1], y[1], z[1]],
+            radius: placed.radius() + ROUNDING * placed.size,
+            most,
+            near: &mut near,
+        };
+        let least = least.run::<L>();
+        (near, least)
+    }
+}
+
+/// Finds the bodies that may be nearer than `most` (m) to a ball of a radius with its center in a box. The output is a lower bound on the
+/// distance of the others.
+struct NearBodies<'a> {
+    scene: &'a Scene,
+    low: [f64; 3],
+    high: [f64; 3],
+    radius: f64,
+    most: f64,
+    near: &'a mut Vec<u32>,
+}
+
+impl WideKernel for NearBodies<'_> {
+    type Output = f64;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> f64 {
+        let Self { scene, low, high, radius, most, near } = self;
         let mut least = f64::INFINITY;
-        for broad in [&self.fixed, &self.movable] {
+        for broad in [&scene.fixed, &scene.movable] {
             let Some(list) = broad.few() else {
                 let own = Aabb { min: low.into(), max: high.into() };
-                least = least.min(near_of_many(broad, &own, [radius, most], &mut near));
+                least = least.min(near_of_many(broad, &own, [radius, most], near));
                 continue;
             };
             for eight in list {
@@ -108,7 +130,7 @@ impl Scene {
                 }
             }
         }
-        (near, least)
+        least
     }
 }
 
