@@ -27,6 +27,8 @@ pub(crate) fn agree<C: Space<State = Configuration> + TrueMetric>(
         let a = space.sample_uniform(&mut rng);
         let b = space.interpolate(&a, &space.sample_uniform(&mut rng), [1.0, 0.3, 0.05][i % 3]);
         let verified = verifier.check_motion(&a, &b);
+        // Nothing of the motions before is left.
+        assert_eq!(ArmVerifier::new(space, arm).unwrap().check_motion(&a, &b), verified);
         let accepted = certified.check_motion(&a, &b).is_free();
         assert!(
             verified.is_free() || !accepted,
