@@ -9,8 +9,8 @@ use super::Arm;
 use crate::obstacles::PlacedReference;
 use mp_collide::reference::{Hint, RefMesh};
 use mp_cspace::{Coordinates, Curve, Interrupt, MotionCheck, MotionValidity, ParameterError, Space};
-use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion, Vector3};
-use reference_arm::{CheckedPair, POSE, Travels, base_travel};
+use nalgebra::Isometry3;
+use reference_arm::{CheckedPair, POSE, Placement, Travels, base_travel};
 use std::collections::VecDeque;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -32,7 +32,7 @@ use std::sync::Arc;
 pub struct ArmVerifier<'c, C> {
     space: &'c C,
     tree: Arc<ReferenceArm>,
-    /// The obstacles and their poses.
+    /// The obstacles and their placed.
     world: Arc<[PlacedReference]>,
     pairs: Vec<CheckedPair>,
     /// For each pair, what the last search left for the next one: of a link and the obstacles, one for each of them. They are forgotten
@@ -161,9 +161,9 @@ where
 
     /// A lower bound on the distance of pair `i` that is at least `enough`, if possible at least `wanted`; else, as an error, the distance of
     /// two of their triangles that is less.
-    fn distance(&mut self, i: usize, poses: &[Matrix4<f64>], [enough, wanted]: [f64; 2]) -> Result<f64, f64> {
+    fn distance(&mut self, i: usize, placed: &Placement, [enough, wanted]: [f64; 2]) -> Result<f64, f64> {
         let mut hints = std::mem::take(&mut self.hints[i]);
-        let found = self.least(&self.pairs[i], poses, enough, |k, [mesh, other], [pose, at], enough| {
+        let found = self.least(&self.pairs[i], placed, enough, |k, [mesh, other], [pose, at], enough| {
             mesh.at_least_from(pose, other, at, [enough, wanted], &mut hints[k])
         });
         self.hints[i] = hints;
@@ -171,9 +171,9 @@ where
     }
 
     /// A lower bound on the distance of a pair that is at least `enough`, or at least four fifths of the distance; 0 where they touch.
-    fn nearly(&self, pair: &CheckedPair, poses: &[Matrix4<f64>], enough: f64) -> f64 {
+    fn nearly(&self, pair: &CheckedPair, placed: &Placement, enough: f64) -> f64 {
         let mut least = f64::INFINITY;
-        let nearest = self.least(pair, poses, enough, |_, [mesh, other], [pose, at], enough| {
+        let nearest = self.least(pair, placed, enough, |_, [mesh, other], [pose, at], enough| {
             least = least.min(mesh.nearly(pose, other, at, enough.min(least)));
             Ok(least)
         });
@@ -188,13 +188,13 @@ where
     fn least(
         &self,
         pair: &CheckedPair,
-        poses: &[Matrix4<f64>],
+        placed: &Placement,
         enough: f64,
         mut bound: impl FnMut(usize, [&RefMesh; 2], [&Isometry3<f64>; 2], f64) -> Result<f64, f64>,
     ) -> Result<f64, f64> {
-        let Some((mesh, pose)) = self.mesh(pair.link, poses) else { return Ok(f64::INFINITY) };
+        let Some((mesh, pose)) = self.mesh(pair.link, placed) else { return Ok(f64::INFINITY) };
         if pair.other.is_some() {
-            let other = self.others(pair, poses).next();
+            let other = self.others(pair, placed).next();
             return other
                 .map_or(Ok(f64::INFINITY), |(other, at)| bound(0, [mesh, other], [&pose, &at], enough));
         }
@@ -212,35 +212,35 @@ where
     }
 
     /// The mesh of a link, and where it is; `None` when it has none.
-    fn mesh(&self, link: usize, poses: &[Matrix4<f64>]) -> Option<(&RefMesh, Isometry3<f64>)> {
-        Some((self.tree.links[link].mesh.as_ref()?, isometry(&poses[link])))
+    fn mesh(&self, link: usize, placed: &Placement) -> Option<(&RefMesh, Isometry3<f64>)> {
+        Some((self.tree.links[link].mesh.as_ref()?, placed.frames[link]))
     }
 
     /// What the link of a pair must not touch, where it is: another link, or all obstacles.
     fn others<'a>(
         &'a self,
         pair: &CheckedPair,
-        poses: &[Matrix4<f64>],
+        placed: &Placement,
     ) -> impl Iterator<Item = (&'a RefMesh, Isometry3<f64>)> {
         let world = if pair.other.is_none() { &*self.world } else { &[] };
-        let link = pair.other.and_then(|other| self.mesh(other, poses));
+        let link = pair.other.and_then(|other| self.mesh(other, placed));
         link.into_iter().chain(world.iter().map(|(mesh, pose)| (mesh, *pose)))
     }
 
     /// Whether of any pair one is inside of the other, which is solid, where their surfaces are apart.
     fn is_nested(&self, q: &C::State) -> bool {
-        let mut poses = Vec::new();
-        self.tree.poses_into(q.as_slice(), &mut poses);
+        let mut placed = Placement::default();
+        self.tree.place(q.as_slice(), &mut placed);
         self.pairs.iter().any(|pair| {
-            self.mesh(pair.link, &poses).is_some_and(|(mesh, pose)| {
-                self.others(pair, &poses).any(|(other, at)| mesh.is_nested(&pose, other, &at))
+            self.mesh(pair.link, &placed).is_some_and(|(mesh, pose)| {
+                self.others(pair, &placed).any(|(other, at)| mesh.is_nested(&pose, other, &at))
             })
         })
     }
 
     /// How much nearer to each other the two of a pair can come.
-    fn approach(&self, pair: &CheckedPair, travels: &Travels, poses: &[Matrix4<f64>]) -> f64 {
-        let moved = |link| self.tree.travel(link, pair.meet, travels, poses);
+    fn approach(&self, pair: &CheckedPair, travels: &Travels, placed: &Placement) -> f64 {
+        let moved = |link| self.tree.travel(link, pair.meet, travels, placed);
         moved(pair.link) + pair.other.map_or(0.0, moved)
     }
 
@@ -253,7 +253,7 @@ where
     fn prove(&mut self, from: &C::State, to: &C::State) -> MotionCheck {
         self.forget();
         let mut least = f64::INFINITY;
-        let mut poses = Vec::new();
+        let mut placed = Placement::default();
         let all: Vec<usize> = (0..self.pairs.len()).collect();
         let mut open = VecDeque::from([(0.0, 1.0, all)]);
         let limit = self.parts + MAX_PARTS;
@@ -265,7 +265,7 @@ where
             }
             let [qa, qm, qb] = [a, at, b].map(|t| self.space.interpolate(from, to, t));
             let (before, after) = (self.travels(&qa, &qm), self.travels(&qm, &qb));
-            let near = match self.part(&qm, &before.max(&after), &pairs, &mut poses, &mut least) {
+            let near = match self.part(&qm, &before.max(&after), &pairs, &mut placed, &mut least) {
                 PartCheck::Apart => continue,
                 PartCheck::Near(near) => near,
                 PartCheck::Collision => return MotionCheck::Collision { at },
@@ -286,14 +286,14 @@ where
         middle: &C::State,
         travels: &Travels,
         pairs: &[usize],
-        poses: &mut Vec<Matrix4<f64>>,
+        placed: &mut Placement,
         least: &mut f64,
     ) -> PartCheck {
-        self.tree.poses_into(middle.as_slice(), poses);
+        self.tree.place(middle.as_slice(), placed);
         let mut near = Near { pairs: Vec::new(), free: 1.0, clearance: f64::INFINITY };
         for &i in pairs {
             let pair = self.pairs[i];
-            let approach = self.approach(&pair, travels, poses);
+            let approach = self.approach(&pair, travels, placed);
             if self.interrupt.ask() {
                 return PartCheck::Unproven;
             }
@@ -302,10 +302,10 @@ where
             let is_of_balls = self.tree.links[pair.link].mesh.as_ref().is_some_and(RefMesh::is_balls);
             let found = match is_of_balls {
                 // A lower bound on the distance.
-                true => self.nearly(&pair, poses, enough),
+                true => self.nearly(&pair, placed, enough),
                 // The first distance of two triangles: of meshes a bound takes longer than it saves.
                 false => self
-                    .distance(i, poses, [enough, *least + approach])
+                    .distance(i, placed, [enough, *least + approach])
                     .unwrap_or_else(|found| found.min(enough.next_down())),
             };
             if found >= enough {
@@ -313,10 +313,10 @@ where
                 continue;
             }
             // It need not be the distance.
-            if (found < needed || !is_of_balls) && self.distance(i, poses, [kept; 2]).is_err() {
+            if (found < needed || !is_of_balls) && self.distance(i, placed, [kept; 2]).is_err() {
                 return PartCheck::Collision;
             }
-            if found < needed && (!is_of_balls || self.distance(i, poses, [needed; 2]).is_err()) {
+            if found < needed && (!is_of_balls || self.distance(i, placed, [needed; 2]).is_err()) {
                 return PartCheck::Unproven;
             }
             let beyond = if is_of_balls { found.max(needed) - kept - self.tolerance } else { 0.0 };
@@ -334,19 +334,13 @@ where
     /// Whether any pair touches at `q`.
     fn touches(&mut self, q: &C::State) -> bool {
         self.forget();
-        let mut poses = Vec::new();
-        self.tree.poses_into(q.as_slice(), &mut poses);
+        let mut placed = Placement::default();
+        self.tree.place(q.as_slice(), &mut placed);
         (0..self.pairs.len()).any(|i| {
             let kept = self.kept_from(&self.pairs[i]);
-            self.distance(i, &poses, [kept + self.tolerance; 2]).is_err_and(|d| d <= kept)
+            self.distance(i, &placed, [kept + self.tolerance; 2]).is_err_and(|d| d <= kept)
         })
     }
-}
-
-fn isometry(m: &Matrix4<f64>) -> Isometry3<f64> {
-    let turn = Rotation3::from_matrix_unchecked(m.fixed_view::<3, 3>(0, 0).into_owned());
-    let place: Vector3<f64> = m.fixed_view::<3, 1>(0, 3).into_owned();
-    Isometry3::from_parts(Translation3::from(place), UnitQuaternion::from_rotation_matrix(&turn))
 }
 
 impl<C> MotionValidity<C::State> for ArmVerifier<'_, C>

@@ -1,6 +1,6 @@
 //! Curves of arms.
 
-use super::reference_arm::Travels;
+use super::reference_arm::{Placement, Travels};
 use super::{ArmVerifier, MAX_PARTS, MAX_TRAVEL, PartCheck};
 use mp_cspace::{Coordinates, Curve, MotionCheck, Space};
 
@@ -73,7 +73,8 @@ where
     fn prove_curve(&mut self, curve: &dyn Curve) -> MotionCheck {
         self.forget();
         let pieces = curve.pieces() as f64;
-        let (mut least, mut hit, mut near_contact, mut poses) = (f64::INFINITY, None, None, Vec::new());
+        let (mut least, mut hit, mut near_contact, mut placed) =
+            (f64::INFINITY, None, None, Placement::default());
         let mut open = vec![(0.0, pieces, (0..self.pairs.len()).collect::<Vec<_>>())];
         let limit = self.parts + MAX_PARTS;
         while let Some((a, b, pairs)) = open.pop() {
@@ -83,7 +84,7 @@ where
                 return MotionCheck::Unproven { at: at / pieces };
             }
             let (middle, travels) = self.around(curve, a, b);
-            match self.part(&middle, &travels, &pairs, &mut poses, &mut least) {
+            match self.part(&middle, &travels, &pairs, &mut placed, &mut least) {
                 PartCheck::Apart => continue,
                 PartCheck::Near(near) => {
                     open.push((at, b, near.pairs.clone()));
@@ -155,11 +156,11 @@ where
 
     /// Whether any pair is too near to contact to tell at `q`.
     fn is_near(&mut self, q: &C::State) -> bool {
-        let mut poses = Vec::new();
-        self.tree.poses_into(q.as_slice(), &mut poses);
+        let mut placed = Placement::default();
+        self.tree.place(q.as_slice(), &mut placed);
         (0..self.pairs.len()).any(|i| {
             let needed = self.kept_from(&self.pairs[i]) + 2.0 * self.tolerance;
-            self.distance(i, &poses, [needed; 2]).is_err()
+            self.distance(i, &placed, [needed; 2]).is_err()
         })
     }
 }

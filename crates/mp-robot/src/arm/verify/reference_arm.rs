@@ -3,7 +3,7 @@
 use crate::arm::{ArmModel, JointKind, Link};
 use mp_collide::reference::RefMesh;
 use mp_geom::TriMesh;
-use nalgebra::{Matrix3, Matrix4, Vector3};
+use nalgebra::{Isometry3, Matrix3, Matrix4, Rotation3, Translation3, UnitQuaternion, Vector3};
 use std::collections::HashMap;
 
 /// The links and joints of an arm, built from its model a second time, by their names.
@@ -140,8 +140,9 @@ impl ReferenceArm {
         Some(a)
     }
 
-    /// The poses of the links in the world, as homogeneous matrices.
-    pub(super) fn poses_into(&self, q: &[f64], out: &mut Vec<Matrix4<f64>>) {
+    /// Places the links.
+    pub(super) fn place(&self, q: &[f64], placed: &mut Placement) {
+        let Placement { matrices: out, frames } = placed;
         out.clear();
         let (pose, q) = q.split_at(self.pose);
         let base = if self.pose == 0 { self.base } else { base_matrix(pose) };
@@ -164,22 +165,28 @@ impl ReferenceArm {
             }
             out.push(still * motion);
         }
+        frames.clear();
+        // Only links with meshes are asked for.
+        let frame = |(link, matrix): (&ReferenceLink, _)| {
+            link.mesh.as_ref().map_or_else(Isometry3::identity, |_| isometry(matrix))
+        };
+        frames.extend(self.links.iter().zip(&*out).map(frame));
     }
 
     /// An upper bound (m) on how far the joints below the link `stop` move a point of `link` relative to `stop` (all joints
-    /// when it is `None`), while every coordinate goes as far as `travels` says and the links start at `poses`.
+    /// when it is `None`), while every coordinate goes as far as `travels` says and the links start where they are `placed`.
     ///
     /// A joint that turns by w moves a point no farther than w times its distance from the origin of the joint.
-    /// That distance is at most the one at `poses` plus how far the joints nearer to the link have moved the point. A base
+    /// That distance is at most the one where they are placed plus how far the joints nearer to the link have moved the point. A base
     /// that floats is one more such joint above the root, for pairs that do not `stop` below it.
     pub(super) fn travel(
         &self,
         link: usize,
         stop: Option<usize>,
         travels: &Travels,
-        poses: &[Matrix4<f64>],
+        placed: &Placement,
     ) -> f64 {
-        let origin = |i: usize| Vector3::from(poses[i].fixed_view::<3, 1>(0, 3));
+        let origin = |i: usize| Vector3::from(placed.matrices[i].fixed_view::<3, 1>(0, 3));
         let Travels { joints: travels, base } = travels;
         let tip = origin(link);
         let mut moved = 0.0;
@@ -198,7 +205,9 @@ impl ReferenceArm {
             }
             at = part.parent;
         }
-        if let (None, Some([slide, turn]), Some(root)) = (stop, base, self.above(link).last()) {
+        if let (None, Some([slide, turn])) = (stop, base)
+            && let Some(root) = self.above(link).last()
+        {
             let now = (tip - origin(*root)).norm() + self.links[link].radius;
             moved += turn * (now + moved) + slide;
         }
@@ -216,6 +225,21 @@ impl ReferenceArm {
         let moves = |link: &ReferenceLink| link.motion != JointMotion::Fixed && link.value.1 != 0.0;
         self.above(link).into_iter().any(|i| moves(&self.links[i]))
     }
+}
+
+/// Where the links are in the world.
+#[derive(Debug, Default)]
+pub(super) struct Placement {
+    /// As homogeneous matrices.
+    matrices: Vec<Matrix4<f64>>,
+    /// The same for links with meshes.
+    pub(super) frames: Vec<Isometry3<f64>>,
+}
+
+fn isometry(m: &Matrix4<f64>) -> Isometry3<f64> {
+    let turn = Rotation3::from_matrix_unchecked(m.fixed_view::<3, 3>(0, 0).into_owned());
+    let place: Vector3<f64> = m.fixed_view::<3, 1>(0, 3).into_owned();
+    Isometry3::from_parts(Translation3::from(place), UnitQuaternion::from_rotation_matrix(&turn))
 }
 
 /// How far each coordinate goes over a part of a motion (rad or m), and how far (m) and by which angle (rad) a base that
