@@ -9,8 +9,8 @@ pub(super) const MOST_CORNERS: usize = 2000;
 const MOST_AXES: usize = 16;
 
 /// A lower bound on the distance of the convex hulls of `a` and of `b` at `pose_ab`, not negative, and so on that of all
-/// that is inside of them. It may be far below; it is near the distance when that is at least `enough`, and the search ends
-/// as soon as it is known to be less.
+/// that is inside of them. It may be far below; it is at least `enough`, or near the distance, when that is at least `least`, and the
+/// search ends as soon as it is known to be less than that.
 ///
 /// Any axis bounds the distance, by the gap between the two sets along it. Which axes to try, the algorithm of Gilbert,
 /// Johnson and Keerthi (1988) says: from the origin to the nearest point of a simplex of differences of corners. `best` becomes the axis with
@@ -19,7 +19,7 @@ pub(super) fn separation(
     a: &[Point3<f64>],
     b: &[Point3<f64>],
     pose_ab: &IsometryMatrix3<f64>,
-    enough: f64,
+    [least, enough]: [f64; 2],
     best: &mut Option<Vector3<f64>>,
 ) -> f64 {
     let (Some(first_a), Some(first_b)) = (a.first(), b.first()) else { return 0.0 };
@@ -30,7 +30,7 @@ pub(super) fn separation(
         let Some(nearest) = reduce(&mut simplex) else { break };
         let length = nearest.norm();
         // The hulls are no farther apart than this.
-        if length < enough.max(f64::MIN_POSITIVE) {
+        if length < least.max(f64::MIN_POSITIVE) {
             break;
         }
         let axis = nearest / length;
@@ -177,7 +177,8 @@ mod tests {
                 let pose = Isometry3::new(at, Vector3::new(turn, -0.4 * turn, 0.8 * turn));
                 let (mesh_a, mesh_b) = (RefMesh::new(a), RefMesh::new(b));
                 let distance = mesh_a.clearance(&Isometry3::identity(), &mesh_b, &pose, f64::INFINITY);
-                let bound = |enough| separation(&corners(a), &corners(b), &matrix(&pose), enough, &mut None);
+                let bound =
+                    |enough| separation(&corners(a), &corners(b), &matrix(&pose), [enough; 2], &mut None);
                 let apart_at_all = bound(1e-9) > 0.0;
                 // Inside of each other they are apart as surfaces, and not as solids.
                 if apart_at_all {
@@ -203,13 +204,13 @@ mod tests {
         let ring = primitives::torus(1.0, 0.2, 24, 12).unwrap();
         let ball = primitives::sphere(0.3, 1).unwrap();
         let here = IsometryMatrix3::identity();
-        assert_eq!(separation(&corners(&ring), &corners(&ball), &here, 0.1, &mut None), 0.0);
-        assert_eq!(separation(&[], &corners(&ball), &here, 0.1, &mut None), 0.0);
+        assert_eq!(separation(&corners(&ring), &corners(&ball), &here, [0.1; 2], &mut None), 0.0);
+        assert_eq!(separation(&[], &corners(&ball), &here, [0.1; 2], &mut None), 0.0);
         // Flat sets: all in one plane, and one point.
         let plane = [Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)];
         let above = [Point3::new(0.2, 0.2, 0.5)];
-        let height = separation(&plane, &above, &here, 0.499_999, &mut None);
+        let height = separation(&plane, &above, &here, [0.499_999; 2], &mut None);
         assert!((height - 0.5).abs() < 1e-12, "{height}");
-        assert_eq!(separation(&plane, &plane, &here, 0.1, &mut None), 0.0);
+        assert_eq!(separation(&plane, &plane, &here, [0.1; 2], &mut None), 0.0);
     }
 }

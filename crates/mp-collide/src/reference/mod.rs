@@ -398,7 +398,7 @@ impl Search<'_> {
             if bound >= self.best {
                 return bound;
             }
-            let bound = self.by_axis(self.best);
+            let bound = self.by_axis(self.best, self.best);
             if bound >= self.best {
                 return bound;
             }
@@ -412,11 +412,13 @@ impl Search<'_> {
         if self.best <= self.touching { 0.0 } else { self.limit }
     }
 
-    /// A lower bound on the distance by an axis between the corners, as good as it gets below `enough`; at most 0 where there is no such axis.
-    fn by_axis(&mut self, enough: f64) -> f64 {
+    /// A lower bound on the distance by an axis between the corners, as good as it gets below `enough` where the distance is at least
+    /// `least`; at most 0 where there is no such axis.
+    fn by_axis(&mut self, least: f64, enough: f64) -> f64 {
         let mut apart = self.hint.and_then(|hint| hint.apart);
         let (a, b) = (&self.a.corners, &self.b.corners);
-        let bound = axis::separation(a, b, &self.pose_ab, enough + self.touching, &mut apart) - self.touching;
+        let limits = [least, enough].map(|x| x + self.touching);
+        let bound = axis::separation(a, b, &self.pose_ab, limits, &mut apart) - self.touching;
         if let Some(hint) = &mut self.hint {
             hint.apart = apart;
         }

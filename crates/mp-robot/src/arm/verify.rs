@@ -32,7 +32,7 @@ use std::sync::Arc;
 pub struct ArmVerifier<'c, C> {
     space: &'c C,
     tree: Arc<ReferenceArm>,
-    /// The obstacles and their placed.
+    /// The obstacles and their poses.
     world: Arc<[PlacedReference]>,
     pairs: Vec<CheckedPair>,
     /// For each pair, what the last search left for the next one: of a link and the obstacles, one for each of them. They are forgotten
