@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// So many parts of a mesh are few.
+/// At most this many parts of a mesh count as few.
 const FEW: usize = 32;
 
 /// Why a mesh is no solid.
@@ -156,7 +156,7 @@ impl TriMesh {
         Some(self.first_of_components(&by_number)).filter(|found| found.len() <= FEW)
     }
 
-    /// A vertex of each connected component, where vertices of one name are in one place.
+    /// A vertex of each connected component, where vertices of the same name count as one.
     fn first_of_components(&self, names: &[u32]) -> Vec<Point3<f64>> {
         let mut above: Vec<u32> = (0..names.len() as u32).collect();
         let root = |above: &mut Vec<u32>, v: u32| {

@@ -84,11 +84,11 @@ fn end(
     pose_ab: &IsometryMatrix3<f64>,
     axis: Vector3<f64>,
 ) -> Vector3<f64> {
-    let lowest = |points: &[Point3<f64>], axis: Vector3<f64>| {
+    let first_lowest = |points: &[Point3<f64>], axis: Vector3<f64>| {
         let along = points.iter().map(|p| p.coords.dot(&axis));
         along.enumerate().fold((0, f64::INFINITY), |least, x| if x.1 < least.1 { x } else { least }).0
     };
-    a[lowest(a, pose_ab.rotation * axis)] - pose_ab * b[lowest(b, -axis)]
+    a[first_lowest(a, pose_ab.rotation * axis)] - pose_ab * b[first_lowest(b, -axis)]
 }
 
 /// The point of a simplex of up to four corners nearest to the origin, `None` when the origin is inside. Keeps the corners

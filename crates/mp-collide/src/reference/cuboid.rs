@@ -1,6 +1,6 @@
 //! Meshes that are boxes along the axes of their frame: the distance of a point from all of their triangles is a formula.
 
-use super::{Content, Node, RefMesh, Search, Triangle};
+use super::{Ball, Content, Node, RefMesh, Search, Triangle};
 use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
 
@@ -75,69 +75,59 @@ pub(super) enum Beside {
     Apart(f64),
 }
 
-/// Which of two meshes is a box, as a whole.
-enum Boxed<'a> {
-    First(&'a Cuboid),
-    Second(&'a Cuboid),
+/// A ball of one mesh beside all of a box.
+struct BesideBox<'a> {
+    cuboid: &'a Cuboid,
+    /// Whether the box is the second mesh.
+    is_second: bool,
+    ball: &'a Ball,
 }
 
 impl Search<'_> {
-    /// Whether one of two balls is that around all of a box. Of two, the second counts.
-    fn boxed(&self, i: Node, j: Node) -> Option<Boxed<'_>> {
+    /// A ball beside a whole box, if one of two balls is around all of a box. Of two boxes the second counts.
+    #[inline]
+    fn boxed<'a>(&'a self, i: Node, j: Node, made: &'a mut Option<Ball>) -> Option<BesideBox<'a>> {
         match (&self.a.cuboid, &self.b.cuboid) {
-            (_, Some(cuboid)) if j == self.b.root => Some(Boxed::Second(cuboid)),
-            (Some(cuboid), _) if i == self.a.root => Some(Boxed::First(cuboid)),
+            (_, Some(cuboid)) if j == self.b.root => {
+                Some(BesideBox { cuboid, is_second: true, ball: self.a.ball(i, made) })
+            }
+            (Some(cuboid), _) if i == self.a.root => {
+                Some(BesideBox { cuboid, is_second: false, ball: self.b.ball(j, made) })
+            }
             _ => None,
         }
+    }
+
+    /// A point of the one mesh in the frame of the other one, which is the box.
+    #[inline]
+    fn to_box(&self, p: &Point3<f64>, is_second: bool) -> Point3<f64> {
+        if is_second { self.pose_ab.inverse_transform_point(p) } else { self.pose_ab * p }
     }
 
     /// A lower bound on the distance of the triangles of a ball from a box; `None` where there is no whole box.
     #[inline]
     pub(super) fn bound_by_box(&self, i: Node, j: Node) -> Option<f64> {
         let mut made = None;
-        let distance = match self.boxed(i, j)? {
-            Boxed::Second(cuboid) => {
-                let ball = self.a.ball(i, &mut made);
-                cuboid.distance(&self.pose_ab.inverse_transform_point(&ball.center)) - ball.radius
-            }
-            Boxed::First(cuboid) => {
-                let ball = self.b.ball(j, &mut made);
-                cuboid.distance(&(self.pose_ab * ball.center)) - ball.radius
-            }
-        };
-        Some(distance - self.touching)
+        let BesideBox { cuboid, is_second, ball } = self.boxed(i, j, &mut made)?;
+        Some(cuboid.distance(&self.to_box(&ball.center, is_second)) - ball.radius - self.touching)
     }
 
     /// Where a ball is to be taken apart, and not the box beside it: its parts, each with the box.
     #[inline]
     pub(super) fn split_beside_box(&self, i: Node, j: Node) -> Option<[(Node, Node); 2]> {
         let mut made = None;
-        match self.boxed(i, j)? {
-            Boxed::Second(_) => match self.a.ball(i, &mut made).content {
-                Content::Parts(parts) => Some(parts.map(|part| (part, j))),
-                Content::Triangle(_) => None,
-            },
-            Boxed::First(_) => match self.b.ball(j, &mut made).content {
-                Content::Parts(parts) => Some(parts.map(|part| (i, part))),
-                Content::Triangle(_) => None,
-            },
-        }
+        let BesideBox { is_second, ball, .. } = self.boxed(i, j, &mut made)?;
+        let Content::Parts(parts) = ball.content else { return None };
+        Some(parts.map(|part| if is_second { (part, j) } else { (i, part) }))
     }
 
     /// Whether a single triangle is settled beside a box: one that is a point, one whose own box is at least as far as is looked for, or one of
     /// which a corner is nearer than the least so far where the first such ends the search.
     pub(super) fn beside_box(&self, i: Node, j: Node) -> Option<Beside> {
         let mut made = None;
-        let near = match self.boxed(i, j)? {
-            Boxed::Second(_) => match self.a.ball(i, &mut made).content {
-                Content::Triangle(k) => [k, WHOLE],
-                Content::Parts(_) => return None,
-            },
-            Boxed::First(_) => match self.b.ball(j, &mut made).content {
-                Content::Triangle(l) => [WHOLE, l],
-                Content::Parts(_) => return None,
-            },
-        };
+        let BesideBox { is_second, ball, .. } = self.boxed(i, j, &mut made)?;
+        let Content::Triangle(k) = ball.content else { return None };
+        let near = if is_second { [k, WHOLE] } else { [WHOLE, k] };
         let (corners, cuboid, rounding) = self.in_box(near)?;
         let distance = cuboid.nearest(&corners) - rounding;
         if (corners[0] == corners[1] && corners[1] == corners[2]) || (self.any && distance < self.best) {
@@ -149,17 +139,13 @@ impl Search<'_> {
 
     /// The triangle that is not [`WHOLE`] in the frame of the box that is, that box, and the radius of the ball around a triangle that is a point.
     fn in_box(&self, near: [u32; 2]) -> Option<(Triangle, &Cuboid, f64)> {
-        match (near, &self.a.cuboid, &self.b.cuboid) {
-            ([k, WHOLE], _, Some(cuboid)) => {
-                let corners = self.a.triangle(k, &mut None).map(|p| self.pose_ab.inverse_transform_point(&p));
-                Some((corners, cuboid, self.a.rounding(k)))
-            }
-            ([WHOLE, l], Some(cuboid), _) => {
-                let corners = self.b.triangle(l, &mut None).map(|p| self.pose_ab * p);
-                Some((corners, cuboid, self.b.rounding(l)))
-            }
-            _ => None,
-        }
+        let (mesh, k, cuboid, is_second) = match (near, &self.a.cuboid, &self.b.cuboid) {
+            ([k, WHOLE], _, Some(cuboid)) => (self.a, k, cuboid, true),
+            ([WHOLE, l], Some(cuboid), _) => (self.b, l, cuboid, false),
+            _ => return None,
+        };
+        let corners = mesh.triangle(k, &mut None).map(|p| self.to_box(&p, is_second));
+        Some((corners, cuboid, mesh.rounding(k)))
     }
 
     /// The least distance of the corners of a triangle from a box; `None` where neither is a box.

@@ -29,7 +29,7 @@ impl RefMesh {
         hint: &mut Hint,
     ) -> Result<f64, f64> {
         let Some(mut search) = self.search(pose_wa, other, pose_wb, enough) else { return Err(0.0) };
-        (search.any, search.hint) = (true, Some(*hint));
+        (search.any, search.hint) = (true, *hint);
         let enough = search.best;
         let mut found = search.run();
         if found >= enough && found < wanted {
@@ -37,7 +37,7 @@ impl RefMesh {
             let passed = if search.passed < f64::INFINITY { search.passed } else { found };
             found = found.max(passed).max(search.by_axis(0.0, wanted));
         }
-        *hint = search.hint.unwrap_or_default();
+        *hint = search.hint;
         if found < enough { Err(found) } else { Ok(found) }
     }
 }
@@ -45,7 +45,7 @@ impl RefMesh {
 impl Search<'_> {
     /// What the hint decides: the distance of its triangles where that is too small, or the gap along its axis where that is enough.
     pub(super) fn by_hint(&mut self) -> Option<f64> {
-        let Hint { near, apart } = self.hint?;
+        let Hint { near, apart } = self.hint;
         if let Some(near) = near.filter(|near| self.knows(*near)) {
             let distance = self.distance_of(near);
             if distance < self.best {
@@ -88,7 +88,7 @@ mod tests {
                     let enough = [0.3, 0.01][k as usize % 2];
                     let distance = a.clearance(&here, b, &pose, f64::INFINITY);
                     let mut search = a.search(&here, b, &pose, enough).unwrap();
-                    search.hint = Some(hint);
+                    search.hint = hint;
                     decided += u32::from(search.by_hint().is_some());
                     let found = a.at_least_from(&here, b, &pose, [enough, 0.5], &mut hint);
                     assert_eq!(found.is_ok(), a.at_least(&here, b, &pose, enough).is_ok());

@@ -287,13 +287,7 @@ impl RefMesh {
         pose_wb: &Isometry3<f64>,
         enough: f64,
     ) -> Result<f64, f64> {
-        let Some(mut search) = self.search(pose_wa, other, pose_wb, enough) else { return Err(0.0) };
-        search.any = true;
-        let enough = search.best;
-        match search.run() {
-            found if found < enough => Err(found),
-            bound => Ok(bound),
-        }
+        self.at_least_from(pose_wa, other, pose_wb, [enough; 2], &mut Hint::default())
     }
 
     /// A lower bound on the distance from this mesh at `pose_wa` to `other` at `pose_wb` that is exact (up to
@@ -356,7 +350,7 @@ impl RefMesh {
             passed: f64::INFINITY,
             share: 1.0,
             any: false,
-            hint: None,
+            hint: Hint::default(),
         })
     }
 }
@@ -379,7 +373,7 @@ struct Search<'a> {
     /// Whether the first distance below `enough` ends the search.
     any: bool,
     /// What the last search left, and this one leaves for the next one.
-    hint: Option<Hint>,
+    hint: Hint,
 }
 
 impl Search<'_> {
@@ -415,14 +409,9 @@ impl Search<'_> {
     /// A lower bound on the distance by an axis between the corners, as good as it gets below `enough` where the distance is at least
     /// `least`; at most 0 where there is no such axis.
     fn by_axis(&mut self, least: f64, enough: f64) -> f64 {
-        let mut apart = self.hint.and_then(|hint| hint.apart);
         let (a, b) = (&self.a.corners, &self.b.corners);
         let limits = [least, enough].map(|x| x + self.touching);
-        let bound = axis::separation(a, b, &self.pose_ab, limits, &mut apart) - self.touching;
-        if let Some(hint) = &mut self.hint {
-            hint.apart = apart;
-        }
-        bound
+        axis::separation(a, b, &self.pose_ab, limits, &mut self.hint.apart) - self.touching
     }
 
     /// The distance of two triangles, or of the corners of one from a box.
@@ -527,9 +516,7 @@ impl Search<'_> {
         if nearer {
             self.best = distance;
             self.limit = self.limit.min(distance * self.share);
-            if let Some(hint) = &mut self.hint {
-                hint.near = Some(near);
-            }
+            self.hint.near = Some(near);
         } else {
             self.passed = self.passed.min(distance);
         }
