@@ -1,5 +1,4 @@
-//! The programs of the folder `examples` do what they say, and they build outside of the workspace: one depends on `mp-plan`
-//! alone, one on `mp-cspace` and `mp-tree` alone.
+//! The programs of the folder `examples` do what they say. That they build outside of the workspace is a check of `cargo xtask ci`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -15,19 +14,6 @@ fn output(command: &mut Command) -> String {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     assert!(output.status.success(), "{command:?}: {}", text(&output.stderr));
     text(&output.stdout)
-}
-
-/// Compiles the program in `examples/NAME` as one outside of the workspace, with the features that it asks for. Without
-/// machine code, which takes twice as long.
-fn check(name: &str) {
-    let folder = folder(name);
-    // The versions of the workspace: nothing is fetched.
-    let lock = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("Cargo.lock");
-    std::fs::copy(lock, folder.join("Cargo.lock")).unwrap();
-    let target = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("outside");
-    let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["check", "--quiet", "--offline"]).current_dir(&folder).env("CARGO_TARGET_DIR", target);
-    output(&mut cargo);
 }
 
 /// Lines of a program that are code.
@@ -87,11 +73,4 @@ fn rust_in_the_documentation_runs() {
         }
     }
     assert!(count >= 4, "{count} blocks");
-}
-
-#[test]
-fn they_build_outside_of_the_workspace() {
-    for name in ["plan-a-scene", "own-robot"] {
-        check(name);
-    }
 }

@@ -37,6 +37,16 @@ pub(crate) fn run(tests: bool) -> ExitCode {
             failed.push(name);
         }
     }
+    let began = Instant::now();
+    let outside = build_outside();
+    note(&format!(
+        "{} examples outside of the workspace ({:.1} s)",
+        mark(outside),
+        began.elapsed().as_secs_f64()
+    ));
+    if !outside {
+        failed.push("examples");
+    }
     let tidy = match tidy::check(&root()) {
         Ok(findings) => {
             findings.iter().for_each(|finding| note(&format!("  error: {finding}")));
@@ -63,6 +73,25 @@ fn has_mpi() -> bool {
     Command::new("mpicc").arg("--version").output().is_ok_and(|out| out.status.success())
 }
 
+/// Whether the programs of `examples` that depend on `mp-plan` alone, and on `mp-cspace` and `mp-tree` alone, compile outside of the workspace, with
+/// the features that they ask for. Without machine code, which takes twice as long.
+fn build_outside() -> bool {
+    // Lints have compiled most of what they depend on, in the same profile.
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
+    let target = std::path::absolute(&target).unwrap_or(target);
+    ["plan-a-scene", "own-robot"].into_iter().all(|name| {
+        let folder = root().join("examples").join(name);
+        // The versions of the workspace: nothing is fetched.
+        if let Err(e) = std::fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")) {
+            note(&format!("cannot copy Cargo.lock to {}: {e}", folder.display()));
+            return false;
+        }
+        let mut check = cargo();
+        check.args(["check", "--quiet", "--offline"]);
+        succeeds(check.current_dir(&folder).env("CARGO_TARGET_DIR", &target))
+    })
+}
+
 /// The compiler that makes lints.
 fn clippy_driver() -> Option<PathBuf> {
     let out = Command::new("rustc").args(["--print", "sysroot"]).output().ok()?;
@@ -83,11 +112,14 @@ fn run_cargo(args: &[&str]) -> bool {
         let lints = "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__";
         cargo.env("RUSTC_WORKSPACE_WRAPPER", driver).env("CLIPPY_ARGS", lints);
     }
-    let status = cargo.status();
-    match status {
+    succeeds(&mut cargo)
+}
+
+fn succeeds(command: &mut Command) -> bool {
+    match command.status() {
         Ok(status) => status.success(),
         Err(e) => {
-            note(&format!("cannot run cargo {}: {e}", args.join(" ")));
+            note(&format!("cannot run {command:?}: {e}"));
             false
         }
     }

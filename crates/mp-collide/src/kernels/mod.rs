@@ -3,6 +3,7 @@
 
 #![allow(clippy::needless_range_loop)] // Coordinates and axes are indices here, several arrays at a time.
 
+pub(crate) mod corner_drift;
 pub(crate) mod leaf_pair;
 pub(crate) mod separating_axes;
 pub(crate) mod swept_interval;

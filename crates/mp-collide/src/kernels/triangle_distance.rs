@@ -3,11 +3,13 @@
 //! Nine pairs of edges (Ericson 2005, *Real-Time Collision Detection*, §5.1.9) and six corners against
 //! faces. For triangles that may intersect no distance is bounded; they are only reported.
 
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 
 use crate::bvh::{Lane, Leaf};
+use crate::kernels::corner_drift::CornerDrift;
 use crate::kernels::leaf_pair::corners;
 use crate::kernels::separating_axes::{cross, dot, sub};
+use crate::kernels::swept_interval::Drift;
 use crate::triangle::Triangle;
 use mp_simd::{Lanes, Mask};
 
@@ -122,14 +124,23 @@ impl<L: Lanes> DistanceKernel<L> {
         }
     }
 
+    /// How the triangles move by `drift`, whose origin is `origin`. They may leave it by `beside` (m), which has the distance in it that they
+    /// keep.
+    #[inline(always)]
+    pub(crate) fn moving(&self, drift: &Drift, origin: &Point3<f64>, beside: f64) -> CornerDrift<L> {
+        let center = std::array::from_fn(|d| (self.center[d] - origin[d]) as f32);
+        CornerDrift::new(drift, (&self.v, center), &self.n, beside)
+    }
+
     /// The lanes, of those in `mask`, whose squared distance from `triangle` (in the frame of the mesh) may be
-    /// at most `best`.
+    /// at most `best`; without those that the plane of either triangle shows to keep apart in a motion.
     #[inline(always)]
     pub(crate) fn between(
         &self,
         triangle: &Triangle,
         mask: u32,
         best: f32,
+        motion: Option<&CornerDrift<L>>,
         bounds: &mut DistanceBounds,
     ) -> Close {
         let c = &self.center;
@@ -166,9 +177,13 @@ impl<L: Lanes> DistanceKernel<L> {
         // u·g and no farther apart than 2√3·g, so a normal is wrong by 7u·g·e + 3u·e² and a height, with the
         // corners' own error and the rounding of the products, by 24u·g²·e + 28u·g·e².
         let edge = self.edge;
-        let error = L::splat(g * edge * (1.5e-6 * g + 2e-6 * edge));
+        let wrong = edge * (1.5e-6 * g + 2e-6 * edge);
+        let error = L::splat(g * wrong);
         let h: [L; 3] = three!(k => dot(&self.n, &sub(&s[k], &self.v[0])));
         let apart = one_sided(&h).sub(error);
+        if let Some(motion) = motion {
+            mask &= !motion.keeps_from_own_planes(apart, wrong);
+        }
         mask &= apart.max(zero).square().le(self.nn.mul(limit).add(error.square())).bits();
         let mut crossing = apart.le(L::splat(TINY_HEIGHT)).bits();
         if mask == 0 {
@@ -187,8 +202,12 @@ impl<L: Lanes> DistanceKernel<L> {
         let sound = mm >= SOUND * longest * longest + SOUND_AT_LEAST && own.max(edge) >= SMALL;
         let unsound = L::splat(if sound { 0.0 } else { f32::INFINITY });
         let n = [L::splat(m[0]), L::splat(m[1]), L::splat(m[2])];
-        let error = L::splat(g * own * (1.5e-6 * g + 2e-6 * own));
+        let wrong = own * (1.5e-6 * g + 2e-6 * own);
+        let error = L::splat(g * wrong);
         let w: [L; 3] = three!(k => dot(&n, &sub(&self.v[k], &s[0])));
+        if let Some(motion) = motion {
+            mask &= !motion.keeps_from_plane((&n, mm.sqrt()), (&w, error), wrong);
+        }
         let apart = one_sided(&w).sub(error);
         mask &= apart.max(zero).square().le(L::splat(mm).mul(limit).add(error.square())).bits();
         crossing &= apart.le(L::splat(TINY_HEIGHT)).bits();
@@ -281,7 +300,7 @@ mod tests {
     use crate::bvh::{NodeBox, build::leaf};
     use crate::triangle::closest_within;
     use mp_simd::{Isa, Kernel, run};
-    use nalgebra::{Point3, UnitQuaternion};
+    use nalgebra::UnitQuaternion;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
@@ -293,7 +312,7 @@ mod tests {
         fn run<L: Lanes>(self) -> Self::Output {
             let mut bounds = DistanceBounds::default();
             let kernel = DistanceKernel::<L>::new(self.0, &SeparatingDirection::default());
-            let close = kernel.between(self.1, self.0.all(), f32::INFINITY, &mut bounds);
+            let close = kernel.between(self.1, self.0.all(), f32::INFINITY, None, &mut bounds);
             (bounds, close)
         }
     }

@@ -170,7 +170,7 @@ impl BranchAndBound<'_> {
             singles &= singles - 1;
             let single = frames.exact.triangle(&b.triangles[position as usize]);
             let mut bounds = DistanceBounds::default();
-            let mut near = kernel.between(&single, lanes, best.squared, &mut bounds).near;
+            let mut near = kernel.between(&single, lanes, best.squared, None, &mut bounds).near;
             self.counters.triangle_tests += 1;
             while near != 0 {
                 let lane = near.trailing_zeros() as usize & 7;

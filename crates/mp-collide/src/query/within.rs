@@ -60,7 +60,7 @@ impl LeafPair for Within<'_> {
             let single = frames.exact.triangle(&b.triangles[l]);
             self.counters.triangle_tests += 1;
             let mut bounds = DistanceBounds::default();
-            let close = kernel.between(&single, mask_a, self.maybe, &mut bounds);
+            let close = kernel.between(&single, mask_a, self.maybe, None, &mut bounds);
             if L::load(&bounds.far).le(L::splat(self.surely)).bits() & close.near != 0 {
                 return Some(());
             }
