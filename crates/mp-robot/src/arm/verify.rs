@@ -338,7 +338,7 @@ where
         self.tree.place(q.as_slice(), &mut placed);
         (0..self.pairs.len()).any(|i| {
             let kept = self.kept_from(&self.pairs[i]);
-            self.distance(i, &placed, [kept + self.tolerance; 2]).is_err_and(|d| d <= kept)
+            self.distance(i, &placed, [kept; 2]).is_err()
         })
     }
 }

@@ -98,6 +98,22 @@ fn it_sees_thin_walls_and_edges_whose_ends_are_free() {
     assert_eq!(verifier.check_motion(&at(0.0), &at(0.0)), MotionCheck::Collision { at: 0.0 });
 }
 
+/// What is near an obstacle, and touches another one, collides, whichever is asked about first.
+#[test]
+fn an_end_that_touches_collides_where_another_obstacle_is_near() {
+    let tolerance = 1e-3;
+    let block =
+        |name: &str, x: f64| obstacle(name, cuboid(0.1, 0.05, 0.05).unwrap(), [x, 0.0, 0.5, 0.0, 0.0, 0.0]);
+    let (near, touching) = (block("near", 0.1 + 0.5 * tolerance), block("touching", -0.09));
+    for obstacles in [[near.clone(), touching.clone()], [touching, near]] {
+        let arm = Arm::new(&six(), obstacles).unwrap();
+        let space: Joints<Six> = arm.space().unwrap();
+        let mut verifier = ArmVerifier::with_tolerance(&space, &arm, tolerance).unwrap();
+        let up = Six::zeros();
+        assert_eq!(verifier.check_motion(&up, &up), MotionCheck::Collision { at: 0.0 });
+    }
+}
+
 /// Polynomials: for each piece one for each coordinate.
 struct Pieces(Vec<Vec<[f64; 6]>>);
 
