@@ -34,15 +34,15 @@ impl<L: Lanes> CornerDrift<L> {
         }
     }
 
-    /// The lanes of which a triangle keeps to one side of the plane of a lane: `heights` (times the length of its normal) are the least ones of its corners, errors taken off.
-    /// A normal is wrong by at most `wrong`.
+    /// The lanes of which a single triangle stays on one side of the plane. `heights` are the least ones of its corners over each plane, times the
+    /// length of the normal, with their errors taken off; a normal is wrong by at most `wrong`.
     #[inline(always)]
     pub(crate) fn keeps_from_own_planes(&self, heights: L, wrong: f32) -> u32 {
         self.is_less(self.along_own.add(self.beside_own), wrong, heights)
     }
 
-    /// The lanes that keep to one side of a plane with the normal `n`, whose length is `length`. Corners have the heights `w`, times that length and
-    /// wrong by up to `error`; the normal is wrong by at most `wrong`.
+    /// The lanes that stay on one side of the plane of a single triangle, whose normal is `n` of length `length`, wrong by at most `wrong`. Corners have
+    /// the heights `w` over it, times that length, wrong by up to `error`.
     #[inline(always)]
     pub(crate) fn keeps_from_plane(
         &self,
@@ -57,7 +57,7 @@ impl<L: Lanes> CornerDrift<L> {
         self.is_less(L::splat(length * self.beside * (1.0 + 1e-5)), wrong, heights)
     }
 
-    /// Where `reach`, with the error of the normal, is less than heights. Written so that NaN is not.
+    /// Where `reach` is less than heights, whatever the error of the normal, which has the rounding of projections in it. Written so that NaN is not.
     #[inline(always)]
     fn is_less(&self, reach: L, wrong: f32, heights: L) -> u32 {
         let error = self.sum.add(L::splat(self.beside)).mul_add(L::splat(wrong), L::splat(TINY));
