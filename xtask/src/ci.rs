@@ -29,25 +29,26 @@ pub(crate) fn run(tests: bool) -> ExitCode {
         steps.push(("tests", on_all(&["test", "--quiet"], &[])));
     }
     let mut failed = Vec::new();
-    for (name, cargo) in steps {
-        let began = Instant::now();
-        let passed = run_cargo(&cargo);
+    let mut done = |name, began: Instant, passed: bool| {
         note(&format!("{} {name} ({:.1} s)", mark(passed), began.elapsed().as_secs_f64()));
         if !passed {
             failed.push(name);
         }
+    };
+    for (name, cargo) in steps {
+        done(name, Instant::now(), run_cargo(&cargo));
     }
-    let began = Instant::now();
-    let outside = build_outside();
-    note(&format!(
-        "{} examples outside of the workspace ({:.1} s)",
-        mark(outside),
-        began.elapsed().as_secs_f64()
-    ));
-    if !outside {
-        failed.push("examples");
+    done("examples outside of the workspace", Instant::now(), build_outside());
+    done("tidiness", Instant::now(), is_tidy());
+    if failed.is_empty() {
+        return ExitCode::SUCCESS;
     }
-    let tidy = match tidy::check(&root()) {
+    note(&format!("failed: {}", failed.join(", ")));
+    ExitCode::FAILURE
+}
+
+fn is_tidy() -> bool {
+    match tidy::check(&root()) {
         Ok(findings) => {
             findings.iter().for_each(|finding| note(&format!("  error: {finding}")));
             findings.is_empty()
@@ -56,16 +57,7 @@ pub(crate) fn run(tests: bool) -> ExitCode {
             note(&format!("  {e}"));
             false
         }
-    };
-    note(&format!("{} tidiness", mark(tidy)));
-    if !tidy {
-        failed.push("tidiness");
     }
-    if failed.is_empty() {
-        return ExitCode::SUCCESS;
-    }
-    note(&format!("failed: {}", failed.join(", ")));
-    ExitCode::FAILURE
 }
 
 /// Whether this machine has what `mp-mpi` is compiled with.

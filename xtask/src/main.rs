@@ -27,7 +27,7 @@ Builds and starts the programs of the workspace:
   cargo xtask golden [--required] [--built] [WAY…]   the same bits on other processors: native, no-fma, nehalem, aarch64, wasm32
   cargo xtask fuzz [--seconds N] [TARGET…]   every reader under libFuzzer: see `cargo xtask fuzz --help`
   cargo xtask memcheck [TEST…]  tests of the kernels and of arms under valgrind
-  cargo xtask ci [--no-tests]   formatting, lints, tests, documentation and tidiness
+  cargo xtask ci [--no-tests]   formatting, lints, tests, documentation, examples and tidiness
 
 Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.";
 

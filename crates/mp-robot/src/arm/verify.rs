@@ -331,7 +331,7 @@ where
         if near.pairs.is_empty() { PartCheck::Apart } else { PartCheck::Near(near) }
     }
 
-    /// Whether any pair touches at `q`.
+    /// Whether any pair touches at `q`, or is nearer than the clearance that it keeps.
     fn touches(&mut self, q: &C::State) -> bool {
         self.forget();
         let mut placed = Placement::default();
