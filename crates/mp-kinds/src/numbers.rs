@@ -46,15 +46,22 @@ pub fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
     hash.digest()
 }
 
-/// A number as in scene files, which can be pasted back: at most nine decimals, no trailing zeros, no negative zero. From 10⁶ on it reads
-/// back to the same bits.
+/// A number as in scene files, which can be pasted back: at most nine decimals, fifteen of less than a thousandth, no trailing zeros, no
+/// negative zero. From 10⁶ on it reads back to the same bits.
 #[must_use]
 pub fn plain(v: f64) -> String {
     match v.abs() {
         size if size >= 1e16 => format!("{v:e}"),
         size if size >= 1e6 => v.to_string(),
-        _ => ((v * 1e9).round() / 1e9 + 0.0).to_string(),
+        size => (rounded(v, if size < 1e-3 { 15 } else { 9 }) + 0.0).to_string(),
     }
+}
+
+/// A number with so many decimals.
+#[must_use]
+pub fn rounded(v: f64, decimals: i32) -> f64 {
+    let unit = mp_math::powi(10.0, decimals);
+    (v * unit).round() / unit
 }
 
 /// Numbers that can be pasted back, separated by blanks.

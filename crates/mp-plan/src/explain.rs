@@ -2,7 +2,7 @@
 
 use crate::{Contact, End, Error, ErrorKind, Robot};
 use mp_cspace::{Clearance, Configuration, Space, Validity};
-use mp_kinds::numbers::told_apart;
+use mp_kinds::numbers::{rounded, told_apart};
 use serde::{Deserialize, Serialize};
 
 /// Why a configuration is free or not.
@@ -45,14 +45,24 @@ pub(crate) fn explain(kind: &dyn Robot, q: &Configuration) -> Explanation {
 /// A free configuration near `q`; of one out of bounds, near the nearest one within.
 fn nearest_free(kind: &dyn Robot, q: &Configuration) -> Option<Configuration> {
     if kind.any_space().contains(q) {
-        return kind.nearest_free(q);
+        return free_near(kind, q);
     }
     let mut row = kind.row(q);
     for (number, limits) in row.iter_mut().zip(kind.limits()) {
         *number = limits.map_or(*number, |[low, high]| number.max(low).min(high));
     }
     let inside = kind.state(&row);
-    if fault(kind, &inside).is_none() { Some(inside) } else { kind.nearest_free(&inside) }
+    if fault(kind, &inside).is_none() { Some(inside) } else { free_near(kind, &inside) }
+}
+
+/// A free configuration near `q`, with as few decimals as leave it free: people paste it back.
+fn free_near(kind: &dyn Robot, q: &Configuration) -> Option<Configuration> {
+    let found = kind.nearest_free(q)?;
+    let short = [9, 12, 15].into_iter().map(|decimals| {
+        let row: Vec<_> = kind.row(&found).into_iter().map(|v| rounded(v, decimals)).collect();
+        kind.state(&row)
+    });
+    Some(short.into_iter().find(|q| fault(kind, q).is_none()).unwrap_or(found))
 }
 
 /// What is wrong with a configuration, to follow the words "the start is".
@@ -103,7 +113,7 @@ fn ends(kind: &dyn Robot) -> impl Iterator<Item = (End, String, &Configuration)>
 /// An error message and a remedy for the configuration that messages call `name`; `None` when it is free.
 pub(crate) fn refused(kind: &dyn Robot, name: &str, q: &Configuration) -> Option<(String, String)> {
     let fault = fault(kind, q)?;
-    let mut help = match kind.nearest_free(q) {
+    let mut help = match free_near(kind, q) {
         _ if !kind.any_space().contains(q) => kind.bounds_remedy(q),
         Some(free) => format!("the nearest free configuration found is {}", kind.in_words(&free)),
         None if kind.kept() > 0.0 => "nothing nearby keeps that clearance: ask for less".to_owned(),

@@ -262,6 +262,10 @@ fn a_map_alone_is_planned_checked_drawn_and_described() {
         .collect();
     dir.write("rooms.pgm", format!("P2\n56 24\n255\n{pixels}"));
     dir.write("rooms.yaml", "image: rooms.pgm\nresolution: 0.25\norigin: [-2, 3, 0]\n");
+    // Where maps of a country have their origin, checks resolve millimetres.
+    dir.write("far.yaml", "image: rooms.pgm\nresolution: 0.05\norigin: [4e5, 5.2e6, 0]\n");
+    let far = mp(&dir, &["plan", "far.yaml"]);
+    assert!(far.code == 0 && far.stdout.contains("solved"), "{far:?}");
     for file in ["rooms.yaml", "rooms.pgm"] {
         let run = mp(&dir, &["plan", file, "--json", "--out", "p.txt", "--picture", "p.svg"]);
         assert_eq!(run.code, 0, "{run:?}");

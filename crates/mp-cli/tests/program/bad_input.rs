@@ -203,6 +203,22 @@ fn ends_in_collision() {
     assert!(run.code == 2 && run.stderr.contains("from contact"), "{run:?}");
 }
 
+/// However small the scene is, the configuration that is named is free as it is written.
+#[test]
+fn the_nearest_free_configuration_of_a_tiny_scene() {
+    let dir = Dir::new();
+    let scene = "[robot]\nbox = [1e-6, 1e-6, 1e-6]\nbounds = [[-1e-4, -1e-4, -1e-4], [1e-4, 1e-4, 1e-4]]\n\
+                 [motion]\nstart = [-5.1234567e-5, 0, 0, 0, 0, 0]\ngoal = [5e-5, 0, 0, 0, 0, 0]\n\
+                 [[obstacle]]\nbox = [1e-6, 1e-5, 1e-5]\n";
+    dir.write("tiny.toml", scene);
+    for at in ["1.2345678e-7 0 0 0 0 0", "-3.3e-7 4.9e-6 0 0.3 0 0", "0 0 0 1 2 0.5"] {
+        let told = mp(&dir, &["check", "tiny.toml", &format!("--at={at}")]).stdout;
+        let free = told.split("free configuration found is ").nth(1).unwrap_or_else(|| panic!("{told}"));
+        let run = mp(&dir, &["check", "tiny.toml", &format!("--at={}", free.trim())]);
+        assert!(run.code == 0 && run.stdout.contains("is free"), "{at}: {free} {run:?}");
+    }
+}
+
 #[test]
 fn meshes_and_paths() {
     let dir = Dir::new();

@@ -122,7 +122,10 @@ fn map(files: &dyn Files, file: &Path) -> Result<Around, Error> {
     let grid = Grid::new(&world, problem.bounds);
     let widest = grid.clearances.iter().copied().fold(0.0, f64::max);
     let radius = RADIUS.min(0.5 * widest);
-    let (start, goal) = grid.far_apart(radius).ok_or_else(|| {
+    // What checks resolve far from the origin may be millimetres, which the disc keeps free too.
+    let disc = mp_robot::DiscRobot::new(world, radius);
+    let free = radius + disc.map_or(0.0, |disc| 2.0 * disc.tolerance());
+    let (start, goal) = grid.far_apart(free).ok_or_else(|| {
         Error::new(format!("{} has no free region to plan in", file.display()))
             .help("free pixels are light, unless the map says `negate: 1`; unknown pixels count as obstacles")
     })?;
