@@ -53,6 +53,8 @@ pub fn plain(v: f64) -> String {
     match v.abs() {
         size if size >= 1e16 => format!("{v:e}"),
         size if size >= 1e6 => v.to_string(),
+        // What rounding leaves of a zero.
+        size if size < 1e-11 => "0".into(),
         size => (rounded(v, if size < 1e-3 { 15 } else { 9 }) + 0.0).to_string(),
     }
 }

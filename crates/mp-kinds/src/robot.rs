@@ -36,12 +36,33 @@ use mp_cspace::{
 use mp_geom::{Aabb, TriMesh};
 pub use mp_io::Column;
 use mp_io::PlacedBody;
-use nalgebra::{Isometry3, Point2, Point3};
+use nalgebra::{Isometry3, Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// A joint that is beyond a limit by no more than this (rad or m) is taken to be at the limit: encoders, numbers of single precision, and
+/// limits with five decimals, as 3.14159 is for half a turn, are as far off.
+const HAIR: f64 = 1e-5;
+
+/// A number, or the limit that it is beyond by at most `hair`.
+fn at_limit(x: f64, [low, high]: [f64; 2], hair: f64) -> f64 {
+    let near = x.max(low).min(high);
+    if (x - near).abs() <= hair { near } else { x }
+}
+
+/// A coordinate, or the side of its bounds that it is a [`HAIR`] beyond: of bounds less than a metre wide, that share of their width.
+fn at_side(x: f64, [low, high]: [f64; 2]) -> f64 {
+    at_limit(x, [low, high], HAIR * (high - low).min(1.0))
+}
+
+/// A pose with its position [at the side](at_side) of the bounds where it is a hair outside.
+fn at_sides(pose: Isometry3<f64>, [low, high]: [&Vector3<f64>; 2]) -> Isometry3<f64> {
+    let position = pose.translation.vector.zip_zip_map(low, high, |x, low, high| at_side(x, [low, high]));
+    Isometry3::from_parts(position.into(), pose.rotation)
+}
 
 /// The text form of the paths of a robot: docs/formats/path.md describes both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

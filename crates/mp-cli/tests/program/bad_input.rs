@@ -219,6 +219,50 @@ fn the_nearest_free_configuration_of_a_tiny_scene() {
     }
 }
 
+/// What is out of bounds by less than numbers of single precision resolve is at their side, for each kind of body.
+#[test]
+fn ends_that_are_a_hair_out_of_bounds() {
+    let dir = Dir::new();
+    let link = |name| {
+        format!(
+            "<link name='{name}'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>"
+        )
+    };
+    let joint = "<joint name='j' type='continuous'><parent link='a'/><child link='b'/></joint>";
+    dir.write("one.urdf", format!("<robot name='one'>{}{}{joint}</robot>", link("a"), link("b")));
+    let bodies = [
+        (
+            "rigid.toml",
+            "[robot]\nbox = [0.3, 0.3, 0.3]\n",
+            "[[0, 0, 0], [4, 4, 4]]",
+            ", 2, 0, 0, 0",
+            "x y z alpha beta gamma",
+        ),
+        (
+            "floating.toml",
+            "[robot]\nurdf = 'one.urdf'\nbase = 'floating'\n",
+            "[[0, 0, 0], [4, 4, 4]]",
+            ", 2, 0, 0, 0, 0",
+            "x y z alpha beta gamma j",
+        ),
+        ("world.toml", "[robot]\ndisc = 0.2\n[world]\n", "[[0, 0], [4, 4]]", "", "x y"),
+    ];
+    for (name, robot, bounds, rest, columns) in bodies {
+        for (x, code) in [("4.000001", 0), ("4.001", 2)] {
+            let ends = format!("start = [{x}, 2{rest}]\ngoal = [1, -0.000001{rest}]\n");
+            dir.write(name, format!("{robot}bounds = {bounds}\n[motion]\n{ends}"));
+            let run = mp(&dir, &["plan", name, "--out", "p.csv"]);
+            assert_eq!(run.code, code, "{name} {x}: {run:?}");
+            assert!(code == 0 || run.stderr.contains("the start is out of"), "{run:?}");
+        }
+        let row = |x: &str| format!("{x}, 2{rest}\n");
+        dir.write("q.csv", columns.replace(' ', ",") + "\n" + &row("4.000001") + &row("1"));
+        dir.write(name, dir.read(name).replace("4.001", "4.000001").replace("-0.000001", "2"));
+        let check = mp(&dir, &["check", name, "q.csv"]);
+        assert!(check.code == 0 && check.stdout.contains("free"), "{name}: {check:?}");
+    }
+}
+
 #[test]
 fn meshes_and_paths() {
     let dir = Dir::new();

@@ -10,8 +10,8 @@ mod self_filter;
 
 use super::model::{ModelBody, ModelFrame, ModelPair, MotionModel, Step, seven};
 use super::{
-    Appearance, Body, BodyShape, Column, Contact, Counted, Description, End, Measured, Motion, Queries,
-    SpeedBound, hints_and_gradient, no_metric,
+    Appearance, Body, BodyShape, Column, Contact, Counted, Description, End, HAIR, Measured, Motion, Queries,
+    SpeedBound, at_limit, at_sides, hints_and_gradient, no_metric,
 };
 use crate::goals::{GoalPart, examples, rows};
 use crate::numbers::plain_row;
@@ -91,7 +91,9 @@ impl LinkedSpace for FloatingJoints {
     fn state(&self, row: &[f64]) -> Configuration {
         let (pose, joints) = row.split_at(Self::BASE.len().min(row.len()));
         let six = std::array::from_fn(|i| pose.get(i).copied().unwrap_or(0.0));
-        FloatingJoints::state(self, &pose_from_six(six), &within(self.joints().ranges(), joints))
+        let bounds = self.base().translations();
+        let pose = at_sides(pose_from_six(six), [bounds.low(), bounds.high()]);
+        FloatingJoints::state(self, &pose, &within(self.joints().ranges(), joints))
     }
     fn row(q: &Configuration) -> Vec<f64> {
         let Some((base, joints)) = Self::split(q.as_slice()) else { return Vec::new() };
@@ -103,18 +105,11 @@ impl LinkedSpace for FloatingJoints {
     }
 }
 
-/// A joint that is beyond a limit by no more than this (rad or m) is taken to be at the limit: encoders, numbers of single precision, and
-/// limits with five decimals, as 3.14159 is for half a turn, are as far off.
-const HAIR: f64 = 1e-5;
-
 /// The values of joints, at the limit where they are a [`HAIR`] beyond it.
 fn within(ranges: &[JointRange], joints: &[f64]) -> Vec<f64> {
     let ranges = ranges.iter().map(Some).chain(std::iter::repeat(None));
     let value = |(x, range): (&f64, Option<&JointRange>)| match range {
-        Some(JointRange::Interval { low, high }) => {
-            let near = x.clamp(*low, *high);
-            if (x - near).abs() <= HAIR { near } else { *x }
-        }
+        Some(JointRange::Interval { low, high }) => at_limit(*x, [*low, *high], HAIR),
         _ => *x,
     };
     joints.iter().zip(ranges).map(value).collect()

@@ -3,7 +3,8 @@
 use super::model::{ModelBody, ModelFrame, MotionModel, Step};
 use super::{
     Appearance, Body, BodyShape, Checker, Column, Contact, Counted, Description, DrivenScene, End, Measured,
-    Motion, MovingScene, Queries, SpeedBound, WithMoving, greatest_speed, hints_and_gradient, no_metric,
+    Motion, MovingScene, Queries, SpeedBound, WithMoving, at_side, greatest_speed, hints_and_gradient,
+    no_metric,
 };
 use crate::goals::{GoalPart, examples, rows};
 use crate::robot::motion::TypedMotion;
@@ -294,13 +295,14 @@ impl<B: PlanarBody> PlanarScene<B> {
         let robot = OnVectors::new(B::among(Arc::new(world), &problem.file.robot)?);
         let space = AsVectors(B::space(problem.bounds)?);
         let numbers = B::COLUMNS.len();
-        let start = at::<B>(&problem.file.start[..numbers]);
+        let bounds = problem.bounds;
+        let start = at::<B>(&problem.file.start[..numbers], bounds);
         // A robot with accelerations may have goals of its velocities too, which are not those of this scene.
         let parts = problem.file.goals.iter().map(|goal| goal[..numbers.min(goal.len())].to_vec());
         let parts: Vec<Vec<GoalPart>> = parts.collect();
         let (mut goals, mut goal_parts) = (vec![start.clone()], None);
         match rows(&parts) {
-            Some(rows) => goals = rows.iter().map(|row| at::<B>(row)).collect(),
+            Some(rows) => goals = rows.iter().map(|row| at::<B>(row, bounds)).collect(),
             None => goal_parts = Some(parts),
         }
         let mut scene = Self { problem, robot, space, start, goals, goal_parts };
@@ -386,8 +388,11 @@ impl<B: PlanarBody> PlanarScene<B> {
     }
 }
 
-fn at<B: PlanarBody>(row: &[f64]) -> Configuration {
-    Configuration::of(&B::state(row))
+/// The configuration of a row. A position that is a hair outside of the bounds is at their side.
+fn at<B: PlanarBody>(row: &[f64], [low, high]: [[f64; 2]; 2]) -> Configuration {
+    let mut row = row.to_vec();
+    row.iter_mut().zip(low).zip(high).for_each(|((x, low), high)| *x = at_side(*x, [low, high]));
+    Configuration::of(&B::state(&row))
 }
 
 /// The place that a configuration stands for; the origin if `q` does not have the numbers of a place.
@@ -568,7 +573,7 @@ impl<B: PlanarBody> Description for PlanarScene<B> {
         q.to_vec()
     }
     fn state(&self, row: &[f64]) -> Configuration {
-        at::<B>(row)
+        at::<B>(row, self.problem.bounds)
     }
     fn given_start(&self) -> Vec<f64> {
         self.problem.file.start[..B::COLUMNS.len()].to_vec()

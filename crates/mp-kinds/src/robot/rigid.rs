@@ -3,7 +3,7 @@
 use super::model::{ModelBody, ModelFrame, MotionModel, Step};
 use super::{
     Appearance, Body, BodyShape, Column, Contact, Counted, Description, Deviation, End, Measured, Motion,
-    MovingScene, PathFormat, Queries, SpeedBound, WithMoving, hints_and_gradient,
+    MovingScene, PathFormat, Queries, SpeedBound, WithMoving, at_sides, hints_and_gradient,
 };
 use crate::goals::{GoalPart, examples, rows};
 use crate::numbers::{fingerprint, plain};
@@ -166,11 +166,13 @@ impl<M: RigidSpace> RigidScene<M> {
         problem: RigidProblem,
         interrupt: &Interrupt,
     ) -> Result<Self, Error> {
-        let space = AsVectors(M::space(&problem.position_bounds())?);
+        let bounds = problem.position_bounds();
+        let space = AsVectors(M::space(&bounds)?);
         let obstacles = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
         let before = before.map(|before| before.robot.inner());
         let robot = RigidBody::among_until(before, &problem.robot.mesh, obstacles, interrupt)?;
-        let (start, goal) = (at::<M>(&problem.start), at::<M>(&problem.goal));
+        let sides = [&bounds.min.coords, &bounds.max.coords];
+        let [start, goal] = [problem.start, problem.goal].map(|pose| at::<M>(&at_sides(pose, sides)));
         let radius = if robot.radius() > 0.0 { robot.radius() } else { 1e-3 * space.extent() };
         let robot = OnVectors::new(robot);
         Ok(Self { problem, space, robot, start, goals: vec![goal], goal_parts: None, radius })
@@ -509,7 +511,10 @@ impl<M: RigidSpace> Description for RigidScene<M> {
         six_from_pose(&pose::<M>(q)).map(|v| v + 0.0).to_vec()
     }
     fn state(&self, row: &[f64]) -> Configuration {
-        at::<M>(&pose_from_six(std::array::from_fn(|i| row[i])))
+        let pose = pose_from_six(std::array::from_fn(|i| row[i]));
+        // Bounds that are chosen leave room around the ends.
+        let bounds = self.problem.bounds.as_ref();
+        at::<M>(&bounds.map_or(pose, |b| at_sides(pose, [&b.min.coords, &b.max.coords])))
     }
     fn rows(&self, path: &Path<Configuration>) -> Vec<Vec<f64>> {
         let states = &path.states;

@@ -1,7 +1,8 @@
 //! The arm of a robot problem, from its URDF and SRDF.
 
 use super::named::{NamedValues, resolve};
-use super::{HAIR, LinkedScene, LinkedSpace};
+use super::{LinkedScene, LinkedSpace};
+use crate::robot::HAIR;
 use crate::{Error, brief, count, plain};
 use mp_cspace::{FloatingJoints, JointRange};
 use mp_geom::Aabb;
