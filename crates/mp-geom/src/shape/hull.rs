@@ -26,25 +26,20 @@ pub fn convex_hull(points: &[Point3<f64>]) -> Made {
     }
     let mut faces = first_faces(points)
         .ok_or(PrimitiveError::NoInside { what: "a convex hull of points that are all in one plane" })?;
-    let mut border = HashSet::new();
+    let (mut seen, mut border) = (Vec::new(), HashSet::new());
     for (i, p) in points.iter().enumerate() {
-        let sees = |face: &[u32; 3]| above(points, face, p);
+        seen.clear();
+        faces.retain(|face| {
+            let sees = above(points, face, p);
+            seen.extend(sees.then_some(*face));
+            !sees
+        });
+        let edges = || seen.iter().flat_map(|[a, b, c]| [(*a, *b), (*b, *c), (*c, *a)]);
         border.clear();
-        for [a, b, c] in faces.iter().filter(|face| sees(face)) {
-            border.extend([(*a, *b), (*b, *c), (*c, *a)]);
-        }
-        if border.is_empty() {
-            continue;
-        }
+        border.extend(edges());
         // In the order of faces, so that the hull does not depend on the hash.
-        let around: Vec<_> = faces
-            .iter()
-            .filter(|face| sees(face))
-            .flat_map(|[a, b, c]| [(*a, *b), (*b, *c), (*c, *a)])
-            .filter(|(a, b)| !border.contains(&(*b, *a)))
-            .collect();
-        faces.retain(|face| !sees(face));
-        faces.extend(around.into_iter().map(|(a, b)| [a, b, i as u32]));
+        let around = edges().filter(|(a, b)| !border.contains(&(*b, *a)));
+        faces.extend(around.map(|(a, b)| [a, b, i as u32]));
     }
     // Only the vertices that are used, in their order.
     let mut used: Vec<u32> = faces.concat();
