@@ -53,6 +53,13 @@ fn at_limit(x: f64, [low, high]: [f64; 2], hair: f64) -> f64 {
     if (x - near).abs() <= hair { near } else { x }
 }
 
+/// The numbers of a row, at their [limits](Description::limits) where they are a hair beyond: as robots take it.
+#[must_use]
+pub fn at_limits(row: &[f64], limits: &[Option<[f64; 2]>]) -> Vec<f64> {
+    let limits = limits.iter().copied().chain(std::iter::repeat(None));
+    row.iter().zip(limits).map(|(x, limits)| limits.map_or(*x, |limits| at_limit(*x, limits, HAIR))).collect()
+}
+
 /// A coordinate, or the side of its bounds that it is a [`HAIR`] beyond: of bounds less than a metre wide, that share of their width.
 fn at_side(x: f64, [low, high]: [f64; 2]) -> f64 {
     at_limit(x, [low, high], HAIR * (high - low).min(1.0))

@@ -258,8 +258,10 @@ fn ends_that_are_a_hair_out_of_bounds() {
         let row = |x: &str| format!("{x}, 2{rest}\n");
         dir.write("q.csv", columns.replace(' ', ",") + "\n" + &row("4.000001") + &row("1"));
         dir.write(name, dir.read(name).replace("4.001", "4.000001").replace("-0.000001", "2"));
-        let check = mp(&dir, &["check", name, "q.csv"]);
+        let check = mp(&dir, &["check", name, "q.csv", "--certificate", "c.json"]);
         assert!(check.code == 0 && check.stdout.contains("free"), "{name}: {check:?}");
+        let replayed = mp(&dir, &["verify-certificate", "c.json", "--scene", name]);
+        assert!(replayed.code == 0 && replayed.stdout.contains("proved free"), "{name}: {replayed:?}");
     }
 }
 

@@ -9,6 +9,7 @@ mod compare;
 use crate::path::states;
 use crate::{Error, MotionModel, PathRows, Robot};
 use mp_cspace::{Curve, Interrupt};
+use mp_kinds::at_limits;
 use mp_kinds::prove::{Prover, agrees};
 use mp_time::Trajectory;
 use serde::Serialize;
@@ -88,8 +89,9 @@ pub(crate) fn certificate(
     let what = || format!("cannot certify this path in {}", kind.name());
     let states = states(kind, path)?;
     let model = kind.motion_model().map_err(|e| e.context(what()))?;
+    let limits = kind.limits();
     for (row, q) in path.rows.iter().zip(&states) {
-        agrees(&model, row, &kind.poses(q)).map_err(|e| e.context(what()))?;
+        agrees(&model, &at_limits(row, &limits), &kind.poses(q)).map_err(|e| e.context(what()))?;
     }
     let clearance = if clearance.is_finite() { clearance } else { 0.0 };
     // All of what is kept, and half of what is beyond.
