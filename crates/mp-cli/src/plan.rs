@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let threads = if single { args.threads } else { 1 };
     let settings = RunSettings { args, files: &files, watched: single, threads, part: None };
     let job = |(i, seed): (usize, u64)| one(&scenes[i], &requests[i], seed, (&cancel, spent), &settings);
-    let mut reports = match jobs.as_slice() {
+    let made = match jobs.as_slice() {
         [] => Vec::new(),
         [only] => vec![job(*only)?],
         _ => {
@@ -97,9 +97,10 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
             all.into_iter().flatten().collect::<Result<Vec<_>, _>>()?
         }
     };
-    let missing = jobs.len() - reports.len();
+    let missing = jobs.len() - made.len();
+    let (mut reports, complete): (Vec<_>, Vec<_>) = made.into_iter().unzip();
     reports.extend(not_loaded);
-    let solved = reports.iter().all(|r| r.solved);
+    let solved = reports.iter().all(|r| r.solved) && !complete.contains(&false);
     show(args, reports, single)?;
     if missing > 0 {
         note(&format!("{}: {missing} of {} runs were not started", ended_by(&cancel), jobs.len()));
@@ -229,12 +230,14 @@ fn parts(
     files: &Files,
 ) -> Result<bool, Error> {
     let (mut reports, mut scene, count) = (Vec::new(), scene.clone(), 1 + scene.parts_left());
+    let mut all_complete = true;
     let name = scene.name().to_owned();
     let (interrupt, mut cannot_begin) = (Interrupt::new(cancel.clone()), None);
     for number in 1..=count {
         let part = Some((number, name.clone()));
         let settings = RunSettings { args, files, watched: true, threads: args.threads, part };
-        let report = one(&scene, request, request.seed, (cancel, spent), &settings)?;
+        let (report, complete) = one(&scene, request, request.seed, (cancel, spent), &settings)?;
+        all_complete &= complete;
         spent = Duration::ZERO;
         let end = report.path.as_ref().and_then(|path| path.last().cloned());
         reports.push(report);
@@ -252,7 +255,7 @@ fn parts(
             }
         }
     }
-    let solved = reports.len() == count && reports.iter().all(|report| report.solved);
+    let solved = all_complete && reports.len() == count && reports.iter().all(|report| report.solved);
     if args.json {
         print_json(&Runs::new(reports))?;
     } else {
@@ -312,14 +315,14 @@ impl RunSettings<'_> {
     }
 }
 
-/// One run: plan, then write the path and the picture.
+/// One run: plan, then write the path, its certificate and trajectory, and the picture. Also whether there was time to prove and time it.
 fn one(
     scene: &Scene,
     request: &Request,
     seed: u64,
     (cancel, spent): (&Cancel, Duration),
     settings: &RunSettings<'_>,
-) -> Result<Report, Error> {
+) -> Result<(Report, bool), Error> {
     let RunSettings { files, watched, threads, .. } = *settings;
     let (name, named) = match &settings.part {
         Some((number, name)) => (name.as_str(), Some(*number)),
@@ -339,30 +342,45 @@ fn one(
     let mut control = Control { spent, ..Control::new(cancel.clone(), &mut watched) };
     let mut report = settings.planned(scene, &request, &mut control)?;
     let grown = watched.grown;
-    let Some(rows) = report.path.clone() else { return Ok(report) };
+    let Some(rows) = report.path.clone() else { return Ok((report, true)) };
     let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
     if let Some(file) = out {
         line.say("writing the path");
         write_path(&mut report, &path, &file)?;
     }
+    let interrupt = time_limit(&request, cancel, began.saturating_sub(spent));
     if let Some(file) = files.certificate(name, seed).map(named) {
         line.say("writing the certificate");
-        let interrupt = time_limit(&request, cancel, began.saturating_sub(spent));
-        let certificate = scene.certificate(&path, report.clearance.unwrap_or(0.0), &interrupt)?;
-        write(&file, certificate.to_json().as_bytes())?;
-        report.certificate_file = Some(file.display().to_string());
+        let made = scene.certificate(&path, report.clearance.unwrap_or(0.0), &interrupt);
+        if let Some(certificate) = in_time(made, &interrupt, &file)? {
+            write(&file, certificate.to_json().as_bytes())?;
+            report.certificate_file = Some(file.display().to_string());
+        }
     }
     if let Some(file) = files.trajectory(name, seed).map(named) {
         line.say("timing the path");
-        let interrupt = time_limit(&request, cancel, began.saturating_sub(spent));
-        let timed = scene.time(&path, &settings.args.pace.pace(), &interrupt)?;
-        write(&file, &scene.trajectory_bytes(&timed.trajectory, kind_of(&file)?)?)?;
-        say(&timed);
+        let timed = scene.time(&path, &settings.args.pace.pace(), &interrupt);
+        if let Some(timed) = in_time(timed, &interrupt, &file)? {
+            write(&file, &scene.trajectory_bytes(&timed.trajectory, kind_of(&file)?)?)?;
+            say(&timed);
+        }
     }
     if let Some((picture, file)) = &picture {
         write_picture(&mut report, scene, &path, (picture, file), grown, (cancel, &line))?;
     }
-    Ok(report)
+    Ok((report, interrupt.raised().is_none()))
+}
+
+/// What was made of a path, unless that was interrupted: then a note says that there is no `file`.
+fn in_time<T>(made: Result<T, Error>, interrupt: &Interrupt, file: &Path) -> Result<Option<T>, Error> {
+    match (made, interrupt.raised()) {
+        (Err(_), Some(why)) => {
+            let (why, file) = (StoppedBy::from(why), file.display());
+            note(&format!("{why}: {file} was not made: `mp check` and `mp time` make it of the path"));
+            Ok(None)
+        }
+        (made, _) => made.map(Some),
+    }
 }
 
 fn write_path(report: &mut Report, path: &PathRows, file: &Path) -> Result<(), Error> {
@@ -440,4 +458,23 @@ fn export(folder: &Path, scenes: &[Scene]) -> Result<(), Error> {
         note(&format!("exported {}", scene.export(folder)?.display()));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What ends a run while its path is proved leaves the path; other errors stay errors.
+    #[test]
+    fn a_proof_without_time_is_no_error() {
+        let (cancel, file) = (Cancel::default(), Path::new("proof.json"));
+        let mut interrupt = Interrupt::new(cancel.clone());
+        let failed = || Err::<(), _>(Error::new("not free"));
+        assert!(!interrupt.ask() && in_time(failed(), &interrupt, file).is_err());
+        assert_eq!(in_time(Ok(1), &interrupt, file).unwrap(), Some(1));
+        cancel.cancel();
+        assert!(interrupt.ask());
+        assert_eq!(in_time(failed(), &interrupt, file).unwrap(), None);
+        assert_eq!(in_time(Ok(1), &interrupt, file).unwrap(), Some(1));
+    }
 }
