@@ -26,7 +26,7 @@ fn to_standard_output(bytes: &[u8]) -> Result<(), Error> {
         Err(e) if e.kind() == ErrorKind::BrokenPipe => CLOSED.store(true, Ordering::Relaxed),
         Err(e) => {
             return Err(Error::new(format!("cannot write to standard output: {e}"))
-                .help("name a file by --out, or make room where the output goes"));
+                .help("make room where the output goes, or send it elsewhere"));
         }
         Ok(()) => {}
     }

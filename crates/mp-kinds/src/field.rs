@@ -71,8 +71,10 @@ pub fn check(kind: &dyn Robot, field: &RelaxField) -> Result<(), Error> {
     let suits = names == ["x", "y"] || names == ["x", "y", "yaw"];
     if !(suits && place) {
         let whom = kind.space_name();
-        return Err(Error::new(format!("the field `{field}` is for robots of the plane, not for {whom}"))
-            .help("take the field `clearance`, which pushes all robots that know their clearance"));
+        return Err(Error::new(format!(
+            "the field `{field}` is for discs and polygons in worlds, not for {whom}"
+        ))
+        .help("take the field `clearance`, which pushes all robots that know their clearance"));
     }
     if let RelaxField::Image(file) = field {
         read_image(file, bounds(kind)?)?;

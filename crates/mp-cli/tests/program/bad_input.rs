@@ -198,6 +198,14 @@ fn ends_in_collision() {
         assert_eq!(run.code, 0, "{run:?}");
     }
     assert!(!dir.exists("p.txt"));
+    // An obstacle that is wholly inside of the robot.
+    dir.write(
+        "around.toml",
+        "[world]\nbounds = [[-5, -5], [5, 5]]\n[robot]\npolygon = [[-4, -4], [4, -4], [4, 4], [-4, 4]]\n\
+         [motion]\nstart = [0, 0, 0]\ngoal = [0.1, 0, 0]\n[[obstacle]]\nname = \"post\"\ncircle = [1, 2, 0.1]\n",
+    );
+    let run = mp(&dir, &["plan", "around.toml"]);
+    assert!(run.code == 2 && run.stderr.contains("the start is in collision with post"), "{run:?}");
     dir.write("touch.env", good.replace("-2 1.4 0.2 0 0 0", "-0.50000001 1.4 0.2 0 0 0"));
     let run = mp(&dir, &["plan", "touch.env"]);
     assert!(run.code == 2 && run.stderr.contains("from contact"), "{run:?}");

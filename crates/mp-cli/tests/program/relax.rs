@@ -59,9 +59,12 @@ fn bad_fields_are_explained() {
         (vec!["plan", "rrs-follow", "--relax", "image:square.pgm"], ["2 × 2 pixels", "2 × 1 pixels"]),
         (
             vec!["plan", "cubicles", "--relax", "paper"],
-            ["for robots of the plane, not for SE3", "`clearance`"],
+            ["for discs and polygons in worlds, not for SE3", "`clearance`"],
         ),
-        (vec!["plan", "arm", "--relax", "risk"], ["for robots of the plane, not for", "`clearance`"]),
+        (
+            vec!["plan", "arm", "--relax", "risk"],
+            ["for discs and polygons in worlds, not for", "`clearance`"],
+        ),
         (
             [&bent[..], &["rrs-follow", "--set", "field=wind"]].concat(),
             ["no field `wind`", "there are: clearance"],
@@ -80,7 +83,7 @@ fn bad_fields_are_explained() {
         ),
         (
             [&bent[..], &["cubicles", "--set", "field=paper"]].concat(),
-            ["for robots of the plane, not for SE3", "`clearance`"],
+            ["for discs and polygons in worlds, not for SE3", "`clearance`"],
         ),
         (vec!["plan", "crossing", "--relax"], ["no clearance gradient", "leave relaxing out"]),
         (vec!["plan", "rrs-follow", "--request", "field.json"], ["no field `wind`", "is not a request"]),

@@ -527,6 +527,16 @@ impl<B: PlanarBody> Description for PlanarScene<B> {
         for obstacle in rings.iter().flatten().filter_map(inside) {
             note(Some(obstacle));
         }
+        if let PlanarShape::Polygon(robot) = &self.problem.file.robot {
+            let pose = B::pose(&placed::<B>(q));
+            let within = |p: &Point2<f64>| robot.contains(&pose.inverse_transform_point(p));
+            for (i, obstacle) in self.problem.obstacles.iter().enumerate() {
+                // One point is enough: the borders do not cross, or it is noted above.
+                if obstacle.polygon.rings().iter().flatten().take(1).any(within) {
+                    note(Some(i));
+                }
+            }
+        }
         touches
     }
     fn end_error(&self, end: End, message: String, help: String) -> Error {

@@ -95,9 +95,9 @@ fn what_does_not_suit_is_refused_before_planning() {
         error.to_string()
     };
     for scene in ["cubicles", "arm"] {
-        assert!(refused(scene, &all[2]).contains("is for robots of the plane"), "{scene}");
+        assert!(refused(scene, &all[2]).contains("is for discs and polygons in worlds"), "{scene}");
     }
-    assert!(refused("cubicles", &all[3]).contains("is for robots of the plane"));
+    assert!(refused("cubicles", &all[3]).contains("is for discs and polygons in worlds"));
     assert!(refused("docks", &all[3]).contains("100 × 40 pixels"));
     assert!(refused("unicycle", &all[0]).contains("moves by inputs"));
     assert!(refused("crossing", &all[0]).contains("no clearance gradient"));

@@ -122,9 +122,9 @@ fn what_does_not_suit_is_refused() {
         error.to_string()
     };
     for (scene, field, words) in [
-        ("cubicles", "paper", "for robots of the plane, not for SE3"),
-        ("arm", "risk", "for robots of the plane"),
-        ("wrench", "image:nowhere.png", "for robots of the plane"),
+        ("cubicles", "paper", "for discs and polygons in worlds, not for SE3"),
+        ("arm", "risk", "for discs and polygons in worlds"),
+        ("wrench", "image:nowhere.png", "for discs and polygons in worlds"),
         ("rrs-low", "wind", "there is no field `wind`"),
         ("rrs-low", "risk:-1", "the factor of the noise"),
         ("rrs-low", "image:nowhere.png", "nowhere.png"),
