@@ -106,7 +106,11 @@ fn vertices_of(text: &Text<'_>, interrupt: &mut Interrupt) -> usize {
     count
 }
 
-/// The words of a statement: of this line, and of the next ones while a line ends with `\`.
+/// Statements whose words are names of groups, materials and files.
+const NAMING: [&str; 8] = ["g", "o", "usemtl", "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj"];
+
+/// The words of a statement: of this line, and of the next ones while a line ends with `\`. After a name that takes a blank
+/// before it: names end with this byte too, such as folders and characters of Shift-JIS, Big5 and GBK.
 fn statement<'a>(line: Token<'a>, lines: &mut impl Iterator<Item = Token<'a>>, words: &mut Vec<Token<'a>>) {
     words.clear();
     let mut line = line;
@@ -114,8 +118,11 @@ fn statement<'a>(line: Token<'a>, lines: &mut impl Iterator<Item = Token<'a>>, w
         let before_comment =
             line.text.find('#').map_or(line, |i| Token { text: &line.text[..i], at: line.at });
         let whole = before_comment.text.trim_end();
-        let goes_on = whole.strip_suffix('\\');
+        let mut goes_on = whole.strip_suffix('\\');
         words.extend(Token { text: goes_on.unwrap_or(whole), at: line.at }.words());
+        if words.first().is_some_and(|word| NAMING.contains(&word.text)) {
+            goes_on = goes_on.filter(|before| before.ends_with([' ', '\t']));
+        }
         match goes_on.and_then(|_| lines.next()) {
             Some(next) => line = next,
             None => return,
@@ -196,8 +203,21 @@ mod tests {
         );
         assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (3, 2));
         // The group takes the next line: what is missing then is said with its line.
-        let e = parse_mesh("t.obj", b"v 0 0 0\ng a\\\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap_err();
+        let e = parse_mesh("t.obj", b"v 0 0 0\ng a \\\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(5), Some(7)), "{e}");
+    }
+
+    #[test]
+    fn names_may_end_with_the_byte_of_a_backslash() {
+        // 表 of Shift-JIS, 功 of Big5, 誠 of GBK, a character that begins with 0xa0, and a folder of Windows.
+        for name in [&b"\x95\\"[..], b"\xa5\\", b"\xd5\\", b"\xa0\\", b"C:\\tex\\", b"a \x95\\ ", b"\\"] {
+            for keyword in NAMING {
+                let statement = [keyword.as_bytes(), b" x", name, b"\n"].concat();
+                let text =
+                    [b"v 0 0 0\n", &*statement, b"v 1 0 0\nv 0 1 0\n", &statement, b"f 1 2 3\n"].concat();
+                assert_eq!(remarks(&text), (Ok(1), Vec::new()), "{}", text.escape_ascii());
+            }
+        }
     }
 
     /// What is read, in how many triangles, and what is remarked.
