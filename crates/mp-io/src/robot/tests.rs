@@ -99,6 +99,21 @@ fn shapes_are_read() {
 }
 
 #[test]
+fn what_is_attached_has_a_name_of_its_own() {
+    let then = "[[then]]\nattach = \"table\"\nto = \"tip\"\ngoal = [0, 0]\n";
+    let next = |text: &str| {
+        let (_dir, path) = folder(&format!("{text}{then}"));
+        RobotProblem::load(&path).unwrap().next_part(&[0.0, 0.0], |_| Some(Default::default()))
+    };
+    assert_eq!(next(GOOD).unwrap().unwrap().attached[0].name, "table");
+    let [message, expected] = next(&GOOD.replace("sphere =", "name = \"table\"\nsphere =")).unwrap_err();
+    assert!(
+        message.contains("several bodies \"table\"") && expected.contains("rename"),
+        "{message}; {expected}"
+    );
+}
+
+#[test]
 fn faults_have_their_place() {
     let mut wrong = Vec::new();
     for (from, to, line, words) in [
