@@ -32,7 +32,7 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
         binary(file, bytes, interrupt, remark)?
     } else {
         let decoded = decode_mesh(file, bytes)?;
-        text(&Text { file, text: &decoded, guide: "meshes.md" }, (file, &mut *interrupt, remark))?
+        text(&Text { file, text: &decoded, guide: "meshes.md" }, interrupt, remark)?
     };
     let mesh = TriMesh::from_soup_until(&soup, interrupt).map_err(|_| Error::interrupted(file))?;
     mesh.map_err(|e| mesh_error(file, &e))
@@ -126,10 +126,7 @@ fn is_triangle(corners: &[Point3<f64>; 3]) -> bool {
 }
 
 /// The triangles of a text file.
-fn text(
-    text: &Text<'_>,
-    (file, interrupt, remark): (&str, &mut Interrupt, &mut dyn FnMut(&str)),
-) -> Result<Soup, Error> {
+fn text(text: &Text<'_>, interrupt: &mut Interrupt, remark: &mut dyn FnMut(&str)) -> Result<Soup, Error> {
     let mut lexer = Lexer::new(text);
     let mut soup = Vec::new();
     while let Some(word) = lexer.next() {
@@ -142,7 +139,7 @@ fn text(
         lexer.next_line(); // the rest of the line is a name
         loop {
             if interrupt.ask() {
-                return Err(Error::interrupted(file));
+                return Err(Error::interrupted(text.file));
             }
             let word = lexer.next();
             if word.is_some_and(|w| w.text.eq_ignore_ascii_case("endsolid")) {
