@@ -19,9 +19,12 @@ fn western(bytes: &[u8]) -> String {
         .collect()
 }
 
-/// The text of a mesh: UTF-8, or else an encoding that extends ASCII. Which one does not matter, because everything but names
+/// The text of a mesh or a map: UTF-8, or else an encoding that extends ASCII. Which one does not matter, because everything but names
 /// and comments is ASCII.
-pub(crate) fn decode_mesh<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Error> {
+///
+/// # Errors
+/// When it has zero bytes, but for those at its end.
+pub fn decode_mesh<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Error> {
     let bytes = without_end_marks(bytes);
     match decode(file, bytes) {
         Ok(text) => Ok(Cow::Borrowed(text)),

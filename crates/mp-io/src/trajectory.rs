@@ -282,9 +282,12 @@ mod tests {
         let base = r#"{"joint_trajectory": {"joint_names": [], "points": []}, "multi_dof_joint_trajectory": {"joint_names": ["base"], "points": []}}"#;
         assert!(read(base, TrajectoryKind::Json).unwrap_err().contains("several degrees of freedom"));
         assert!(
-            read("joint_names: [&a lift, *a]\npoints: []\n", TrajectoryKind::Yaml)
-                .unwrap_err()
-                .contains("alias")
+            read(
+                "joint_names: [&a lift, *a]\npoints: [{positions: [0, 0], time_from_start: 0}]\n",
+                TrajectoryKind::Yaml
+            )
+            .unwrap_err()
+            .contains("the same number")
         );
         assert!(read("points: [\n", TrajectoryKind::Yaml).is_err());
     }
