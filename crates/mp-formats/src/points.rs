@@ -228,7 +228,7 @@ mod tests {
                 "ply\nformat {format} 1.0\nelement vertex 2\nproperty float x\nproperty uchar red\nproperty double y\nproperty float z\nend_header\n"
             )
         };
-        let text = head("ascii") + "1 255 2 3\nnan 0 nan nan\n";
+        let text = head("ascii") + "1 255 2 3\n-nan(ind) 0 1.#QNAN nan\n";
         let mut binary = head("binary_little_endian").into_bytes();
         for [x, y, z] in [[1.0_f32, 2.0, 3.0], [f32::NAN; 3]] {
             binary

@@ -3,7 +3,7 @@
 use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
 use crate::mesh::{LEFT_OUT, Reading, build};
-use crate::text::{Text, Token, clipped};
+use crate::text::{Text, Token, clipped, comment_at, is_not_a_number};
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
 use nalgebra::Point3;
@@ -116,7 +116,7 @@ fn statement<'a>(line: Token<'a>, lines: &mut impl Iterator<Item = Token<'a>>, w
     let mut line = line;
     loop {
         let before_comment =
-            line.text.find('#').map_or(line, |i| Token { text: &line.text[..i], at: line.at });
+            comment_at(line.text).map_or(line, |i| Token { text: &line.text[..i], at: line.at });
         let whole = before_comment.text.trim_end();
         let mut goes_on = whole.strip_suffix('\\');
         words.extend(Token { text: goes_on.unwrap_or(whole), at: line.at }.words());
@@ -138,9 +138,11 @@ fn vertex(text: &Text<'_>, line: Token<'_>, values: &[Token<'_>]) -> Result<Poin
     }
     let mut p = Point3::origin();
     for (i, word) in values.iter().enumerate() {
-        let v = text.number(*word, what)?;
-        if i < 3 {
-            p[i] = v;
+        // Weight and colour are not used.
+        match p.coords.get_mut(i) {
+            Some(axis) => *axis = text.number(*word, what)?,
+            None if is_not_a_number(word.text) => {}
+            None => drop(text.number(*word, what)?),
         }
     }
     Ok(p)
@@ -246,6 +248,20 @@ mod tests {
         assert_eq!(remarks(text), (Ok(1), Vec::new()));
         let e = parse_mesh("t.obj", b"# \xe4\nv 0 \xe4 0\n").unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(2), Some(5)), "{e}");
+    }
+
+    #[test]
+    fn colours_may_be_no_numbers_but_positions_may_not() {
+        for word in ["nan", "-nan(ind)", "1.#QNAN"] {
+            let text = |z: &str, blue: &str| format!("v 0 0 {z} 1 0 {blue}\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+            assert_eq!(remarks(text("0", word).as_bytes()), (Ok(1), Vec::new()), "{word}");
+            assert!(remarks(text(word, "0").as_bytes()).0.is_err(), "{word}");
+            assert!(
+                remarks(format!("v 0 0 {word}\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").as_bytes()).0.is_err(),
+                "{word}"
+            );
+        }
+        assert!(remarks(b"v 0 0 0 1 0 red\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").0.is_err());
     }
 
     #[test]

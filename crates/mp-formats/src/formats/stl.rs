@@ -166,7 +166,7 @@ fn facet(text: &Text<'_>, lexer: &mut Lexer<'_>) -> Result<[Point3<f64>; 3], Err
     expect(text, lexer.next(), "normal")?;
     for _ in 0..3 {
         // Normals are recomputed from the corners; writers put what is no number here for thin triangles.
-        let word = lexer.next_unused().ok_or_else(|| text.error_at_end("the normal, three numbers"))?;
+        let word = lexer.next().ok_or_else(|| text.error_at_end("the normal, three numbers"))?;
         if word.text.parse::<f64>().is_err() && !is_not_a_number(word.text) {
             text.number(word, "the normal, three numbers")?;
         }
