@@ -168,6 +168,24 @@ pub fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
 }
 
+/// The name that a URI means, in which `%20` and the like stand for bytes; `None` if there are none, or they are no UTF-8.
+#[must_use]
+pub fn percent_decoded(uri: &str) -> Option<String> {
+    let mut parts = uri.split('%');
+    let mut bytes = parts.next()?.as_bytes().to_vec();
+    for part in parts {
+        // `%` alone is itself.
+        match part.get(..2).filter(|digits| digits.bytes().all(|b| b.is_ascii_hexdigit())) {
+            Some(digits) => {
+                bytes.extend(u8::from_str_radix(digits, 16));
+                bytes.extend(part[2..].bytes());
+            }
+            None => bytes.extend(format!("%{part}").bytes()),
+        }
+    }
+    String::from_utf8(bytes).ok().filter(|name| name != uri)
+}
+
 /// `bytes` without what old programs write after a text: zero bytes and the end mark of DOS, 0x1a, and blanks among them.
 pub(crate) fn without_end_marks(bytes: &[u8]) -> &[u8] {
     let is_mark = |b: &u8| matches!(b, 0 | 0x1a);
@@ -211,6 +229,14 @@ mod tests {
         assert_eq!((e.line(), e.column()), (Some(2), Some(6)));
         assert!(decode("f", b"\xff\xfeO\0F\0").is_err());
         assert!(decode("f", b"O\0F\0F\0").is_err());
+    }
+
+    #[test]
+    fn uris_mean_names() {
+        let of = |uri: &str| percent_decoded(uri);
+        assert_eq!(of("my%20mesh/50%25%2cGr%C3%B6%c3%9fe.obj").unwrap(), "my mesh/50%,Größe.obj");
+        assert_eq!(of("50%/a%20b%").unwrap(), "50%/a b%");
+        assert_eq!(["a.obj", "50% ü.obj", "%", "%ö", "%+f", "a%ff", ""].map(of), [const { None }; 7]);
     }
 
     #[test]

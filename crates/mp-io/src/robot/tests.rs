@@ -262,6 +262,23 @@ fn packages_are_found_where_they_are_installed() {
     for name in found {
         assert!(problem.mesh(name).is_ok(), "{name}: {:?}", problem.mesh(name));
     }
+    // Names of URIs, and names that only look like them.
+    std::fs::create_dir_all(at("prefix/share/robot/my mesh")).unwrap();
+    for name in ["my mesh/größe.off", "meshes/a%20b.off", "meshes/a b.off"] {
+        crate::write_off(at("prefix/share/robot").join(name), &mesh).unwrap();
+    }
+    let meant = "my%20mesh/gr%C3%B6%C3%9Fe.off";
+    let absolute = format!("file://{}/{meant}", at("prefix/share/robot").display());
+    for name in [
+        &format!("package://robot/{meant}"),
+        &format!("package:///{meant}"),
+        &format!("../{meant}"),
+        &absolute,
+    ] {
+        assert!(problem.mesh(name).is_ok(), "{name}: {:?}", problem.mesh(name));
+    }
+    assert!(problem.mesh_file("../meshes/a%20b.off").unwrap().ends_with("a%20b.off"));
+    assert!(problem.mesh("../meshes/b%20a.off").unwrap_err().contains("b%20a.off"));
     for folder in ["prefix", "prefix/share"] {
         problem.packages = Some(at(folder));
         assert!(problem.mesh("package://parts/meshes/hand.off").is_ok(), "{folder}");
