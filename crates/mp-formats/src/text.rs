@@ -146,11 +146,6 @@ impl<'a> Token<'a> {
         })
     }
 
-    /// The parts between commas, without blanks and quotes around them. Commas between quotes are part of a cell.
-    pub(crate) fn cells(self) -> impl Iterator<Item = Token<'a>> + Clone {
-        self.cells_between(',')
-    }
-
     /// What cells of the line are between: commas, else semicolons, else tabs.
     pub fn separator(self) -> char {
         let is_between = |separator: &char| self.cells_between(*separator).nth(1).is_some();
