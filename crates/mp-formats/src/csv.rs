@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 /// with units in which their numbers are (`elbow [deg]`): then the rows have the numbers `wanted`, in that order and in those units. A
 /// first line of numbers names nothing. If nothing is `wanted`, rows are as in the file, and the columns are those that it names.
 ///
-/// Blank lines are skipped, cells may be quoted, and all rows have as many numbers as the first. A first column without a name below
+/// Semicolons or tabs may stand for all commas. Blank lines are skipped, cells may be quoted, and all rows have as many numbers as the first. A first column without a name below
 /// others that have one is the index of a data frame, and no part of a configuration.
 ///
 /// # Errors
@@ -19,7 +19,12 @@ pub fn parse_csv(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<(Vec<Col
     let text = Text::new(file, bytes, "path.md")?;
     let what = "one configuration: numbers separated by commas";
     let mut lines = text.lines().peekable();
-    let header = lines.peek().and_then(|line| header(*line, wanted));
+    let separator = lines.peek().map_or(',', |line| line.separator());
+    let header = lines.peek().and_then(|line| header(*line, separator, wanted));
+    let faulty = |line: Token<'_>, index: usize, fault: Fault| {
+        let cell = fault.at.and_then(|at| line.cells_between(separator).nth(index + at)).unwrap_or(line);
+        text.error(cell, fault.message).expected(fault.expected).help(HELP)
+    };
     let mut columns = wanted.to_vec();
     let (mut names, mut index, mut matching) = (Vec::new(), 0, None);
     if let Some((line, cells)) = lines.peek().copied().zip(header) {
@@ -31,15 +36,15 @@ pub fn parse_csv(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<(Vec<Col
             columns =
                 if nameless(named) { Vec::new() } else { named.iter().map(|n| Column::named(n)).collect() };
         } else {
-            let fault = |fault| faulty(&text, line, index, fault);
+            let fault = |fault| faulty(line, index, fault);
             matching = Some(Matching::new(&names[index..], wanted).map_err(fault)?);
         }
     }
     let mut rows: Vec<Vec<f64>> = Vec::new();
     let mut width = names.len();
     for line in lines {
-        let row =
-            line.cells().skip(index).map(|cell| text.number(cell, what)).collect::<Result<Vec<_>, _>>()?;
+        let cells = line.cells_between(separator).skip(index);
+        let row = cells.map(|cell| text.number(cell, what)).collect::<Result<Vec<_>, _>>()?;
         if width == 0 {
             width = row.len();
         }
@@ -50,9 +55,7 @@ pub fn parse_csv(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<(Vec<Col
         }
         rows.push(match &matching {
             None => row,
-            Some(matching) => {
-                matching.configuration(&row).map_err(|fault| faulty(&text, line, index, fault))?
-            }
+            Some(matching) => matching.configuration(&row).map_err(|fault| faulty(line, index, fault))?,
         });
     }
     match rows.is_empty() {
@@ -61,10 +64,16 @@ pub fn parse_csv(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<(Vec<Col
     }
 }
 
-/// The names in a line, if it is one of names: it has something else than numbers, and no number that is not a name.
-fn header(line: Token<'_>, wanted: &[Column]) -> Option<Vec<String>> {
-    let names: Vec<String> = line.cells().map(|cell| cell.text.replace("\"\"", "\"")).collect();
+/// The names in a line, if it is one of names: it has something else than numbers, and no number that is not a name. Numbers alone are names
+/// if they are all those of the robot. One or two of them may be a configuration, unless they are quoted.
+fn header(line: Token<'_>, separator: char, wanted: &[Column]) -> Option<Vec<String>> {
+    let cells = line.cells_between(separator);
+    let names: Vec<String> = cells.map(|cell| cell.text.replace("\"\"", "\"")).collect();
     let is_number = |name: &String| name.parse::<f64>().is_ok();
+    let all = names.len() == wanted.len() && wanted.iter().all(|w| names.contains(&w.name));
+    if all && (names.len() > 2 || line.text.starts_with('"')) {
+        return Some(names);
+    }
     let is_name = |name: &String| !is_number(name) || wanted.iter().any(|w| w.name == *name);
     let unnamed = names.len() > 1 && names[0].is_empty() && nameless(&names[1..]);
     if names.iter().all(is_number) || !(unnamed || names.iter().all(is_name)) {
@@ -78,18 +87,12 @@ fn header(line: Token<'_>, wanted: &[Column]) -> Option<Vec<String>> {
     Some(names)
 }
 
-/// The error about a column of a line.
-fn faulty(text: &Text<'_>, line: Token<'_>, index: usize, fault: Fault) -> Error {
-    let cell = fault.at.and_then(|at| line.cells().nth(index + at)).unwrap_or(line);
-    text.error(cell, fault.message).expected(fault.expected).help(HELP)
-}
-
 /// The rows as comma-separated values, below a line of `names` if there are any. Numbers have the fewest digits that
 /// read back to the same bits.
 #[must_use]
 pub fn csv_text(names: &[String], rows: &[Vec<f64>]) -> String {
     let mut out = String::new();
-    let quoted = |name: &String| match name.starts_with(['#', '\u{feff}']) || name.contains([',', '"']) {
+    let quoted = |name: &String| match name.starts_with(['#', '\u{feff}']) || name.contains([',', ';', '"']) {
         true => format!("\"{}\"", name.replace('"', "\"\"")),
         false => name.clone(),
     };
@@ -128,14 +131,20 @@ mod tests {
         assert_eq!(rows(&csv_text(&[], &written)), written);
         assert_eq!(rows(" 1 , 2,3\r\n\r\n3,4,5\r\n"), [[1.0, 2.0, 3.0], [3.0, 4.0, 5.0]]);
         // Whatever the names are, in any order of the columns.
-        let odd = ["#a", "b,c", "d\"e", "f\ng", "2", "h [deg]", " i"].map(|name| Column::new(name, "rad"));
+        let odd =
+            ["#a", "b,c", "j;k", "d\"e", "f\ng", "2", "h [deg]", " i"].map(|name| Column::new(name, "rad"));
         let header: Vec<_> = odd.iter().map(ToString::to_string).collect();
-        let numbers = vec![vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]];
+        let numbers = vec![vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]];
         let text = csv_text(&header, &numbers);
         let turned: Vec<_> = odd.iter().cloned().rev().collect();
         assert_eq!(parse_csv("p.csv", text.as_bytes(), &odd).unwrap(), (odd.to_vec(), numbers.clone()));
         let read = parse_csv("p.csv", text.as_bytes(), &turned).unwrap().1;
-        assert_eq!(read, [[7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0]]);
+        assert_eq!(read, [[8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0]]);
+        let one = [Column::new("j;k", "rad")];
+        assert_eq!(
+            parse_csv("p.csv", csv_text(&[one[0].to_string()], &[vec![1.0]]).as_bytes(), &one).unwrap().1,
+            [[1.0]]
+        );
         // A byte order mark that is a name is none of the file.
         let (marked, numbers) = parse_csv("p.csv", b" \xef\xbb\xbf ,\n \n3,4\r\n", &[]).unwrap();
         let names: Vec<_> = marked.iter().map(ToString::to_string).collect();
@@ -155,12 +164,26 @@ mod tests {
             "index,y,x,yaw [deg]\n2026-01-01 00:00,2,1,90\n",
             ",0,1,2\n0,1,2,1.5707963267948966\n",
             "1,2,1.5707963267948966\n",
+            "yaw [deg];x;\"y\"\n90;1;2\n",
+            "x\tyaw\ty\r\n1\t1.5707963267948966\t2\r\n",
+            "1;2;1.5707963267948966\n",
         ] {
             assert_eq!(rows(text), [[1.0, 2.0, half]], "{text}");
         }
         // Joints may be named by numbers.
         let numbered = ["1", "2", "tool"].map(|name| Column::new(name, "rad"));
         assert_eq!(parse_csv("p.csv", b"tool,2,1\n3,4,5\n", &numbered).unwrap().1, [[5.0, 4.0, 3.0]]);
+        let numbered = ["1", "2", "3"].map(|name| Column::new(name, "rad"));
+        for text in ["3,1,2\n6,4,5\n", "\"3\";\"1\";\"2\"\n6;4;5\n"] {
+            assert_eq!(
+                parse_csv("p.csv", text.as_bytes(), &numbered).unwrap().1,
+                [[4.0, 5.0, 6.0]],
+                "{text}"
+            );
+        }
+        let read = |text: &str| parse_csv("p.csv", text.as_bytes(), &numbered[..2]).unwrap().1;
+        assert_eq!(read("\"2\",\"1\"\n5,4\n"), [[4.0, 5.0]]);
+        assert_eq!(read("2,1\n5,4\n"), [[2.0, 1.0], [5.0, 4.0]]);
         // Without a robot, they are as the file says.
         let (named, read) = parse_csv("p.csv", b",b [deg],a\n0,1,2\n", &[]).unwrap();
         assert_eq!(
@@ -187,7 +210,7 @@ mod tests {
         assert_eq!(fault("x,y\n1,2\n"), (Some(1), Some(1)));
         assert_eq!(fault("x,y,\"yaw\n1,2,3\n"), (Some(1), Some(5)));
         assert_eq!(fault("exported by a tool\nx,y,yaw\n1,2,3\n"), (Some(1), Some(1)));
-        for text in ["x,y,yaw\n", "", "1,nan\n", "x;y;yaw\n1;2;3\n"] {
+        for text in ["x,y,yaw\n", "", "1,nan\n", "x;y;yaw\n1,5;2;3\n", "x y yaw\n1 2 3\n"] {
             assert!(parse_csv("p.csv", text.as_bytes(), &columns()).is_err(), "{text}");
         }
     }

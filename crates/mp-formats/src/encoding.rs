@@ -1,7 +1,7 @@
 //! Texts that are not UTF-8: names and comments in meshes, and XML in the encoding that it declares.
 
 use crate::error::{Error, ErrorKind};
-use crate::files::decode;
+use crate::files::{decode, without_end_marks};
 use crate::text::clipped;
 use std::borrow::Cow;
 
@@ -19,9 +19,13 @@ fn western(bytes: &[u8]) -> String {
         .collect()
 }
 
-/// The text of a mesh: UTF-8, or else an encoding that extends ASCII. Which one does not matter, because everything but names
+/// The text of a mesh or a map: UTF-8, or else an encoding that extends ASCII. Which one does not matter, because everything but names
 /// and comments is ASCII.
-pub(crate) fn decode_mesh<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Error> {
+///
+/// # Errors
+/// When it has zero bytes, but for those at its end.
+pub fn decode_mesh<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Error> {
+    let bytes = without_end_marks(bytes);
     match decode(file, bytes) {
         Ok(text) => Ok(Cow::Borrowed(text)),
         // A text has no zero bytes.
@@ -164,6 +168,7 @@ mod tests {
     fn names_and_comments_of_meshes_may_be_in_any_encoding() {
         assert_eq!(decode_mesh("m.stl", b"solid Geh\xe4use \x80\n").unwrap(), "solid Gehäuse €\n");
         assert_eq!(decode_mesh("m.stl", "solid Gehäuse\n".as_bytes()).unwrap(), "solid Gehäuse\n");
+        assert_eq!(decode_mesh("m.stl", b"solid Geh\xe4use\0\0\x1a").unwrap(), "solid Gehäuse");
         assert!(decode_mesh("m.stl", b"solid\0\xe4").is_err());
     }
 }

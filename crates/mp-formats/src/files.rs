@@ -168,12 +168,38 @@ pub fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
 }
 
-/// `bytes` as UTF-8, without a byte order mark.
+/// The name that a URI means, in which `%20` and the like stand for bytes; `None` if there are none, or they are no UTF-8.
+#[must_use]
+pub fn percent_decoded(uri: &str) -> Option<String> {
+    let mut parts = uri.split('%');
+    let mut bytes = parts.next()?.as_bytes().to_vec();
+    for part in parts {
+        // `%` alone is itself.
+        match part.get(..2).filter(|digits| digits.bytes().all(|b| b.is_ascii_hexdigit())) {
+            Some(digits) => {
+                bytes.extend(u8::from_str_radix(digits, 16));
+                bytes.extend(part[2..].bytes());
+            }
+            None => bytes.extend(format!("%{part}").bytes()),
+        }
+    }
+    String::from_utf8(bytes).ok().filter(|name| name != uri)
+}
+
+/// `bytes` without what old programs write after a text: zero bytes and the end mark of DOS, 0x1a, and blanks among them.
+pub(crate) fn without_end_marks(bytes: &[u8]) -> &[u8] {
+    let is_mark = |b: &u8| matches!(b, 0 | 0x1a);
+    let end = bytes.iter().rposition(|b| !is_mark(b) && !b.is_ascii_whitespace()).map_or(0, |last| last + 1);
+    let blanks = bytes[end..].iter().position(is_mark).unwrap_or(bytes.len() - end);
+    &bytes[..end + blanks]
+}
+
+/// `bytes` as UTF-8, without a byte order mark, and without zero bytes and marks of DOS at its end.
 ///
 /// # Errors
 /// When they are not UTF-8.
 pub fn decode<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Error> {
-    let body = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let body = without_end_marks(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes));
     let text = std::str::from_utf8(body).map_err(|e| {
         let good = std::str::from_utf8(&body[..e.valid_up_to()]).unwrap_or_default();
         let byte = body.get(e.valid_up_to()).copied().unwrap_or_default();
@@ -202,5 +228,23 @@ mod tests {
         let e = decode("f", b"OFF\n# caf\xe9\n").unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(2), Some(6)));
         assert!(decode("f", b"\xff\xfeO\0F\0").is_err());
+        assert!(decode("f", b"O\0F\0F\0").is_err());
+    }
+
+    #[test]
+    fn uris_mean_names() {
+        let of = |uri: &str| percent_decoded(uri);
+        assert_eq!(of("my%20mesh/50%25%2cGr%C3%B6%c3%9fe.obj").unwrap(), "my mesh/50%,Größe.obj");
+        assert_eq!(of("50%/a%20b%").unwrap(), "50%/a b%");
+        assert_eq!(["a.obj", "50% ü.obj", "%", "%ö", "%+f", "a%ff", ""].map(of), [const { None }; 7]);
+    }
+
+    #[test]
+    fn zero_bytes_and_marks_of_dos_end_a_text() {
+        for end in ["", "\0", "\x1a", "\0\0\r\n\x1a\n", "\x1a\0 \0"] {
+            assert_eq!(decode("f", format!("OFF\n{end}").as_bytes()).unwrap(), "OFF\n", "{end:?}");
+        }
+        assert_eq!(decode("f", b"\0").unwrap(), "");
+        assert!(decode("f", b"OFF\0OFF").is_err());
     }
 }

@@ -1,22 +1,36 @@
 //! Paths in JSON, alone or in a result of planning.
 
+use crate::columns::Column;
 use crate::error::{Error, ErrorKind};
-use serde::de::DeserializeOwned;
+use crate::text::clipped;
+use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// The names of the columns, if the file has any: texts, or objects with a name and a unit.
 #[derive(Deserialize)]
 struct HasNames {
-    #[serde(alias = "names", alias = "joint_names")]
     columns: Option<Vec<Value>>,
+    names: Option<Vec<Value>>,
+    joint_names: Option<Vec<Value>>,
+    #[serde(rename = "jointNames")]
+    camel: Option<Vec<Value>>,
+    /// As `JointState` of ROS has them; as a text it is the name of something else.
+    name: Option<Value>,
+    #[serde(rename = "path")]
+    _path: Option<IgnoredAny>,
+    #[serde(flatten)]
+    others: BTreeMap<String, Value>,
 }
 
-/// The names of the columns of a path, with units if the file says them.
-pub(crate) fn names(file: &str, text: &str) -> Result<Option<Vec<String>>, Error> {
+/// The names of the columns of a path, with units if the file says them. `wanted` are the columns of the robot, as far as they are known.
+pub(crate) fn names(file: &str, text: &str, wanted: &[Column]) -> Result<Option<Vec<String>>, Error> {
     let what = "\"columns\": [\"NAME [UNIT]\", …]";
-    // What is no JSON at all is said of the whole file, by what reads the path.
-    if serde_json::from_str::<HasNames>(text).is_err_and(|e| !e.is_data()) {
+    // What is no JSON at all, or no object, is said of the whole file, by what reads the path.
+    if !text.trim_start().starts_with('{')
+        || serde_json::from_str::<HasNames>(text).is_err_and(|e| !e.is_data())
+    {
         return Ok(None);
     }
     let read: HasNames = parse(file, text, what, "the format is described in docs/formats/path.md")?;
@@ -26,7 +40,45 @@ pub(crate) fn names(file: &str, text: &str) -> Result<Option<Vec<String>>, Error
         (_, _, Some(name)) => name.to_owned(),
         _ => value.to_string(),
     };
-    Ok(read.columns.map(|columns| columns.into_iter().map(name).collect()))
+    let error = |key: &str, message: String| {
+        let at = text.find(&format!("\"{key}\"")).unwrap_or(0);
+        Error::at(ErrorKind::Content, file, text, at, key.len() + 2, message)
+    };
+    let listed = |value| if let Value::Array(list) = value { Some(list) } else { None };
+    let lists = [
+        ("columns", read.columns),
+        ("names", read.names),
+        ("joint_names", read.joint_names),
+        ("jointNames", read.camel),
+        ("name", read.name.and_then(listed)),
+    ];
+    let lists =
+        lists.into_iter().filter_map(|(key, list)| Some((key, list?.into_iter().map(name).collect())));
+    let mut lists: Vec<(&str, Vec<String>)> = lists.collect();
+    if let Some((key, _)) = lists.iter().find(|(_, list)| *list != lists[0].1) {
+        return Err(error(key, format!("`{}` and `{key}` name other columns", lists[0].0))
+            .expected("one list of names")
+            .help("keep the list of the columns of `path`, and remove the other one"));
+    }
+    // A list of all columns in another order may say what the numbers are.
+    let own: Vec<&str> = wanted.iter().map(|column| &*column.name).collect();
+    let turned = |value: &Value| {
+        let list = value.as_array()?.iter().map(Value::as_str).collect::<Option<Vec<_>>>()?;
+        let (mut sorted, mut known) = (list.clone(), own.clone());
+        sorted.sort_unstable();
+        known.sort_unstable();
+        (sorted == known && list != own).then_some(())
+    };
+    match read.others.iter().find_map(|(key, value)| turned(value).map(|()| key)) {
+        Some(key) if lists.is_empty() => {
+            Err(error(key, format!("`{}` has the names of the columns in another order", clipped(key)))
+                .expected(what)
+                .help(
+                    "call the list `columns` if the numbers of `path` are in its order; otherwise remove it",
+                ))
+        }
+        _ => Ok(lists.pop().map(|(_, list)| list)),
+    }
 }
 
 /// The part of a result that is read: its path. All other members are skipped.

@@ -7,11 +7,11 @@
 //! - [`mesh`] reads a mesh, whatever the format; [`formats`] has the table of all formats, and what reads each mesh.
 //! - [`points`] reads sets of points, [`grid`] images.
 //! - [`path`] and [`csv`] read and write paths, and [`columns`] matches their columns by name.
-//! - [`files`], [`text`], [`number`], [`json`], [`xml`] and [`error`] are what all readers share.
+//! - [`files`], [`text`], [`number`], [`json`], [`xml`], [`encoding`] and [`error`] are what all readers share.
 
 pub mod columns;
 pub mod csv;
-mod encoding;
+pub mod encoding;
 pub mod error;
 pub mod files;
 pub mod formats;

@@ -1,7 +1,7 @@
 //! Reading a mesh of any format, and making triangles of polygons.
 
 use crate::error::{Error, ErrorKind};
-use crate::files::{Disk, Files, MAX_MESH_BYTES};
+use crate::files::{Disk, Files, MAX_MESH_BYTES, percent_decoded};
 use crate::formats::Content;
 use mp_geom::{MeshError, TriMesh};
 use mp_stop::Interrupt;
@@ -107,7 +107,11 @@ pub fn read_mesh_with(files: &dyn Files, path: &Path, axes: Axes) -> Result<TriM
         return stand_in(&file);
     }
     let remark = &mut |remark: &str| files.note(path, remark);
-    let beside = |name: &str| files.read(&path.with_file_name(name.replace("%20", " ")), MAX_MESH_BYTES);
+    let beside = |uri: &str| {
+        let literal = path.with_file_name(uri);
+        let decoded = percent_decoded(uri).filter(|_| !files.holds(&literal));
+        files.read(&decoded.map_or(literal, |name| path.with_file_name(name)), MAX_MESH_BYTES)
+    };
     let reading = &mut Reading { axes, interrupt: files.interrupt(), remark, beside: &beside };
     let mesh = reader(&file, &bytes)?(&file, &bytes, reading)?;
     crate::trace::mesh(&file, &mesh);

@@ -90,11 +90,11 @@ impl PathFile {
     /// [`Error`] when it is not JSON or has no path, with the line and column, or its columns are others.
     pub fn parse_json(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Self, Error> {
         let (text, what) = (decode(file, bytes)?, "{\"path\": [[x, y, z, α, β, γ], …]}");
-        let Some(names) = names(file, text)? else {
-            return Ok(Self { configurations: parse_rows(file, text, what)? });
-        };
         let pose = Column::of_pose();
         let columns = if columns.is_empty() { &pose } else { columns };
+        let Some(names) = names(file, text, columns)? else {
+            return Ok(Self { configurations: parse_rows(file, text, what)? });
+        };
         let rows = matched(file, &names, &parse_rows::<Vec<f64>>(file, text, what)?, columns)?;
         let six = |row: &Vec<f64>| <[f64; 6]>::try_from(row.as_slice()).ok();
         let configurations = rows.iter().map(six).collect::<Option<_>>();
@@ -189,7 +189,7 @@ impl JointPath {
         let text = decode(file, bytes)?;
         let what = "{\"path\": [[q1, q2, …], …]}";
         let mut configurations: Vec<Vec<f64>> = parse_rows(file, text, what)?;
-        if let Some(names) = names(file, text)?
+        if let Some(names) = names(file, text, columns)?
             && !columns.is_empty()
         {
             configurations = matched(file, &names, &configurations, columns)?;
@@ -392,6 +392,9 @@ mod tests {
             r#""columns": ["elbow", "lift"]"#,
             r#""columns": ["elbow [rad]", "lift [m]"]"#,
             r#""names": ["elbow", {"name": "lift"}]"#,
+            r#""name": ["elbow", "lift"], "position": [0, 0]"#,
+            r#""name": "arm", "jointNames": ["elbow", "lift"]"#,
+            r#""joint_names": ["elbow", "lift"], "columns": ["elbow", "lift"], "joints": ["lift", "elbow"]"#,
             r#""joint_names": [{"name": "elbow", "unit": "rad"}, {"name": "lift", "unit": "m"}]"#,
         ] {
             for text in [
@@ -414,6 +417,22 @@ mod tests {
             let text = format!("{{\"columns\": {columns}, \"path\": [[1, 2]]}}");
             assert!(read(&text).is_err(), "{text}");
         }
+        for (names, words) in [
+            (
+                r#""columns": ["lift", "elbow"], "name": ["elbow", "lift"]"#,
+                "p.json:1:32: `columns` and `name`",
+            ),
+            (
+                r#""joints": ["elbow", "lift"]"#,
+                "p.json:1:2: `joints` has the names of the columns in another",
+            ),
+        ] {
+            let e = read(&format!("{{{names}, \"path\": [[1, 2]]}}")).unwrap_err();
+            crate::error::check_error(&e);
+            assert!(e.to_string().starts_with(words), "{e}");
+        }
+        let plain = r#"{"joints": ["lift", "elbow"], "tags": ["a", "b"], "name": "n", "path": [[1, 2]]}"#;
+        assert_eq!(read(plain).unwrap().configurations, [[1.0, 2.0]]);
         // Numbers name nothing.
         assert_eq!(read(r#"{"columns": [0, 1], "path": [[1, 2]]}"#).unwrap().configurations, [[1.0, 2.0]]);
         let pose =

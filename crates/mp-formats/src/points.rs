@@ -4,6 +4,8 @@ mod las;
 mod npy;
 mod pcd;
 
+use crate::columns::{Column, factor, find};
+use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
 use crate::files::{Files, MAX_MESH_BYTES};
 use crate::formats::{Content, ply};
@@ -64,33 +66,71 @@ pub fn balls(points: &Points, mut note: impl FnMut(&str)) -> Result<TriMesh, Str
     TriMesh::of_balls(thinned.centers, points.radius + thinned.padding).map_err(|e| e.to_string())
 }
 
-/// Text: a line for each point, with x, y and z (m) first, between blanks or commas. Lines that begin with `#` are comments.
+/// Text: a line for each point, between blanks, commas or semicolons: x, y and z (m) first, or where a line of names above says. Lines that begin
+/// with `#` or `//` are comments.
 fn text(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Result<Vec<Point3<f64>>, Error> {
-    let text = Text::new(file, bytes, GUIDE)?;
-    let lines = text.lines().filter(|line| !line.text.starts_with('#'));
-    lines
-        .map(|line| {
-            interrupt.go_on().map_err(|_| Error::interrupted(file))?;
-            match line.text.contains(',') {
-                true => point(&text, line, line.cells()),
-                false => point(&text, line, line.words()),
-            }
-        })
-        .collect()
+    let decoded = decode_mesh(file, bytes)?;
+    let text = Text { file, text: &decoded, guide: GUIDE };
+    let comment = |line: &Token<'_>| line.text.starts_with('#') || line.text.starts_with("//");
+    // Names may be in a comment too, if there are as many as numbers below.
+    let mut lines = text.lines().peekable();
+    let mut names = None;
+    while let Some(line) = lines.next_if(|line| comment(line) || axes(*line).is_some()) {
+        names = axes(line).map(|axes| (line, axes)).or(names);
+    }
+    let mut axes = [0, 1, 2].map(|at| (at, 1.0, 1.0));
+    if let (Some((line, named)), Some(first)) = (names, lines.peek()) {
+        let (given, there) = (cells(uncommented(line)).len(), cells(*first).len());
+        if given == there {
+            axes = named;
+        } else if !comment(&line) {
+            let message = format!("this line has {given} names, and the next one {there} numbers");
+            return Err(text
+                .error(line, message)
+                .expected("a name for each column, such as x,y,z,intensity"));
+        }
+    }
+    let point = |line: Token<'_>| {
+        interrupt.go_on().map_err(|_| Error::interrupted(file))?;
+        let (cells, mut point) = (cells(line), Point3::origin());
+        for (number, (at, times, over)) in point.iter_mut().zip(axes) {
+            let missing = || text.error(line, "a number is missing").expected(EXPECTED);
+            let value = any_number(&text, *cells.get(at).ok_or_else(missing)?)?;
+            *number = if times == over { value } else { value * times / over };
+        }
+        Ok(point)
+    };
+    lines.filter(|line| !comment(line)).map(point).collect()
 }
 
-/// The point in the first three words of a line.
-fn point<'a>(
-    text: &Text<'a>,
-    line: Token<'a>,
-    mut words: impl Iterator<Item = Token<'a>>,
-) -> Result<Point3<f64>, Error> {
-    let mut point = Point3::origin();
-    for number in point.iter_mut() {
-        let word = words.next().ok_or_else(|| text.error(line, "a number is missing").expected(EXPECTED))?;
-        *number = any_number(text, word)?;
+/// The parts of a line.
+fn cells(line: Token<'_>) -> Vec<Token<'_>> {
+    match [',', ';'].into_iter().find(|separator| line.text.contains(*separator)) {
+        Some(separator) => line.cells_between(separator).collect(),
+        None => line.words().collect(),
     }
-    Ok(point)
+}
+
+/// A line without the mark of a comment.
+fn uncommented(line: Token<'_>) -> Token<'_> {
+    let text = line.text.trim_start_matches(['#', '/']);
+    Token { text, at: line.at + (line.text.len() - text.len()) }
+}
+
+/// In which columns a line of names has x, y and z, and what these are multiplied with and divided by to be in metres; `None` if it is no
+/// such line.
+fn axes(line: Token<'_>) -> Option<[(usize, f64, f64); 3]> {
+    let wanted = ["x", "y", "z"].map(|name| Column::new(name, "m"));
+    let mut axes = [None; 3];
+    for (at, cell) in cells(uncommented(line)).into_iter().enumerate() {
+        let Some((axis, unit)) = find(cell.text, &wanted) else { continue };
+        let (times, over) = factor(unit, "m")?;
+        if axes[axis].replace((at, times, over)).is_some() {
+            return None;
+        }
+    }
+    let [x, y, z] = axes;
+    Some([x?, y?, z?])
 }
 
 const EXPECTED: &str = "x y z of a point, metres";
@@ -152,13 +192,32 @@ mod tests {
             ("a.xyz", "# scan\n1 2 3 255\n\n4.5 -1 0\n"),
             ("a.csv", "1, 2, 3\n4.5,-1,0\n"),
             ("a.txt", "1\t2 3\r\n4.5 -1 0"),
+            ("a.csv", "x,y,z,intensity\n1,2,3,9\n4.5,-1,0,9\n"),
+            ("a.csv", "\"\",\"Z\",\"r\",\"y [cm]\",\"x_mm\"\n0,3,a,200,1000\n# c\n1,0,b,-100,4500\n"),
+            ("a.xyz", "// by a tool\n//R X Y Z\n9 1 2 3\n9 4.5 -1 0\n"),
+            ("a.xyz", "# x y z of a scan\n1 2 3\n4.5 -1 0\n"),
+            ("a.xyz", "# i x y z\n\n# done\n1 1 2 3\n2 4.5 -1 0\n"),
+            ("a.csv", "z;y;x\n3;2;1\n0;-1;4.5\n"),
         ] {
             assert_eq!(read(name, text.as_bytes()).unwrap(), expected, "{name}");
         }
+        assert_eq!(read("a.xyz", b"# Gr\xf6\xdfe\n1 2 3\n4.5 -1 0\n").unwrap(), expected);
         let found = read("a.xyz", b"nan nan nan\n1 2 -1.#IND\n1 2 3\n").unwrap();
         assert!(found[0][0].is_nan() && found[1][2].is_nan() && found[2] == [1.0, 2.0, 3.0]);
-        for (text, line) in [("1 2\n", Some(1)), ("1 2 3\n1 x 3", Some(2)), ("# none\n", None), ("", None)] {
-            assert_eq!(read("a.xyz", text.as_bytes()).unwrap_err().line(), line, "{text}");
+        for (text, line) in [
+            ("1 2\n", Some(1)),
+            ("1 2 3\n1 x 3", Some(2)),
+            ("# none\n", None),
+            ("", None),
+            ("x,y\n1,2\n", Some(1)),
+            ("x y z\n1 2 3 4\n", Some(1)),
+            ("x,y,x,z\n1,2,3,4\n", Some(1)),
+            ("x,y,z [s]\n1,2,3\n", Some(1)),
+            ("1 2 3\nx y z\n", Some(2)),
+        ] {
+            let e = read("a.xyz", text.as_bytes()).unwrap_err();
+            crate::error::check_error(&e);
+            assert_eq!(e.line(), line, "{text}");
         }
     }
 
@@ -169,7 +228,7 @@ mod tests {
                 "ply\nformat {format} 1.0\nelement vertex 2\nproperty float x\nproperty uchar red\nproperty double y\nproperty float z\nend_header\n"
             )
         };
-        let text = head("ascii") + "1 255 2 3\nnan 0 nan nan\n";
+        let text = head("ascii") + "1 255 2 3\n-nan(ind) 0 1.#QNAN nan\n";
         let mut binary = head("binary_little_endian").into_bytes();
         for [x, y, z] in [[1.0_f32, 2.0, 3.0], [f32::NAN; 3]] {
             binary

@@ -146,11 +146,6 @@ impl<'a> Token<'a> {
         })
     }
 
-    /// The parts between commas, without blanks and quotes around them. Commas between quotes are part of a cell.
-    pub(crate) fn cells(self) -> impl Iterator<Item = Token<'a>> + Clone {
-        self.cells_between(',')
-    }
-
     /// What cells of the line are between: commas, else semicolons, else tabs.
     pub fn separator(self) -> char {
         let is_between = |separator: &char| self.cells_between(*separator).nth(1).is_some();
@@ -214,16 +209,6 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// As [`next`](Self::next), for a number that is not used: `1.#IND` is one word.
-    pub(crate) fn next_unused(&mut self) -> Option<Token<'a>> {
-        let Token { at, .. } = self.next()?;
-        let bytes = self.text.as_bytes();
-        while self.at < bytes.len() && !is_blank(bytes[self.at]) && !is_break(bytes[self.at]) {
-            self.at += 1;
-        }
-        Some(Token { text: &self.text[at..self.at], at })
-    }
-
     /// The next word of this line; `None` at its end, where reading stays.
     pub(crate) fn next_on_line(&mut self) -> Option<Token<'a>> {
         let bytes = self.text.as_bytes();
@@ -231,7 +216,7 @@ impl<'a> Lexer<'a> {
             self.at += 1;
         }
         let start = self.at;
-        while self.at < bytes.len() && !ends_word(bytes[self.at]) {
+        while self.at < bytes.len() && (!ends_word(bytes[self.at]) || is_of_number(bytes, self.at)) {
             self.at += 1;
         }
         (self.at > start).then(|| Token { text: &self.text[start..self.at], at: start })
@@ -248,7 +233,7 @@ impl<'a> Lexer<'a> {
         if self.at < bytes.len() {
             self.at += if bytes[self.at..].starts_with(b"\r\n") { 2 } else { 1 };
         }
-        skipped.find('#').map(|i| &skipped[i + 1..])
+        comment_at(skipped).map(|i| &skipped[i + 1..])
     }
 
     /// The number of words left on this line.
@@ -269,6 +254,18 @@ fn is_blank(b: u8) -> bool {
 
 fn is_break(b: u8) -> bool {
     matches!(b, b'\n' | b'\r')
+}
+
+/// Whether the byte at `at` is the `#` of `1.#IND`.
+fn is_of_number(bytes: &[u8], at: usize) -> bool {
+    bytes[at] == b'#'
+        && bytes[..at].ends_with(b"1.")
+        && bytes.get(at + 1).is_some_and(u8::is_ascii_alphabetic)
+}
+
+/// Where the comment of a line begins, if it has one: the `#` of `1.#IND` begins none.
+pub(crate) fn comment_at(line: &str) -> Option<usize> {
+    line.match_indices('#').map(|(at, _)| at).find(|at| !is_of_number(line.as_bytes(), *at))
 }
 
 fn ends_word(b: u8) -> bool {
@@ -292,10 +289,11 @@ mod tests {
         assert_eq!(lexer.next().unwrap().text, "3");
         assert_eq!(lexer.next(), None);
         assert_eq!(text.lines().map(|l| l.text).collect::<Vec<_>>(), ["OFF# x", "1\t2 # two", "3#"]);
-        let text = Text { guide: "f.md", file: "f", text: "# a\n-1.#IND 1.#QNAN#x 2#y\n3" };
+        let text = Text { guide: "f.md", file: "f", text: "# a\n-1.#IND 1.#QNAN#x 2#y\n3 1.# z" };
         let mut lexer = Lexer::new(&text);
-        let unused: Vec<_> = std::iter::from_fn(|| lexer.next_unused().map(|w| w.text)).collect();
-        assert_eq!(unused, ["-1.#IND", "1.#QNAN#x", "2#y", "3"]);
+        let words: Vec<_> = std::iter::from_fn(|| lexer.next().map(|w| w.text)).collect();
+        assert_eq!(words, ["-1.#IND", "1.#QNAN", "3", "1."]);
+        assert_eq!(["1.#IND # a", "1. #a", "1.#"].map(comment_at), [Some(7), Some(3), Some(2)]);
     }
 
     #[test]

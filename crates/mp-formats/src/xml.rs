@@ -2,6 +2,7 @@
 
 use crate::encoding::decode_xml;
 use crate::error::{Error, ErrorKind};
+use crate::files::without_end_marks;
 use std::borrow::Cow;
 
 /// The most attributes of one element.
@@ -14,10 +15,8 @@ const MAX_NAMESPACES: usize = 64;
 /// # Errors
 /// When it is not, or its encoding is not known.
 pub fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, str>, Error> {
-    // Programs in C write the zero byte that ends their texts.
-    let end = bytes.iter().rposition(|b| *b != 0).map_or(0, |last| last + 1);
     let is_wide = bytes.len() > 1 && (bytes[..2].contains(&0) || bytes.starts_with(b"\xff\xfe"));
-    let text = decode_xml(file, if is_wide { bytes } else { &bytes[..end] })?;
+    let text = decode_xml(file, if is_wide { bytes } else { without_end_marks(bytes) })?;
     refuse_floods(file, &text)?;
     Ok(without_late_declaration(text))
 }

@@ -85,6 +85,12 @@ impl TrajectoryFile {
                 .expected("times that increase")
                 .help("sort the points by their times, and keep one of those that are equal"));
         }
+        if let Some(first) = read.times.first().filter(|time| **time < 0.0) {
+            let message = format!("the time of point 1 is {first} s");
+            return Err(Error::new(ErrorKind::Content, file, message)
+                .expected("0 s or more")
+                .help("count times from the beginning of the motion"));
+        }
         Ok(Some(read))
     }
 
@@ -187,6 +193,7 @@ mod tests {
             ("time,lift,elbow\n0,1,2\n1,2\n", "t:3:1"),
             ("time,lift,elbow\n0,1,x\n", "not a number"),
             ("time,lift,elbow\n0,1,2\n0,1,2\n", "times that increase"),
+            ("time,lift,elbow\n-1,1,2\n", "0 s or more"),
             ("time,lift,elbow\n", "ends too early"),
         ] {
             let error = read(text, TrajectoryKind::Csv).unwrap_err();
@@ -248,7 +255,10 @@ mod tests {
                 "\"velocities\": [0, 1], \"time_from_start\": {\"sec\": 1",
                 "point 1 has no velocities",
             ),
-            ("500000000", "-3", ""),
+            ("500000000", "-3", "the nanoseconds of the time of point 2"),
+            ("500000000", "1000000000", "expected 0 to 999999999"),
+            ("{\"sec\": 0", "{\"sec\": -5", "the time of point 1 is -5 s; expected 0 s or more"),
+            ("{\"sec\": 0, \"nanosec\": 0}", "-0.5", "the time of point 1 is -0.5 s"),
             ("{\"sec\": 0, \"nanosec\": 0}", "{\"sec\": 2, \"nanosec\": 0}", "times that increase"),
         ] {
             assert!(plain.contains(from), "{from}");
@@ -272,9 +282,12 @@ mod tests {
         let base = r#"{"joint_trajectory": {"joint_names": [], "points": []}, "multi_dof_joint_trajectory": {"joint_names": ["base"], "points": []}}"#;
         assert!(read(base, TrajectoryKind::Json).unwrap_err().contains("several degrees of freedom"));
         assert!(
-            read("joint_names: [&a lift, *a]\npoints: []\n", TrajectoryKind::Yaml)
-                .unwrap_err()
-                .contains("alias")
+            read(
+                "joint_names: [&a lift, *a]\npoints: [{positions: [0, 0], time_from_start: 0}]\n",
+                TrajectoryKind::Yaml
+            )
+            .unwrap_err()
+            .contains("the same number")
         );
         assert!(read("points: [\n", TrajectoryKind::Yaml).is_err());
     }

@@ -3,13 +3,18 @@
 use mp_formats::error::{Error, ErrorKind};
 use saphyr_parser::{Event, Parser, ScalarStyle, StrInput};
 use serde_json::{Map, Number, Value};
+use std::collections::HashMap;
 
 /// No message is nested deeper.
 const DEPTH: usize = 32;
 
+/// Aliases may repeat so much: values, and bytes of texts.
+const REPEATED: usize = 1 << 20;
+
 /// The first document of `text`, which errors call `file`.
 pub(crate) fn value(file: &str, text: &str) -> Result<Value, Error> {
-    let mut reader = Reader { file, text, events: Parser::new_from_str(text) };
+    let mut reader =
+        Reader { file, text, events: Parser::new_from_str(text), anchors: HashMap::new(), repeated: 0 };
     loop {
         match reader.next()? {
             (Event::StreamStart | Event::DocumentStart(..), _) => {}
@@ -23,6 +28,10 @@ struct Reader<'t> {
     file: &'t str,
     text: &'t str,
     events: Parser<'t, StrInput<'t>>,
+    /// The values that have an anchor, by its number.
+    anchors: HashMap<usize, Value>,
+    /// How much aliases have repeated.
+    repeated: usize,
 }
 
 impl<'t> Reader<'t> {
@@ -46,6 +55,18 @@ impl<'t> Reader<'t> {
         if depth > DEPTH {
             return Err(self.error(at, "this is nested too deep"));
         }
+        let anchor = match &event {
+            Event::Scalar(_, _, id, _) | Event::SequenceStart(id, _) | Event::MappingStart(id, _) => *id,
+            _ => 0,
+        };
+        let value = self.value_itself(event, at, depth)?;
+        if anchor > 0 {
+            self.anchors.insert(anchor, value.clone());
+        }
+        Ok(value)
+    }
+
+    fn value_itself(&mut self, event: Event<'t>, at: usize, depth: usize) -> Result<Value, Error> {
         match event {
             Event::Scalar(.., Some(tag)) if !tag.is_yaml_core_schema() => {
                 Err(self.error(at, "this has a tag, which is not read"))
@@ -77,9 +98,35 @@ impl<'t> Reader<'t> {
                     entries.insert(key, value);
                 }
             }
-            Event::Alias(_) => Err(self.error(at, "this is an alias of another value, which is not read")),
+            Event::Alias(id) => {
+                let value = self.anchors.get(&id);
+                let value = value
+                    .ok_or_else(|| self.error(at, "this is an alias of a key, or of what it is a part of"))?;
+                let [size, height] = extent(value);
+                if depth + height > DEPTH || self.repeated + size > REPEATED {
+                    return Err(self.error(at, "this alias repeats too much, or is nested too deep"));
+                }
+                self.repeated += size;
+                Ok(value.clone())
+            }
             _ => Err(self.error(at, "the file ends too early")),
         }
+    }
+}
+
+/// How much is in a value, and how deep it is nested.
+fn extent(value: &Value) -> [usize; 2] {
+    let all = |values: &mut dyn Iterator<Item = &Value>| {
+        values.map(extent).fold([1, 1], |[size, height], [its, high]| [size + its, height.max(high + 1)])
+    };
+    match value {
+        Value::Array(items) => all(&mut items.iter()),
+        Value::Object(entries) => {
+            let [size, height] = all(&mut entries.values());
+            [size + entries.keys().map(|key| 1 + key.len()).sum::<usize>(), height]
+        }
+        Value::String(text) => [1 + text.len(), 0],
+        _ => [1, 0],
     }
 }
 
@@ -97,5 +144,32 @@ fn scalar(text: &str, plain: bool) -> Value {
             let number = number.or_else(|| text.parse().ok().and_then(Number::from_f64));
             number.map_or_else(|| Value::String(text.to_owned()), Value::Number)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Value, String> {
+        value("t.yaml", text).map_err(|e| e.report())
+    }
+
+    #[test]
+    fn aliases_repeat_values() {
+        let plain = read("a: 1\nb: [1, [0, 2], x]\nc: [0, 2]\nd: {e: 1}\nf: {e: 1}\n");
+        assert_eq!(read("a: &a 1\nb: [*a, &id001 [0, 2], x]\nc: *id001\nd: &d {e: *a}\nf: *d\n"), plain);
+        for text in ["a: &a [*a]\n", "a: *b\n", "a: &a x\n*a : 1\n"] {
+            assert!(read(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn aliases_repeat_no_floods() {
+        let line = |i: usize| format!("- &a{i} [{}]\n", vec![format!("*a{}", i - 1); 10].join(", "));
+        let flood: String = (1..12).map(line).collect();
+        assert!(read(&format!("- &a0 lol\n{flood}")).unwrap_err().contains("repeats too much"));
+        let deep: String = (1..100).map(|i| format!("- &a{i} [*a{}]\n", i - 1)).collect();
+        assert!(read(&format!("- &a0 1\n{deep}")).unwrap_err().contains("nested too deep"));
     }
 }

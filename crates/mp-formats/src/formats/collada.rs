@@ -109,7 +109,10 @@ impl Scene {
             }
             let base = vertices.len() as u32; // at most MAX_INSTANCED
             vertices.extend(mesh.vertices().iter().map(|p| transformed(matrix, p)));
-            triangles.extend(mesh.triangles().iter().map(|t| t.map(|i| i + base)));
+            // A mirror turns triangles over.
+            let mirrored = matrix.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
+            let order = if mirrored { [0, 2, 1] } else { [0, 1, 2] };
+            triangles.extend(mesh.triangles().iter().map(|t| order.map(|k| t[k] + base)));
         }
         TriMesh::new(vertices, triangles).map_err(|e| mesh_error(file, &e))
     }

@@ -393,8 +393,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (_, rest) = text.split_once("base64,").unwrap();
         let (data, _) = rest.split_once('"').unwrap();
-        std::fs::write(folder.path().join("a b.bin"), base64(data).unwrap()).unwrap();
-        let apart = text.replace(&format!("data:application/octet-stream;base64,{data}"), "a%20b.bin");
+        std::fs::write(folder.path().join("a ö.bin"), base64(data).unwrap()).unwrap();
+        let apart = text.replace(&format!("data:application/octet-stream;base64,{data}"), "a%20%C3%B6.bin");
         std::fs::write(folder.path().join("m.gltf"), &apart).unwrap();
         let read = read_mesh_with(&Disk, &folder.path().join("m.gltf"), Axes::OfFile).unwrap();
         assert_eq!(read, parse_mesh("m.gltf", text.as_bytes()).unwrap());

@@ -3,7 +3,7 @@
 use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
 use crate::mesh::{LEFT_OUT, Reading, build};
-use crate::text::{Text, Token, clipped};
+use crate::text::{Text, Token, clipped, comment_at, is_not_a_number};
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
 use nalgebra::Point3;
@@ -106,16 +106,23 @@ fn vertices_of(text: &Text<'_>, interrupt: &mut Interrupt) -> usize {
     count
 }
 
-/// The words of a statement: of this line, and of the next ones while a line ends with `\`.
+/// Statements whose words are names of groups, materials and files.
+const NAMING: [&str; 8] = ["g", "o", "usemtl", "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj"];
+
+/// The words of a statement: of this line, and of the next ones while a line ends with `\`. After a name that takes a blank
+/// before it: names end with this byte too, such as folders and characters of Shift-JIS, Big5 and GBK.
 fn statement<'a>(line: Token<'a>, lines: &mut impl Iterator<Item = Token<'a>>, words: &mut Vec<Token<'a>>) {
     words.clear();
     let mut line = line;
     loop {
         let before_comment =
-            line.text.find('#').map_or(line, |i| Token { text: &line.text[..i], at: line.at });
+            comment_at(line.text).map_or(line, |i| Token { text: &line.text[..i], at: line.at });
         let whole = before_comment.text.trim_end();
-        let goes_on = whole.strip_suffix('\\');
+        let mut goes_on = whole.strip_suffix('\\');
         words.extend(Token { text: goes_on.unwrap_or(whole), at: line.at }.words());
+        if words.first().is_some_and(|word| NAMING.contains(&word.text)) {
+            goes_on = goes_on.filter(|before| before.ends_with([' ', '\t']));
+        }
         match goes_on.and_then(|_| lines.next()) {
             Some(next) => line = next,
             None => return,
@@ -131,9 +138,11 @@ fn vertex(text: &Text<'_>, line: Token<'_>, values: &[Token<'_>]) -> Result<Poin
     }
     let mut p = Point3::origin();
     for (i, word) in values.iter().enumerate() {
-        let v = text.number(*word, what)?;
-        if i < 3 {
-            p[i] = v;
+        // Weight and colour are not used.
+        match p.coords.get_mut(i) {
+            Some(axis) => *axis = text.number(*word, what)?,
+            None if is_not_a_number(word.text) => {}
+            None => drop(text.number(*word, what)?),
         }
     }
     Ok(p)
@@ -196,8 +205,21 @@ mod tests {
         );
         assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (3, 2));
         // The group takes the next line: what is missing then is said with its line.
-        let e = parse_mesh("t.obj", b"v 0 0 0\ng a\\\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap_err();
+        let e = parse_mesh("t.obj", b"v 0 0 0\ng a \\\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(5), Some(7)), "{e}");
+    }
+
+    #[test]
+    fn names_may_end_with_the_byte_of_a_backslash() {
+        // 表 of Shift-JIS, 功 of Big5, 誠 of GBK, a character that begins with 0xa0, and a folder of Windows.
+        for name in [&b"\x95\\"[..], b"\xa5\\", b"\xd5\\", b"\xa0\\", b"C:\\tex\\", b"a \x95\\ ", b"\\"] {
+            for keyword in NAMING {
+                let statement = [keyword.as_bytes(), b" x", name, b"\n"].concat();
+                let text =
+                    [b"v 0 0 0\n", &*statement, b"v 1 0 0\nv 0 1 0\n", &statement, b"f 1 2 3\n"].concat();
+                assert_eq!(remarks(&text), (Ok(1), Vec::new()), "{}", text.escape_ascii());
+            }
+        }
     }
 
     /// What is read, in how many triangles, and what is remarked.
@@ -226,6 +248,20 @@ mod tests {
         assert_eq!(remarks(text), (Ok(1), Vec::new()));
         let e = parse_mesh("t.obj", b"# \xe4\nv 0 \xe4 0\n").unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(2), Some(5)), "{e}");
+    }
+
+    #[test]
+    fn colours_may_be_no_numbers_but_positions_may_not() {
+        for word in ["nan", "-nan(ind)", "1.#QNAN"] {
+            let text = |z: &str, blue: &str| format!("v 0 0 {z} 1 0 {blue}\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+            assert_eq!(remarks(text("0", word).as_bytes()), (Ok(1), Vec::new()), "{word}");
+            assert!(remarks(text(word, "0").as_bytes()).0.is_err(), "{word}");
+            assert!(
+                remarks(format!("v 0 0 {word}\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").as_bytes()).0.is_err(),
+                "{word}"
+            );
+        }
+        assert!(remarks(b"v 0 0 0 1 0 red\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").0.is_err());
     }
 
     #[test]

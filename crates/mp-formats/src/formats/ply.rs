@@ -3,7 +3,7 @@
 use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
 use crate::mesh::{Axes, LEFT_OUT, Reading, build};
-use crate::text::{Lexer, Text, Token, clipped};
+use crate::text::{Lexer, Text, Token, clipped, is_not_a_number};
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
 use nalgebra::Point3;
@@ -329,7 +329,8 @@ impl<'a> Body<'a> {
                 let word = lexer.next().ok_or_else(|| text.error_at_end(what()))?;
                 match word.text.parse::<f64>() {
                     Ok(number) => (number, Some(word)),
-                    _ => (text.number(word, &what())?, Some(word)),
+                    Err(_) if is_not_a_number(word.text) => (f64::NAN, Some(word)),
+                    Err(_) => (text.number(word, &what())?, Some(word)),
                 }
             }
             Self::Binary { big, .. } => {
@@ -357,7 +358,7 @@ impl<'a> Body<'a> {
     /// Passes over a number that is not used.
     fn skip(&mut self, of: Type, what: &dyn Fn() -> String) -> Result<(), Error> {
         match self {
-            Self::Text(text, lexer) => lexer.next_unused().map(drop).ok_or_else(|| text.error_at_end(what())),
+            Self::Text(text, lexer) => lexer.next().map(drop).ok_or_else(|| text.error_at_end(what())),
             Self::Binary { .. } => self.take(of, what).map(drop),
         }
     }
@@ -486,6 +487,8 @@ mod tests {
             ("0 2 3\n", "0 2 0.5\n", "t.ply:23:11: 0.5 is no index or count"),
             ("255 3 0 2", "255 -3 0 2", "t.ply:23:5: -3 is no index or count"),
             ("0 1.5 0 5", "0 inf 0 5", "t.ply:19:3: `inf` is not a finite number"),
+            ("0 1.5 0 5", "0 1.#QNAN 0 5", "t.ply:19:3: `1.#QNAN` is not a number"),
+            ("0 1.5 0 5", "0 1.5 0 1.#INF", "t.ply:19:9: `1.#INF` is not a number"),
             ("0 2 3\n", "0 2 3 1\n", "t.ply:23:13: `1` follows the last element"),
             ("0 2 3\n", "0 2\n", "t.ply:23:10: the file ends too early"),
             ("end_header", "end", "t.ply:15:1: `end` is not a line of a header"),

@@ -32,7 +32,7 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
         binary(file, bytes, interrupt, remark)?
     } else {
         let decoded = decode_mesh(file, bytes)?;
-        text(&Text { file, text: &decoded, guide: "meshes.md" }, (file, &mut *interrupt))?
+        text(&Text { file, text: &decoded, guide: "meshes.md" }, interrupt, remark)?
     };
     let mesh = TriMesh::from_soup_until(&soup, interrupt).map_err(|_| Error::interrupted(file))?;
     mesh.map_err(|e| mesh_error(file, &e))
@@ -126,15 +126,20 @@ fn is_triangle(corners: &[Point3<f64>; 3]) -> bool {
 }
 
 /// The triangles of a text file.
-fn text(text: &Text<'_>, (file, interrupt): (&str, &mut Interrupt)) -> Result<Soup, Error> {
+fn text(text: &Text<'_>, interrupt: &mut Interrupt, remark: &mut dyn FnMut(&str)) -> Result<Soup, Error> {
     let mut lexer = Lexer::new(text);
     let mut soup = Vec::new();
     while let Some(word) = lexer.next() {
+        let rest = &text.text[word.at..];
+        if !soup.is_empty() && !word.text.eq_ignore_ascii_case("solid") && !has_facets(rest) {
+            remark(&format!("{} bytes after the last solid are passed over", rest.trim_end().len()));
+            break;
+        }
         expect(text, Some(word), "solid")?;
         lexer.next_line(); // the rest of the line is a name
         loop {
             if interrupt.ask() {
-                return Err(Error::interrupted(file));
+                return Err(Error::interrupted(text.file));
             }
             let word = lexer.next();
             if word.is_some_and(|w| w.text.eq_ignore_ascii_case("endsolid")) {
@@ -150,12 +155,18 @@ fn text(text: &Text<'_>, (file, interrupt): (&str, &mut Interrupt)) -> Result<So
     Ok(soup)
 }
 
+/// Whether a text may have facets, well written or not.
+fn has_facets(text: &str) -> bool {
+    let text = text.to_ascii_lowercase();
+    ["facet", "vertex"].iter().any(|word| text.contains(word))
+}
+
 /// Reads what follows the word `facet`.
 fn facet(text: &Text<'_>, lexer: &mut Lexer<'_>) -> Result<[Point3<f64>; 3], Error> {
     expect(text, lexer.next(), "normal")?;
     for _ in 0..3 {
         // Normals are recomputed from the corners; writers put what is no number here for thin triangles.
-        let word = lexer.next_unused().ok_or_else(|| text.error_at_end("the normal, three numbers"))?;
+        let word = lexer.next().ok_or_else(|| text.error_at_end("the normal, three numbers"))?;
         if word.text.parse::<f64>().is_err() && !is_not_a_number(word.text) {
             text.number(word, "the normal, three numbers")?;
         }
@@ -358,6 +369,19 @@ mod tests {
             let text = [b"solid ", name, b"\n", facet.as_bytes(), b"\nendsolid ", name, b"\n"].concat();
             assert_eq!(remarks(&text), (Ok(1), Vec::new()), "{name:?}");
         }
+    }
+
+    #[test]
+    fn words_after_text_are_passed_over_and_said() {
+        let one = "solid a\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0\nvertex 0 1 0 endloop endfacet\nendsolid a\n";
+        let (read, said) = remarks(format!("{one}made in SolidWorks,\n2x\n").as_bytes());
+        assert_eq!((read, said), (Ok(1), vec!["22 bytes after the last solid are passed over".to_owned()]));
+        assert_eq!(remarks(format!("{one}# by hand\n\0\x1a").as_bytes()), (Ok(1), Vec::new()));
+        // What may be surface is not passed over.
+        for more in ["facet normal 0 0 1", "by hand\nFacet", "v\nvertex 1 2 3"] {
+            assert!(remarks(format!("{one}{more}\n").as_bytes()).0.is_err(), "{more}");
+        }
+        assert!(remarks(b"by hand").0.is_err());
     }
 
     #[test]

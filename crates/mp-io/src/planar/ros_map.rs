@@ -1,18 +1,21 @@
 //! Maps of ROS's map_server: a YAML file and an image.
 
 use super::GUIDE;
+use mp_formats::encoding::decode_mesh;
 use mp_formats::error::{Error, ErrorKind};
-use mp_formats::files::decode;
 use mp_formats::grid::GridMap;
 use mp_formats::mesh::MAX_COORDINATE;
 use mp_formats::text::clipped;
 use mp_geom::planar::Polygon;
 use nalgebra::Isometry2;
 use saphyr_parser::{Event, Parser, StrInput};
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// The largest YAML file of a map, bytes; they have some hundred.
 const MAX_BYTES: usize = 1 << 20;
+/// The longest scalar that an alias repeats, bytes.
+const MAX_REPEATED: usize = 256;
 
 /// The content of the YAML file of a map.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +42,7 @@ impl RosMap {
     /// # Errors
     /// [`Error`] with the line and column.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
-        let text = decode(file, bytes)?;
+        let text = &*decode_mesh(file, bytes)?;
         let yaml = Yaml { file, text };
         let mut map = Self {
             image: String::new(),
@@ -79,9 +82,10 @@ impl RosMap {
                     })?;
                 }
                 "negate" => {
-                    map.negate = match yaml.scalar(value)?.to_ascii_lowercase().as_str() {
-                        "0" | "0.0" | "false" | "no" | "off" | "n" => false,
-                        "1" | "1.0" | "true" | "yes" | "on" | "y" => true,
+                    let word = yaml.scalar(value)?.to_ascii_lowercase();
+                    map.negate = match (word.as_str(), word.parse::<f64>().ok()) {
+                        ("false" | "no" | "off" | "n", _) | (_, Some(0.0)) => false,
+                        ("true" | "yes" | "on" | "y", _) | (_, Some(1.0)) => true,
                         _ => {
                             let message = "negate is neither 0 nor 1".to_owned();
                             return Err(yaml
@@ -157,8 +161,14 @@ struct Value {
 enum Content {
     Scalar(String),
     List(Vec<Value>),
-    /// A mapping, a list of lists, or a reference to another value: no key that is read has such values.
+    /// A mapping, a list of lists, or an alias of one: no key that is read has such values.
     Other,
+}
+
+/// What is in the text, with the scalars that have an anchor, by its number: they stand for their aliases.
+struct Events<'t> {
+    parser: Parser<'t, StrInput<'t>>,
+    anchors: HashMap<usize, Event<'t>>,
 }
 
 /// A YAML file that is a mapping.
@@ -185,7 +195,7 @@ impl Yaml<'_> {
         }
         let mut entries: Vec<(String, Value)> = Vec::new();
         let mut key: Option<String> = None;
-        let mut events = Parser::new_from_str(self.text);
+        let mut events = Events { parser: Parser::new_from_str(self.text), anchors: HashMap::new() };
         let mut inside = false;
         while let Some((event, span)) = self.next(&mut events)? {
             match event {
@@ -223,7 +233,7 @@ impl Yaml<'_> {
         &self,
         event: Event<'t>,
         span: Range<usize>,
-        events: &mut Parser<'t, StrInput<'t>>,
+        events: &mut Events<'t>,
     ) -> Result<Value, Error> {
         let content = match event {
             Event::Scalar(text, ..) => Content::Scalar(text.into_owned()),
@@ -253,13 +263,20 @@ impl Yaml<'_> {
         Ok(Value { content, span })
     }
 
-    fn next<'t>(
-        &self,
-        events: &mut Parser<'t, StrInput<'t>>,
-    ) -> Result<Option<(Event<'t>, Range<usize>)>, Error> {
-        match events.next() {
+    fn next<'t>(&self, events: &mut Events<'t>) -> Result<Option<(Event<'t>, Range<usize>)>, Error> {
+        match events.parser.next() {
             None => Ok(None),
-            Some(Ok((event, span))) => Ok(Some((event, span.start.index()..span.end.index()))),
+            Some(Ok((event, span))) => {
+                let event = match &event {
+                    Event::Alias(id) => events.anchors.get(id).cloned().unwrap_or(event),
+                    Event::Scalar(text, _, id, _) if *id > 0 && text.len() <= MAX_REPEATED => {
+                        events.anchors.insert(*id, event.clone());
+                        event
+                    }
+                    _ => event,
+                };
+                Ok(Some((event, span.start.index()..span.end.index())))
+            }
             Some(Err(e)) => {
                 let at = e.marker().index();
                 Err(self

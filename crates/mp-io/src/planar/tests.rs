@@ -191,12 +191,17 @@ fn maps_of_ros_in_other_spellings_of_yaml() {
         RosMap::parse("m.yaml", text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {}", e.report()))
     };
     let plain = read("image: m.pgm\nresolution: 0.05\norigin: [0, -1, 0.5]\n");
+    let latin = b"image: m.pgm # Gr\xf6\xdfe\nresolution: 0.05\norigin: [0, -1, 0.5]\n";
+    assert_eq!(RosMap::parse("m.yaml", latin).unwrap(), plain);
     for text in [
         "image: m.pgm\nresolution: .05\norigin: [0,\n  -1, 0.5]\n",
         "image: 'm.pgm'\nresolution: 5e-2\norigin: [\n    0.0, # x\n    -1.,\n    5.0E-1,\n]\nnegate: False\n",
         "%YAML 1.2\n---\n\"image\": \"m.pgm\"\n'resolution': \"0.05\"\norigin:\n    - 0\n    - -1\n    - +.5\nnegate: no\n...\n",
         "{image: m.pgm, resolution: 0.05, origin: [0, -1, 0.5], negate: 0}",
         "{\"image\": \"m.pgm\",\r\n \"resolution\": 0.05,\r\n \"origin\": [0, -1, 0.5]}\r\n",
+        "r: &r 0.05\nimage: &i m.pgm\nresolution: *r\norigin: [&z 0, -1, &h 0.5]\nnegate: 00\nname: *i\n",
+        "z: &z 0\nother: {deep: [[&r .05]]}\nimage: m.pgm\nresolution: *r\norigin: [*z, -1, 0.5]\nnegate: *z\n",
+        "image: m.pgm\nresolution: 0.05\norigin: [0, -1, 0.5]\nnegate: 0.00\n\0",
         "image: >-\n  m.pgm\nresolution:   # metres\n  0.05\norigin: &o [0, -1, 0.5]\nmode: Trinary\nother: {a: [1, 2], b: *o}\nnegate: OFF",
         "# c\n\nimage: m.pgm # c\nresolution: 0.05\n\norigin: 0, -1, 0.5\nmore:\n  - [1, 2]\n  - {a: b}\n",
         "\u{feff}image: m.pgm\nresolution: 0.05\norigin: [0, -1, 0.5]\nnote: \"a: b # c\"\n---\nimage: other.pgm\n",

@@ -110,8 +110,15 @@ impl RobotProblem {
             bodies => bodies.iter().map(|body| body.name.as_str()).collect::<Vec<_>>().join(", "),
         };
         let find = |bodies: &[PlacedBody], what: &str, name: &str| {
-            let found = bodies.iter().position(|body| body.name == name);
-            found.ok_or_else(|| [format!("{what} \"{name}\""), names(bodies)])
+            let mut found = (0..bodies.len()).filter(|i| bodies[*i].name == name);
+            match (found.next(), found.next()) {
+                (Some(only), None) => Ok(only),
+                (Some(_), Some(_)) => Err([
+                    format!("there are several bodies \"{name}\""),
+                    "a name that only one of them has: rename the others".to_owned(),
+                ]),
+                (None, _) => Err([format!("{what} \"{name}\""), names(bodies)]),
+            }
         };
         let at = |link: &str| {
             pose(link)

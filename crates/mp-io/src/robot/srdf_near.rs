@@ -74,13 +74,17 @@ pub fn robot_name(text: &str) -> Option<String> {
             None => break,
         }
     }
-    let tag = &rest[..rest.find('>')?];
-    let value = tag.split_ascii_whitespace().find_map(|part| part.strip_prefix("name="))?;
-    // The name may have spaces.
-    let quote = value.chars().next().filter(|c| matches!(c, '"' | '\''))?;
-    let from = tag.find(&format!("name={quote}"))? + "name=".len() + 1;
-    let value = &tag[from..];
-    Some(value[..value.find(quote)?].to_owned())
+    // Blanks may be around `=`, and `>` in a value.
+    while let Some((before, after)) = rest.split_once('=').filter(|(before, _)| !before.contains('>')) {
+        let after = after.trim_start();
+        let quote = after.chars().next().filter(|c| matches!(c, '"' | '\''))?;
+        let (value, more) = after[1..].split_once(quote)?;
+        if before.split_whitespace().last() == Some("name") {
+            return Some(value.to_owned());
+        }
+        rest = more;
+    }
+    None
 }
 
 #[cfg(test)]
@@ -95,6 +99,14 @@ mod tests {
             "a b"
         );
         assert_eq!(of("<robot version=\"1\" name=\"panda\" />").unwrap(), "panda");
+        for text in [
+            "<robot name = 'r'>",
+            "<robot\txmlns:name='a>b' name=\n\"r\">",
+            "<robot note=\"name='x'\" name ='r'/>",
+        ] {
+            assert_eq!(of(text).as_deref(), Some("r"), "{text}");
+        }
+        assert_eq!(of("<robot><link name='l'>"), None);
         assert_eq!((of("<robot>"), of(""), of("<robot name=\"x"), of("<!-- ")), (None, None, None, None));
     }
 }

@@ -99,6 +99,21 @@ fn shapes_are_read() {
 }
 
 #[test]
+fn what_is_attached_has_a_name_of_its_own() {
+    let then = "[[then]]\nattach = \"table\"\nto = \"tip\"\ngoal = [0, 0]\n";
+    let next = |text: &str| {
+        let (_dir, path) = folder(&format!("{text}{then}"));
+        RobotProblem::load(&path).unwrap().next_part(&[0.0, 0.0], |_| Some(Default::default()))
+    };
+    assert_eq!(next(GOOD).unwrap().unwrap().attached[0].name, "table");
+    let [message, expected] = next(&GOOD.replace("sphere =", "name = \"table\"\nsphere =")).unwrap_err();
+    assert!(
+        message.contains("several bodies \"table\"") && expected.contains("rename"),
+        "{message}; {expected}"
+    );
+}
+
+#[test]
 fn faults_have_their_place() {
     let mut wrong = Vec::new();
     for (from, to, line, words) in [
@@ -247,6 +262,23 @@ fn packages_are_found_where_they_are_installed() {
     for name in found {
         assert!(problem.mesh(name).is_ok(), "{name}: {:?}", problem.mesh(name));
     }
+    // Names of URIs, and names that only look like them.
+    std::fs::create_dir_all(at("prefix/share/robot/my mesh")).unwrap();
+    for name in ["my mesh/größe.off", "meshes/a%20b.off", "meshes/a b.off"] {
+        crate::write_off(at("prefix/share/robot").join(name), &mesh).unwrap();
+    }
+    let meant = "my%20mesh/gr%C3%B6%C3%9Fe.off";
+    let absolute = format!("file://{}/{meant}", at("prefix/share/robot").display());
+    for name in [
+        &format!("package://robot/{meant}"),
+        &format!("package:///{meant}"),
+        &format!("../{meant}"),
+        &absolute,
+    ] {
+        assert!(problem.mesh(name).is_ok(), "{name}: {:?}", problem.mesh(name));
+    }
+    assert!(problem.mesh_file("../meshes/a%20b.off").unwrap().ends_with("a%20b.off"));
+    assert!(problem.mesh("../meshes/b%20a.off").unwrap_err().contains("b%20a.off"));
     for folder in ["prefix", "prefix/share"] {
         problem.packages = Some(at(folder));
         assert!(problem.mesh("package://parts/meshes/hand.off").is_ok(), "{folder}");

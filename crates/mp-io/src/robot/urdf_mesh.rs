@@ -2,7 +2,7 @@
 
 use super::DescribedRobot;
 use crate::robots::package_folders;
-use mp_formats::files::{Disk, Files};
+use mp_formats::files::{Disk, Files, percent_decoded};
 use mp_formats::mesh::{Axes, MAX_COORDINATE, read_mesh_with, solid_mesh, vertex_beyond};
 use mp_geom::TriMesh;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,8 @@ impl DescribedRobot {
     /// `package://PACKAGE/NAME`. A package is searched in the folder of packages that the problem gives, or else in the
     /// folders above the URDF, as `PACKAGE/NAME` and `share/PACKAGE/NAME`, and as `NAME` where the folder is called
     /// PACKAGE, and then in the folders of `ROS_PACKAGE_PATH` and `AMENT_PREFIX_PATH`; last as NAME in the folder of the URDF and the three above it, with a remark, for packages that have
-    /// another name there. `package:///NAME` names no package: `NAME` is searched in the same folders.
+    /// another name there. `package:///NAME` names no package: `NAME` is searched in the same folders. If there is no such file, `%20` and the like
+    /// stand for the characters of a URI.
     ///
     /// It is a solid if the problem says so.
     ///
@@ -55,7 +56,18 @@ impl DescribedRobot {
         self.place_of(&Disk, name).ok()
     }
 
+    /// The file that a name means as it is, or else as a URI: with `%20` and the like as the characters for which they stand.
     fn place_of(&self, files: &dyn Files, name: &str) -> Result<PathBuf, String> {
+        let literal = self.place_of_name(files, name);
+        match percent_decoded(name) {
+            Some(meant) if !literal.as_ref().is_ok_and(|place| files.holds(place)) => {
+                self.place_of_name(files, &meant).ok().filter(|place| files.holds(place)).map_or(literal, Ok)
+            }
+            _ => literal,
+        }
+    }
+
+    fn place_of_name(&self, files: &dyn Files, name: &str) -> Result<PathBuf, String> {
         let folder = self.urdf_file.parent().unwrap_or(Path::new(""));
         let Some(inside) = name.strip_prefix("package://") else {
             return Ok(folder.join(name.strip_prefix("file://").unwrap_or(name)));

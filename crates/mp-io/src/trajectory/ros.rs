@@ -103,13 +103,14 @@ pub(super) enum Time {
 }
 
 impl Time {
-    fn seconds(&self) -> f64 {
+    /// `None` when there are more nanoseconds than in a second, or fewer than none.
+    fn seconds(&self) -> Option<f64> {
         match *self {
-            Self::Seconds(seconds) => seconds,
+            Self::Seconds(seconds) => Some(seconds),
             // One rounding, so that whole nanoseconds read back.
-            Self::Duration { sec, nanosec } => {
-                (i128::from(sec) * 1_000_000_000 + i128::from(nanosec)) as f64 / 1e9
-            }
+            Self::Duration { sec, nanosec } => (0..1_000_000_000)
+                .contains(&nanosec)
+                .then(|| (i128::from(sec) * 1_000_000_000 + i128::from(nanosec)) as f64 / 1e9),
         }
     }
 }
@@ -202,7 +203,10 @@ pub(super) fn made(file: &str, message: Message, wanted: &[Column]) -> Result<Tr
     let has = |numbers: fn(&Point) -> &Vec<f64>| points.iter().any(|point| !numbers(point).is_empty());
     let (velocities, accelerations) = (has(|point| &point.velocities), has(|point| &point.accelerations));
     for (i, point) in points.iter().enumerate() {
-        let time = point.time_from_start.seconds();
+        let time = point.time_from_start.seconds().ok_or_else(|| {
+            error(format!("the nanoseconds of the time of point {} are not those of a second", i + 1))
+                .expected("0 to 999999999: whole seconds are in `sec`")
+        })?;
         if !time.is_finite() {
             return Err(error(format!("the time of point {} is not finite", i + 1)));
         }

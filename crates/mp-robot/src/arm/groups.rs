@@ -45,10 +45,7 @@ impl SrdfGroups {
     pub fn from_srdf(text: &str) -> Result<Self, UrdfError> {
         let text = Text::new("an SRDF", text)?;
         let document = text.parse()?;
-        let named = |node: &Node<'_, '_>, name: &str| match node.attribute(name) {
-            Some(value) => Ok(value.to_owned()),
-            None => Err(text.error(node, format!("<{}> has no attribute {name}", node.tag_name().name()))),
-        };
+        let named = |node: &Node<'_, '_>, name: &str| text.named(node, name);
         let mut found = Self::default();
         for node in document.root_element().children().filter(Node::is_element) {
             match node.tag_name().name() {

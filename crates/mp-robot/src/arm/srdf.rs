@@ -14,7 +14,7 @@ impl ArmModel {
     /// `disable_default_collisions` but those of `enable_collisions`. The latter must not touch even if a joint connects them,
     /// unless `disable_collisions` names them too.
     ///
-    /// Notes say which links are not of this robot, whose entries are skipped, and which other elements are not read although
+    /// Notes say which links are not of this robot, whose entries are skipped, how many `disable_collisions` name one link only, and which other elements are not read although
     /// they have a meaning: that the base moves by a virtual joint, unless it [floats](Self::floating), that joints are passive,
     /// and elements that are unknown.
     ///
@@ -26,10 +26,7 @@ impl ArmModel {
         let elements = |name: &'static str| {
             document.root_element().children().filter(move |node| node.has_tag_name(name))
         };
-        let named = |node: &Node<'_, '_>, name: &str| match node.attribute(name) {
-            Some(value) => Ok(value.to_owned()),
-            None => Err(text.error(node, format!("<{}> has no attribute {name}", node.tag_name().name()))),
-        };
+        let named = |node: &Node<'_, '_>, name: &str| text.named(node, name);
         let mut absent = BTreeSet::new();
         let mut known = |model: &Self, name: &String| {
             model.links.iter().any(|link| link.name == *name) || {
@@ -37,9 +34,13 @@ impl ArmModel {
                 false
             }
         };
+        let half =
+            |node: &Node<'_, '_>| node.attribute("link1").is_none() || node.attribute("link2").is_none();
         let mut pairs = |model: &Self, name: &'static str| {
             let mut pairs = Vec::new();
-            for node in elements(name) {
+            // That is less than it could say: more is compared.
+            let skipped = |node: &Node<'_, '_>| name == "disable_collisions" && half(node);
+            for node in elements(name).filter(|node| !skipped(node)) {
                 let pair = (named(&node, "link1")?, named(&node, "link2")?);
                 // Both are looked for, so that both are named if they are absent.
                 if known(model, &pair.0) & known(model, &pair.1) {
@@ -48,6 +49,7 @@ impl ArmModel {
             }
             Ok::<_, UrdfError>(pairs)
         };
+        let halves = elements("disable_collisions").filter(half).count();
         let mut may_touch = pairs(&self, "disable_collisions")?;
         let mut kept_apart = pairs(&self, "enable_collisions")?;
         let same =
@@ -62,6 +64,11 @@ impl ArmModel {
         }
         (self.may_touch, self.kept_apart) = (Some(may_touch), kept_apart);
 
+        if halves > 0 {
+            self.notes.push(format!(
+                "<disable_collisions> without link1 or link2 is not read: {halves} in the SRDF"
+            ));
+        }
         if !absent.is_empty() {
             let absent: Vec<_> = absent.into_iter().collect();
             self.notes.push(format!("the SRDF names links that this robot does not have: {}", some(&absent)));

@@ -60,6 +60,12 @@ impl<'a> Text<'a> {
         Ok(document)
     }
 
+    /// The name in an attribute, without blanks around it.
+    pub(super) fn named(&self, node: &Node<'_, '_>, name: &str) -> Result<String, UrdfError> {
+        let missing = || self.error(node, format!("<{}> has no attribute {name}", node.tag_name().name()));
+        node.attribute(name).map(|value| value.trim().to_owned()).ok_or_else(missing)
+    }
+
     /// An error in the line of `node`.
     pub(super) fn error(&self, node: &Node<'_, '_>, message: impl std::fmt::Display) -> UrdfError {
         self.wrong(Some(line(node)), message.to_string())

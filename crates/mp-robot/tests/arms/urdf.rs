@@ -155,8 +155,16 @@ fn limits_can_be_set_and_pairs_given() {
         <disable_collisions link1="left" link2="base" reason="Never"/></robot>"#;
     assert_eq!(pairs(&model.clone().with_srdf(srdf).unwrap()), 0);
     assert_eq!(pairs(&model.clone().with_srdf("<robot/>").unwrap()), 1);
-    let error = model.clone().with_srdf(&srdf.replace("link2", "link3")).unwrap_err().to_string();
+    let half = srdf.replace("link2", "link3");
+    let noted = model.clone().with_srdf(&half).unwrap();
+    assert_eq!(pairs(&noted), 1);
+    assert!(noted.notes.iter().any(|n| n.contains("link1 or link2 is not read: 1 in")), "{:?}", noted.notes);
+    // What would compare more is not passed over.
+    let error = model.clone().with_srdf(&half.replace("disable", "enable")).unwrap_err().to_string();
     assert!(error.contains("line 2") && error.contains("link2"), "{error}");
+    // Blanks around names mean nothing.
+    assert_eq!(pairs(&model.clone().with_srdf(&srdf.replace("\"left\"", "\" left\t\"")).unwrap()), 0);
+    assert_eq!(read(&GRIPPER.replace("\"left\"", "\" left \"")).unwrap().links, model.links);
     let unknown = model.clone().with_srdf(&srdf.replace("\"base\"", "\"foot\"")).unwrap();
     assert_eq!(pairs(&unknown), 1);
     assert!(unknown.notes.iter().any(|n| n.contains("the SRDF names links") && n.contains("\"foot\"")));

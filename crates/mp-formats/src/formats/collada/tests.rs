@@ -68,6 +68,16 @@ fn all_kinds_of_primitives() {
 }
 
 #[test]
+fn a_mirror_turns_triangles_over() {
+    let normal = |scale: &str| {
+        let node = format!("<node><scale>{scale}</scale><instance_geometry url=\"#g\"/></node>");
+        let [a, b, c] = parse(&dae(ASSET, TRIANGLE, &node)).triangle(0);
+        (b - a).cross(&(c - a)).z
+    };
+    assert_eq!(["1 1 1", "-1 1 1", "-1 -1 1", "1 1 -1", "-1 -1 -1"].map(normal), [1.0, 1.0, 1.0, -1.0, -1.0]);
+}
+
+#[test]
 fn offsets_of_other_inputs_are_passed_over() {
     let primitives = r##"<source id="n"><float_array count="6">0 0 1 0 1 0</float_array></source>
 <triangles count="1" material="m"><input semantic="NORMAL" source="#n" offset="0"/><input semantic="VERTEX" source="#v" offset="2"/><p>1 9 0 0 9 1 1 9 2</p></triangles>"##;

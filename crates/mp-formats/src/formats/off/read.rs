@@ -258,7 +258,8 @@ impl<'a> Reader<'a> {
                 self.text.error(*t, message).expected("whole numbers from 0 to 255, or decimals from 0 to 1")
             })
         };
-        let real = |t: &Token<'a>| self.text.number(*t, what);
+        // A share that is no number is none.
+        let real = |t: &Token<'a>| if is_not_a_number(t.text) { Ok(0.0) } else { self.text.number(*t, what) };
         match *tokens {
             [ref i] if whole => Ok(OffColor::Map(self.text.count(*i, what)? as u64)),
             [ref r, ref g, ref b] if whole => Ok(OffColor::Rgb([byte(r)?, byte(g)?, byte(b)?])),
@@ -295,7 +296,7 @@ impl<'a> Reader<'a> {
     fn normal(&mut self, what: &dyn Fn() -> String) -> Result<Vector3<f64>, Error> {
         let mut normal = Vector3::zeros();
         for axis in 0..3 {
-            let word = self.lexer.next_unused().ok_or_else(|| self.text.error_at_end(what()))?;
+            let word = self.lexer.next().ok_or_else(|| self.text.error_at_end(what()))?;
             if !is_not_a_number(word.text) {
                 normal[axis] = self.text.number(word, &what())?;
             }
@@ -406,6 +407,14 @@ mod tests {
             ));
             assert_eq!(doc.normals, [Vector3::zeros(), Vector3::z(), Vector3::z()], "{word}");
             assert_eq!(doc.to_mesh("t.off").unwrap().triangles().len(), 1);
+            let colored =
+                format!("COFF 3 1 0\n0 0 0 {word} 0 1\n1 0 0 1 0 1\n0 1 0 1 0 {word}\n3 0 1 2 {word} 1 1\n");
+            let doc = parse(&colored);
+            assert_eq!(doc.colors[2], OffColor::RgbF([1.0, 0.0, 0.0]), "{word}");
+            assert_eq!(doc.faces[0].color, Some(OffColor::RgbF([0.0, 1.0, 1.0])), "{word}");
+            let e =
+                OffDocument::parse("t.off", colored.replace("1 0 0 1", &format!("1 0 {word} 1")).as_bytes());
+            assert_eq!(e.unwrap_err().line(), Some(3), "{word}");
         }
         let doc =
             OffDocument::parse("t.off", b"OFF # Geh\xe4use\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap();

@@ -201,10 +201,10 @@ pub(super) fn child<'a, 'i>(node: &Node<'a, 'i>, name: &str) -> Option<Node<'a, 
     node.children().find(|c| c.is_element() && is_own(c) && c.tag_name().name() == name)
 }
 
-/// The value of an attribute without a name space.
+/// The value of an attribute without a name space, without blanks around it.
 pub(super) fn attribute<'a>(node: &Node<'a, '_>, name: &str) -> Option<&'a str> {
     let own = |a: &Attribute<'_, '_>| a.namespace().is_none() && a.name() == name;
-    node.attributes().find(own).map(|a| a.value())
+    node.attributes().find(own).map(|a| a.value().trim())
 }
 
 /// Parts that were left out although they are incomplete or of another name space.
