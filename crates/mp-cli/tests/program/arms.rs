@@ -451,6 +451,13 @@ fn an_srdf_is_made_and_found() {
     assert_eq!(mp(&dir, &["srdf", robot]).stdout, text);
     let run = refused(&dir);
     assert_eq!(run.code, 0, "{run:?}");
+    // What the robot was read from is not replaced at all.
+    let (before, problem) = (dir.read(robot), dir.read("none.toml"));
+    for [from, out] in [[robot, robot], ["none.toml", robot], ["none.toml", "none.toml"]] {
+        let run = mp(&dir, &["srdf", from, "--out", out, "--replace"]);
+        assert!(run.code == 2 && run.stderr.contains("would overwrite the input"), "{run:?}");
+    }
+    assert_eq!((dir.read(robot), dir.read("none.toml")), (before, problem));
     let info = mp(&dir, &["info", robot]);
     assert!(info.stdout.contains("arm.srdf was found: it lets 1 pair of links touch"), "{info:?}");
     for bad in [["srdf", "gone.urdf"], ["srdf", "window.env"]] {
