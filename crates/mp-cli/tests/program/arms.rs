@@ -486,7 +486,9 @@ fn configurations_that_place_a_link_are_listed() {
     for (more, words) in [
         (vec!["--link", "toe", "--position", "1 0 0"], ["no link \"toe\"", "base, upper, lower"]),
         (vec!["--link", "lower", "--position", "1 0"], ["2 numbers", "x y z"]),
-        (vec!["--link", "lower", "--position", "1 0 x"], ["`x` is not a number", ""]),
+        (vec!["--link", "lower", "--position", "1 0 x"], ["`x` is not a finite number", ""]),
+        (vec!["--link", "lower", "--position", "1 0 nan"], ["`nan` is not a finite number", "0.5"]),
+        (vec!["--link", "lower", "--pose", "inf 0 0 0 0 0"], ["`inf` is not a finite number", "0.5"]),
         (vec!["--link", "lower"], ["where the link is to be", "--pose or --position"]),
         (vec!["--link", "lower", "--position", "4 0 0"], ["cannot get there", "move the goal"]),
         (vec!["--link", "lower", "--pose", "1 0 0 0 0 0", "--free", "w"], ["`free` is `w`", ""]),
