@@ -6,7 +6,7 @@ use super::compile::MAX_LENGTH;
 use super::xml::{Text, some};
 use super::{ArmModel, Joint, JointKind, Link, UrdfError};
 use mp_cspace::Interrupt;
-use mp_geom::{Shape, TriMesh};
+use mp_geom::{MeshError, Shape, TriMesh};
 use nalgebra::{Isometry3, Point3, Vector3};
 use read::{Geometry, LeftOut, Reader, attribute, child, is_own};
 use roxmltree::Node;
@@ -31,12 +31,13 @@ impl ArmModel {
     /// - which joints are planar: each becomes three joints, two that slide and one that turns;
     /// - which joints that mimic others had their limits ignored, because neither joint could move within both limits.
     ///
-    /// A shape without volume is a sheet or a line, which can be hit; one of no extent at all is left out, and a note says so. Round
+    /// A shape without volume is a sheet or a line, which can be hit; one of no extent at all is left out, as is a mesh without triangles,
+    /// and a note says so. Round
     /// shapes become meshes of flat faces that contain them. They are larger by less than 1% of the radius (2% for
     /// spheres). A link of spheres alone has these themselves, as [balls](TriMesh::balls).
     ///
     /// `mesh` is called with each mesh file name as written, often `package://robot/part.stl`. It returns the mesh, or a
-    /// message for people.
+    /// message for people; one that has the text of [`MeshError::Empty`] says that there are no triangles.
     ///
     /// # Errors
     /// [`UrdfError`], which names the line and the joint or link.
@@ -93,7 +94,7 @@ impl ArmModel {
                     Some(thin) => thin,
                     None => match (ball(&geometry), of_balls) {
                         (Some(ball), true) => Ok(Some(ball)),
-                        _ => shape(&geometry, &mut mesh).map(Some),
+                        _ => shape(&geometry, &mut mesh),
                     },
                 };
                 let Some(shape) = made.map_err(fail)? else {
@@ -114,7 +115,7 @@ impl ArmModel {
         let mut notes = left_out.notes();
         notes.extend(reader.surplus.into_inner());
         if !empty.is_empty() {
-            let note = "shapes of size 0 are left out, for there is nothing to touch, in";
+            let note = "shapes of size 0 and meshes without triangles are left out, for there is nothing to touch, in";
             notes.push(format!("{note} {}", some(&empty)));
         }
         model.notes.splice(0..0, notes);
@@ -277,22 +278,34 @@ fn ball(geometry: &Geometry<'_>) -> Option<TriMesh> {
     }
 }
 
-/// The shape as a mesh, in its own frame.
+/// The shape as a mesh, in its own frame; `None` for a mesh without triangles, or one that is scaled to a point.
 fn shape(
     geometry: &Geometry<'_>,
     mesh: &mut impl FnMut(&str) -> Result<TriMesh, String>,
-) -> Result<TriMesh, String> {
+) -> Result<Option<TriMesh>, String> {
     let shape = match geometry {
         Geometry::Primitive(name, lengths) => Shape::primitive(name, lengths),
         Geometry::Mesh(file, scale) => {
-            let read = mesh(file)?;
+            let read = match mesh(file) {
+                Err(message) if message.contains(&MeshError::Empty.to_string()) => return Ok(None),
+                read => read?,
+            };
             let [x, y, z] = *scale;
-            if !scale.iter().all(|s| s.is_finite() && *s != 0.0) {
-                return Err(format!("the scale of {file} is {x} {y} {z}: it must be finite and not zero"));
+            if !scale.iter().all(|s| s.is_finite()) {
+                return Err(format!("the scale of {file} is {x} {y} {z}: it must be finite"));
             }
-            Some(read.scaled(*scale).map_err(|error| error.to_string())?.into())
+            if *scale == [0.0; 3] {
+                return Ok(None);
+            }
+            let mut scaled = read.scaled(*scale);
+            if scale.contains(&0.0) {
+                // A sheet or a line is no solid.
+                scaled =
+                    scaled.and_then(|flat| TriMesh::new(flat.vertices().to_vec(), flat.triangles().to_vec()));
+            }
+            Some(scaled.map_err(|error| error.to_string())?.into())
         }
     };
     let made = shape.map(|shape| shape.mesh()).transpose().map_err(|error| error.to_string())?;
-    made.ok_or_else(|| "this shape is not known".to_owned())
+    made.map(Some).ok_or_else(|| "this shape is not known".to_owned())
 }

@@ -117,6 +117,35 @@ fn links_of_spheres_are_balls() {
     assert!(read(&text(&ball(0.1, "-1"))).unwrap_err().to_string().contains("radius"));
 }
 
+/// A mesh without triangles cannot be touched, and neither can one that is scaled to a point. A sheet can.
+#[test]
+fn meshes_without_extent_are_left_out() {
+    let text = |scale: &str| {
+        format!(
+            "<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh filename=\"m.stl\" scale=\"{scale}\"/></geometry>\
+             </collision></link><link name=\"b\"/><joint name=\"j\" type=\"continuous\"><parent link=\"b\"/><child link=\"a\"/>\
+             </joint></robot>"
+        )
+    };
+    let read =
+        |scale: &str, mesh: Result<TriMesh, String>| ArmModel::from_urdf(&text(scale), |_| mesh.clone());
+    let cube = || Ok(mp_geom::primitives::cuboid(1.0, 1.0, 1.0).unwrap());
+    let empty = TriMesh::new(vec![], vec![]).unwrap_err();
+    for (scale, mesh) in [("1 1 1", Err(format!("m.stl: {empty} (a body needs one)"))), ("0 0 0", cube())] {
+        let model = read(scale, mesh).unwrap();
+        assert!(model.links[0].shapes.is_empty());
+        assert!(
+            model.notes[0].contains("meshes without triangles are left out")
+                && model.notes[0].contains("\"a\"")
+        );
+    }
+    let sheet = read("1 1 0", cube()).unwrap().links[0].shapes[0].clone();
+    assert_eq!((sheet.aabb().max.x, sheet.aabb().max.z, sheet.solids().len()), (0.5, 0.0, 0));
+    for (scale, mesh) in [("1 inf 1", cube()), ("1 1 1", Err("m.stl: cut short".to_owned()))] {
+        assert!(read(scale, mesh).is_err());
+    }
+}
+
 #[test]
 fn velocities_are_read_and_those_of_followers_count() {
     let limit = "<joint name=\"turn\" type=\"continuous\"><limit effort=\"1\" velocity=\" 2.5 \"/>";
@@ -333,7 +362,7 @@ fn faults_are_named() {
     says("type=\"continuous\"", "type=\"spherical\"", &["turn", "spherical"]);
     says("type=\"continuous\"", "type=\"screw\"", &["not a URDF", "line 29", "turn", "screw", "prismatic"]);
     says("finger.stl", "thumb.stl", &["line 18", "left", "shape 1", "thumb.stl"]);
-    says("1 -1 2", "1 0 2", &["left", "scale"]);
+    says("1 -1 2", "1 inf 2", &["left", "scale"]);
     says("radius=\"0.05\"", "radius=\"-0.05\"", &["carriage", "shape 1", "radius"]);
     says("0.1 0 0\" rpy", "0.1 nan 0\" rpy", &["carriage", "origin"]);
     says("0 0 0.1\" rpy", "0 0 inf\" rpy", &["lift", "origin"]);
