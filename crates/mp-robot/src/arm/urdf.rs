@@ -10,10 +10,14 @@ use mp_geom::{MeshError, Shape, TriMesh};
 use nalgebra::{Isometry3, Point3, Vector3};
 use read::{Geometry, LeftOut, Reader, attribute, child, is_own};
 use roxmltree::Node;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// How far (m) a planar joint goes from its origin along x and along y.
 const PLANAR_ROOM: f64 = 10.0;
+
+/// Limits that are farther apart than this (rad) mean that a joint turns without end: no cable bears a hundred thousand turns, and such an
+/// angle alone would be all of the distance between two configurations.
+const ENDLESS: f64 = 1e6;
 
 /// Sides of the sheet in place of a cylinder without height, which contains it.
 const SEGMENTS: u32 = 32;
@@ -29,6 +33,7 @@ impl ArmModel {
     /// - which joints do not move because their limits are equal. They are not coordinates until
     ///   [`with_limits`](Self::with_limits) gives them other limits;
     /// - which joints are planar: each becomes three joints, two that slide and one that turns;
+    /// - which revolute joints turn without end, for their limits are more than 1e6 rad apart;
     /// - which joints that mimic others had their limits ignored, because neither joint could move within both limits.
     ///
     /// A shape without volume is a sheet or a line, which can be hit; one of no extent at all is left out, as is a mesh without triangles,
@@ -120,6 +125,7 @@ impl ArmModel {
         }
         model.notes.splice(0..0, notes);
         model.drop_conflicting_limits();
+        model.drop_endless_limits();
         let held = model.joints.iter().filter(|j| j.kind.held().is_some() && j.mimic.is_none());
         let held: Vec<_> = held.map(|j| j.name.clone()).collect();
         if !held.is_empty() {
@@ -221,6 +227,28 @@ impl ArmModel {
         if !aside.is_empty() {
             let note = "the limits of joints that mimic others are set aside, for they leave them no room";
             self.notes.push(format!("{note}: {}", some(&aside)));
+        }
+    }
+
+    /// Makes revolute joints continuous whose limits mean none. Those that others mimic keep them, as what mimics a continuous joint may not
+    /// have limits.
+    fn drop_endless_limits(&mut self) {
+        let leaders = self.joints.iter().filter_map(|joint| Some(joint.mimic.as_ref()?.joint.clone()));
+        let leaders: HashSet<_> = leaders.collect();
+        let mut endless = Vec::new();
+        for joint in self.joints.iter_mut().filter(|joint| !leaders.contains(&joint.name)) {
+            if let JointKind::Revolute { low, high } = joint.kind
+                && high - low > ENDLESS
+            {
+                joint.kind = JointKind::Continuous;
+                endless.push(joint.name.clone());
+            }
+        }
+        if !endless.is_empty() {
+            let note = format!(
+                "these joints turn without end, for their limits are more than {ENDLESS:e} rad apart"
+            );
+            self.notes.push(format!("{note}: {}", some(&endless)));
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::common::cases_of;
 use mp_cspace::{Configuration, JointRange};
 use mp_geom::{TriMesh, primitives::cuboid};
-use mp_robot::{Arm, ArmModel, JointKind, Rate, UrdfError};
+use mp_robot::{Arm, ArmModel, JointKind, Kinematics, Rate, UrdfError};
 use nalgebra::{Point3, Vector3};
 
 const GRIPPER: &str = r#"<?xml version="1.0"?>
@@ -117,6 +117,32 @@ fn links_of_spheres_are_balls() {
     assert!(read(&text(&ball(0.1, "-1"))).unwrap_err().to_string().contains("radius"));
 }
 
+/// Limits of 1e16 are written for wheels that turn without end.
+#[test]
+fn limits_that_mean_none() {
+    let joint = |name: &str, kind: &str, limit: &str, mimic: &str| {
+        format!(
+            "<link name=\"{name}\"/><joint name=\"{name}\" type=\"{kind}\"><parent link=\"base\"/><child link=\"{name}\"/>\
+             <limit lower=\"-{limit}\" upper=\"{limit}\"/>{mimic}</joint>"
+        )
+    };
+    let joints = [
+        joint("wheel", "revolute", "1e16", ""),
+        joint("inf", "revolute", "INF", ""),
+        joint("winch", "revolute", "1000", ""),
+        joint("leader", "revolute", "1e16", ""),
+        joint("follower", "revolute", "1", "<mimic joint=\"leader\"/>"),
+    ];
+    let model = read(&format!("<robot name=\"r\"><link name=\"base\"/>{}</robot>", joints.concat())).unwrap();
+    let ranges: Vec<_> =
+        Kinematics::new(&model).unwrap().coordinates().iter().map(|coordinate| coordinate.range).collect();
+    let between = |x: f64| JointRange::Interval { low: -x, high: x };
+    assert_eq!(ranges, [JointRange::Circle, JointRange::Circle, between(1000.0), between(1.0)]);
+    let note =
+        "these joints turn without end, for their limits are more than 1e6 rad apart: \"wheel\", \"inf\"";
+    assert!(model.notes.iter().any(|said| said.starts_with(&note[..60])), "{:?}", model.notes);
+}
+
 /// A mesh without triangles cannot be touched, and neither can one that is scaled to a point. A sheet can.
 #[test]
 fn meshes_without_extent_are_left_out() {
@@ -129,7 +155,7 @@ fn meshes_without_extent_are_left_out() {
     };
     let read =
         |scale: &str, mesh: Result<TriMesh, String>| ArmModel::from_urdf(&text(scale), |_| mesh.clone());
-    let cube = || Ok(mp_geom::primitives::cuboid(1.0, 1.0, 1.0).unwrap());
+    let cube = || Ok(cuboid(1.0, 1.0, 1.0).unwrap());
     let empty = TriMesh::new(vec![], vec![]).unwrap_err();
     for (scale, mesh) in [("1 1 1", Err(format!("m.stl: {empty} (a body needs one)"))), ("0 0 0", cube())] {
         let model = read(scale, mesh).unwrap();
