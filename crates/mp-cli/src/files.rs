@@ -121,6 +121,7 @@ impl Files {
         ] {
             match (file, several) {
                 (None, _) => {}
+                (Some(file), None) if option == "--out" && is_standard(file) => {}
                 (Some(file), None) => claims.output(option, file)?,
                 (Some(file), Some(count)) => {
                     (1..=count).try_for_each(|number| claims.output(option, &numbered(file, number)))?

@@ -135,8 +135,14 @@ pub(crate) fn judged_path(scene: &Scene, given: &Path) -> Result<(PathRows, Verd
     Ok((path, verdict))
 }
 
-/// The numbers of a text, between spaces or commas.
+/// The numbers of a text, between spaces or commas. All are finite.
 pub(crate) fn numbers(text: &str) -> Result<Vec<f64>, Error> {
     let words = text.split([' ', ',', '\t']).filter(|word| !word.is_empty());
-    words.map(|word| word.parse().map_err(|_| Error::new(format!("`{word}` is not a number")))).collect()
+    let number =
+        |word: &str| match word.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(Error::new(format!("`{word}` is not a finite number"))
+                .help("write numbers such as 0.5 or -1e-3")),
+        };
+    words.map(number).collect()
 }

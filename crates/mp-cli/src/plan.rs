@@ -13,8 +13,8 @@ use crate::{interrupt, memory};
 use mp_batch::{Portfolio, PortfolioOptions};
 use mp_io::ProblemChanges;
 use mp_plan::{
-    Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, Report, Request, Runs,
-    Scene, StopReason, StoppedBy, in_parallel, make_folder,
+    Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, RelaxField, Report, Request,
+    Runs, Scene, StopReason, StoppedBy, in_parallel, make_folder,
 };
 use mp_view::GrownTrees;
 use std::path::{Path, PathBuf};
@@ -270,7 +270,8 @@ fn parts(
 fn check_files(args: &Plan, files: &Files, scenes: &[Scene], jobs: &[(usize, u64)]) -> Result<(), Error> {
     let mut claims = Claims::default();
     scenes.iter().flat_map(Scene::inputs_on_disk).for_each(|file| claims.input(file));
-    if let Some(file) = &args.request {
+    args.request.iter().for_each(|file| claims.input(file));
+    if let Some(RelaxField::Image(file)) = &args.relax {
         claims.input(file);
     }
     files.claim_roadmap(&mut claims)?;

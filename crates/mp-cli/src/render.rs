@@ -6,7 +6,7 @@ use crate::interrupt;
 use crate::output::{Claims, note, write};
 use crate::picture::{Picture, Shown};
 use crate::progress::Line;
-use mp_plan::{Cancel, Error};
+use mp_plan::{Cancel, Error, RelaxField};
 
 /// Draws a scene, and a path through it. A path that does not pass verification is drawn as well, with a
 /// warning.
@@ -16,6 +16,9 @@ pub(crate) fn run(args: &Render) -> Result<bool, Error> {
     let picture = Picture::of(&scene, &args.picture, &args.drawing, args.path.is_some())?;
     let mut claims = Claims::default();
     scene.inputs_on_disk().iter().chain(&args.path).for_each(|file| claims.input(file));
+    if let Some(RelaxField::Image(file)) = &args.drawing.field {
+        claims.input(file);
+    }
     claims.output("--picture", &args.picture)?;
     let judged = args.path.as_ref().map(|file| judged_path(&scene, file)).transpose()?;
     let mut caption = String::new();

@@ -1,16 +1,22 @@
 //! `srdf`: which links of a robot may touch, as a file.
 
-use crate::output::{note, print, write};
+use crate::input::is_standard;
+use crate::output::{Claims, note, print, write};
 use crate::{cli, interrupt};
 use mp_plan::{Error, Interrupt, RobotPairs, TouchReason, count};
 
 /// Makes the SRDF. Always true, as bad files are errors.
 pub(crate) fn run(args: &cli::Srdf) -> Result<bool, Error> {
-    if let Some(out) = args.out.as_ref().filter(|out| out.exists() && !args.replace) {
+    if let Some(out) = args.out.as_ref().filter(|out| out.exists() && !is_standard(out) && !args.replace) {
         return Err(Error::new(format!("{} is there already", out.display()))
             .help("name another file by --out, or replace it by --replace"));
     }
     let made = RobotPairs::sampled(&args.robot, &Interrupt::new(interrupt::flag()))?;
+    if let Some(out) = args.out.as_ref().filter(|out| !is_standard(out)) {
+        let mut claims = Claims::default();
+        made.inputs.iter().for_each(|file| claims.input(file));
+        claims.output("--out", out)?;
+    }
     let text = made.srdf(!args.check_never);
     match &args.out {
         Some(out) => write(out, text.as_bytes())?,

@@ -1,6 +1,6 @@
 //! `time`: gives a path times.
 
-use crate::input::{path, refuse_two_standard_inputs, scene};
+use crate::input::{is_standard, path, refuse_two_standard_inputs, scene};
 use crate::output::{Claims, note, print, write};
 use crate::{cli, interrupt};
 use mp_plan::{Error, Interrupt, TimedPath, TrajectoryKind};
@@ -11,7 +11,7 @@ pub(crate) fn run(args: &cli::Time) -> Result<bool, Error> {
     refuse_two_standard_inputs(&args.scene, Some(&args.path))?;
     let scene = scene(&args.scene, &args.changes.of_problem())?;
     let kind = args.out.as_deref().map_or(Ok(TrajectoryKind::Csv), kind_of)?;
-    if let Some(out) = &args.out {
+    if let Some(out) = args.out.as_ref().filter(|out| !is_standard(out)) {
         let mut claims = Claims::default();
         scene.inputs_on_disk().iter().chain([&args.path]).for_each(|file| claims.input(file));
         claims.output("--out", out)?;

@@ -23,7 +23,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 }
 
 /// The files of a command: inputs, and outputs that must be none of them, and no other output. Files are compared, not
-/// names. [Standard input and output](is_standard) are no files.
+/// names. [Standard input](is_standard) is no file, and standard output may be that of one option alone, which is not added here.
 #[derive(Debug, Default)]
 pub struct Claims(HashMap<FileId, Claim>);
 
@@ -47,10 +47,11 @@ impl Claims {
     /// Adds a file that will be written; `option` is what errors call it.
     ///
     /// # Errors
-    /// When it is an input or another output, or could not be written.
+    /// When it is an input or another output, is standard output, or could not be written.
     pub fn output(&mut self, option: &str, path: &Path) -> Result<(), Error> {
         if is_standard(path) {
-            return Ok(());
+            let message = format!("{option} {}: standard output has other content", path.display());
+            return Err(Error::new(message).help("name a file"));
         }
         mp_store::writable(path)?;
         let claim = Claim { what: option.into(), path: path.to_owned(), is_input: false };

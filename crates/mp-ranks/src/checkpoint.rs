@@ -26,7 +26,7 @@ pub struct Checkpoint {
 
 impl Checkpoint {
     /// Opens the checkpoint in `file`, or begins it. `job` says in a line which job it is: everything that
-    /// its results depend on, best as hashes. An incomplete last line is dropped.
+    /// its results depend on, best as hashes. An incomplete last line is dropped. A file of anything else is left as it is.
     ///
     /// # Errors
     /// When the file is in use, cannot be read or written, is damaged, or is that of another job.
@@ -38,18 +38,16 @@ impl Checkpoint {
             remedy: remedy.to_owned(),
         };
         let head = format!("mp-ranks checkpoint 1: {}", job.replace(['\n', '\r'], " "));
-        let text = match file.exists() {
-            true => String::from_utf8_lossy(&mp_store::read(file, MAX_BYTES)?).into_owned(),
-            false => String::new(),
-        };
-        let mut whole = text.split_inclusive('\n').filter(|line| line.ends_with('\n')).enumerate();
-        let mut known = HashMap::new();
-        if let Some((_, first)) = whole.next()
-            && first.trim_end() != head
-        {
-            let message = format!("it belongs to another job, `{}`", shortened(first.trim_end()));
+        let bytes = if file.exists() { mp_store::read(file, MAX_BYTES)? } else { Vec::new() };
+        let text = String::from_utf8_lossy(&bytes);
+        let first = text.lines().next().unwrap_or_default().trim_end();
+        // The first line may be torn as well, if it is the beginning of that of this job.
+        if first != head && !head.as_bytes().starts_with(&bytes) {
+            let message = format!("it belongs to another job, `{}`", shortened(first));
             return Err(refused(message, "delete it, or name another file"));
         }
+        let mut known = HashMap::new();
+        let whole = text.split_inclusive('\n').filter(|line| line.ends_with('\n')).enumerate().skip(1);
         for (number, line) in whole {
             let Some((item, result)) = read_line(line.trim_end_matches('\n')) else {
                 let message = format!("line {} is damaged", number + 1);
@@ -145,6 +143,12 @@ mod tests {
         Checkpoint::open(&file, "one").unwrap().keep(3, b"abc").unwrap();
         let e = Checkpoint::open(&file, "two").unwrap_err().to_string();
         assert!(e.contains("another job") && e.contains("one") && e.contains("delete"), "{e}");
+        for foreign in [b"password=hunter2".as_slice(), b"mp-ranks checkpoint 1: two", b"\n", b" ", b"\xff"] {
+            let other = folder.path().join("other");
+            std::fs::write(&other, foreign).unwrap();
+            let e = Checkpoint::open(&other, "one").unwrap_err().to_string();
+            assert!(e.contains("another job") && std::fs::read(&other).unwrap() == foreign, "{e}");
+        }
         let text = std::fs::read_to_string(&file).unwrap();
         for damage in [text.replace("3 ", "4 "), text.replace("YWJj", "YWJk"), text.replace("3 ", "x ")] {
             std::fs::write(&file, &damage).unwrap();

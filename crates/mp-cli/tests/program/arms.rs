@@ -455,6 +455,13 @@ fn an_srdf_is_made_and_found() {
     assert_eq!(mp(&dir, &["srdf", robot]).stdout, text);
     let run = refused(&dir);
     assert_eq!(run.code, 0, "{run:?}");
+    // What the robot was read from is not replaced at all.
+    let (before, problem) = (dir.read(robot), dir.read("none.toml"));
+    for [from, out] in [[robot, robot], ["none.toml", robot], ["none.toml", "none.toml"]] {
+        let run = mp(&dir, &["srdf", from, "--out", out, "--replace"]);
+        assert!(run.code == 2 && run.stderr.contains("would overwrite the input"), "{run:?}");
+    }
+    assert_eq!((dir.read(robot), dir.read("none.toml")), (before, problem));
     let info = mp(&dir, &["info", robot]);
     assert!(info.stdout.contains("arm.srdf was found: it lets 1 pair of links touch"), "{info:?}");
     for bad in [["srdf", "gone.urdf"], ["srdf", "window.env"]] {
@@ -483,7 +490,9 @@ fn configurations_that_place_a_link_are_listed() {
     for (more, words) in [
         (vec!["--link", "toe", "--position", "1 0 0"], ["no link \"toe\"", "base, upper, lower"]),
         (vec!["--link", "lower", "--position", "1 0"], ["2 numbers", "x y z"]),
-        (vec!["--link", "lower", "--position", "1 0 x"], ["`x` is not a number", ""]),
+        (vec!["--link", "lower", "--position", "1 0 x"], ["`x` is not a finite number", ""]),
+        (vec!["--link", "lower", "--position", "1 0 nan"], ["`nan` is not a finite number", "0.5"]),
+        (vec!["--link", "lower", "--pose", "inf 0 0 0 0 0"], ["`inf` is not a finite number", "0.5"]),
         (vec!["--link", "lower"], ["where the link is to be", "--pose or --position"]),
         (vec!["--link", "lower", "--position", "4 0 0"], ["cannot get there", "move the goal"]),
         (vec!["--link", "lower", "--pose", "1 0 0 0 0 0", "--free", "w"], ["`free` is `w`", ""]),

@@ -48,6 +48,13 @@ fn outputs_are_never_inputs() {
         refuse(&["plan", "window.env", "--out", "hard.txt"], &["hard.txt", "the input sill.off"]);
         refuse(&["plan", "window.env", "--out", "here/window.env"], &["the input window.env"]);
     }
+    // So is the image of a field, before it is read.
+    dir.write("field.png", "no picture");
+    let picture = ["--picture", "field.png"];
+    let plan = [&["plan", "window.env", "--relax", "image:field.png"], &picture[..]].concat();
+    refuse(&plan, &["--picture", "the input field.png"]);
+    let render = [&["render", "rrs-follow", "--field", "image:field.png"], &picture[..]].concat();
+    refuse(&render, &["--picture", "the input field.png"]);
     // What a path is drawn from is an input too.
     dir.write("p.png", "1\n0 0 0 0 0 0\n");
     refuse(&["render", "window.env", "p.png", "--out", "./p.png"], &["the input p.png"]);
@@ -89,6 +96,37 @@ fn outputs_are_files_of_their_own() {
         refuse(&[&prm[..], &["--out", "early.txt", "--roadmap", "later.txt"]].concat(), &["the same file"]);
         assert!(!dir.exists("later.txt"));
     }
+}
+
+/// Standard output is for one thing alone.
+#[test]
+fn only_one_output_is_standard_output() {
+    let dir = Dir::new();
+    for args in [
+        &["plan", "window.env", "--out", "-", "--certificate", "-"][..],
+        &["plan", "window.env", "--certificate", "-"],
+        &["plan", "window.env", "--json", "--certificate", "-"],
+        &["plan", "window.env", "--planner", "prm", "--roadmap", "-"],
+        &["plan", "window.env", "--portfolio", "2", "--checkpoint", "-"],
+    ] {
+        let run = mp(&dir, args);
+        let said = run.stderr.contains(" -: standard output has other content");
+        assert!(run.code == 2 && run.stdout.is_empty() && said, "{args:?}: {run:?}");
+    }
+    assert_eq!(mp(&dir, &["plan", "window.env", "--out", "p.txt", "--picture", "p.png"]).code, 0);
+    let run = mp(&dir, &["check", "window.env", "p.txt", "--certificate", "-"]);
+    assert!(run.code == 2 && run.stderr.contains("standard output has other content"), "{run:?}");
+    assert!(!dir.exists("-"));
+}
+
+/// A run of a portfolio deletes its checkpoint in the end, and nothing else.
+#[test]
+fn a_checkpoint_is_no_other_file() {
+    let dir = Dir::new();
+    dir.write("secret", "password=hunter2");
+    let run = mp(&dir, &["plan", "window.env", "--portfolio", "2", "--checkpoint", "secret"]);
+    assert!(run.code == 2 && run.stderr.contains("another job"), "{run:?}");
+    assert_eq!(dir.read("secret"), "password=hunter2");
 }
 
 #[test]

@@ -26,7 +26,7 @@ use mp_cspace::{
 };
 use mp_geom::{Aabb, TriMesh, continued_six, pose_from_six, six_from_pose};
 use mp_io::{DescribedRobot, Disk, Files, PlacedBody, RobotFilePart, RobotProblem};
-use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, JointKind};
+use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, JointKind, PLANAR_NUMBERS};
 use nalgebra::Isometry3;
 use named::NamedValues;
 pub use pose_goals::Reached;
@@ -491,16 +491,31 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
     }
     fn bounds_remedy(&self, q: &Configuration) -> String {
         let joint = |name: &String| self.arm.coordinates().iter().any(|c| c.name == *name);
-        match self.beyond(q).filter(|(name, ..)| joint(name)) {
-            Some((name, [low, high], x)) => {
-                let [low, high, off] = [low.min(x), high.max(x), (x - x.clamp(low, high)).abs()].map(plain);
-                format!(
-                    "move it, or widen the limits in [robot]: `limits = {{ {name} = [{low}, {high}] }}`, or for a start that \
-                     is only a little beyond `limit_tolerance = {off}`"
-                )
-            }
-            None => "move it, or widen the bounds".to_owned(),
+        let Some((name, [low, high], x)) = self.beyond(q).filter(|(name, ..)| joint(name)) else {
+            return "move it, or widen the bounds".to_owned();
+        };
+        // The file names the joint in the table of its robot.
+        let file = self.source.as_ref().map(|problem| &problem.file);
+        let mut robots = file.into_iter().flat_map(|file| (0..).map(|i| file.prefix(i)).zip(&file.robots));
+        let (prefix, entry) = robots.find(|(prefix, _)| name.starts_with(prefix)).unzip();
+        let prefix = prefix.unwrap_or_default();
+        let bare = name.strip_prefix(&prefix).unwrap_or(&name);
+        let table = match prefix.strip_suffix('/') {
+            Some(robot) => format!("the [[robot]] \"{robot}\""),
+            None => "[robot]".to_owned(),
+        };
+        if entry.is_some_and(|entry| entry.planar.is_some()) && PLANAR_NUMBERS.contains(&bare) {
+            return format!("move it, or widen the `bounds` in {table}");
         }
+        let is_key = bare.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+        let key = if is_key { bare.to_owned() } else { format!("\"{bare}\"") };
+        let [low, high, off] = [low.min(x), high.max(x), (x - x.clamp(low, high)).abs()].map(plain);
+        let mut help =
+            format!("move it, or widen the limits in {table}: `limits = {{ {key} = [{low}, {high}] }}`");
+        if *q == self.start {
+            help += &format!(", or for a start that is only a little beyond `limit_tolerance = {off}`");
+        }
+        help
     }
     fn end_error(&self, end: End, message: String, help: String) -> Error {
         let error = match &self.source {

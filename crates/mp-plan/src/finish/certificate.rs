@@ -91,6 +91,7 @@ pub(crate) fn certificate(
     let model = kind.motion_model().map_err(|e| e.context(what()))?;
     let limits = kind.limits();
     for (row, q) in path.rows.iter().zip(&states) {
+        // The proof is of where the path has the joint.
         agrees(&model, &at_limits(row, &limits), &kind.poses(q)).map_err(|e| e.context(what()))?;
     }
     let clearance = if clearance.is_finite() { clearance } else { 0.0 };

@@ -97,6 +97,12 @@ fn configurations_that_reach_a_place_are_listed() {
         scene.reaching(&place("toe", 1.0), 10, &never).unwrap_err().report().contains("upper, lower, tip")
     );
     assert!(scene.reaching(&place("base", 1.0), 10, &never).unwrap_err().report().contains("no joint moves"));
+    for x in [f64::NAN, f64::INFINITY] {
+        let e = scene.reaching(&place("tip", x), 10, &never).unwrap_err().report();
+        assert!(e.contains("finite numbers"), "{e}");
+    }
+    let below = PoseEntry { within: [-1.0, 0.0, 0.0], ..place("tip", 1.0) };
+    assert!(scene.reaching(&below, 10, &never).is_err());
     assert!(scene.reaching(&place("tip", 2.0), 10, &never).unwrap_err().report().contains("2.245 m from"));
     assert!(Scene::find("easy").unwrap().reaching(&place("tip", 1.0), 10, &never).is_err());
 }

@@ -172,6 +172,18 @@ fn a_start_beyond_a_limit() {
         shown.contains("limits = { b = [-1, 1.5709] }") && shown.contains("limit_tolerance = 0.0009"),
         "{shown}"
     );
+    // The tolerance is that of a start, a base in the plane has bounds, and of several robots each has its limits.
+    let goal = scene(&[("p.toml", &problem("", "[0, 0]", "[0, 1.5709]")), ("r.urdf", &urdf)]);
+    let shown = goal.check_ends().unwrap_err().report();
+    assert!(shown.contains("limits = { b = [-1, 1.5709] }") && !shown.contains("tolerance"), "{shown}");
+    let toml =
+        problem("base = \"planar\"\nbounds = [[-1, -1], [1, 1]]", "[2, 0, 0, 0, 0]", "[0, 0, 0, 0, 0]");
+    let shown = scene(&[("p.toml", &toml), ("r.urdf", &urdf)]).check_ends().unwrap_err().report();
+    assert!(shown.contains("widen the `bounds` in [robot]"), "{shown}");
+    let toml = "[[robot]]\nname = \"l1\"\nurdf = \"r.urdf\"\n[[robot]]\nname = \"l2\"\nurdf = \"r.urdf\"\nbase = [9, 0, 0, 0, 0, 0]\n\
+                [motion]\nstart = [0, 0, 0, 2]\ngoal = [0, 0, 0, 0]\n";
+    let shown = scene(&[("p.toml", toml), ("r.urdf", &urdf)]).check_ends().unwrap_err().report();
+    assert!(shown.contains("in the [[robot]] \"l2\": `limits = { b = [-1, 2] }`"), "{shown}");
     for robot in ["limit_tolerance = 0.001", "limits = { b = [-1, 1.6] }"] {
         let scene = at(robot, 1.5709);
         let (_, path) = planned(&scene);
@@ -182,6 +194,59 @@ fn a_start_beyond_a_limit() {
     assert!(at("limit_tolerance = 0.0001", 1.5709).check_ends().is_err());
     let toml = problem("limit_tolerance = -1", "[0, 0]", "[0.5, 0]");
     assert!(load(&[("p.toml", &toml), ("r.urdf", &urdf)]).unwrap_err().to_string().contains("limits is -1"));
+}
+
+/// Two fingers, of which the second goes half as far as the first, and an arm to move.
+#[test]
+fn limits_of_a_joint_that_others_mimic() {
+    let urdf = r#"<robot name="r"><link name="base"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+<link name="left"><collision><origin xyz="1 0 0"/><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+<link name="right"><collision><origin xyz="-1 0 0"/><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+<joint name="f1" type="prismatic"><parent link="base"/><child link="left"/><limit lower="0" upper="0.04"/></joint>
+<joint name="f2" type="prismatic"><parent link="base"/><child link="right"/><axis xyz="-1 0 0"/><limit lower="0" upper="0.02"/>
+<mimic joint="f1" multiplier="0.5"/></joint></robot>"#;
+    let at = |robot: &str| {
+        let toml = problem(robot, "[0.0402]", "[0.01]");
+        scene(&[("p.toml", &toml), ("r.urdf", urdf)])
+    };
+    assert!(at("").check_ends().is_err());
+    for robot in ["limit_tolerance = 0.001", "limits = { f1 = [0, 0.0402] }"] {
+        let (_, path) = planned(&at(robot));
+        assert_eq!(path.rows[0], [0.0402], "{robot}");
+    }
+    // The help works.
+    let help = at("").check_ends().unwrap_err().report();
+    assert!(help.contains("limits = { f1 = [0, 0.0402] }"), "{help}");
+}
+
+/// What a path that is a hair beyond a limit proves, where `check` calls it free.
+#[test]
+fn a_path_a_hair_beyond_a_limit_has_a_certificate() {
+    let toml = problem("", "[0, 1.57]", "[0.5, 0]");
+    let scene = scene(&[("p.toml", &toml), ("r.urdf", &two_bars([-1.0, 1.57]))]);
+    let (_, mut path) = planned(&scene);
+    path.rows[0][1] += 5e-6;
+    assert!(scene.check(&path).unwrap().free);
+    let certificate = scene.certificate(&path, 0.0, &Interrupt::never()).unwrap();
+    assert_eq!(scene.certificate_differences(certificate.to_json()).unwrap(), [""; 0]);
+}
+
+/// Limits of 1e9 m mean none, and do not make the tolerance a metre.
+#[test]
+fn a_joint_that_slides_without_limits() {
+    let urdf = r#"<robot name="r"><link name="world"/><link name="base"><collision><geometry><box size="0.4 0.4 0.2"/></geometry></collision></link>
+<joint name="x" type="prismatic"><parent link="world"/><child link="base"/><limit lower="-1e9" upper="1e9"/></joint></robot>"#;
+    let of = |robot: &str, start: &str| {
+        let toml =
+            problem(robot, start, "[7]") + "[[obstacle]]\nbox = [1, 1, 1]\npose = [0, 1, 0, 0, 0, 0]\n";
+        scene(&[("p.toml", &toml), ("r.urdf", urdf)])
+    };
+    let small = of("", "[5]");
+    assert_eq!(small.limits(), [Some([-9995.0, 10_005.0])]);
+    assert!(small.notes().iter().any(|note| note.contains("\"x\" has limits that mean none")));
+    planned(&small);
+    let given = of("limits = { x = [-2e6, 2e6] }", "[5]");
+    assert_eq!(given.limits(), [Some([-2e6, 2e6])]);
 }
 
 #[test]

@@ -56,6 +56,40 @@ fn path(scene: &Scene) -> Vec<Vec<f64>> {
     report.path.unwrap()
 }
 
+/// A joint without end that is held lets joints with limits mimic it, also where it is held by the start, or nothing says where.
+#[test]
+fn what_mimics_a_joint_without_end() {
+    let load = |robot: &str, start: &str, mimic: &str| {
+        let toml = format!("[robot]\nurdf = \"r.urdf\"\n{robot}\n[motion]\nstart = {start}\ngoal = [1]\n");
+        let urdf = format!(
+            "<robot name=\"r\"><link name=\"base\"/><link name=\"a\"/><link name=\"b\"/><link name=\"m\"/>\
+             <joint name=\"a\" type=\"continuous\"><parent link=\"base\"/><child link=\"a\"/></joint>\
+             <joint name=\"b\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/><limit lower=\"-3\" upper=\"3\"/></joint>\
+             <joint name=\"m\" type=\"prismatic\"><parent link=\"base\"/><child link=\"m\"/><limit lower=\"0.05\" upper=\"0.4\"/>\
+             <mimic joint=\"a\" {mimic}/></joint></robot>"
+        );
+        let at = move |name: &str| match name {
+            "p.toml" => Some(toml.clone()),
+            "r.urdf" => Some(urdf.clone()),
+            _ => None,
+        };
+        Scene::load_from(&InMemory(at), Path::new("p.toml"))
+    };
+    let half = "multiplier=\"0.5\"";
+    let by_start = load("joints = [\"b\"]", "{ a = 0.2, b = 0 }", half).unwrap();
+    assert_eq!(names(&by_start), ["b"]);
+    assert!(by_start.notes().iter().any(|note| note.contains("a at 0.2")), "{:?}", by_start.notes());
+    assert_eq!(names(&load("hold = { a = 0.2 }", "[0]", half).unwrap()), ["b"]);
+    assert_eq!(names(&load("joints = [\"b\"]", "[0]", "multiplier=\"0.5\" offset=\"0.1\"").unwrap()), ["b"]);
+    // Out of the limits of what mimics it, and where the joint moves.
+    assert!(load("joints = [\"b\"]", "[0]", half).unwrap_err().to_string().contains("outside of the limits"));
+    assert!(load("", "[0, 0]", half).unwrap_err().to_string().contains("without end"));
+    // A multiplier of zero follows nothing.
+    let still = load("joints = [\"a\"]", "[0]", "multiplier=\"0\" offset=\"0.1\"").unwrap();
+    assert_eq!(names(&still), ["a"]);
+    assert!(load("joints = [\"a\"]", "[0]", "multiplier=\"0\" offset=\"1\"").is_err());
+}
+
 #[test]
 fn held_joints_have_no_numbers() {
     let scene = load("hold = { raise = 0.3, finger = 0 }", "start = [0, 0]\ngoal = [1, 1]").unwrap();

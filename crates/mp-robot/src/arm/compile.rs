@@ -275,6 +275,10 @@ fn narrow(joint: &Joint, source: Source, coordinate: &mut Coordinate) -> Result<
     let Some(mimic) = &joint.mimic else { return Ok(()) };
     let wrong = |why| ArmError::Mimic { joint: joint.name.clone(), of: mimic.joint.clone(), why };
     let Source { scale, offset, .. } = source;
+    if scale == 0.0 {
+        let inside = joint.kind.limits().is_none_or(|[low, high]| (low..=high).contains(&offset));
+        return if inside { Ok(()) } else { Err(wrong("its offset is outside of its limits")) };
+    }
     match (joint.kind, &mut coordinate.range) {
         (JointKind::Continuous, JointRange::Circle) if scale.fract() == 0.0 => Ok(()),
         (_, JointRange::Circle) => Err(wrong(
@@ -286,10 +290,6 @@ fn narrow(joint: &Joint, source: Source, coordinate: &mut Coordinate) -> Result<
             JointKind::Revolute { low, high } | JointKind::Prismatic { low, high },
             JointRange::Interval { low: own_low, high: own_high },
         ) => {
-            if scale == 0.0 {
-                let inside = (low..=high).contains(&offset);
-                return if inside { Ok(()) } else { Err(wrong("its offset is outside of its limits")) };
-            }
             let ends = [(low - offset) / scale, (high - offset) / scale];
             *own_low = own_low.max(ends[0].min(ends[1]));
             *own_high = own_high.min(ends[0].max(ends[1]));
@@ -319,6 +319,8 @@ fn frame_of(
         JointRange::Interval { low, high } if slides => {
             (low * scale + offset).abs().max((high * scale + offset).abs())
         }
+        // What follows a joint without end can only slide if it stays.
+        JointRange::Circle if slides => offset.abs(),
         _ => 0.0,
     };
     let axis = Unit::new_normalize(joint.axis);

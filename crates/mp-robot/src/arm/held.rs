@@ -1,6 +1,7 @@
 //! Joints that are held, so that fewer joints move.
 
-use super::{ArmError, ArmModel, Kinematics};
+use super::{ArmError, ArmModel, Joint, JointKind, Kinematics};
+use std::collections::HashMap;
 
 /// A joint that is to be held beyond a limit by no more than this (rad or m) is held at the limit.
 const HAIR: f64 = 1e-5;
@@ -34,7 +35,17 @@ impl ArmModel {
         joints: &[String],
         at: impl Fn(&str) -> Option<f64>,
     ) -> Result<(Self, Vec<(String, f64)>), ArmError> {
-        let kinematics = Kinematics::new(&self)?;
+        let is_other = |joint: &&Joint| {
+            let moves =
+                joint.kind != JointKind::Fixed && joint.mimic.is_none() && joint.kind.held().is_none();
+            moves && !joints.contains(&joint.name)
+        };
+        // What mimics a joint without end may have limits once that is held.
+        let mut endless =
+            self.joints.iter().filter(is_other).filter(|joint| joint.kind == JointKind::Continuous);
+        let calm = endless
+            .try_fold(self.clone(), |model, j| model.holding(&j.name, at(&j.name).unwrap_or_default()))?;
+        let kinematics = Kinematics::new(&self).or_else(|_| Kinematics::new(&calm))?;
         let coordinates = kinematics.coordinates();
         if let Some(stray) = joints.iter().find(|name| coordinates.iter().all(|c| c.name != **name)) {
             // What is wrong with it is known there.
@@ -45,8 +56,12 @@ impl ArmModel {
                 Err(ArmError::NoSuchCoordinate { joint: stray.clone(), why })
             });
         }
-        let others = coordinates.iter().zip(kinematics.neutral()).filter(|(c, _)| !joints.contains(&c.name));
-        let held: Vec<_> = others.map(|(c, zero)| (c.name.clone(), at(&c.name).unwrap_or(zero))).collect();
+        let names = coordinates.iter().map(|c| c.name.as_str());
+        let neutral: HashMap<_, _> = names.zip(kinematics.neutral()).collect();
+        let zero = |name: &str| neutral.get(name).copied().unwrap_or_default();
+        let value = |name: &str| at(name).unwrap_or_else(|| zero(name));
+        let others = self.joints.iter().filter(is_other);
+        let held: Vec<_> = others.map(|joint| (joint.name.clone(), value(&joint.name))).collect();
         let model = held.iter().try_fold(self, |model, (joint, value)| model.holding(joint, *value))?;
         Ok((model, held))
     }

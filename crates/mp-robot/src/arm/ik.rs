@@ -228,7 +228,8 @@ impl<'a> InverseKinematics<'a> {
         let (mut norms, mut error) = self.error_at(q.as_slice());
         let (mut damping, mut best, mut since) = (1e-2, f64::INFINITY, 0);
         for _ in 0..STEPS {
-            if norms[0].max(norms[1]) <= IK_PRECISION {
+            // NaN is not near.
+            if norms.iter().all(|norm| *norm <= IK_PRECISION) {
                 return Some(self.space.wrapped(&q));
             }
             let size = error.norm();

@@ -295,4 +295,26 @@ impl ArmModel {
         };
         Ok(self)
     }
+
+    /// Widens the limits of joints so that `joint`, which mimics no other, can be at `value` (rad or m), and those that mimic it where
+    /// that puts them.
+    #[must_use]
+    pub fn with_room_for(mut self, joint: &str, value: f64) -> Self {
+        let is_leader = self.joints.iter().any(|j| j.name == joint && j.mimic.is_none());
+        let mut open = if is_leader { vec![(joint.to_owned(), value)] } else { Vec::new() };
+        while let Some((name, value)) = open.pop() {
+            for joint in &mut self.joints {
+                if let Some(mimic) = joint.mimic.as_ref().filter(|mimic| mimic.joint == name) {
+                    open.push((joint.name.clone(), value * mimic.multiplier + mimic.offset));
+                }
+                if joint.name == name
+                    && let JointKind::Revolute { low, high } | JointKind::Prismatic { low, high } =
+                        &mut joint.kind
+                {
+                    (*low, *high) = (low.min(value), high.max(value));
+                }
+            }
+        }
+        self
+    }
 }

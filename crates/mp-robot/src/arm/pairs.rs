@@ -21,8 +21,8 @@ const SAMPLES: usize = 100;
 /// may touch, and those that are closer than `close` (m) in every configuration tried. Also what is to be said about them.
 ///
 /// Links joined by fixed joints are one rigid body. Only of a body that stands still, which may carry walls and tables, the
-/// link of the joint alone is meant; its other links are left out if they touch what the joint moves at the neutral
-/// configuration and no pairs are given.
+/// link of the joint alone is meant, or the first one above it with a shape if it has none; its other links are left out if
+/// they touch what the joint moves at the neutral configuration and no pairs are given.
 pub(super) fn pairs(
     kinematics: &Kinematics,
     bodies: &[LinkBody],
@@ -56,7 +56,7 @@ pub(super) fn pairs(
         for (i, a) in bodies.iter().enumerate().take(j) {
             interrupt.go_on()?;
             let links = key(a.link, b.link);
-            let joined = joined(kinematics, a, b);
+            let joined = joined(kinematics, bodies, a, b);
             let is_kept = kept.contains(&links);
             if a.frame != b.frame && (is_kept || !(joined == Joined::Yes || allowed.contains(&links))) {
                 let beside = joined == Joined::Beside && model.may_touch.is_none();
@@ -93,7 +93,7 @@ pub(super) enum Joined {
     Yes,
 }
 
-pub(super) fn joined(kinematics: &Kinematics, a: &LinkBody, b: &LinkBody) -> Joined {
+pub(super) fn joined(kinematics: &Kinematics, bodies: &[LinkBody], a: &LinkBody, b: &LinkBody) -> Joined {
     let moves = |child: &LinkBody, parent: &LinkBody| {
         child.frame > 0 && kinematics.frames[child.frame - 1].parent == parent.frame
     };
@@ -103,7 +103,18 @@ pub(super) fn joined(kinematics: &Kinematics, a: &LinkBody, b: &LinkBody) -> Joi
         _ => return Joined::No,
     };
     let frame_of = |link: usize| kinematics.attached[link].frame;
-    let at_joint = |ends: &[usize; 2]| ends[0] == parent.link && frame_of(ends[1]) == child.frame;
+    // A link without a shape stands for the one that it is fixed to.
+    let solid = |mut link: usize| {
+        while !bodies.iter().any(|body| body.link == link)
+            && let Some([above, _]) = kinematics.joined.iter().find(|[_, below]| *below == link)
+        {
+            link = *above;
+        }
+        link
+    };
+    let at_joint = |[above, below]: &[usize; 2]| {
+        frame_of(*above) == parent.frame && frame_of(*below) == child.frame && solid(*above) == parent.link
+    };
     match parent.frame > 0 || kinematics.floats() || kinematics.joined.iter().any(at_joint) {
         true => Joined::Yes,
         false => Joined::Beside,

@@ -312,7 +312,7 @@ impl Scratch {
 ///   obstacles, which stand still too: a table may touch the base that it carries;
 /// - no two links have a point in common, except pairs that never move relative to each other, pairs of rigid bodies that a
 ///   joint connects (links touch at a joint; links joined by fixed joints are one body, but of a body that stands still only
-///   the link of the joint counts), and pairs that may touch: those of [`ArmModel::may_touch`] if given, else those that touch
+///   the link of the joint counts, or the first above it with a shape if it has none), and pairs that may touch: those of [`ArmModel::may_touch`] if given, else those that touch
 ///   at each of 100 configurations, the neutral one and 99 of the Halton sequence. Pairs within twice the tolerance of each
 ///   other at each of these are left out too, and [`ArmModel::notes`] of [`Arm::model`] says so.
 ///

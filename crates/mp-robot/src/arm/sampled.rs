@@ -71,7 +71,7 @@ impl ArmModel {
         for (j, b) in robot.bodies.iter().enumerate() {
             for (i, a) in robot.bodies.iter().enumerate().take(j) {
                 let rigid = a.frame == b.frame;
-                let adjacent = !rigid && joined(&robot.kinematics, a, b) == Joined::Yes;
+                let adjacent = !rigid && joined(&robot.kinematics, &robot.bodies, a, b) == Joined::Yes;
                 candidates.push(Candidate { bodies: [i, j], adjacent, rigid, at_neutral: false, touched: 0 });
             }
         }

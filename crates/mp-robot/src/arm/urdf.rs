@@ -6,14 +6,18 @@ use super::compile::MAX_LENGTH;
 use super::xml::{Text, some};
 use super::{ArmModel, Joint, JointKind, Link, UrdfError};
 use mp_cspace::Interrupt;
-use mp_geom::{Shape, TriMesh};
+use mp_geom::{MeshError, Shape, TriMesh};
 use nalgebra::{Isometry3, Point3, Vector3};
 use read::{Geometry, LeftOut, Reader, attribute, child, is_own};
 use roxmltree::Node;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// How far (m) a planar joint goes from its origin along x and along y.
 const PLANAR_ROOM: f64 = 10.0;
+
+/// Limits that are farther apart than this (rad) mean that a joint turns without end: no cable bears a hundred thousand turns, and such an
+/// angle alone would be all of the distance between two configurations.
+const ENDLESS: f64 = 1e6;
 
 /// Sides of the sheet in place of a cylinder without height, which contains it.
 const SEGMENTS: u32 = 32;
@@ -29,14 +33,16 @@ impl ArmModel {
     /// - which joints do not move because their limits are equal. They are not coordinates until
     ///   [`with_limits`](Self::with_limits) gives them other limits;
     /// - which joints are planar: each becomes three joints, two that slide and one that turns;
+    /// - which revolute joints turn without end, for their limits are more than 1e6 rad apart;
     /// - which joints that mimic others had their limits ignored, because neither joint could move within both limits.
     ///
-    /// A shape without volume is a sheet or a line, which can be hit; one of no extent at all is left out, and a note says so. Round
+    /// A shape without volume is a sheet or a line, which can be hit; one of no extent at all is left out, as is a mesh without triangles,
+    /// and a note says so. Round
     /// shapes become meshes of flat faces that contain them. They are larger by less than 1% of the radius (2% for
     /// spheres). A link of spheres alone has these themselves, as [balls](TriMesh::balls).
     ///
     /// `mesh` is called with each mesh file name as written, often `package://robot/part.stl`. It returns the mesh, or a
-    /// message for people.
+    /// message for people; one that has the text of [`MeshError::Empty`] says that there are no triangles.
     ///
     /// # Errors
     /// [`UrdfError`], which names the line and the joint or link.
@@ -93,7 +99,7 @@ impl ArmModel {
                     Some(thin) => thin,
                     None => match (ball(&geometry), of_balls) {
                         (Some(ball), true) => Ok(Some(ball)),
-                        _ => shape(&geometry, &mut mesh).map(Some),
+                        _ => shape(&geometry, &mut mesh),
                     },
                 };
                 let Some(shape) = made.map_err(fail)? else {
@@ -114,11 +120,12 @@ impl ArmModel {
         let mut notes = left_out.notes();
         notes.extend(reader.surplus.into_inner());
         if !empty.is_empty() {
-            let note = "shapes of size 0 are left out, for there is nothing to touch, in";
+            let note = "shapes of size 0 and meshes without triangles are left out, for there is nothing to touch, in";
             notes.push(format!("{note} {}", some(&empty)));
         }
         model.notes.splice(0..0, notes);
         model.drop_conflicting_limits();
+        model.drop_endless_limits();
         let held = model.joints.iter().filter(|j| j.kind.held().is_some() && j.mimic.is_none());
         let held: Vec<_> = held.map(|j| j.name.clone()).collect();
         if !held.is_empty() {
@@ -222,6 +229,28 @@ impl ArmModel {
             self.notes.push(format!("{note}: {}", some(&aside)));
         }
     }
+
+    /// Makes revolute joints continuous whose limits mean none. Those that others mimic keep them, as what mimics a continuous joint may not
+    /// have limits.
+    fn drop_endless_limits(&mut self) {
+        let leaders = self.joints.iter().filter_map(|joint| Some(joint.mimic.as_ref()?.joint.clone()));
+        let leaders: HashSet<_> = leaders.collect();
+        let mut endless = Vec::new();
+        for joint in self.joints.iter_mut().filter(|joint| !leaders.contains(&joint.name)) {
+            if let JointKind::Revolute { low, high } = joint.kind
+                && high - low > ENDLESS
+            {
+                joint.kind = JointKind::Continuous;
+                endless.push(joint.name.clone());
+            }
+        }
+        if !endless.is_empty() {
+            let note = format!(
+                "these joints turn without end, for their limits are more than {ENDLESS:e} rad apart"
+            );
+            self.notes.push(format!("{note}: {}", some(&endless)));
+        }
+    }
 }
 
 /// What there is of a shape with lengths of zero, in its own frame: a sheet or a line, for these can be hit, or `None` for a
@@ -277,22 +306,34 @@ fn ball(geometry: &Geometry<'_>) -> Option<TriMesh> {
     }
 }
 
-/// The shape as a mesh, in its own frame.
+/// The shape as a mesh, in its own frame; `None` for a mesh without triangles, or one that is scaled to a point.
 fn shape(
     geometry: &Geometry<'_>,
     mesh: &mut impl FnMut(&str) -> Result<TriMesh, String>,
-) -> Result<TriMesh, String> {
+) -> Result<Option<TriMesh>, String> {
     let shape = match geometry {
         Geometry::Primitive(name, lengths) => Shape::primitive(name, lengths),
         Geometry::Mesh(file, scale) => {
-            let read = mesh(file)?;
+            let read = match mesh(file) {
+                Err(message) if message.contains(&MeshError::Empty.to_string()) => return Ok(None),
+                read => read?,
+            };
             let [x, y, z] = *scale;
-            if !scale.iter().all(|s| s.is_finite() && *s != 0.0) {
-                return Err(format!("the scale of {file} is {x} {y} {z}: it must be finite and not zero"));
+            if !scale.iter().all(|s| s.is_finite()) {
+                return Err(format!("the scale of {file} is {x} {y} {z}: it must be finite"));
             }
-            Some(read.scaled(*scale).map_err(|error| error.to_string())?.into())
+            if *scale == [0.0; 3] {
+                return Ok(None);
+            }
+            let mut scaled = read.scaled(*scale);
+            if scale.contains(&0.0) {
+                // A sheet or a line is no solid.
+                scaled =
+                    scaled.and_then(|flat| TriMesh::new(flat.vertices().to_vec(), flat.triangles().to_vec()));
+            }
+            Some(scaled.map_err(|error| error.to_string())?.into())
         }
     };
     let made = shape.map(|shape| shape.mesh()).transpose().map_err(|error| error.to_string())?;
-    made.ok_or_else(|| "this shape is not known".to_owned())
+    made.map(Some).ok_or_else(|| "this shape is not known".to_owned())
 }

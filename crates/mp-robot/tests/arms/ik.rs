@@ -162,9 +162,16 @@ fn goals_may_leave_room() {
     let far = Isometry3::translation(0.5, -0.2, 0.1 + 0.4 + 1.2);
     let out = PoseGoal { pose: far, free: FreeTurn::All, ..goal };
     assert_eq!(solve(out.clone()), None);
-    let inside = solve(PoseGoal { within: [0.2, 0.2, 0.4], ..out }).unwrap();
+    let inside = solve(PoseGoal { within: [0.2, 0.2, 0.4], ..out.clone() }).unwrap();
     let off = inside.translation.vector - far.translation.vector;
     assert!(off.x.abs() <= 0.2 + 1e-8 && off.y.abs() <= 0.2 + 1e-8 && off.z.abs() <= 0.4 + 1e-8, "{off}");
+    // No place at all.
+    for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let nowhere = Isometry3::translation(0.5, x, 0.1);
+        for free in [FreeTurn::None, FreeTurn::All] {
+            assert_eq!(solve(PoseGoal { pose: nowhere, free, ..out.clone() }), None);
+        }
+    }
     // Nothing to solve.
     assert!(InverseKinematics::new(&kinematics, PoseGoal::new("gone", far)).is_none());
     assert!(InverseKinematics::new(&kinematics, PoseGoal::new("link 0", far)).is_none());

@@ -62,6 +62,26 @@ fn welded_links_are_one_body_with_the_link_of_a_joint() {
     assert_eq!(compared(&arm), ["base upper", "fin upper"]);
 }
 
+/// Frames without shapes between a base and what a joint moves are nothing: the base is the link of the joint.
+#[test]
+fn a_frame_between_base_and_joint_is_no_link_of_its_own() {
+    let links =
+        vec![block("base", 0.2, 0.3), Link::new("mount"), Link::new("flange"), block("arm", 0.3, 0.0)];
+    let weld = |name: &str, parent: &str, child: &str| joint(name, parent, child, JointKind::Fixed);
+    let up = JointKind::Prismatic { low: 0.0, high: 1.0 };
+    let mut arm = model(
+        links,
+        vec![weld("1", "base", "mount"), weld("2", "mount", "flange"), joint("up", "flange", "arm", up)],
+    );
+    // Free at zero, and together higher up.
+    assert_eq!(compared(&arm), [""; 0]);
+    let found = arm.sampled_pairs(&Interrupt::never()).unwrap();
+    assert_eq!(found.pairs[0].reason, Some(TouchReason::Adjacent));
+    // A link with a shape in between is that of the joint.
+    arm.links[1] = block("mount", 0.1, 0.6);
+    assert_eq!(compared(&arm), ["base arm"]);
+}
+
 /// What stands still may be the room: walls welded to the root are compared with what a joint of the root moves, also where they
 /// are welded to the link of the joint. What touches it at zero belongs to the joint.
 #[test]

@@ -3,7 +3,7 @@
 use crate::common::cases_of;
 use mp_cspace::{Configuration, JointRange};
 use mp_geom::{TriMesh, primitives::cuboid};
-use mp_robot::{Arm, ArmModel, JointKind, Rate, UrdfError};
+use mp_robot::{Arm, ArmModel, JointKind, Kinematics, Rate, UrdfError};
 use nalgebra::{Point3, Vector3};
 
 const GRIPPER: &str = r#"<?xml version="1.0"?>
@@ -115,6 +115,61 @@ fn links_of_spheres_are_balls() {
     let mixed = shapes(text(&format!("{}{boxed}", ball(0.1, "0.06"))));
     assert!(mixed.iter().all(|mesh| mesh.balls().is_empty()));
     assert!(read(&text(&ball(0.1, "-1"))).unwrap_err().to_string().contains("radius"));
+}
+
+/// Limits of 1e16 are written for wheels that turn without end.
+#[test]
+fn limits_that_mean_none() {
+    let joint = |name: &str, kind: &str, limit: &str, mimic: &str| {
+        format!(
+            "<link name=\"{name}\"/><joint name=\"{name}\" type=\"{kind}\"><parent link=\"base\"/><child link=\"{name}\"/>\
+             <limit lower=\"-{limit}\" upper=\"{limit}\"/>{mimic}</joint>"
+        )
+    };
+    let joints = [
+        joint("wheel", "revolute", "1e16", ""),
+        joint("inf", "revolute", "INF", ""),
+        joint("winch", "revolute", "1000", ""),
+        joint("leader", "revolute", "1e16", ""),
+        joint("follower", "revolute", "1", "<mimic joint=\"leader\"/>"),
+    ];
+    let model = read(&format!("<robot name=\"r\"><link name=\"base\"/>{}</robot>", joints.concat())).unwrap();
+    let ranges: Vec<_> =
+        Kinematics::new(&model).unwrap().coordinates().iter().map(|coordinate| coordinate.range).collect();
+    let between = |x: f64| JointRange::Interval { low: -x, high: x };
+    assert_eq!(ranges, [JointRange::Circle, JointRange::Circle, between(1000.0), between(1.0)]);
+    let note =
+        "these joints turn without end, for their limits are more than 1e6 rad apart: \"wheel\", \"inf\"";
+    assert!(model.notes.iter().any(|said| said.starts_with(&note[..60])), "{:?}", model.notes);
+}
+
+/// A mesh without triangles cannot be touched, and neither can one that is scaled to a point. A sheet can.
+#[test]
+fn meshes_without_extent_are_left_out() {
+    let text = |scale: &str| {
+        format!(
+            "<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh filename=\"m.stl\" scale=\"{scale}\"/></geometry>\
+             </collision></link><link name=\"b\"/><joint name=\"j\" type=\"continuous\"><parent link=\"b\"/><child link=\"a\"/>\
+             </joint></robot>"
+        )
+    };
+    let read =
+        |scale: &str, mesh: Result<TriMesh, String>| ArmModel::from_urdf(&text(scale), |_| mesh.clone());
+    let cube = || Ok(cuboid(1.0, 1.0, 1.0).unwrap());
+    let empty = TriMesh::new(vec![], vec![]).unwrap_err();
+    for (scale, mesh) in [("1 1 1", Err(format!("m.stl: {empty} (a body needs one)"))), ("0 0 0", cube())] {
+        let model = read(scale, mesh).unwrap();
+        assert!(model.links[0].shapes.is_empty());
+        assert!(
+            model.notes[0].contains("meshes without triangles are left out")
+                && model.notes[0].contains("\"a\"")
+        );
+    }
+    let sheet = read("1 1 0", cube()).unwrap().links[0].shapes[0].clone();
+    assert_eq!((sheet.aabb().max.x, sheet.aabb().max.z, sheet.solids().len()), (0.5, 0.0, 0));
+    for (scale, mesh) in [("1 inf 1", cube()), ("1 1 1", Err("m.stl: cut short".to_owned()))] {
+        assert!(read(scale, mesh).is_err());
+    }
 }
 
 #[test]
@@ -341,7 +396,7 @@ fn faults_are_named() {
     says("type=\"continuous\"", "type=\"spherical\"", &["turn", "spherical"]);
     says("type=\"continuous\"", "type=\"screw\"", &["not a URDF", "line 29", "turn", "screw", "prismatic"]);
     says("finger.stl", "thumb.stl", &["line 18", "left", "shape 1", "thumb.stl"]);
-    says("1 -1 2", "1 0 2", &["left", "scale"]);
+    says("1 -1 2", "1 inf 2", &["left", "scale"]);
     says("radius=\"0.05\"", "radius=\"-0.05\"", &["carriage", "shape 1", "radius"]);
     says("0.1 0 0\" rpy", "0.1 nan 0\" rpy", &["carriage", "origin"]);
     says("0 0 0.1\" rpy", "0 0 inf\" rpy", &["lift", "origin"]);

@@ -53,6 +53,11 @@ pub(super) fn reaching(
         let names: Vec<&str> = kinematics.links().collect();
         return Err([format!("there is no link \"{link}\""), format!("the links are {}", names.join(", "))]);
     }
+    if !(entry.pose.iter().all(|x| x.is_finite()) && entry.within.iter().all(|x| x.is_finite() && *x >= 0.0))
+    {
+        let message = format!("the place for \"{link}\" is none");
+        return Err([message, "give finite numbers, and tolerances that are not below zero".to_owned()]);
+    }
     let Some(solver) = InverseKinematics::new(kinematics, goal_of(entry)) else {
         let message = format!("no joint moves the link \"{link}\", or the base floats");
         return Err([message, "name a link that joints move, of a robot whose base stands still".to_owned()]);

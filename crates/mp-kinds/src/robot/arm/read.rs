@@ -7,7 +7,7 @@ use crate::{Error, brief, count, plain};
 use mp_cspace::{FloatingJoints, JointRange};
 use mp_geom::Aabb;
 use mp_io::{DescribedRobot, Files, MovingJoints, RobotEntry, RobotFilePart, RobotPart, RobotProblem};
-use mp_robot::{Arm, ArmError, ArmModel, JointKind, Kinematics, Rate, UrdfError};
+use mp_robot::{Arm, ArmError, ArmModel, Joint, JointKind, Kinematics, PLANAR_NUMBERS, Rate, UrdfError};
 
 /// One robot of a problem.
 #[derive(Clone, Copy)]
@@ -56,6 +56,8 @@ fn described(files: &dyn Files, robot: One<'_>) -> Result<ArmModel, Error> {
     for (i, (joint, [low, high])) in entry.limits.iter().enumerate() {
         let limited = model.with_limits(joint, *low, *high);
         model = limited.map_err(|e| robot.fault(RobotPart::Limits(i), e, NAMES))?;
+        // Joints that mimic it go with it, as far as that is.
+        model = model.with_room_for(joint, *low).with_room_for(joint, *high);
     }
     // Of joints that the robot does not have nothing is said: the file may be of more of it.
     for (joint, rates) in &described.rates {
@@ -204,7 +206,14 @@ impl<C: LinkedSpace> LinkedScene<C> {
     }
 }
 
-/// The model with wider limits where the start is beyond them by no more than the problem allows. Notes say so.
+/// Limits of a joint that slides which are farther apart than this (m) mean that it has none.
+const ENDLESS: f64 = 1e6;
+
+/// How far (m) to each side of the start it goes then: what is resolved there is finer than the tolerance of any robot of a metre.
+const ROOM: f64 = 1e4;
+
+/// The model with wider limits where the start is beyond them by no more than the problem allows, and narrower ones where those of a
+/// joint that slides mean none, unless the problem says them. Notes say so.
 fn with_start(
     mut model: ArmModel,
     kinematics: &Kinematics,
@@ -219,6 +228,21 @@ fn with_start(
     for (coordinate, x) in kinematics.coordinates().iter().zip(problem.file.start.row().iter().skip(base)) {
         let JointRange::Interval { low, high } = coordinate.range else { continue };
         let limit = x.clamp(low, high);
+        let name = &coordinate.name;
+        let slides = |joint: &Joint| joint.name == *name && matches!(joint.kind, JointKind::Prismatic { .. });
+        let mut given = problem.file.robots.iter().enumerate().flat_map(|(i, entry)| {
+            let planar = entry.planar.iter().flat_map(|_| PLANAR_NUMBERS);
+            let names = entry.limits.iter().map(|(joint, _)| joint.as_str()).chain(planar);
+            names.map(move |joint| format!("{}{joint}", problem.file.prefix(i)))
+        });
+        if high - low > ENDLESS && model.joints.iter().any(slides) && !given.any(|given| given == *name) {
+            let (low, high) = (low.max(limit - ROOM), high.min(limit + ROOM));
+            let [from, to] = [low, high].map(plain);
+            model.notes.push(format!(
+                "\"{name}\" has limits that mean none: it slides from {from} to {to} m, unless `limits` say otherwise"
+            ));
+            model = model.with_limits(name, low, high)?;
+        }
         let (beyond, tolerance) = ((x - limit).abs(), tolerance(&coordinate.name));
         if tolerance > 0.0 && beyond > HAIR && beyond <= tolerance + HAIR {
             let (name, beyond) = (&coordinate.name, brief(beyond));
@@ -226,7 +250,7 @@ fn with_start(
                 "the start has \"{name}\" {beyond} beyond its limit {}: paths may go that far",
                 plain(limit)
             ));
-            model = model.with_limits(name, low.min(*x), high.max(*x))?;
+            model = model.with_limits(name, low.min(*x), high.max(*x))?.with_room_for(name, *x);
         }
     }
     Ok(model)
