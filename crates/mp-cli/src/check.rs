@@ -2,7 +2,7 @@
 
 use crate::cli::Check;
 use crate::input::{Given, refuse_two_standard_inputs, scene};
-use crate::output::{Claims, note, print, print_json, write};
+use crate::output::{Claims, in_time, note, print, print_json, write};
 use crate::{input, interrupt};
 use mp_plan::{Error, Interrupt, Scene, brief, plain};
 use std::cell::LazyCell;
@@ -55,19 +55,23 @@ pub(crate) fn run(args: &Check) -> Result<bool, Error> {
     Ok(free)
 }
 
-/// Verifies one path or trajectory. True when it is free.
+/// Verifies one path or trajectory. True when it is free, and the certificate that was asked for is made.
 fn one(args: &Check, scene: &Scene, (file, read): (&Path, &Given), stop: &Interrupt) -> Result<bool, Error> {
     let mut verdict = match read {
         Given::Path(rows) => scene.check(rows)?,
         Given::Timed(trajectory) => scene.check_trajectory(trajectory, stop)?,
     };
+    let mut complete = true;
     if let (Some(file), true) = (&args.certificate, verdict.free) {
         let clearance = verdict.clearance;
-        let certificate = match read {
-            Given::Path(rows) => scene.certificate(rows, clearance, stop)?,
-            Given::Timed(trajectory) => scene.certificate_of_trajectory(trajectory, clearance, stop)?,
+        let made = match read {
+            Given::Path(rows) => scene.certificate(rows, clearance, stop),
+            Given::Timed(trajectory) => scene.certificate_of_trajectory(trajectory, clearance, stop),
         };
-        write(file, certificate.to_json().as_bytes())?;
+        match in_time(made, stop, file)? {
+            Some(certificate) => write(file, certificate.to_json().as_bytes())?,
+            None => complete = false,
+        }
     }
     (verdict.scene, verdict.path) = (shown(scene, &args.scene), file.display().to_string());
     match args.json {
@@ -77,7 +81,7 @@ fn one(args: &Check, scene: &Scene, (file, read): (&Path, &Given), stop: &Interr
             print(&verdict.summary())?;
         }
     }
-    Ok(verdict.free)
+    Ok(verdict.free && complete)
 }
 
 /// The name of a scene in answers: its file.

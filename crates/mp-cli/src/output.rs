@@ -2,7 +2,7 @@
 
 use crate::input::is_standard;
 pub(crate) use mp_plan::Claims;
-use mp_plan::{Error, write_file};
+use mp_plan::{Error, Interrupt, StoppedBy, write_file};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -51,4 +51,42 @@ pub(crate) fn note(line: &str) {
 /// Writes `bytes` to `path`, whole or not at all, or to standard output for `-`. Makes the folder when it is missing.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     if is_standard(path) { to_standard_output(bytes) } else { write_file(path, bytes) }
+}
+
+/// What was made of a path, unless that was interrupted: then a note says that there is no `file`.
+pub(crate) fn in_time<T>(
+    made: Result<T, Error>,
+    interrupt: &Interrupt,
+    file: &Path,
+) -> Result<Option<T>, Error> {
+    match (made, interrupt.raised()) {
+        (Err(_), Some(why)) => {
+            let (why, file) = (StoppedBy::from(why), file.display());
+            note(&format!(
+                "{why}: {file} was not made; `mp check --certificate` and `mp time` make it of a path"
+            ));
+            Ok(None)
+        }
+        (made, _) => made.map(Some),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mp_plan::Cancel;
+
+    /// What ends a run while its path is proved leaves the path; other errors stay errors.
+    #[test]
+    fn a_proof_without_time_is_no_error() {
+        let (cancel, file) = (Cancel::default(), Path::new("proof.json"));
+        let mut interrupt = Interrupt::new(cancel.clone());
+        let failed = || Err::<(), _>(Error::new("not free"));
+        assert!(!interrupt.ask() && in_time(failed(), &interrupt, file).is_err());
+        assert_eq!(in_time(Ok(1), &interrupt, file).unwrap(), Some(1));
+        cancel.cancel();
+        assert!(interrupt.ask());
+        assert_eq!(in_time(failed(), &interrupt, file).unwrap(), None);
+        assert_eq!(in_time(Ok(1), &interrupt, file).unwrap(), Some(1));
+    }
 }

@@ -3,7 +3,7 @@
 use crate::cli::{Drawing, Plan};
 use crate::files::{Files, numbered};
 use crate::input::{is_standard, scene_until};
-use crate::output::{Claims, note, print, print_json, write};
+use crate::output::{Claims, in_time, note, print, print_json, write};
 use crate::picture::{Picture, Shown, Watched};
 use crate::progress::Line;
 use crate::request::{request, request_for};
@@ -372,18 +372,6 @@ fn one(
     Ok((report, interrupt.raised().is_none()))
 }
 
-/// What was made of a path, unless that was interrupted: then a note says that there is no `file`.
-fn in_time<T>(made: Result<T, Error>, interrupt: &Interrupt, file: &Path) -> Result<Option<T>, Error> {
-    match (made, interrupt.raised()) {
-        (Err(_), Some(why)) => {
-            let (why, file) = (StoppedBy::from(why), file.display());
-            note(&format!("{why}: {file} was not made: `mp check` and `mp time` make it of the path"));
-            Ok(None)
-        }
-        (made, _) => made.map(Some),
-    }
-}
-
 fn write_path(report: &mut Report, path: &PathRows, file: &Path) -> Result<(), Error> {
     let kind = if is_standard(file) { PathFileKind::Text } else { PathFileKind::of(file)? };
     write(file, path.to_file(kind).as_bytes())?;
@@ -459,23 +447,4 @@ fn export(folder: &Path, scenes: &[Scene]) -> Result<(), Error> {
         note(&format!("exported {}", scene.export(folder)?.display()));
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// What ends a run while its path is proved leaves the path; other errors stay errors.
-    #[test]
-    fn a_proof_without_time_is_no_error() {
-        let (cancel, file) = (Cancel::default(), Path::new("proof.json"));
-        let mut interrupt = Interrupt::new(cancel.clone());
-        let failed = || Err::<(), _>(Error::new("not free"));
-        assert!(!interrupt.ask() && in_time(failed(), &interrupt, file).is_err());
-        assert_eq!(in_time(Ok(1), &interrupt, file).unwrap(), Some(1));
-        cancel.cancel();
-        assert!(interrupt.ask());
-        assert_eq!(in_time(failed(), &interrupt, file).unwrap(), None);
-        assert_eq!(in_time(Ok(1), &interrupt, file).unwrap(), Some(1));
-    }
 }
