@@ -109,6 +109,16 @@ fn a_group_or_a_list_moves_and_the_others_are_held() {
 }
 
 #[test]
+fn a_goal_may_say_where_a_joint_is_held() {
+    for raise in ["0.2", "[0.1, 0.3]"] {
+        let goal =
+            format!("start = [0, 0, 0]\ngoal = {{ raise = {raise}, shoulder = 1, elbow = 1, finger = 0.1 }}");
+        let scene = load("hold = { raise = 0.2 }", &goal).unwrap();
+        assert_eq!(path(&scene).last().unwrap()[..], [1.0, 1.0, 0.1], "{raise}");
+    }
+}
+
+#[test]
 fn states_of_several_groups_are_one() {
     let scene = load("", "start = \"home\"\ngoals = [\"up\", [0.1, 1, 1, 0]]").unwrap();
     assert_eq!(scene.start(), [0.1, 0.8, 0.2, 0.05]);
@@ -171,6 +181,11 @@ fn what_cannot_be_is_an_error_at_its_place() {
         ("", "start = \"house\"\ngoal = [0.2, 0, 0, 0]", ["p.toml:6:", "no state \"house\"", "home, up"]),
         ("", "start = [0.1, 0, 0, 0]\ngoal = \"house\"", ["p.toml:7:", "no state \"house\"", "home, up"]),
         ("", "start = { wrist = 1 }\ngoal = [0.2, 0, 0, 0]", ["p.toml:6:", "`wrist`", "shoulder"]),
+        (
+            "hold = { raise = 0.2 }",
+            "start = [0, 0, 0]\ngoal = { raise = 0.3, elbow = 1 }",
+            ["p.toml:7:", "`raise`", "held at 0.2"],
+        ),
         ("", "start = 5\ngoal = [0.2, 0, 0, 0]", ["p.toml:6:", "a start is", "\"home\""]),
         ("base = \"planar\"", motion, ["p.toml:4:", "without bounds", "[[x, y], [x, y]]"]),
         (

@@ -3,7 +3,7 @@
 use super::{LinkedSpace, read};
 use crate::{Error, count};
 use mp_cspace::FloatingJoints;
-use mp_io::{GoalEntry, MovingJoints, RobotFilePart, RobotProblem, StartEntry};
+use mp_io::{GoalEntry, GoalPart, MovingJoints, RobotFilePart, RobotProblem, StartEntry};
 use mp_robot::{ArmModel, Kinematics, SrdfGroups};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -133,6 +133,25 @@ pub(super) fn resolve(
     let start = problem.file.start.row();
     let others = if start.len() < names.len() { zeros } else { start.to_vec() };
     for i in 0..problem.file.goals.len() {
+        if let GoalEntry::Named(parts) = &problem.file.goals[i] {
+            let mut parts = parts.clone();
+            // Where a joint is held it need not be said, but may be.
+            for joint in &model.joints {
+                let Some(at) = joint.kind.held() else { continue };
+                let Some(part) = parts.remove(&joint.name) else { continue };
+                let there = match part {
+                    GoalPart::Exactly(value) => value == at,
+                    GoalPart::Between([low, high]) => (low..=high).contains(&at),
+                    GoalPart::Free => true,
+                };
+                if !there {
+                    let message = format!("the goal moves `{}`, which is held at {at}", joint.name);
+                    let help = "leave it out of the goal, or do not hold it: by `hold`, equal `limits`, `group` or `joints` in [robot]";
+                    return Err(problem.file.fault(RobotFilePart::Goal(i), &message, help).into());
+                }
+            }
+            problem.file.goals[i] = GoalEntry::Named(parts);
+        }
         let GoalEntry::State(state) = &problem.file.goals[i] else { continue };
         let values = named.state(problem, RobotFilePart::Goal(i), state)?;
         tell(state, &values, "as at the start");
