@@ -137,7 +137,8 @@ pub(super) fn resolve(
             let mut parts = parts.clone();
             // Where a joint is held it need not be said, but may be.
             for joint in &model.joints {
-                let (Some(at), Some(part)) = (joint.kind.held(), parts.remove(&joint.name)) else { continue };
+                let Some(at) = joint.kind.held() else { continue };
+                let Some(part) = parts.remove(&joint.name) else { continue };
                 let there = match part {
                     GoalPart::Exactly(value) => value == at,
                     GoalPart::Between([low, high]) => (low..=high).contains(&at),
