@@ -10,8 +10,8 @@ use std::fmt::Write as _;
 /// with units in which their numbers are (`elbow [deg]`): then the rows have the numbers `wanted`, in that order and in those units. A
 /// first line of numbers names nothing. If nothing is `wanted`, rows are as in the file, and the columns are those that it names.
 ///
-/// Semicolons or tabs may stand for all commas. Blank lines are skipped, cells may be quoted, and all rows have as many numbers as the first. A first column without a name below
-/// others that have one is the index of a data frame, and no part of a configuration.
+/// Cells are separated by commas, or all by semicolons or by tabs, and may be quoted. Blank lines are skipped, and all rows have as many
+/// numbers as the first. A first column without a name, where the others have one, is the index of a data frame, and no part of a configuration.
 ///
 /// # Errors
 /// [`Error`] with the line and column: also when a name is unknown, missing or there twice, or a unit does not fit.
@@ -64,8 +64,8 @@ pub fn parse_csv(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<(Vec<Col
     }
 }
 
-/// The names in a line, if it is one of names: it has something else than numbers, and no number that is not a name. Numbers alone are names
-/// if they are all those of the robot. One or two of them may be a configuration, unless they are quoted.
+/// The names in a line of names: not all of its cells are numbers, and a cell that is a number is the name of a column. A line of numbers alone
+/// is one of names if these are the names of all columns, at least three or in quotes: fewer may be a configuration.
 fn header(line: Token<'_>, separator: char, wanted: &[Column]) -> Option<Vec<String>> {
     let cells = line.cells_between(separator);
     let names: Vec<String> = cells.map(|cell| cell.text.replace("\"\"", "\"")).collect();

@@ -40,12 +40,12 @@ impl ArmModel {
                 joint.kind != JointKind::Fixed && joint.mimic.is_none() && joint.kind.held().is_none();
             moves && !joints.contains(&joint.name)
         };
-        // What mimics a joint without end may have limits once that is held.
+        // A joint with limits may mimic one without end only while that is held, so these are held first.
         let mut endless =
             self.joints.iter().filter(is_other).filter(|joint| joint.kind == JointKind::Continuous);
-        let calm = endless
+        let still = endless
             .try_fold(self.clone(), |model, j| model.holding(&j.name, at(&j.name).unwrap_or_default()))?;
-        let kinematics = Kinematics::new(&self).or_else(|_| Kinematics::new(&calm))?;
+        let kinematics = Kinematics::new(&self).or_else(|_| Kinematics::new(&still))?;
         let coordinates = kinematics.coordinates();
         if let Some(stray) = joints.iter().find(|name| coordinates.iter().all(|c| c.name != **name)) {
             // What is wrong with it is known there.

@@ -15,8 +15,8 @@ use std::collections::{HashMap, HashSet};
 /// How far (m) a planar joint goes from its origin along x and along y.
 const PLANAR_ROOM: f64 = 10.0;
 
-/// Limits that are farther apart than this (rad) mean that a joint turns without end: no cable bears a hundred thousand turns, and such an
-/// angle alone would be all of the distance between two configurations.
+/// A revolute joint whose limits are farther apart than this (rad) turns without end: no cable bears a hundred thousand turns. With such
+/// limits this joint alone would make up the distance between two configurations.
 const ENDLESS: f64 = 1e6;
 
 /// Sides of the sheet in place of a cylinder without height, which contains it.

@@ -55,7 +55,7 @@ pub(super) fn reaching(
     }
     if !(entry.pose.iter().all(|x| x.is_finite()) && entry.within.iter().all(|x| x.is_finite() && *x >= 0.0))
     {
-        let message = format!("the place for \"{link}\" is none");
+        let message = format!("the place for \"{link}\" is not valid");
         return Err([message, "give finite numbers, and tolerances that are not below zero".to_owned()]);
     }
     let Some(solver) = InverseKinematics::new(kinematics, goal_of(entry)) else {

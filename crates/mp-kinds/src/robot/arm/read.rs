@@ -206,10 +206,10 @@ impl<C: LinkedSpace> LinkedScene<C> {
     }
 }
 
-/// Limits of a joint that slides which are farther apart than this (m) mean that it has none.
+/// A prismatic joint whose limits are farther apart than this (m) has none in truth.
 const ENDLESS: f64 = 1e6;
 
-/// How far (m) to each side of the start it goes then: what is resolved there is finer than the tolerance of any robot of a metre.
+/// How far (m) to each side of the start such a joint goes. Over that range a robot of a metre is still checked to a hundredth of a millimetre.
 const ROOM: f64 = 1e4;
 
 /// The model with wider limits where the start is beyond them by no more than the problem allows, and narrower ones where those of a
