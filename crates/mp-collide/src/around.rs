@@ -43,6 +43,12 @@ impl Outline {
     /// Around a mesh. O(n) for n triangles.
     pub(crate) fn of(mesh: &CollisionMesh) -> Self {
         let own = &mesh.tree().bounding;
+        if mesh.cloud.as_ref().is_some_and(|cloud| cloud.len() == 1) {
+            // A ball: its radius is that of the cloud, which is added where it is placed.
+            let off = mesh.tree().triangles.iter().flatten().map(|p| (p - own.center).norm());
+            let radius = off.fold(0.0, f64::max);
+            return Self { axis: 2, form: Form::Capsule, radius, straight: 0.0, inset: Some(2.0 * radius) };
+        }
         let radius = |axis: usize| {
             let from_axis = |p: &Point3<f64>| {
                 let d = p - own.center;
@@ -109,7 +115,7 @@ impl Outline {
 pub(crate) struct Around {
     bounds: RootBox,
     radius: f64,
-    /// As that of the outline, and twice as much as this is enlarged.
+    /// As that of the outline, and twice as much as this is enlarged for rounding.
     inset: Option<f64>,
     /// In the frame of the mesh.
     pub(crate) outline: Outline,
@@ -125,7 +131,7 @@ impl Around {
         bounds.half.add_scalar_mut(more);
         bounds.axes.swap(axis, 2);
         bounds.half.swap_rows(axis, 2);
-        let inset = outline.inset.map(|inset| inset + 2.0 * more);
+        let inset = outline.inset.map(|inset| inset + 2.0 * relative.slack);
         Some(Self { bounds, radius: radius + more, inset, outline })
     }
 
@@ -252,7 +258,8 @@ mod tests {
             (shape("cylinder", &[0.1, 0.6]), Form::Cylinder, 2e-3),
             (shape("cylinder", &[0.4, 0.1]), Form::Cylinder, 3e-3),
             (shape("capsule", &[0.1, 0.6]), Form::Capsule, 3e-3),
-            (shape("sphere", &[0.3]), Form::Capsule, 8e-3),
+            (shape("sphere", &[0.3]), Form::Capsule, 1e-9),
+            (shape("sphere", &[0.3]).faceted(), Form::Capsule, 8e-3),
             (shape("cone", &[0.2, 0.6]), Form::Any, f64::INFINITY),
             (shape("box", &[0.1, 0.5, 0.9]).into_surface(), Form::Any, f64::INFINITY),
             (primitives::torus(0.5, 0.1, 24, 12).unwrap(), Form::Any, f64::INFINITY),

@@ -11,8 +11,12 @@ use std::sync::Arc;
 /// The most balls that are drawn: more are thinned further.
 const DRAWN: usize = 20_000;
 
-/// Up to this many balls are drawn with finer facets.
-const ROUND: usize = 1000;
+/// How often the facets around balls are divided: three times for up to this many balls, which makes them larger than the ball by less than
+/// 2%, twice (7%) for up to the second number, and not at all for more.
+const ROUND: [usize; 3] = [100, 1000, 1000];
+
+/// The same for what is drawn; up to the last number they are divided once.
+const DRAWN_ROUND: [usize; 3] = [30, 300, 3000];
 
 impl TriMesh {
     /// A ball of `radius` (m) around each of `centers`: its triangles are single points.
@@ -47,7 +51,7 @@ impl TriMesh {
     /// Whether it is balls alone.
     #[must_use]
     pub fn is_balls(&self) -> bool {
-        let count: usize = self.balls.iter().map(|(range, _)| range.len()).sum();
+        let count = self.count_of_balls();
         count > 0 && count == self.triangles.len()
     }
 
@@ -63,19 +67,26 @@ impl TriMesh {
         self.balls.iter().map(|(_, radius)| *radius).reduce(f64::max)
     }
 
-    /// The same with triangles alone, for what knows no balls, as files of meshes do: an icosahedron around
-    /// each ball, larger by at most 26%. A mesh without balls is cloned.
+    /// The same with triangles alone, for what knows no balls, as files of meshes do: flat faces around each
+    /// ball, larger than it by less than 2% (up to 100 balls), 7% (up to 1000) or 26%. A mesh without balls is
+    /// cloned.
     #[must_use]
     pub fn faceted(&self) -> Self {
-        self.with_facets(usize::MAX, 0)
+        self.with_facets(usize::MAX, divisions(self.count_of_balls(), ROUND))
     }
 
-    /// A mesh to be drawn in its place, as [`faceted`](Self::faceted) makes it, with rounder balls where there are few. Where there are very many
-    /// balls, fewer and larger ones stand for them: the picture looks the same.
+    /// A mesh to be drawn in its place, as [`faceted`](Self::faceted) makes it, in a picture of `together`
+    /// balls: the more there are, the fewer faces each has. Where there are very many balls, fewer and larger
+    /// ones stand for them: the picture looks the same.
     #[must_use]
-    pub fn drawn(&self) -> Self {
-        let count: usize = self.balls.iter().map(|(range, _)| range.len()).sum();
-        self.with_facets(DRAWN, if count <= ROUND { 2 } else { 0 })
+    pub fn drawn(&self, together: usize) -> Self {
+        self.with_facets(DRAWN, divisions(together.max(self.count_of_balls()), DRAWN_ROUND))
+    }
+
+    /// How many of its triangles are [balls](Self::balls).
+    #[must_use]
+    pub fn count_of_balls(&self) -> usize {
+        self.balls.iter().map(|(range, _)| range.len()).sum()
     }
 
     fn with_facets(&self, most: usize, divided: u32) -> Self {
@@ -120,6 +131,11 @@ impl TriMesh {
     }
 }
 
+/// How often the facets around `count` balls are divided.
+fn divisions(count: usize, few: [usize; 3]) -> u32 {
+    few.map(|few| u32::from(count <= few)).iter().sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -136,10 +152,15 @@ mod tests {
         let moved = row(3).transformed(&Isometry3::translation(0.0, 5.0, 0.0));
         let merged = TriMesh::merged([&cube, &moved, &cube]).unwrap();
         assert_eq!(merged.balls(), [(12..15, 0.1)]);
+        let larger = TriMesh::of_balls(vec![Point3::origin()], 0.2).unwrap();
+        let together = TriMesh::merged([&row(1), &moved, &larger, &cube, &row(1)]).unwrap();
+        assert_eq!(together.balls(), [(0..4, 0.1), (4..5, 0.2), (17..18, 0.1)], "runs of equal radius");
         assert_eq!((merged.solids(), merged.rounding()), (&[0..12, 15..27][..], Some(0.1)));
         assert!((moved.aabb().max.y - 5.1).abs() < 1e-15 && (moved.aabb().min.x + 0.1).abs() < 1e-15);
         assert!((row(2).radius_about(&Point3::origin()) - 1.1).abs() < 1e-15);
-        assert_eq!(row(2).scaled([2.0, 1.0, 1.0]).unwrap().rounding(), Some(0.2));
+        assert_eq!(row(2).scaled([2.0, -2.0, 2.0]).unwrap().rounding(), Some(0.2));
+        let ellipsoids = row(2).scaled([2.0, 1.0, 1.0]).unwrap().aabb();
+        assert!((2.2..2.204).contains(&ellipsoids.max.x) && (0.1..0.102).contains(&ellipsoids.max.z));
         assert_ne!(row(3), TriMesh::of_balls(row(3).vertices().to_vec(), 0.2).unwrap());
         assert_eq!(row(3).component_vertices(), row(3).vertices());
     }
@@ -148,12 +169,14 @@ mod tests {
     fn facets_are_around_balls() {
         let cube = cuboid(1.0, 1.0, 1.0).unwrap();
         let mesh = TriMesh::merged([&cube, &row(2), &cube]).unwrap().faceted();
-        assert_eq!(mesh.solids(), [0..12, 12..32, 32..52, 52..64]);
+        assert_eq!(mesh.solids(), [0..12, 12..1292, 1292..2572, 2572..2584]);
         assert!(
-            mesh.balls().is_empty() && mesh.winding_number_of(12..32, &Point3::new(0.0999, 0.0, 0.0)) > 0.9
+            mesh.balls().is_empty() && mesh.winding_number_of(12..1292, &Point3::new(0.0999, 0.0, 0.0)) > 0.9
         );
+        assert_eq!(row(101).faceted().triangles().len(), 101 * 320);
         assert_eq!(cube.faceted(), cube);
-        let (many, drawn) = (row(50_000), row(50_000).drawn());
+        assert_eq!([0, 31, 301, 3001].map(|n| row(1).drawn(n).triangles().len()), [1280, 320, 80, 20]);
+        let (many, drawn) = (row(50_000), row(50_000).drawn(0));
         assert!(drawn.triangles().len() <= 20 * DRAWN && many.faceted().triangles().len() == 1_000_000);
         let [a, b] = [many.aabb(), drawn.aabb()];
         assert!((a.max.x - b.max.x).abs() < 4.0 && (a.min.x - b.min.x).abs() < 4.0);

@@ -170,7 +170,7 @@ impl TriMesh {
         let first = meshes.next()?;
         let Some(second) = meshes.next() else { return Some(first.clone()) };
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-        let (mut solids, mut balls) = (Vec::new(), Vec::new());
+        let (mut solids, mut balls) = (Vec::new(), Vec::<(Range<u32>, f64)>::new());
         for m in [first, second].into_iter().chain(meshes) {
             let base = u32::try_from(vertices.len()).ok()?;
             let before = u32::try_from(triangles.len()).ok()?;
@@ -179,7 +179,12 @@ impl TriMesh {
             u32::try_from(triangles.len()).ok()?;
             let moved = |range: &Range<u32>| before + range.start..before + range.end;
             solids.extend(m.solids.iter().map(moved));
-            balls.extend(m.balls.iter().map(|(range, radius)| (moved(range), *radius)));
+            for (range, radius) in m.balls.iter().map(|(range, radius)| (moved(range), *radius)) {
+                match balls.last_mut() {
+                    Some((run, same)) if *same == radius && run.end == range.start => run.end = range.end,
+                    _ => balls.push((range, radius)),
+                }
+            }
         }
         Some(Self { solids: solids.into(), balls: balls.into(), ..Self::new(vertices, triangles).ok()? })
     }

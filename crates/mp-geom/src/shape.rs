@@ -73,8 +73,8 @@ impl Shape {
     }
 
     /// The mesh that is checked in its place. It contains the shape: faces are flat, so that round shapes
-    /// grow, by less than 0.5% of the radius (cylinders, cones), 1% (capsules) and 2% (spheres, tori). Points
-    /// become [balls](TriMesh::balls).
+    /// grow, by less than 0.5% of the radius (cylinders, cones), 1% (capsules) and 2% (tori). Spheres and
+    /// points are [balls](TriMesh::balls).
     ///
     /// ```
     /// use mp_geom::Shape;
@@ -129,7 +129,7 @@ mod tests {
     }
 
     fn of(name: &str, lengths: &[f64]) -> TriMesh {
-        let mesh = Shape::primitive(name, lengths).unwrap().mesh().unwrap();
+        let mesh = Shape::primitive(name, lengths).unwrap().mesh().unwrap().faceted();
         assert!(mesh.topology().is_solid(), "{name}");
         mesh
     }

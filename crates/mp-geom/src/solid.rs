@@ -99,17 +99,20 @@ impl TriMesh {
         Self { solids: Arc::new((0..count).map(|i| each * i..each * (i + 1)).collect()), ..self }
     }
 
-    /// The mesh with coordinates scaled about the origin, and the same solids; balls grow with the largest
-    /// factor. An odd number of negative factors reverses the triangles, so that outside stays outside.
+    /// The mesh with coordinates scaled about the origin, and the same solids; balls that factors of unequal size make
+    /// ellipsoids become [facets](Self::faceted). An odd number of negative factors reverses the triangles, so that
+    /// outside stays outside.
     ///
     /// # Errors
     /// When a coordinate is no longer finite.
     pub fn scaled(&self, [x, y, z]: [f64; 3]) -> Result<Self, MeshError> {
+        if !self.balls.is_empty() && [y, z].iter().any(|s| s.abs() != x.abs()) {
+            return self.faceted().scaled([x, y, z]);
+        }
         let vertices: Vec<_> = self.vertices.iter().map(|p| Point3::new(x * p.x, y * p.y, z * p.z)).collect();
         check_finite(&vertices)?;
         let mut scaled = Self { vertices: vertices.into(), ..self.clone() };
-        let most = x.abs().max(y.abs()).max(z.abs());
-        Arc::make_mut(&mut scaled.balls).iter_mut().for_each(|(_, radius)| *radius *= most);
+        Arc::make_mut(&mut scaled.balls).iter_mut().for_each(|(_, radius)| *radius *= x.abs());
         if [x, y, z].iter().filter(|s| **s < 0.0).count() % 2 == 1 {
             Arc::make_mut(&mut scaled.triangles).iter_mut().for_each(|t| t.swap(1, 2));
         }

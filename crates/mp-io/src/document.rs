@@ -544,7 +544,8 @@ mod tests {
             |mesh: &TriMesh| -> Vec<_> { (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect() };
         for (a, b) in read.obstacles.iter().zip(&made.obstacles) {
             assert_eq!(a.pose, b.pose);
-            assert_eq!(corners(&a.mesh), corners(&b.mesh));
+            // There are no balls in these files.
+            assert_eq!(corners(&a.mesh), corners(&b.mesh.faceted()));
         }
     }
 

@@ -39,6 +39,7 @@ use mp_io::PlacedBody;
 use nalgebra::{Isometry3, Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
+use std::collections::HashMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -93,9 +94,19 @@ pub struct Body {
 }
 
 impl Body {
-    /// An obstacle: a mesh that stands still.
-    pub(crate) fn obstacle(body: &PlacedBody) -> Self {
-        Self { name: body.name.clone(), shape: BodyShape::Mesh(body.mesh.drawn()), pose: Some(body.pose) }
+    /// Obstacles: meshes that stand still, in a picture with `more` balls beside theirs. Equal ones share their memory.
+    pub(crate) fn obstacles(bodies: &[PlacedBody], more: usize) -> Vec<Self> {
+        let together = more + bodies.iter().map(|body| body.mesh.count_of_balls()).sum::<usize>();
+        let mut drawn = HashMap::new();
+        let obstacle = |body: &PlacedBody| {
+            let memory = [body.mesh.vertices().as_ptr().addr(), body.mesh.balls().as_ptr().addr()];
+            let mesh = match body.mesh.is_balls() {
+                true => drawn.entry(memory).or_insert_with(|| body.mesh.drawn(together)).clone(),
+                false => body.mesh.drawn(together),
+            };
+            Self { name: body.name.clone(), shape: BodyShape::Mesh(mesh), pose: Some(body.pose) }
+        };
+        bodies.iter().map(obstacle).collect()
     }
 }
 

@@ -29,6 +29,20 @@ struct SurfaceSampler {
     areas: Vec<f64>,
 }
 
+/// Balls up to this many have surfaces; of more the centres stand for them.
+const ROUND: usize = 1000;
+
+/// The surface of a mesh, and how many of its triangles stand for each triangle of the mesh.
+fn surface(mesh: &TriMesh) -> (TriMesh, usize) {
+    let count = mesh.triangles().len();
+    if !mesh.is_balls() || count > ROUND {
+        return (mesh.clone(), 1);
+    }
+    let faceted = mesh.faceted();
+    let each = faceted.triangles().len() / count;
+    (faceted, each)
+}
+
 fn body_features(features: &Features) -> BodyFeatures {
     BodyFeatures {
         center: features.center.coords,
@@ -76,18 +90,19 @@ impl SceneFeatures {
     /// # Errors
     /// That of `go_on`, which is called for each part.
     fn new<E>(shared: &Shared, mut go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
-        let robot = &shared.robot_mesh;
+        let (robot, _) = surface(&shared.robot_mesh);
         let mut features = Self {
-            robot: (body_features(&robot.features()), SurfaceSampler::new(robot.clone())),
+            robot: (body_features(&robot.features()), SurfaceSampler::new(robot)),
             parts: Vec::new(),
             surfaces: Vec::new(),
             of_triangle: Vec::new(),
         };
         for (_, mesh) in &shared.obstacles.placed {
             go_on()?;
-            let topology = mesh.topology();
+            let (mesh, each) = surface(mesh);
+            let component = mesh.topology().component.into_iter().step_by(each).collect();
             let first = features.parts.len();
-            features.of_triangle.push((first, topology.component));
+            features.of_triangle.push((first, component));
             for part in mesh.parts() {
                 go_on()?;
                 features.parts.push(body_features(&part.features()));

@@ -66,7 +66,7 @@ impl Obstacles {
         let (mut scene, mut placed, mut own, mut count) = (Scene::new(), Vec::new(), Vec::new(), triangles);
         let (mut unchanged, mut asked) = (true, interrupt.clone());
         // Meshes that share their memory have one tree.
-        let mut trees: HashMap<[usize; 3], (CollisionMesh, IsSolid)> = HashMap::new();
+        let mut trees: HashMap<[usize; 4], (CollisionMesh, IsSolid)> = HashMap::new();
         let obstacles: Vec<_> = obstacles.into_iter().collect();
         let sizes = obstacles.iter().map(|(_, mesh, _)| mesh.triangles().len());
         let together = sizes.filter(|size| *size <= MAX_MERGED).fold(0, usize::saturating_add);
@@ -222,8 +222,9 @@ impl Obstacles {
 }
 
 /// The memory that a mesh shares with its clones.
-fn memory(mesh: &TriMesh) -> [usize; 3] {
-    [mesh.vertices().as_ptr().addr(), mesh.triangles().as_ptr().addr(), mesh.solids().as_ptr().addr()]
+fn memory(mesh: &TriMesh) -> [usize; 4] {
+    let [vertices, triangles] = [mesh.vertices().as_ptr().addr(), mesh.triangles().as_ptr().addr()];
+    [vertices, triangles, mesh.solids().as_ptr().addr(), mesh.balls().as_ptr().addr()]
 }
 
 /// Makes what `cell` holds, if it holds nothing yet, unless `interrupt` says to end.

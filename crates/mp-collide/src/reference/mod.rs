@@ -255,8 +255,8 @@ impl RefMesh {
     #[inline]
     fn rounding(&self, i: u32) -> f64 {
         let balls = self.mesh.balls();
-        let around = |(range, _): &&(Range<u32>, f64)| range.contains(&i);
-        balls.iter().find(around).map_or(0.0, |(_, radius)| *radius)
+        let next = balls.partition_point(|(range, _)| range.end <= i);
+        balls.get(next).filter(|(range, _)| range.contains(&i)).map_or(0.0, |(_, radius)| *radius)
     }
 
     /// A triangle, put into `made` unless it is stored.

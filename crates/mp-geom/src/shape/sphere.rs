@@ -3,10 +3,14 @@
 use super::{Made, Primitive};
 use crate::TriMesh;
 use crate::primitives::{positive, sphere};
+use nalgebra::Point3;
 
-/// The radius.
-pub(super) const KIND: Primitive =
-    Primitive { name: "sphere", lengths: &["radius"], mesh: |lengths| around(lengths[0], 3) };
+/// The radius. It stays a ball.
+pub(super) const KIND: Primitive = Primitive {
+    name: "sphere",
+    lengths: &["radius"],
+    mesh: |lengths| TriMesh::of_balls(vec![Point3::origin()], lengths[0]),
+};
 
 /// A mesh around a ball: a [`sphere`] enlarged until no face cuts the ball.
 pub(super) fn around(radius: f64, subdivisions: u32) -> Made {

@@ -655,10 +655,16 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
 impl<C: LinkedSpace> Appearance for LinkedScene<C> {
     fn bodies(&self) -> Vec<Body> {
         let name = |i: usize| self.arm.model().links[i].name.clone();
-        let links = self.solid_links();
-        let links =
-            links.map(|(i, mesh)| Body { name: name(i), shape: BodyShape::Mesh(mesh.drawn()), pose: None });
-        links.chain(self.obstacles.iter().map(Body::obstacle)).collect()
+        let links: Vec<_> = self.solid_links().collect();
+        let own = links.iter().map(|(_, mesh)| mesh.count_of_balls()).sum();
+        let obstacles = Body::obstacles(&self.obstacles, own);
+        let together = own + self.obstacles.iter().map(|o| o.mesh.count_of_balls()).sum::<usize>();
+        let link = |(i, mesh): (usize, TriMesh)| Body {
+            name: name(i),
+            shape: BodyShape::Mesh(mesh.drawn(together)),
+            pose: None,
+        };
+        links.into_iter().map(link).chain(obstacles).collect()
     }
     fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
         let all = self.arm.kinematics().link_poses(q.as_slice()).unwrap_or_default();

@@ -577,7 +577,7 @@ impl<M: RigidSpace> Appearance for RigidScene<M> {
         let robot = &self.problem.robot;
         let shape = BodyShape::Mesh(robot.mesh.clone());
         let moving = Body { name: robot.name.clone(), shape, pose: None };
-        std::iter::once(moving).chain(self.problem.obstacles.iter().map(Body::obstacle)).collect()
+        std::iter::once(moving).chain(Body::obstacles(&self.problem.obstacles, 0)).collect()
     }
     fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
         vec![pose::<M>(q)]

@@ -117,3 +117,29 @@ fn the_sample_does_not_graze() {
         assert!(clearance > 0.01, "seed {seed}: {clearance}");
     }
 }
+
+/// Spheres are balls, not meshes around them: what passes between two of them with half a millimetre to spare is free, for a body and for the link of an
+/// arm. A little nearer it is not.
+#[test]
+fn spheres_are_round() {
+    let slide = r#"<robot name="r"><link name="base"/><link name="tip"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+        <joint name="j" type="prismatic"><parent link="base"/><child link="tip"/><axis xyz="1 0 0"/><limit lower="-0.8" upper="0.8"/></joint></robot>"#;
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("slide.urdf"), slide).unwrap();
+    let body = "box = [0.2, 0.2, 0.2]\nbounds = [[-1, -1, -1], [1, 1, 1]]";
+    let ends = "start = [-0.8, 0, 0, 0, 0, 0]\ngoal = [0.8, 0, 0, 0, 0, 0]";
+    for (robot, ends) in [(body, ends), ("urdf = \"slide.urdf\"", "start = [-0.8]\ngoal = [0.8]")] {
+        let verdict = |half: f64| {
+            let sphere = |y: f64| format!("[[obstacle]]\nsphere = 0.4\npose = [0, {y}, 0, 0.3, 0.2, 0.1]\n");
+            let spheres = [half, -half].map(sphere).concat();
+            let file = dir.path().join("scene.toml");
+            std::fs::write(&file, format!("[robot]\n{robot}\n[motion]\n{ends}\n{spheres}")).unwrap();
+            let scene = Scene::load(&file).unwrap();
+            let rows = vec![scene.start(), scene.goals().remove(0)];
+            scene.check(&PathRows { format: scene.path_format(), columns: scene.columns(), rows }).unwrap()
+        };
+        let free = verdict(0.5005);
+        assert!(free.free && (1e-5..=5.01e-4).contains(&free.clearance), "{robot}: {free:?}");
+        assert!(!verdict(0.4995).free, "{robot}");
+    }
+}

@@ -95,6 +95,8 @@ impl SharedArm {
             // Shapes are finite, so merging fails only for a shape moved by an invalid pose, or for too many triangles.
             let too_large = |radius| ArmError::TooLarge { link: link.name.clone(), radius, max: MAX_RADIUS };
             let merged = TriMesh::merged(&link.shapes).ok_or_else(|| too_large(f64::NAN))?;
+            // A tree has balls alone or triangles alone.
+            let merged = if merged.is_balls() { merged } else { merged.faceted() };
             count = count.saturating_add(merged.triangles().len());
             if count > MAX_TRIANGLES {
                 return Err(ArmError::TooManyTriangles { count, max: MAX_TRIANGLES });

@@ -83,8 +83,6 @@ impl ArmModel {
             let mut link = Link::new(reader.word(&node, "name")?);
             let inner = node.children().filter(|c| c.is_element() && is_own(c));
             let collisions = inner.filter(|c| c.tag_name().name() == "collision");
-            // Balls alone stay what they are; beside other shapes they are meshes too.
-            let of_balls = collisions.clone().all(|c| c.descendants().any(|n| n.has_tag_name("sphere")));
             for (i, collision) in collisions.enumerate() {
                 ask()?;
                 let fail = |message: String| UrdfError::Shape {
@@ -97,10 +95,7 @@ impl ArmModel {
                 let geometry = reader.geometry(&collision)?;
                 let made = match without_volume(&geometry) {
                     Some(thin) => thin,
-                    None => match (ball(&geometry), of_balls) {
-                        (Some(ball), true) => Ok(Some(ball)),
-                        _ => shape(&geometry, &mut mesh),
-                    },
+                    None => shape(&geometry, &mut mesh),
                 };
                 let Some(shape) = made.map_err(fail)? else {
                     empty.extend((empty.last() != Some(&link.name)).then(|| link.name.clone()));
@@ -294,16 +289,6 @@ fn without_volume(geometry: &Geometry<'_>) -> Option<Result<Option<TriMesh>, Str
         n => (1..n - 1).map(|i| [0, i, i + 1]).collect(),
     };
     Some(TriMesh::new(corners, triangles).map(Some).map_err(|error| error.to_string()))
-}
-
-/// A sphere as a ball; `None` for other shapes, and where its radius is none.
-fn ball(geometry: &Geometry<'_>) -> Option<TriMesh> {
-    match geometry {
-        Geometry::Primitive("sphere", lengths) => {
-            TriMesh::of_balls(vec![Point3::origin()], *lengths.first()?).ok()
-        }
-        _ => None,
-    }
 }
 
 /// The shape as a mesh, in its own frame; `None` for a mesh without triangles, or one that is scaled to a point.
