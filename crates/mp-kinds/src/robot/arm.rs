@@ -32,6 +32,7 @@ use named::NamedValues;
 pub use pose_goals::Reached;
 pub use read::model_of;
 use read::{srdf_help, what};
+use std::collections::HashSet;
 use std::fmt::Debug;
 
 /// The space of a robot made of links and joints: [`Joints`] if its base stands still, [`FloatingJoints`] if it floats.
@@ -626,10 +627,11 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
             offset: joint.offset,
         }));
         let (mut moved, mut body_of) = (Vec::new(), Vec::new());
+        let compared: HashSet<&str> = self.arm.compared_with_obstacles().collect();
         for (i, mesh) in self.solid_links() {
             let link = &kinematics.attached()[i];
             model.frames.push(ModelFrame::Fixed { parent: Some(link.frame), pose: seven(&link.pose) });
-            if base > 0 || link.frame > 0 {
+            if compared.contains(&*link.name) {
                 moved.push(model.bodies.len());
             }
             body_of.push(link.name.as_str());

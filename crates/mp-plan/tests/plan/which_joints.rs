@@ -1,7 +1,7 @@
 //! Which joints of a robot move: held ones, groups, states with names, and bases that move in the plane.
 
 use mp_io::InMemory;
-use mp_plan::{Request, Scene};
+use mp_plan::{Interrupt, PathRows, Request, Scene};
 use std::path::Path;
 
 /// A lift with two bars of a metre that turn about z one above the other, and a finger that slides.
@@ -104,13 +104,23 @@ fn held_joints_have_no_numbers() {
     };
     assert!(goal("0.3").unwrap().check_ends().is_ok());
     assert!(goal("0.1").unwrap().check_ends().is_err());
-    // A link behind held joints stands still, like the base: what it stands in is no matter.
-    let inside = bar.replace("pose = [0.5, 0.5, 0.2,", "pose = [0.5, 0, 0.4,");
-    let held = load(
-        "hold = { raise = 0.3, shoulder = 0 }",
-        &format!("start = [0.5, 0]\ngoal = [-0.5, 0.1]{inside}"),
-    );
-    assert_eq!(path(&held.unwrap()).last().unwrap(), &[-0.5, 0.1]);
+    // A link behind held joints stands still, but must not stand in an obstacle.
+    let held = |height: f64| {
+        let inside = bar.replace("pose = [0.5, 0.5, 0.2,", &format!("pose = [0.5, 0, {height},"));
+        let motion = format!("start = [0.5, 0]\ngoal = [-0.5, 0.1]{inside}");
+        load("hold = { raise = 0.3, shoulder = 0 }", &motion).unwrap()
+    };
+    assert_eq!(path(&held(0.2)).last().unwrap(), &[-0.5, 0.1]);
+    let (scene, free) = (held(0.4), held(0.2));
+    let error = scene.plan(&Request::default()).unwrap_err().to_string();
+    assert!(error.contains("upper in obstacle 1"), "{error}");
+    let rows = vec![scene.start(), scene.goals().remove(0)];
+    let straight = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+    assert!(free.check(&straight).unwrap().free);
+    let verdict = scene.check(&straight).unwrap();
+    assert!(!verdict.free && verdict.faults[0].contains("upper"), "{verdict:?}");
+    assert!(free.certificate(&straight, 0.0, &Interrupt::never()).is_ok());
+    assert!(scene.certificate(&straight, 0.0, &Interrupt::never()).is_err());
     // A hair beyond the limit is at the limit.
     assert!(load("hold = { raise = 0.4000004 }", "start = [0, 0, 0]\ngoal = [1, 1, 0]").is_ok());
 }

@@ -24,6 +24,9 @@ impl Arm {
     /// in the scratch memory.
     fn is_within(&mut self, q: &[f64], clearance: f64) -> bool {
         self.counters.collision_checks += 1;
+        if self.still_clearance() <= 0.0 {
+            return true;
+        }
         let Self { robot, obstacles, query, scratch, kept, .. } = self;
         let kept = *kept + clearance;
         if !robot.kinematics.is_configuration(q) {
@@ -129,6 +132,7 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
     /// The least distance of links from obstacles, beyond what is kept, and from each other.
     fn clearance(&mut self, q: &Q, enough: f64) -> f64 {
         self.counters.clearance_checks += 1;
+        let mut least = self.still_clearance();
         let Self { robot, obstacles, query, scratch, interrupt, kept, .. } = self;
         if interrupt.ask() || !robot.kinematics.is_configuration(q.as_slice()) {
             return 0.0;
@@ -136,7 +140,6 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
         let frames = &mut scratch.frames;
         robot.kinematics.frames_into(q.as_slice(), frames);
         let enough = if enough.is_nan() { f64::INFINITY } else { enough };
-        let mut least = f64::INFINITY;
         for body in robot.moving() {
             let scene = &obstacles.scene;
             let found = |limit| scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
@@ -242,6 +245,12 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
     /// between them.
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, Q>) -> IntervalClearance {
         self.counters.clearance_checks += 1;
+        match self.still_clearance() {
+            still if still <= 0.0 => return IntervalClearance::Collision { at: 0.0 },
+            // Less than verifiers can tell.
+            still if still < 0.2 * self.tolerance() => return IntervalClearance::TooClose { at: 0.0 },
+            _ => {}
+        }
         let [from, to, middle] = [interval.from, interval.to, interval.middle].map(Q::as_slice);
         let Self { robot, obstacles, query, scratch, kept, .. } = self;
         if ![from, to, middle].into_iter().all(|q| robot.kinematics.is_configuration(q)) {
@@ -323,6 +332,9 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
             return Some(none);
         }
         self.counters.collision_checks += states.len() as u64;
+        if self.still_clearance() <= 0.0 {
+            return Some(0);
+        }
         let Self { robot, obstacles, scratch, kept, .. } = self;
         let distances = [*kept + clearance, clearance];
         let Contacts { touching, open } = scratch.wide.contacts(robot, &obstacles.scene, distances, states);
@@ -341,6 +353,7 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
     /// Link by link and pair by pair, as [`interval_clearance`](Self::interval_clearance): what keeps enough clearance over a
     /// part of the motion is not looked at again in its halves.
     fn least_along(&mut self, search: &ClearanceSearch<'_, Q>) -> LeastClearance {
+        let still = self.still_clearance();
         let Self { robot, obstacles, query, scratch, counters, kept, .. } = self;
         let kinematics = &robot.kinematics;
         let ends = [search.from, search.to].map(Q::as_slice);
@@ -348,7 +361,8 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
             return LeastClearance { bound: 0.0, found: 0.0, at: Some(0.0) };
         }
         let base = kinematics.base_travel(ends[0], ends[1]);
-        let mut least = LeastClearance { bound: search.known, found: search.known, at: None };
+        let known = search.known.min(still);
+        let mut least = LeastClearance { bound: known, found: known, at: None };
         let moving: Vec<&LinkBody> = robot.moving().collect();
         let all: Vec<usize> = (0..moving.len() + robot.pairs.len()).collect();
         let mut open = VecDeque::from([(0.0, 1.0, f64::NEG_INFINITY, all)]);

@@ -53,8 +53,7 @@ impl Arm {
         }
         robot.kinematics.frames_into(q, &mut scratch.frames);
         let frames = &scratch.frames;
-        let floats = robot.kinematics.floats();
-        for (i, body) in robot.bodies.iter().enumerate().filter(|(_, body)| floats || body.frame > 0) {
+        for (i, body) in robot.numbered_compared() {
             for found in obstacles.scene.contacts(query, &body.tree, &frames[body.frame]) {
                 contacts.push(ArmContact {
                     link: robot.name(i).to_owned(),
@@ -64,11 +63,11 @@ impl Arm {
                 });
             }
         }
-        for pair in &robot.pairs {
-            let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
+        for pair in robot.all_pairs() {
+            let [a, b] = pair.map(|i| &robot.bodies[i]);
             let poses = [a, b].map(|body| &frames[body.frame]);
             if query.meets(&a.tree, poses[0], &b.tree, poses[1]) {
-                let [link, other] = pair.bodies.map(|i| robot.name(i).to_owned());
+                let [link, other] = pair.map(|i| robot.name(i).to_owned());
                 let depth = query.depth(&a.tree, poses[0], &b.tree, poses[1]);
                 contacts.push(ArmContact { link, other, with_itself: true, depth });
             }
@@ -86,7 +85,7 @@ impl Arm {
         robot.kinematics.frames_into(q, &mut scratch.frames);
         let frames = &scratch.frames;
         let (mut closest, mut least) = (None, f64::INFINITY);
-        for body in robot.moving() {
+        for (_, body) in robot.numbered_compared() {
             let found = obstacles.scene.clearance(query, &body.tree, &frames[body.frame], least + *kept);
             if let (distance, Some(other)) = found
                 && distance - *kept < least
@@ -94,8 +93,8 @@ impl Arm {
                 (closest, least) = (Some((body.link, Err(other), distance)), distance - *kept);
             }
         }
-        for pair in &robot.pairs {
-            let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
+        for pair in robot.all_pairs() {
+            let [a, b] = pair.map(|i| &robot.bodies[i]);
             let distance = query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], least);
             if distance < least {
                 (closest, least) = (Some((a.link, Ok(b.link), distance)), distance);
@@ -119,8 +118,7 @@ impl Arm {
         let Self { robot, obstacles, query, scratch, .. } = self;
         let frames = &scratch.frames;
         let mut found = Vec::new();
-        let floats = robot.kinematics.floats();
-        for (i, body) in robot.bodies.iter().enumerate().filter(|(_, body)| floats || body.frame > 0) {
+        for (i, body) in robot.numbered_compared() {
             let (pose, link) = (&frames[body.frame], || robot.name(i).to_owned());
             let around = obstacles.around(query, pose * body.mesh.vertices()[0]);
             found.extend(around.map(|name| [link(), name.to_owned()]));
@@ -131,8 +129,8 @@ impl Arm {
                 }
             }
         }
-        for pair in &robot.pairs {
-            for [i, j] in [pair.bodies, [pair.bodies[1], pair.bodies[0]]] {
+        for [a, b] in robot.all_pairs() {
+            for [i, j] in [[a, b], [b, a]] {
                 let [inner, outer] = [i, j].map(|k| &robot.bodies[k]);
                 let p = frames[outer.frame].inv_mul(&frames[inner.frame]) * inner.mesh.vertices()[0];
                 if outer.mesh.solids().is_empty()

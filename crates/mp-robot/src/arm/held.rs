@@ -25,6 +25,18 @@ impl ArmModel {
         }
     }
 
+    /// The same robot as it was described, with no joint held and no other limits; `None` when that is the same.
+    pub(super) fn as_described(&self) -> Option<Self> {
+        self.joints.iter().any(|joint| joint.described.is_some()).then(|| {
+            let mut described = self.clone();
+            described
+                .joints
+                .iter_mut()
+                .for_each(|joint| joint.kind = joint.described.take().unwrap_or(joint.kind));
+            described
+        })
+    }
+
     /// The same robot of which no other joints move than those of `joints`, and where the others are held: where `at` says, else at
     /// zero, or at the limit nearest to zero.
     ///

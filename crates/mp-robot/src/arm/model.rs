@@ -93,6 +93,9 @@ pub struct Joint {
     pub axis: Vector3<f64>,
     /// How the child moves.
     pub kind: JointKind,
+    /// How it moved before it was [held](ArmModel::holding) or got [other limits](ArmModel::with_limits): which links must not touch does not
+    /// depend on these.
+    pub described: Option<JointKind>,
     /// The joint that it follows, if any. A joint that follows another is not a coordinate.
     pub mimic: Option<Mimic>,
     /// How fast it may move (rad/s or m/s), if that is known: for trajectories. Nothing else depends on it.
@@ -135,6 +138,7 @@ impl Joint {
             origin: Isometry3::identity(),
             axis: Vector3::x(),
             kind,
+            described: None,
             mimic: None,
             max_velocity: None,
             max_acceleration: None,
@@ -288,7 +292,9 @@ impl ArmModel {
         if let Some(mimic) = &self.joints[found].mimic {
             return Err(wrong(format!("it mimics \"{}\"", mimic.joint)));
         }
-        self.joints[found].kind = match self.joints[found].kind {
+        let joint = &mut self.joints[found];
+        joint.described.get_or_insert(joint.kind);
+        joint.kind = match joint.kind {
             JointKind::Fixed => return Err(wrong("it is fixed".to_owned())),
             JointKind::Prismatic { .. } => JointKind::Prismatic { low, high },
             JointKind::Revolute { .. } | JointKind::Continuous => JointKind::Revolute { low, high },

@@ -1,7 +1,7 @@
 //! The pairs of links that are tested against each other.
 
 use super::kinematics::Kinematics;
-use super::robot::{LinkBody, are_nested};
+use super::robot::LinkBody;
 use super::{ArmError, ArmModel};
 use mp_collide::Query;
 use mp_cspace::{Configuration, Halton, Interrupt, Joints, Rng, Sampler};
@@ -17,19 +17,41 @@ pub(super) struct LinkPair {
 /// In this many configurations pairs are looked at to find those that are always close.
 const SAMPLES: usize = 100;
 
-/// All pairs, except those that never move relative to each other, those of two rigid bodies that a joint connects, those that
-/// may touch, and those that are closer than `close` (m) in every configuration tried. Also what is to be said about them.
+/// Which links are compared.
+#[derive(Debug, Default)]
+pub(super) struct Compared {
+    /// Pairs that move relative to each other.
+    pub(super) pairs: Vec<LinkPair>,
+    /// Pairs that do not, for the joints between them are held.
+    pub(super) still_pairs: Vec<[usize; 2]>,
+    /// Bodies that only joints that are held would move: they are compared with obstacles, though they stand still.
+    pub(super) still_bodies: Vec<usize>,
+    /// What is to be said about them.
+    pub(super) notes: Vec<String>,
+}
+
+/// The tree of a robot as it was described: no joint is held, and limits are its own.
+fn described(model: &ArmModel, kinematics: &Kinematics) -> Kinematics {
+    // A model may be sound only while a joint is held.
+    let described = model.as_described().and_then(|described| Kinematics::new(&described).ok());
+    described.unwrap_or_else(|| kinematics.clone())
+}
+
+/// All pairs, except those that never move relative to each other, those that a joint connects, those that may touch, and those that are closer
+/// than `close` (m) in every configuration tried. None of this depends on which joints are held, or on limits that the robot was given later.
 ///
-/// Links joined by fixed joints are one rigid body. Only of a body that stands still, which may carry walls and tables, the
-/// link of the joint alone is meant, or the first one above it with a shape if it has none; its other links are left out if
-/// they touch what the joint moves at the neutral configuration and no pairs are given.
-pub(super) fn pairs(
+/// A joint connects its two links; a link without a shape stands for the one that it is fixed to. If no pairs are given, links that are fixed to
+/// one of them count as part of it. Only those of the base, which may carry walls and tables, are compared with what the joint moves, unless they
+/// touch it at the neutral configuration.
+pub(super) fn compared(
     kinematics: &Kinematics,
     bodies: &[LinkBody],
     model: &ArmModel,
     close: f64,
     interrupt: &Interrupt,
-) -> Result<(Vec<LinkPair>, Vec<String>), ArmError> {
+) -> Result<Compared, ArmError> {
+    let free = described(model, kinematics);
+    let frame_of = |body: &LinkBody| free.attached[body.link].frame;
     let mut interrupt = interrupt.clone();
     let key = |a: usize, b: usize| (a.min(b), a.max(b));
     let mut keys = |pairs: &[(String, String)]| {
@@ -56,17 +78,19 @@ pub(super) fn pairs(
         for (i, a) in bodies.iter().enumerate().take(j) {
             interrupt.go_on()?;
             let links = key(a.link, b.link);
-            let joined = joined(kinematics, bodies, a, b);
+            let joined = joined(&free, bodies, a, b);
             let is_kept = kept.contains(&links);
-            if a.frame != b.frame && (is_kept || !(joined == Joined::Yes || allowed.contains(&links))) {
-                let beside = joined == Joined::Beside && model.may_touch.is_none();
+            let guessed = model.may_touch.is_none();
+            let left_out = joined == Joined::Yes || (joined == Joined::Welded && guessed);
+            if frame_of(a) != frame_of(b) && (is_kept || !(left_out || allowed.contains(&links))) {
+                let beside = joined == Joined::Beside && guessed;
                 let fate = if is_kept { Fate::Kept } else { Fate::Close { least: f64::INFINITY, most: 0.0 } };
                 let pair = LinkPair { bodies: [i, j], steps: between(&above[i], &above[j]) };
                 found.push(Candidate { pair, beside, fate });
             }
         }
     }
-    look_at(kinematics, bodies, &mut found, close, &mut interrupt)?;
+    look_at([&free, kinematics], bodies, &mut found, close, &mut interrupt)?;
     let mut notes = Vec::new();
     found.retain(|Candidate { pair, fate, .. }| {
         let why = match *fate {
@@ -81,43 +105,63 @@ pub(super) fn pairs(
         notes.push(format!("the links \"{a}\" and \"{b}\" are not compared: {why}"));
         false
     });
-    Ok((found.into_iter().map(|candidate| candidate.pair).collect(), notes))
+    let (mut pairs, mut still_pairs) = (Vec::new(), Vec::new());
+    for Candidate { pair, .. } in found {
+        let [a, b] = pair.bodies.map(|i| bodies[i].frame);
+        if a == b { still_pairs.push(pair.bodies) } else { pairs.push(pair) }
+    }
+    let stands = |i: &usize| bodies[*i].frame == 0 && !kinematics.floats() && frame_of(&bodies[*i]) > 0;
+    let still_bodies = (0..bodies.len()).filter(stands).collect();
+    Ok(Compared { pairs, still_pairs, still_bodies, notes })
 }
 
-/// Whether a joint connects the rigid bodies of two links.
+/// Whether a joint connects two links.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Joined {
     No,
-    /// One link is fixed to a body that stands still, but is not the link of the joint.
+    /// It connects what they are fixed to, which is the base on one side, and not the link of the joint there.
     Beside,
+    /// It connects what they are fixed to.
+    Welded,
     Yes,
 }
 
 pub(super) fn joined(kinematics: &Kinematics, bodies: &[LinkBody], a: &LinkBody, b: &LinkBody) -> Joined {
+    let frame_of = |link: usize| kinematics.attached[link].frame;
     let moves = |child: &LinkBody, parent: &LinkBody| {
-        child.frame > 0 && kinematics.frames[child.frame - 1].parent == parent.frame
+        let child = frame_of(child.link);
+        child > 0 && kinematics.frames[child - 1].parent == frame_of(parent.link)
     };
     let (child, parent) = match (moves(a, b), moves(b, a)) {
-        (true, _) => (a, b),
-        (_, true) => (b, a),
+        (true, _) => (a.link, b.link),
+        (_, true) => (b.link, a.link),
         _ => return Joined::No,
     };
-    let frame_of = |link: usize| kinematics.attached[link].frame;
-    // A link without a shape stands for the one that it is fixed to.
-    let solid = |mut link: usize| {
-        while !bodies.iter().any(|body| body.link == link)
-            && let Some([above, _]) = kinematics.joined.iter().find(|[_, below]| *below == link)
-        {
-            link = *above;
+    let has_shape = |link: usize| bodies.iter().any(|body| body.link == link);
+    let above =
+        |link: usize| kinematics.joined.iter().find(|[_, below]| *below == link).map(|[above, _]| *above);
+    // Whether nothing with a shape is between the link `top` and `link`, which is fixed to it or the same.
+    let stands_for = |top: usize, mut link: usize| {
+        while link != top {
+            match above(link) {
+                Some(next) if next == top || !has_shape(next) => link = next,
+                _ => return false,
+            }
         }
-        link
+        true
     };
-    let at_joint = |[above, below]: &[usize; 2]| {
-        frame_of(*above) == parent.frame && frame_of(*below) == child.frame && solid(*above) == parent.link
+    let connects =
+        |[upper, _]: &&[usize; 2]| *upper == parent || (!has_shape(*upper) && stands_for(parent, *upper));
+    let is_between = |[upper, lower]: &&[usize; 2]| {
+        frame_of(*upper) == frame_of(parent) && frame_of(*lower) == frame_of(child)
     };
-    match parent.frame > 0 || kinematics.floats() || kinematics.joined.iter().any(at_joint) {
-        true => Joined::Yes,
-        false => Joined::Beside,
+    let joint = kinematics.joined.iter().filter(is_between).find(connects);
+    match joint {
+        Some([_, lower]) if *lower == child || (!has_shape(*lower) && stands_for(*lower, child)) => {
+            Joined::Yes
+        }
+        None if frame_of(parent) == 0 => Joined::Beside,
+        _ => Joined::Welded,
     }
 }
 
@@ -145,10 +189,10 @@ fn between(a: &[usize], b: &[usize]) -> [usize; 2] {
     [a.len() - common, b.len() - common]
 }
 
-/// Measures the pairs at the neutral configuration and at points of the Halton sequence, until they are `close` (m) apart. The same
-/// arm always gives the same distances.
+/// Measures the pairs at the neutral configuration of the first tree and at points of the Halton sequence, until they are `close` (m) apart. The
+/// same arm always gives the same distances. Bodies are in the frames of the second tree.
 fn look_at(
-    kinematics: &Kinematics,
+    [kinematics, own]: [&Kinematics; 2],
     bodies: &[LinkBody],
     pairs: &mut [Candidate],
     close: f64,
@@ -158,15 +202,28 @@ fn look_at(
     let (mut halton, mut rng) = (Halton::new(&space), Rng::seed(0));
     let (mut query, mut frames) = (Query::default(), Vec::new());
     let mut q = Configuration::from(kinematics.neutral());
+    let places: Vec<_> = bodies
+        .iter()
+        .map(|body| {
+            let [there, here] = [kinematics, own].map(|tree| &tree.attached[body.link]);
+            let same = there.pose == here.pose;
+            (there.frame, (!same).then(|| there.pose * here.pose.inverse()))
+        })
+        .collect();
     for i in 0..SAMPLES {
         let mut left = false;
         kinematics.frames_from(&kinematics.base, q.as_slice(), &mut frames);
         for Candidate { pair, beside, fate } in pairs.iter_mut() {
             let Fate::Close { least, most } = *fate else { continue };
             interrupt.go_on()?;
-            let [a, b] = pair.bodies.map(|i| &bodies[i]);
-            let distance = query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], close);
-            let is_inside = distance > 0.0 && are_nested(&mut query, [a, b], &frames);
+            let [a, b] = pair.bodies.map(|i| &bodies[i].tree);
+            let [at_a, at_b] = pair.bodies.map(|i| {
+                let (frame, place) = &places[i];
+                place.map_or(frames[*frame], |place| frames[*frame] * place)
+            });
+            let distance = query.clearance(a, &at_a, b, &at_b, close);
+            let is_inside =
+                distance > 0.0 && (a.is_filled() || b.is_filled()) && query.nested(a, &at_a, b, &at_b);
             *fate = match if is_inside { 0.0 } else { distance } {
                 0.0 if *beside && i == 0 => Fate::TouchAtNeutral,
                 d if d < close => Fate::Close { least: least.min(d), most: most.max(d) },

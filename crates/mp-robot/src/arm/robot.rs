@@ -1,7 +1,7 @@
 //! An arm among obstacles that stand still.
 
 use super::kinematics::{BaseTravel, Coordinate, Kinematics};
-use super::pairs::{LinkPair, pairs};
+use super::pairs::{LinkPair, compared};
 use super::travel::{Chain, axes_into};
 use super::verify::ReferenceArm;
 use super::wide::{Turns, WideIntervals};
@@ -66,6 +66,10 @@ pub(super) struct SharedArm {
     /// In the order of the links.
     pub(super) bodies: Vec<LinkBody>,
     pub(super) pairs: Vec<LinkPair>,
+    /// Pairs of bodies that must not touch, and never move relative to each other.
+    pub(super) still_pairs: Vec<[usize; 2]>,
+    /// Bodies that stand still for joints that are held, and must not touch obstacles.
+    pub(super) still_bodies: Vec<usize>,
     /// Whether the covers of all links are [exact](Cover::is_exact).
     pub(super) is_of_balls: bool,
     /// For each joint that moves.
@@ -119,16 +123,17 @@ impl SharedArm {
             first += entries;
         }
         let (model, reference) = (model.clone(), OnceLock::new());
-        let (none, not_compared) = (Vec::new(), Vec::new());
         let turns = kinematics.frames.iter().map(Turns::of).collect();
         let is_of_balls = bodies.iter().all(|body| body.cover.is_exact());
         let mut robot = Self {
             kinematics,
             bodies,
-            pairs: none,
+            pairs: Vec::new(),
+            still_pairs: Vec::new(),
+            still_bodies: Vec::new(),
             is_of_balls,
             turns,
-            not_compared,
+            not_compared: Vec::new(),
             reach,
             length,
             model,
@@ -136,9 +141,10 @@ impl SharedArm {
         };
         // Closer than this no motion can be certified.
         let close = 2.0 * robot.tolerance(0.0);
-        let (pairs, notes) = pairs(&robot.kinematics, &robot.bodies, &robot.model, close, interrupt)?;
-        tracing::debug!(dof = robot.kinematics.dof(), triangles = count, pairs = pairs.len(), "arm");
-        (robot.pairs, robot.not_compared) = (pairs, notes);
+        let found = compared(&robot.kinematics, &robot.bodies, &robot.model, close, interrupt)?;
+        tracing::debug!(dof = robot.kinematics.dof(), triangles = count, pairs = found.pairs.len(), "arm");
+        (robot.pairs, robot.not_compared) = (found.pairs, found.notes);
+        (robot.still_pairs, robot.still_bodies) = (found.still_pairs, found.still_bodies);
         Ok(robot)
     }
 
@@ -178,6 +184,37 @@ impl SharedArm {
     pub(super) fn numbered_moving(&self) -> impl Iterator<Item = (usize, &LinkBody)> {
         let floats = self.kinematics.floats();
         self.bodies.iter().enumerate().rev().filter(move |(_, body)| floats || body.frame > 0)
+    }
+
+    /// The links that are compared with obstacles: those that move, and those that only a held joint keeps from moving. In the order of the
+    /// model, with their indices.
+    pub(super) fn numbered_compared(&self) -> impl Iterator<Item = (usize, &LinkBody)> {
+        let floats = self.kinematics.floats();
+        let compared =
+            move |i: usize, body: &LinkBody| floats || body.frame > 0 || self.still_bodies.contains(&i);
+        self.bodies.iter().enumerate().filter(move |(i, body)| compared(*i, body))
+    }
+
+    /// The bodies of all pairs that must not touch, those too that never move relative to each other.
+    pub(super) fn all_pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.pairs.iter().map(|pair| pair.bodies).chain(self.still_pairs.iter().copied())
+    }
+
+    /// The least distances (m) of what never moves: of links from obstacles, and of links from each other. Zero where one is inside of the other.
+    pub(super) fn still_distances(&self, scene: &Scene, query: &mut Query) -> [f64; 2] {
+        let (base, mut from_obstacles, mut from_links) = (self.kinematics.base, f64::INFINITY, f64::INFINITY);
+        for body in self.still_bodies.iter().map(|i| &self.bodies[*i]) {
+            from_obstacles = from_obstacles.min(scene.clearance(query, &body.tree, &base, from_obstacles).0);
+        }
+        let here = Isometry3::identity();
+        for pair in &self.still_pairs {
+            let [a, b] = pair.map(|i| &self.bodies[i]);
+            let distance = query.clearance(&a.tree, &here, &b.tree, &here, from_links);
+            let filled = a.tree.is_filled() || b.tree.is_filled();
+            let is_nested = filled && query.nested(&a.tree, &here, &b.tree, &here);
+            from_links = if is_nested { 0.0 } else { from_links.min(distance) };
+        }
+        [from_obstacles, from_links]
     }
 
     /// A lower bound (m) on the distance of the two links of a pair by their covers, if that is at least `enough` (m). Links are
@@ -224,7 +261,7 @@ impl SharedArm {
     }
 
     pub(super) fn checked_pairs(&self) -> impl Iterator<Item = [&str; 2]> {
-        self.pairs.iter().map(|pair| pair.bodies.map(|body| self.name(body)))
+        self.all_pairs().map(|pair| pair.map(|body| self.name(body)))
     }
 
     /// Whether of two links that must not touch one is solid and the other inside of it. Links are [placed](Self::place_over), their
@@ -310,13 +347,14 @@ impl Scratch {
 /// [coordinate](Arm::coordinates); its space is [`space`](Arm::space). If the [root floats](ArmModel::floating), the pose
 /// of the root comes first, as seven numbers, and the space is [`floating_space`](Arm::floating_space). It is free when
 ///
-/// - no link that can move has a point in common with an obstacle. Links that stand still are not tested against
-///   obstacles, which stand still too: a table may touch the base that it carries;
-/// - no two links have a point in common, except pairs that never move relative to each other, pairs of rigid bodies that a
-///   joint connects (links touch at a joint; links joined by fixed joints are one body, but of a body that stands still only
-///   the link of the joint counts, or the first above it with a shape if it has none), and pairs that may touch: those of [`ArmModel::may_touch`] if given, else those that touch
+/// - no link that can move has a point in common with an obstacle. Links that are fixed to the base are not tested against
+///   obstacles, which stand still too: a table may touch the base that it carries. Links that stand still because joints are
+///   [held](ArmModel::holding) are tested;
+/// - no two links have a point in common, except pairs that fixed joints connect, pairs that one joint
+///   connects (a link without a shape stands for the one that it is fixed to), and pairs that may touch: those of [`ArmModel::may_touch`] if given, else those that touch
 ///   at each of 100 configurations, the neutral one and 99 of the Halton sequence. Pairs within twice the tolerance of each
-///   other at each of these are left out too, and [`ArmModel::notes`] of [`Arm::model`] says so.
+///   other at each of these are left out too, as are links that are fixed to one of two that a joint connects and touch the other one at the
+///   neutral configuration; [`Arm::notes`] says so. Which joints are held, and what limits a problem gives them, makes no difference.
 ///
 /// Meshes are surfaces and primitives solids, as for [`RigidBody`](crate::RigidBody): touching is collision, a link wholly inside
 /// a closed mesh is free, one inside a solid is not. The space checks the limits.
@@ -336,6 +374,8 @@ pub struct Arm {
     pub(super) interrupt: Interrupt,
     /// The clearance (m) to keep from obstacles.
     pub(super) kept: f64,
+    /// The [distances of what never moves](SharedArm::still_distances), found at the first use.
+    pub(super) still: Arc<OnceLock<[f64; 2]>>,
 }
 
 impl Arm {
@@ -369,6 +409,7 @@ impl Arm {
             scratch: Scratch::default(),
             interrupt: Interrupt::never(),
             kept: 0.0,
+            still: Arc::default(),
         })
     }
 
@@ -384,6 +425,22 @@ impl Arm {
     #[must_use]
     pub fn kept(&self) -> f64 {
         self.kept
+    }
+
+    /// The least clearance (m) of what never moves, beyond what is kept: of links that joints hold in their place. Infinite without any.
+    pub(super) fn still_clearance(&mut self) -> f64 {
+        let Self { robot, obstacles, query, kept, still, .. } = self;
+        if robot.still_bodies.is_empty() && robot.still_pairs.is_empty() {
+            return f64::INFINITY;
+        }
+        let [from_obstacles, from_links] =
+            *still.get_or_init(|| robot.still_distances(&obstacles.scene, query));
+        (from_obstacles - *kept).min(from_links).max(0.0)
+    }
+
+    /// The names of the links that are compared with obstacles.
+    pub fn compared_with_obstacles(&self) -> impl Iterator<Item = &str> {
+        self.robot.numbered_compared().map(|(i, _)| self.robot.name(i))
     }
 
     /// The same arm, whose clearance is zero once `interrupt` says to end: searches for a free configuration end soon then.
@@ -413,7 +470,8 @@ impl Arm {
         interrupt: &Interrupt,
     ) -> Result<Self, ArmError> {
         let obstacles = self.robot.obstacles(obstacles, interrupt)?;
-        let mut other = Self { obstacles, scratch: Scratch::default(), ..self.clone() };
+        let mut other =
+            Self { obstacles, scratch: Scratch::default(), still: Arc::default(), ..self.clone() };
         other.take_counters();
         Ok(other)
     }

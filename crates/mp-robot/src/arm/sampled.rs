@@ -2,7 +2,7 @@
 
 use super::pairs::{Joined, joined};
 use super::robot::{LinkBody, SharedArm, are_nested};
-use super::{ArmError, ArmModel};
+use super::{ArmError, ArmModel, Kinematics};
 use mp_collide::Query;
 use mp_cspace::{Configuration, Halton, Interrupt, Joints, Rng, Sampler};
 use std::fmt::{self, Write as _};
@@ -65,7 +65,9 @@ impl ArmModel {
     /// # Errors
     /// As [`Arm::new`](crate::Arm::new), and [`Interrupted`](ArmError::Interrupted) when it was interrupted.
     pub fn sampled_pairs(&self, interrupt: &Interrupt) -> Result<SampledPairs, ArmError> {
-        let model = Self { may_touch: None, kept_apart: Vec::new(), ..self.clone() };
+        let described = self.as_described().filter(|described| Kinematics::new(described).is_ok());
+        let described = described.unwrap_or_else(|| self.clone());
+        let model = Self { may_touch: None, kept_apart: Vec::new(), ..described };
         let robot = SharedArm::new(&model, interrupt)?;
         let mut candidates = Vec::new();
         for (j, b) in robot.bodies.iter().enumerate() {

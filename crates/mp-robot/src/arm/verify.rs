@@ -11,7 +11,7 @@ use mp_collide::reference::{Hint, RefMesh};
 use mp_cspace::{Coordinates, Curve, Interrupt, MotionCheck, MotionValidity, ParameterError, Space};
 use nalgebra::Isometry3;
 use reference_arm::{CheckedPair, POSE, Placement, Travels, base_travel};
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -102,7 +102,11 @@ where
         let tree = arm.reference();
         let world = arm.obstacles.references();
         let mut pairs = Vec::new();
-        let solid = |i: &usize| tree.links[*i].mesh.is_some() && (tree.pose > 0 || tree.is_moved(*i));
+        let names: HashSet<&str> = arm.compared_with_obstacles().collect();
+        let solid = |i: &usize| {
+            let link = &tree.links[*i];
+            link.mesh.is_some() && (tree.pose > 0 || tree.is_moved(*i) || names.contains(&*link.name))
+        };
         for link in (0..tree.links.len()).filter(solid) {
             if !world.is_empty() {
                 pairs.push(CheckedPair { link, other: None, meet: None });

@@ -1,9 +1,9 @@
 //! Which links are compared, and how near they may come.
 
 use mp_cspace::Interrupt;
-use mp_cspace::{Clearance, Configuration};
+use mp_cspace::{Clearance, Configuration, MotionValidity, Validity};
 use mp_geom::primitives::cuboid;
-use mp_robot::{Arm, ArmModel, Joint, JointKind, Link, TouchReason};
+use mp_robot::{Arm, ArmModel, ArmVerifier, Joint, JointKind, Link, TouchReason};
 use nalgebra::{Isometry3, Vector3};
 
 const TURN: JointKind = JointKind::Revolute { low: -2.0, high: 2.0 };
@@ -107,9 +107,9 @@ fn walls_welded_to_the_root_are_compared() {
     // An SRDF says which links may touch: nothing else is guessed.
     let given = make(0.3).with_srdf("<robot/>").unwrap();
     assert_eq!(compared(&given), ["wall cart"]);
-    // A base that floats is no room.
+    // Also of a base that floats.
     let bounds = mp_geom::Aabb::new([-1.0; 3].into(), [1.0; 3].into());
-    assert_eq!(compared(&ArmModel { floating: Some(bounds), ..make(2.0) }), [""; 0]);
+    assert_eq!(compared(&ArmModel { floating: Some(bounds), ..make(2.0) }), ["wall cart"]);
 }
 
 #[test]
@@ -277,6 +277,74 @@ fn pairs_are_sampled_until_they_are_known() {
     let line =
         "<disable_collisions link1=\"post\" link2=\"bar\" reason=\"Default\"/> <!-- in 5.8% of them -->";
     assert!(srdf.contains(line) && !srdf.contains("Never"), "{srdf}");
-    assert_eq!(compared(&model.clone().with_srdf(&srdf).unwrap()), ["post flag", "post cap"]);
+    assert_eq!(
+        compared(&model.clone().with_srdf(&srdf).unwrap()),
+        ["foot flag", "post flag", "post cap", "flag cap"]
+    );
     assert_eq!(compared(&model.clone().with_srdf(&found.srdf("r", true)).unwrap()), [""; 0]);
+}
+
+/// Which links must not touch does not depend on what is held or on limits of a problem: links are compared that only a held joint connects, and
+/// links that are held in their place are compared with obstacles, by the checker and by the verifier.
+#[test]
+fn what_is_held_is_compared_all_the_same() {
+    let links = vec![
+        block("base", 0.1, -1.0),
+        block("a", 0.3, 0.0),
+        block("b", 0.3, 1.0),
+        block("c", 0.3, 0.4),
+        block("d", 0.1, 5.0),
+    ];
+    let step = JointKind::Prismatic { low: -0.3, high: 1.0 };
+    let joints = vec![
+        joint("1", "base", "a", step).axis(Vector3::x()),
+        joint("2", "a", "b", TURN),
+        joint("3", "b", "c", step).axis(Vector3::z()),
+        joint("4", "c", "d", TURN),
+    ];
+    let free = model(links, joints);
+    let pairs = compared(&free);
+    assert!(pairs.contains(&"a c".to_owned()), "{pairs:?}");
+    let [held, two] = [("3", "3"), ("3", "2")].map(|(a, b)| {
+        free.clone()
+            .holding(a, -0.3)
+            .and_then(|held| held.holding(b, if b == "2" { 0.0 } else { -0.3 }))
+            .unwrap()
+    });
+    let narrow = free.clone().with_limits("3", -0.3, -0.29).unwrap();
+    for model in [&held, &two, &narrow] {
+        let mut found = compared(model);
+        found.sort();
+        let mut all = pairs.clone();
+        all.sort();
+        assert_eq!(found, all);
+    }
+    // `c` is in `a` there.
+    let mut arm = Arm::new(&held, []).unwrap();
+    let q = |numbers: &[f64]| Configuration::from(numbers);
+    assert!(!arm.is_valid(&q(&[0.0, 0.0, 0.0])));
+    let mut arm = Arm::new(&two, []).unwrap();
+    assert!(!arm.is_valid(&q(&[0.0, 0.0])) && arm.explain(&[0.0, 0.0])[0].other == "c");
+    let space = arm.space().unwrap();
+    let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
+    assert!(!verifier.check_motion(&q(&[0.0, 0.0]), &q(&[0.5, 0.5])).is_free());
+    // All but the last link stand still, in an obstacle or beside it.
+    let still =
+        [("1", 0.5), ("2", 0.0), ("3", 0.9)].into_iter().try_fold(free, |m, (j, at)| m.holding(j, at));
+    for (x, is_free) in [(0.8, false), (0.95, true)] {
+        let post =
+            (String::from("post"), cuboid(0.5, 0.2, 0.2).unwrap(), Isometry3::translation(x, 0.0, 0.0));
+        let mut arm = Arm::new(still.as_ref().unwrap(), [post]).unwrap();
+        let space = arm.space().unwrap();
+        let (from, to) = (q(&[0.0]), q(&[0.1]));
+        assert_eq!(arm.is_valid(&from), is_free, "{x}");
+        assert_eq!(arm.explain(&[0.0]).is_empty(), is_free, "{x}");
+        assert_eq!(
+            ArmVerifier::new(&space, &arm).unwrap().check_motion(&from, &to).is_free(),
+            is_free,
+            "{x}"
+        );
+        let clearance = arm.clearance(&from, 10.0);
+        assert!((clearance - (x - 0.9_f64).max(0.0)).abs() < 1e-9, "{clearance}");
+    }
 }

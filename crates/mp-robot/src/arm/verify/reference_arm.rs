@@ -25,6 +25,7 @@ pub(super) const POSE: usize = 7;
 /// A link and the joint above it.
 #[derive(Debug)]
 pub(super) struct ReferenceLink {
+    pub(super) name: String,
     parent: Option<usize>,
     /// How many links are above it.
     depth: usize,
@@ -104,6 +105,7 @@ impl ReferenceArm {
                 };
                 places.insert(&link.name, tree.links.len());
                 tree.links.push(ReferenceLink {
+                    name: link.name.clone(),
                     parent,
                     depth: parent.map_or(0, |p| tree.links[p].depth + 1),
                     origin: joint.map_or_else(Matrix4::identity, |j| j.origin.to_homogeneous()),
