@@ -140,3 +140,26 @@ fn no_byte_of_a_shard_can_change_unseen() {
     }
     assert_eq!(std::fs::read(dir.at("out.jsonl")).unwrap(), good);
 }
+
+/// A joint with limits that mean none goes so far to each side of the start: an item after another one has the limits of its own start.
+#[test]
+fn limits_about_the_start_are_those_of_each_item() {
+    let dir = Dir::new();
+    let urdf = r#"<robot name="r"><link name="base"/><link name="a"><collision><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
+        <joint name="x" type="prismatic"><parent link="base"/><child link="a"/><axis xyz="1 0 0"/><limit lower="-1e8" upper="1e8"/></joint></robot>"#;
+    dir.write("r.urdf", urdf);
+    for start in [0, 50_000] {
+        let goal = start + 10;
+        let scene = format!("[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = [{start}]\ngoal = [{goal}]\n");
+        dir.write(&format!("s{start}.toml"), scene);
+    }
+    dir.write("problems.jsonl", "{\"scene\": \"s0.toml\"}\n{\"scene\": \"s50000.toml\"}\n");
+    dir.run("all.jsonl", &whole()).unwrap();
+    assert_eq!(dir.items("all.jsonl", false).0, [(0, true), (1, true)], "{}", dir.read("all.jsonl"));
+    ["1/2", "2/2"]
+        .into_iter()
+        .zip(["1.jsonl", "2.jsonl"])
+        .for_each(|(shard, out)| drop(dir.shard(out, shard)));
+    dir.merge("merged.jsonl", &["1.jsonl", "2.jsonl"]).unwrap();
+    assert_eq!(dir.read("merged.jsonl"), dir.read("all.jsonl"));
+}

@@ -235,8 +235,13 @@ impl<C: LinkedSpace> LinkedScene<C> {
         mut problem: RobotProblem,
         before: Option<&Self>,
     ) -> Result<Self, Error> {
-        let known =
-            before.filter(|before| before.source.as_ref().is_some_and(|known| known.same_robots(&problem)));
+        let is_same = |before: &&Self| {
+            before.source.as_ref().is_some_and(|known| {
+                let same_start = known.file.start.row() == problem.file.start.row();
+                known.same_robots(&problem) && (same_start || !read::depends_on_start(before.arm.model()))
+            })
+        };
+        let known = before.filter(is_same);
         let (arm, said) = match known {
             Some(before) => {
                 let (kinematics, model) = (before.arm.kinematics(), before.arm.model());

@@ -256,6 +256,12 @@ fn with_start(
     Ok(model)
 }
 
+/// Whether limits of the robot are [about the start](ROOM).
+pub(super) fn depends_on_start(model: &ArmModel) -> bool {
+    let is_endless = |kind| matches!(kind, JointKind::Prismatic { low, high } if high - low > ENDLESS);
+    model.joints.iter().any(|joint| joint.described.is_some_and(is_endless))
+}
+
 /// What fails when the robots of a problem cannot be made.
 pub(super) fn what(problem: &RobotProblem) -> String {
     let files: Vec<_> = problem.robots.iter().map(|robot| robot.urdf_file.display().to_string()).collect();
