@@ -292,6 +292,48 @@ fn what_controllers_run_is_what_is_checked() {
     );
 }
 
+/// As in MoveIt, positions of its file beside the SRDF take the place of those of the URDF, and a note says so.
+#[test]
+fn limits_of_position_are_those_of_moveit() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let joint = |name: &str, kind: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/><axis xyz='0 0 1'/>\
+             <limit lower='-3' upper='3'/></joint>"
+        )
+    };
+    let joints = [joint("a", "revolute", "base", "b1"), joint("b", "continuous", "b1", "b2")].concat();
+    let links = ["base", "b1", "b2"].map(|name| format!("<link name='{name}'/>")).concat();
+    write("two.urdf", &format!("<robot name='two'>{links}{joints}</robot>"));
+    write("two.srdf", "<robot name='two'/>");
+    let load = |file: &str, more: &str, a: f64| {
+        write("joint_limits.yaml", &format!("joint_limits:\n{file}"));
+        write(
+            "two.toml",
+            &format!("[robot]\nurdf = \"two.urdf\"\n{more}[motion]\nstart = [0, 0]\ngoal = [{a}, 1]\n"),
+        );
+        Scene::load(folder.path().join("two.toml")).map_err(|e| e.to_string())
+    };
+    assert!(load("", "", 2.5).is_ok());
+    let narrow = "  a:\n    has_position_limits: true\n    min_position: -1\n    max_position: 1\n";
+    let scene = load(narrow, "", 0.5).unwrap();
+    let notes = scene.notes().join("\n");
+    assert!(notes.contains("joint_limits.yaml") && notes.contains("a from -1 to 1"), "{notes}");
+    let error = load(narrow, "", 2.5).unwrap_err();
+    assert!(error.contains("2.5") && error.contains("-1"), "{error}");
+    // Wider ones too, and the problem comes before the file.
+    assert!(load(&narrow.replace("max_position: 1", "max_position: 3.5"), "", 3.25).is_ok());
+    assert!(load(narrow, "limits = { a = [-3, 3] }\n", 2.5).is_ok());
+    // One limit with the other of the URDF; there must be room between them.
+    assert!(load("  a:\n    max_position: 1\n", "", -2.5).is_ok());
+    let error = load("  a:\n    min_position: 4\n", "", 2.5).unwrap_err();
+    assert!(error.contains("joint_limits.yaml") && error.contains("from 4 to 3"), "{error}");
+    // As in MoveIt, a continuous joint keeps turning.
+    let scene = load(&narrow.replace("a:", "b:"), "", 2.5).unwrap();
+    assert!(scene.notes().iter().any(|note| note.contains("not taken") && note.contains(": b")));
+}
+
 /// MoveIt's file beside the SRDF comes before the URDF, and the problem before both.
 #[test]
 fn limits_are_those_of_the_problem_of_moveit_and_of_the_urdf() {
