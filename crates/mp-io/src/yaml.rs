@@ -136,9 +136,9 @@ fn scalar(text: &str, plain: bool) -> Value {
         return Value::String(text.to_owned());
     }
     match text {
-        "" | "~" | "null" => Value::Null,
-        "true" => Value::Bool(true),
-        "false" => Value::Bool(false),
+        "" | "~" | "null" | "Null" | "NULL" => Value::Null,
+        "true" | "True" | "TRUE" => Value::Bool(true),
+        "false" | "False" | "FALSE" => Value::Bool(false),
         _ => {
             let number = text.parse::<i64>().ok().map(Number::from);
             let number = number.or_else(|| text.parse().ok().and_then(Number::from_f64));

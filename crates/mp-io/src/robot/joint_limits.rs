@@ -123,11 +123,21 @@ impl Entry<'_> {
         }
     }
 
-    /// Whether it says so, or nothing.
+    /// Whether a word of YAML 1.1 or 1.2 says so, or nothing is said.
     fn is_true(&self, key: &str) -> Result<bool, Error> {
-        match self.values.get(key) {
-            None | Some(Value::Null) => Ok(true),
-            value => Ok(value.and_then(Value::as_bool) == Some(true)),
+        let word = match self.values.get(key) {
+            None | Some(Value::Null) => return Ok(true),
+            Some(Value::Bool(is)) => return Ok(*is),
+            Some(Value::String(word)) => word.clone(),
+            Some(value) => value.to_string(),
+        };
+        match word.to_ascii_lowercase().as_str() {
+            "true" | "yes" | "on" | "y" => Ok(true),
+            "false" | "no" | "off" | "n" => Ok(false),
+            _ => {
+                let message = format!("`{key}` is `{}`, which is neither true nor false", clipped(&word));
+                Err(self.error(key, message).expected("true or false"))
+            }
         }
     }
 
@@ -191,6 +201,27 @@ mod tests {
             limits("min_position: !degrees -90, max_position: !radians 2"),
             [Some(-FRAC_PI_2), Some(2.0)]
         );
+    }
+
+    #[test]
+    fn words_that_mean_true_and_false() {
+        let is = |word: &str| {
+            let text = format!("joint_limits:\n  j:\n    has_velocity_limits: {word}\n    max_velocity: 2\n");
+            parse("l", &text).unwrap()[0].rates[0].is_some()
+        };
+        for word in ["true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON", "y", "~", "\"true\""] {
+            assert!(is(word), "{word}");
+        }
+        for word in ["false", "False", "FALSE", "no", "No", "NO", "off", "Off", "OFF", "n", "'no'"] {
+            assert!(!is(word), "{word}");
+        }
+        for word in ["ture", "1", "0", "[true]"] {
+            let (line, said) = wrong(&format!(
+                "  i:\n    max_jerk: 1\n  j:\n    max_velocity: 2\n    has_velocity_limits: {word}\n"
+            ));
+            assert_eq!(line, Some(6), "{said}");
+            assert!(said.contains("has_velocity_limits") && said.contains("true or false"), "{said}");
+        }
     }
 
     #[test]
