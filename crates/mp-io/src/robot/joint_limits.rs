@@ -45,13 +45,8 @@ pub(super) fn beside(files: &dyn Files, srdf: &Path) -> Result<JointLimits, Erro
     }
     let name = file.display().to_string();
     let read = |bytes: Vec<u8>| parse(&name, decode(&name, &bytes)?);
-    match files.read(&file, MAX_TEXT_BYTES).and_then(read) {
-        Ok(joints) => Ok(JointLimits { file, joints }),
-        Err(e) => {
-            tracing::warn!("{e}");
-            Ok(JointLimits::default())
-        }
-    }
+    let joints = files.read(&file, MAX_TEXT_BYTES).and_then(read).map_err(|e| e.help(HELP))?;
+    Ok(JointLimits { file, joints })
 }
 
 /// The joints of a file, with what is said of them.

@@ -332,6 +332,10 @@ fn limits_of_position_are_those_of_moveit() {
     // As in MoveIt, a continuous joint keeps turning.
     let scene = load(&narrow.replace("a:", "b:"), "", 2.5).unwrap();
     assert!(scene.notes().iter().any(|note| note.contains("not taken") && note.contains(": b")));
+    // A file that cannot be used is an error, as an SRDF is.
+    let error = load("  a:\n    has_velocity_limits: ture\n", "", 1.0).unwrap_err();
+    assert!(error.contains("joint_limits.yaml:3") && error.contains("ture"), "{error}");
+    assert!(load("  a:\n    has_velocity_limits: ture\n", "srdf = false\n", 1.0).is_ok());
 }
 
 /// MoveIt's file beside the SRDF comes before the URDF, and the problem before both.
