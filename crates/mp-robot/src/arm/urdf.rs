@@ -30,6 +30,7 @@ impl ArmModel {
     ///
     /// [`ArmModel::notes`] says what was left out although it is incomplete or of another name space, and also:
     ///
+    /// - which joints have narrower limits by the soft limits of a `safety_controller`, which count as for MoveIt;
     /// - which joints do not move because their limits are equal. They are not coordinates until
     ///   [`with_limits`](Self::with_limits) gives them other limits;
     /// - which joints are planar: each becomes three joints, two that slide and one that turns;
@@ -114,6 +115,16 @@ impl ArmModel {
         }
         let mut notes = left_out.notes();
         notes.extend(reader.surplus.into_inner());
+        let [within, aside] = reader.soft.into_inner();
+        for (joints, note) in [
+            (
+                within,
+                "the limits of these joints are the soft limits of their safety controllers, as for MoveIt",
+            ),
+            (aside, "soft limits that leave a joint no room are not taken"),
+        ] {
+            notes.extend((!joints.is_empty()).then(|| format!("{note}: {}", some(&joints))));
+        }
         if !empty.is_empty() {
             let note = "shapes of size 0 and meshes without triangles are left out, for there is nothing to touch, in";
             notes.push(format!("{note} {}", some(&empty)));

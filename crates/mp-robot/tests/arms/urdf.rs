@@ -511,6 +511,38 @@ fn joints_without_room_are_held() {
     assert!(error.contains("\"j\"") && error.contains("equal"), "{error}");
 }
 
+/// As for MoveIt, limits are within those of a safety controller.
+#[test]
+fn soft_limits_are_limits() {
+    let read = |limits: &str, soft: &str| {
+        let text = format!(
+            "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><joint name=\"j\" type=\"revolute\"><parent link=\"a\"/>\
+             <child link=\"b\"/><limit {limits}/><safety_controller k_velocity=\"1\" {soft}/></joint></robot>"
+        );
+        let model = read(&text).unwrap();
+        (model.joints[0].kind.limits().unwrap(), model.notes)
+    };
+    let hard = "lower=\"-3\" upper=\"3\"";
+    for (soft, expected, note) in [
+        ("soft_lower_limit=\"-1\" soft_upper_limit=\"2\"", [-1.0, 2.0], "soft limits of their safety"),
+        ("soft_lower_limit=\"-9\" soft_upper_limit=\"2\"", [-3.0, 2.0], "soft limits of their safety"),
+        ("soft_lower_limit=\"-1\"", [-1.0, 0.0], "soft limits of their safety"),
+        ("soft_lower_limit=\"-9\" soft_upper_limit=\"9\"", [-3.0, 3.0], ""),
+        ("soft_lower_limit=\"-3\" soft_upper_limit=\"3\"", [-3.0, 3.0], ""),
+        ("", [-3.0, 3.0], ""),
+        ("soft_lower_limit=\"4\" soft_upper_limit=\"5\"", [-3.0, 3.0], "no room"),
+        ("soft_lower_limit=\"1\" soft_upper_limit=\"-1\"", [-3.0, 3.0], "no room"),
+    ] {
+        let (limits, notes) = read(hard, soft);
+        assert_eq!((limits, notes.len()), (expected, usize::from(!note.is_empty())), "{soft}: {notes:?}");
+        assert!(notes.iter().all(|said| said.contains(note) && said.contains("\"j\"")), "{notes:?}");
+    }
+    // What follows another has no limits for MoveIt.
+    let close = "<mimic joint=\"open\" multiplier=\"-1\"/>";
+    let soft = format!("{close}<safety_controller soft_lower_limit=\"0\" soft_upper_limit=\"0.1\"/>");
+    assert_eq!(self::read(&GRIPPER.replace(close, &soft)).unwrap(), self::read(GRIPPER).unwrap());
+}
+
 #[test]
 fn followers_without_room_are_followed_no_less() {
     // The other way from what it follows, but with the limits of that.

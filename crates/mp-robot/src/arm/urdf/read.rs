@@ -28,6 +28,8 @@ pub(super) struct Reader<'t, 'a> {
     version: (u32, u32),
     /// Notes about attributes with too many numbers.
     pub(super) surplus: RefCell<BTreeSet<String>>,
+    /// Joints whose soft limits are within their limits, and those whose soft limits are not taken.
+    pub(super) soft: RefCell<[Vec<String>; 2]>,
 }
 
 impl<'t, 'a> Reader<'t, 'a> {
@@ -40,6 +42,7 @@ impl<'t, 'a> Reader<'t, 'a> {
             ends: document.input_text().match_indices('\n').map(|(at, _)| at).collect(),
             version: version.unwrap_or((1, 0)),
             surplus: RefCell::default(),
+            soft: RefCell::default(),
         }
     }
 
@@ -161,11 +164,31 @@ impl<'t, 'a> Reader<'t, 'a> {
         Ok(kind)
     }
 
+    /// The limits of a joint, within its soft limits.
     pub(super) fn limits(&self, joint: &Node<'_, '_>) -> Result<[f64; 2], UrdfError> {
         let limit = self.needed(joint, "limit")?;
         let unlimited = if self.version >= (1, 2) { f64::INFINITY } else { 0.0 };
         let lower = self.number(&limit, "lower")?.unwrap_or(-unlimited);
-        Ok([lower, self.number(&limit, "upper")?.unwrap_or(unlimited)])
+        let limits = [lower, self.number(&limit, "upper")?.unwrap_or(unlimited)];
+        self.within_soft(joint, limits)
+    }
+
+    /// The part of the limits that is within the soft limits of the safety controller, as for MoveIt. Soft limits that are equal are none, for
+    /// what is not written is 0; those of a joint that mimics another count no more than for MoveIt.
+    fn within_soft(&self, joint: &Node<'_, '_>, [low, high]: [f64; 2]) -> Result<[f64; 2], UrdfError> {
+        let Some(safety) = child(joint, "safety_controller").filter(|_| child(joint, "mimic").is_none())
+        else {
+            return Ok([low, high]);
+        };
+        let soft = |key| Ok(self.number(&safety, key)?.unwrap_or(0.0));
+        let [soft_low, soft_high] = [soft("soft_lower_limit")?, soft("soft_upper_limit")?];
+        let within = [low.max(soft_low), high.min(soft_high)];
+        let taken = soft_low < soft_high && within[0] < within[1];
+        if soft_low != soft_high && low < high && within != [low, high] {
+            let name = self.word(joint, "name")?.to_owned();
+            self.soft.borrow_mut()[usize::from(!taken)].push(name);
+        }
+        Ok(if taken { within } else { [low, high] })
     }
 
     /// A child element that a joint must have.
