@@ -567,7 +567,9 @@ fn later_versions_mean_what_they_say() {
             <parent link="a"/><child link="b"/><origin xyz="0 0 0" quat_xyzw="0 0 1 0"/></joint></robot>"#;
         read(&text.replace('V', version)).unwrap().joints[0].origin.rotation.angle()
     };
-    assert!(turned("1.0") == 0.0 && (turned("1.1") - std::f64::consts::PI).abs() < 1e-9);
+    for version in ["1.0", "1.1", "1.1.0", "2", "", "new"] {
+        assert!((turned(version) - std::f64::consts::PI).abs() < 1e-9, "{version}");
+    }
     let slide = |version: &str, limit: &str, origin: &str| {
         read(&format!(
             r#"<robot name="r" version="{version}"><link name="a"/><link name="b"/><joint name="j" type="prismatic">
@@ -576,7 +578,10 @@ fn later_versions_mean_what_they_say() {
         ))
     };
     // A limit that is not written is zero, and none from 1.2 on.
-    for (version, limits) in [("1.0", [0.0, 2.0]), ("1.2", [f64::NEG_INFINITY, 2.0])] {
+    let none = [f64::NEG_INFINITY, 2.0];
+    for (version, limits) in
+        [("1.0", [0.0, 2.0]), ("1", [0.0, 2.0]), ("1.2", none), ("1.2.0", none), ("2", none)]
+    {
         let [low, high] = limits;
         let kind = &slide(version, r#"upper="2""#, "").unwrap().joints[0].kind;
         assert_eq!(*kind, JointKind::Prismatic { low, high });

@@ -23,8 +23,7 @@ pub(super) struct Reader<'t, 'a> {
     text: &'t Text<'a>,
     /// Where lines end.
     ends: Vec<usize>,
-    /// The version of URDF, major and minor. From 1.1 on an origin may have a quaternion; from 1.2 on a joint
-    /// whose limit is left out has none.
+    /// The version of URDF, major and minor. From 1.2 on a joint whose limit is left out has none.
     version: (u32, u32),
     /// Notes about attributes with too many numbers.
     pub(super) surplus: RefCell<BTreeSet<String>>,
@@ -35,8 +34,8 @@ pub(super) struct Reader<'t, 'a> {
 impl<'t, 'a> Reader<'t, 'a> {
     pub(super) fn new(text: &'t Text<'a>, document: &Document<'_>) -> Self {
         let version = attribute(&document.root_element(), "version");
-        let version = version.and_then(|v| v.trim().split_once('.'));
-        let version = version.and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));
+        let mut parts = version.unwrap_or("1.0").split('.').map(|part| part.parse().ok());
+        let version = parts.next().flatten().map(|major| (major, parts.next().flatten().unwrap_or(0)));
         Self {
             text,
             ends: document.input_text().match_indices('\n').map(|(at, _)| at).collect(),
@@ -107,10 +106,8 @@ impl<'t, 'a> Reader<'t, 'a> {
         let Some(origin) = child(node, "origin") else { return Ok(Isometry3::identity()) };
         let xyz = self.numbers(&origin, "xyz")?.unwrap_or([0.0; 3]);
         let rpy = self.numbers(&origin, "rpy")?;
-        let quaternion = match self.version >= (1, 1) {
-            true => self.numbers(&origin, "quat_xyzw")?,
-            false => None,
-        };
+        // Of version 1.1, but it means nothing else in a file of another one.
+        let quaternion = self.numbers(&origin, "quat_xyzw")?;
         let turn = match (rpy, quaternion) {
             (Some(_), Some(_)) => {
                 return Err(self.text.error(&origin, "<origin> has both rpy and quat_xyzw: leave one out"));
