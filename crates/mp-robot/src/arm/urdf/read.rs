@@ -177,7 +177,7 @@ impl<'t, 'a> Reader<'t, 'a> {
         else {
             return Ok([low, high]);
         };
-        let soft = |key| Ok(self.number(&safety, key)?.unwrap_or(0.0));
+        let soft = |key| self.number(&safety, key).map(|limit| limit.unwrap_or(0.0));
         let [soft_low, soft_high] = [soft("soft_lower_limit")?, soft("soft_upper_limit")?];
         let within = [low.max(soft_low), high.min(soft_high)];
         let taken = soft_low < soft_high && within[0] < within[1];
