@@ -33,6 +33,7 @@ impl ArmModel {
     /// - which joints have narrower limits by the soft limits of a `safety_controller`, which count as for MoveIt;
     /// - which joints do not move because their limits are equal. They are not coordinates until
     ///   [`with_limits`](Self::with_limits) gives them other limits;
+    /// - which joint floats between the world, a link without shapes, and the robot: it is fixed;
     /// - which joints are planar: each becomes three joints, two that slide and one that turns;
     /// - which revolute joints turn without end, for their limits are more than 1e6 rad apart;
     /// - which joints that mimic others had their limits ignored, because neither joint could move within both limits.
@@ -158,6 +159,13 @@ impl ArmModel {
                 self.add_planar(name, [parent, end], origin);
                 return Ok(());
             }
+            "floating" if reader.is_first(node) && !self.collides(parent) => {
+                self.notes.push(format!(
+                    "\"{name}\" floats between the world and the robot: it is fixed, unless `base = \"floating\"` of a robot problem moves the \
+                     whole robot"
+                ));
+                JointKind::Fixed
+            }
             written => {
                 let kind = if written == "floating" { "floating" } else { "spherical" };
                 return Err(UrdfError::Kind { line: reader.line(node), joint: name.to_owned(), kind });
@@ -181,6 +189,11 @@ impl ArmModel {
         }
         self.joints.push(joint);
         Ok(())
+    }
+
+    /// Whether the link of that name has shapes.
+    fn collides(&self, link: &str) -> bool {
+        self.links.iter().any(|known| known.name == link && !known.shapes.is_empty())
     }
 
     /// Adds three joints in place of one that is planar, called as MoveIt calls them: `NAME/x` and `NAME/y`, which slide in the plane of

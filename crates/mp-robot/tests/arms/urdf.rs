@@ -361,6 +361,37 @@ fn planar_joints_slide_and_turn() {
 }
 
 /// Commas between numbers are blanks. Of too many numbers the first three count, and a note says so.
+/// Humanoids and drones hang on the world by a joint that floats.
+#[test]
+fn a_joint_that_floats_between_the_world_and_the_robot_is_fixed() {
+    let text = |more: &str| {
+        format!(
+            "<robot name=\"r\"><link name=\"world\"/><link name=\"base\"/><link name=\"arm\"/>{more}\n\
+             <joint name=\"fb\" type=\"floating\"><origin xyz=\"0 0 2\"/><parent link=\"world\"/><child link=\"base\"/></joint>\
+             <joint name=\"pan\" type=\"continuous\"><parent link=\"base\"/><child link=\"arm\"/></joint></robot>"
+        )
+    };
+    let model = read(&text("")).unwrap();
+    assert!(model.joints[0].kind == JointKind::Fixed && model.joints[0].origin.translation.z == 2.0);
+    assert!(model.notes.len() == 1 && model.notes[0].contains("\"fb\" floats"), "{:?}", model.notes);
+    let names = |model: &ArmModel| Kinematics::new(model).unwrap().coordinates().len();
+    assert_eq!(names(&model), 1);
+    let bounds = mp_geom::Aabb::new(Point3::new(-1.0, -1.0, -1.0), Point3::new(1.0, 1.0, 1.0));
+    assert!(Kinematics::new(&ArmModel { floating: Some(bounds), ..model }).unwrap().floats());
+    // Not where the world has shapes, or more hangs on it, or in the middle of the robot.
+    let shape = "<collision><geometry><box size=\"1 1 1\"/></geometry></collision>";
+    let walls = text("").replace("<link name=\"world\"/>", &format!("<link name=\"world\">{shape}</link>"));
+    let fixed = |parent: &str, child: &str| {
+        format!(
+            "<link name=\"more\"/><joint name=\"f\" type=\"fixed\"><parent link=\"{parent}\"/><child link=\"{child}\"/></joint>"
+        )
+    };
+    for text in [walls, text(&fixed("world", "more")), text(&fixed("more", "world"))] {
+        let error = read(&text).unwrap_err().to_string();
+        assert!(error.contains("line 2: joint \"fb\" is floating"), "{error}");
+    }
+}
+
 #[test]
 fn commas_part_numbers_and_the_first_ones_count() {
     let commas =

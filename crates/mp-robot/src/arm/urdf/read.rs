@@ -188,6 +188,19 @@ impl<'t, 'a> Reader<'t, 'a> {
         Ok(if taken { within } else { [low, high] })
     }
 
+    /// Whether a joint is the only one at a link above which there is none: that between the world and a robot.
+    pub(super) fn is_first(&self, joint: &Node<'_, '_>) -> bool {
+        let end = |joint: &Node<'_, '_>, end: &str| {
+            child(joint, end).and_then(|node| attribute(&node, "link").map(str::to_owned))
+        };
+        let Some(parent) = end(joint, "parent") else { return false };
+        let robot = joint.document().root_element();
+        let mut others =
+            robot.children().filter(|n| n.tag_name().name() == "joint" && is_own(n) && n != joint);
+        !others
+            .any(|other| ["parent", "child"].iter().any(|name| end(&other, name).as_ref() == Some(&parent)))
+    }
+
     /// A child element that a joint must have.
     pub(super) fn needed<'n, 'i>(&self, joint: &Node<'n, 'i>, name: &str) -> Result<Node<'n, 'i>, UrdfError> {
         child(joint, name).ok_or_else(|| {
