@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::mesh::{Axes, LEFT_OUT, Reading, mesh_error};
+use crate::text::clipped;
 use mp_geom::TriMesh;
 use nalgebra::{Matrix3, Matrix4, Point3, Quaternion, UnitQuaternion, Vector3};
 use serde::Deserialize;
@@ -21,6 +22,7 @@ const BIN: &[u8] = b"BIN\0";
 #[derive(Default)]
 struct Document {
     extensions_required: Vec<String>,
+    extensions_used: Vec<String>,
     scene: usize,
     scenes: Vec<Scene>,
     nodes: Vec<Node>,
@@ -98,11 +100,9 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
     let (json, rest) = if begins(bytes) { parts(file, bytes)? } else { (bytes, None) };
     let text = crate::files::decode(file, json)?;
     let document: Document = crate::json::parse(file, text, "glTF 2.0", HELP)?;
-    if let Some(extension) =
-        document.extensions_required.iter().find(|name| COMPRESSED.contains(&name.as_str()))
-    {
-        let message = format!("the mesh is compressed by {extension}, which is not read");
-        return Err(Error::new(ErrorKind::Unsupported, file, message).help("export it without compression"));
+    let changes = |name: &&String| !NEUTRAL.iter().any(|known| name.starts_with(known));
+    if let Some(extension) = document.extensions_required.iter().find(changes) {
+        return Err(needed(file, extension));
     }
     let mut scene = Triangles {
         file,
@@ -135,6 +135,10 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
     if scene.left_out {
         (reading.remark)(LEFT_OUT);
     }
+    // Files say that they can be read without these.
+    for extension in document.extensions_used.iter().filter(changes) {
+        (reading.remark)(&format!("the extension {} is not read", clipped(extension)));
+    }
     if !document.skins.is_empty() {
         (reading.remark)("skins are not applied: meshes stay as they are stored");
     }
@@ -151,6 +155,38 @@ const COMPRESSED: [&str; 4] = [
     "KHR_meshopt_compression",
     "KHR_mesh_quantization",
 ];
+
+/// How extensions begin that leave triangles as they are: they are about looks, lights, and words about the file.
+const NEUTRAL: [&str; 13] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_lights_",
+    "KHR_techniques_",
+    "KHR_xmp",
+    "KHR_animation_",
+    "EXT_texture_",
+    "EXT_lights_",
+    "EXT_materials_",
+    "MSFT_texture_",
+    "MSFT_packing_",
+    "ADOBE_materials_",
+    "FB_ngon_encoding",
+];
+
+/// The error of an extension without which a file says that it cannot be read.
+fn needed(file: &str, extension: &str) -> Error {
+    let (message, help) = match COMPRESSED.contains(&extension) {
+        true => (
+            format!("the mesh is compressed by {extension}, which is not read"),
+            "export it without compression".to_owned(),
+        ),
+        false => (
+            format!("the file needs the extension {}, which is not read", clipped(extension)),
+            "export it without this extension".to_owned(),
+        ),
+    };
+    Error::new(ErrorKind::Unsupported, file, message).help(help)
+}
 
 /// The JSON of a binary file, and the bytes after it.
 fn parts<'a>(file: &str, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), Error> {
@@ -328,7 +364,7 @@ impl Triangles<'_> {
             }
         };
         if accessor.kind != kind {
-            return Err(wrong(&format!("is {}, not {kind}", crate::text::clipped(&accessor.kind))));
+            return Err(wrong(&format!("is {}, not {kind}", clipped(&accessor.kind))));
         }
         let view = accessor.buffer_view.filter(|_| accessor.sparse.is_none());
         let view = view.ok_or_else(|| wrong("is sparse, or has no buffer view, which is not read"))?;
@@ -376,6 +412,24 @@ mod tests {
         let (low, high) = (mesh.aabb().min, mesh.aabb().max);
         let off = (low - Point3::new(0.0, -3.0, 1.0)).amax().max((high - Point3::new(2.0, -1.0, 3.0)).amax());
         assert!(off < 1e-14, "{low} {high}");
+    }
+
+    #[test]
+    fn extensions_that_are_needed_are_read_or_refused() {
+        let text = std::fs::read_to_string(format!("{CORPUS}2")).unwrap();
+        let with = |key: &str, name: &str| text.replacen('{', &format!("{{\"{key}\":[\"{name}\"],"), 1);
+        for name in
+            ["KHR_materials_unlit", "KHR_texture_transform", "EXT_texture_webp", "KHR_lights_punctual"]
+        {
+            let read = parse_mesh("m.gltf", with("extensionsRequired", name).as_bytes());
+            assert_eq!(read.unwrap(), parse_mesh("m.gltf", text.as_bytes()).unwrap(), "{name}");
+        }
+        for name in ["EXT_mesh_gpu_instancing", "KHR_mesh_quantization", "MY_own", ""] {
+            let e = parse_mesh("m.gltf", with("extensionsRequired", name).as_bytes()).unwrap_err();
+            assert!(e.kind() == ErrorKind::Unsupported && e.message().contains(name), "{e}");
+            crate::error::check_error(&e);
+            assert!(parse_mesh("m.gltf", with("extensionsUsed", name).as_bytes()).is_ok());
+        }
     }
 
     #[test]
