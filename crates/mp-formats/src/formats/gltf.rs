@@ -48,11 +48,15 @@ struct Node {
     translation: Option<[f64; 3]>,
     rotation: Option<[f64; 4]>,
     scale: Option<[f64; 3]>,
+    /// How much of each target is in its mesh, in place of what that says.
+    weights: Option<Vec<f64>>,
 }
 
 #[derive(Deserialize)]
 struct Mesh {
     primitives: Vec<Primitive>,
+    #[serde(default)]
+    weights: Vec<f64>,
 }
 
 #[derive(Deserialize)]
@@ -60,6 +64,9 @@ struct Primitive {
     attributes: HashMap<String, usize>,
     indices: Option<usize>,
     mode: Option<u32>,
+    /// What is added to the attributes, times the weights.
+    #[serde(default)]
+    targets: Vec<HashMap<String, usize>>,
 }
 
 #[derive(Deserialize)]
@@ -277,8 +284,9 @@ impl Triangles<'_> {
                 let all = self.document.meshes.get(mesh);
                 let all = all
                     .ok_or_else(|| self.wrong(format!("node {i} has the mesh {mesh}, which is not there")))?;
+                let weights = node.weights.as_ref().unwrap_or(&all.weights);
                 for (k, primitive) in all.primitives.iter().enumerate() {
-                    self.add(&format!("primitive {k} of mesh {mesh}"), primitive, &place)?;
+                    self.add(&format!("primitive {k} of mesh {mesh}"), primitive, weights, &place)?;
                 }
             }
             stack.extend(node.children.iter().rev().map(|&child| (child, place, depth + 1)));
@@ -309,8 +317,14 @@ impl Triangles<'_> {
         }
     }
 
-    /// Adds a primitive, whose frame is at `place`.
-    fn add(&mut self, what: &str, primitive: &Primitive, place: &Matrix4<f64>) -> Result<(), Error> {
+    /// Adds a primitive, whose frame is at `place`, with so much of each of its targets.
+    fn add(
+        &mut self,
+        what: &str,
+        primitive: &Primitive,
+        weights: &[f64],
+        place: &Matrix4<f64>,
+    ) -> Result<(), Error> {
         let mode = primitive.mode.unwrap_or(4);
         if !(4..=6).contains(&mode) {
             self.left_out = true;
@@ -318,8 +332,18 @@ impl Triangles<'_> {
         }
         let positions = primitive.attributes.get("POSITION");
         let &positions = positions.ok_or_else(|| self.wrong(format!("{what} has no POSITION")))?;
-        let positions = self.numbers(positions, "VEC3")?;
+        let mut positions = self.numbers(positions, "VEC3")?;
         let count = positions.len() / 3;
+        for (target, &weight) in primitive.targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            let Some(&moved) = target.get("POSITION") else { continue };
+            let moved = self.numbers(moved, "VEC3")?;
+            if moved.len() != positions.len() {
+                return Err(
+                    self.wrong(format!("{what} has a target of {} vertices, and {count}", moved.len() / 3))
+                );
+            }
+            positions.iter_mut().zip(&moved).for_each(|(x, moved)| *x += weight * moved);
+        }
         let corners: Vec<u32> = match primitive.indices {
             Some(accessor) => self.numbers(accessor, "SCALAR")?.into_iter().map(|i| i as u32).collect(),
             None => (0..count as u32).collect(),
@@ -430,6 +454,38 @@ mod tests {
             crate::error::check_error(&e);
             assert!(parse_mesh("m.gltf", with("extensionsUsed", name).as_bytes()).is_ok());
         }
+    }
+
+    #[test]
+    fn morph_targets_count_by_their_weights() {
+        let text = std::fs::read_to_string(format!("{CORPUS}2")).unwrap();
+        let plain = parse_mesh("m.gltf", text.as_bytes()).unwrap();
+        // The positions are a target too: with a weight of 1 all is twice as far from the origin of the mesh.
+        let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let mesh = &mut json["meshes"][0];
+        let positions = mesh["primitives"][0]["attributes"]["POSITION"].clone();
+        mesh["primitives"][0]["targets"] = serde_json::json!([{"POSITION": positions}, {"NORMAL": 99}]);
+        let node = json["nodes"].as_array().unwrap().iter().position(|n| n.get("mesh").is_some()).unwrap();
+        let mut volume = |of_mesh: &str, of_node: &str| {
+            let number = |text: &str| serde_json::from_str(text).unwrap();
+            json["meshes"][0]["weights"] = number(of_mesh);
+            json["nodes"][node].as_object_mut().unwrap().remove("weights");
+            if !of_node.is_empty() {
+                json["nodes"][node]["weights"] = number(of_node);
+            }
+            parse_mesh("m.gltf", json.to_string().as_bytes())
+                .map(|mesh| mesh.signed_volume() / plain.signed_volume())
+        };
+        let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found}");
+        near(volume("[1, 1]", "").unwrap(), 8.0);
+        near(volume("[0, 1]", "").unwrap(), 1.0);
+        near(volume("[]", "[2.0]").unwrap(), 27.0);
+        near(volume("[1, 1]", "[0, 0]").unwrap(), 1.0);
+        let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let indices = json["meshes"][0]["primitives"][0]["indices"].clone();
+        json["meshes"][0]["primitives"][0]["targets"] = serde_json::json!([{"POSITION": indices}]);
+        json["meshes"][0]["weights"] = serde_json::json!([1]);
+        assert!(parse_mesh("m.gltf", json.to_string().as_bytes()).is_err());
     }
 
     #[test]
