@@ -17,12 +17,14 @@ pub struct GridMap {
     pub size: [usize; 2],
     /// The mean of red, green and blue, 0 to 255.
     pub brightness: Vec<f32>,
+    /// The mean of red, green, blue and opacity, 0 to 255, if the image has transparency: what map_server takes for the brightness.
+    pub with_alpha: Option<Vec<f32>>,
 }
 
 impl GridMap {
     /// Reads `bytes`, the content of a PNG or PNM (PGM, PPM, PBM) image that errors call `file`.
     ///
-    /// Colours of 16 bits are rounded to 8. Transparency does not count.
+    /// Colours of 16 bits are rounded to 8. Transparency does not count, but in [`with_alpha`](Self::with_alpha).
     ///
     /// # Errors
     /// [`Error`] when it is not such an image, or larger than 8192 × 8192 pixels.
@@ -46,25 +48,41 @@ impl GridMap {
         occupied: impl Fn(f32) -> bool,
         interrupt: &Interrupt,
     ) -> Result<Option<Polygon>, PolygonError> {
-        self.outline_where(scale, origin, &occupied, interrupt)
+        self.outline_where(&self.brightness, scale, origin, &occupied, interrupt)
+    }
+
+    /// As [`outline`](Self::outline), with the brightness that map_server takes: where the image has transparency, opacity is averaged in.
+    ///
+    /// # Errors
+    /// As [`outline`](Self::outline).
+    pub fn outline_with_alpha(
+        &self,
+        scale: f64,
+        origin: [f64; 2],
+        occupied: impl Fn(f32) -> bool,
+        interrupt: &Interrupt,
+    ) -> Result<Option<Polygon>, PolygonError> {
+        let brightness = self.with_alpha.as_ref().unwrap_or(&self.brightness);
+        self.outline_where(brightness, scale, origin, &occupied, interrupt)
     }
 
     /// As [`outline`](Self::outline), but compiled once, in this crate; asks once for each brightness, of which an image has few.
     fn outline_where(
         &self,
+        brightness: &[f32],
         scale: f64,
         origin: [f64; 2],
         occupied: &dyn Fn(f32) -> bool,
         interrupt: &Interrupt,
     ) -> Result<Option<Polygon>, PolygonError> {
-        // A brightness is a third of a whole number.
+        // A brightness is mostly a third of a whole number.
         let mut asked = [None; 3 * 255 + 1];
         let mut is_occupied = |&brightness: &f32| match &mut asked[((3.0 * brightness) as usize).min(3 * 255)]
         {
             Some((known, occupied)) if *known == brightness => *occupied,
             other => other.insert((brightness, occupied(brightness))).1,
         };
-        let pixels: Vec<bool> = self.brightness.iter().map(&mut is_occupied).collect();
+        let pixels: Vec<bool> = brightness.iter().map(&mut is_occupied).collect();
         let [width, height] = self.size;
         // The first row of an image is its highest.
         outline([width, height], scale, origin, |x, y| pixels[(height - 1 - y) * width + x], interrupt)
@@ -132,16 +150,22 @@ fn read_png(file: &str, bytes: &[u8]) -> Result<GridMap, Error> {
     }
     let all = frame.color_type.samples();
     let colours = if all < 3 { 1 } else { 3 };
-    let brightness = match frame.bit_depth {
-        png::BitDepth::Sixteen => {
-            let eight = |i: usize, p: &[u8]| rounded(u16::from_be_bytes([p[2 * i], p[2 * i + 1]]));
-            let pixel = |p: &[u8]| match colours {
-                1 => mean(&[eight(0, p)]),
-                _ => mean(&[eight(0, p), eight(1, p), eight(2, p)]),
-            };
-            samples.chunks_exact(2 * all).map(pixel).collect()
-        }
-        _ => samples.chunks_exact(all).map(|p| mean(&p[..colours])).collect(),
+    // Grey is red, green and blue.
+    let shades = |p: &[u8]| match p[..colours] {
+        [grey] => [grey; 3],
+        _ => [p[0], p[1], p[2]],
     };
-    Ok(GridMap { size, brightness })
+    let pixels: Vec<u8> = match frame.bit_depth {
+        png::BitDepth::Sixteen => {
+            samples.chunks_exact(2).map(|two| rounded(u16::from_be_bytes([two[0], two[1]]))).collect()
+        }
+        _ => samples,
+    };
+    let brightness = pixels.chunks_exact(all).map(|p| mean(&p[..colours])).collect();
+    let with_alpha = |p: &[u8]| {
+        let [red, green, blue] = shades(p);
+        mean(&[red, green, blue, p[colours]])
+    };
+    let with_alpha = (all > colours).then(|| pixels.chunks_exact(all).map(with_alpha).collect());
+    Ok(GridMap { size, brightness, with_alpha })
 }

@@ -9,7 +9,7 @@ use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
 use crate::files::{Files, MAX_MESH_BYTES};
 use crate::formats::{Content, ply};
-use crate::text::{Text, Token};
+use crate::text::{Text, Token, clipped};
 use mp_geom::{Points, TriMesh};
 use mp_stop::Interrupt;
 use nalgebra::Point3;
@@ -67,17 +67,23 @@ pub fn balls(points: &Points, mut note: impl FnMut(&str)) -> Result<TriMesh, Str
 }
 
 /// Text: a line for each point, between blanks, commas or semicolons: x, y and z (m) first, or where a line of names above says. Lines that begin
-/// with `#` or `//` are comments.
+/// with `#` or `//` are comments. Where the first line is a whole number alone, points follow in blocks that begin with their number, as in `.pts`.
 fn text(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Result<Vec<Point3<f64>>, Error> {
     let decoded = decode_mesh(file, bytes)?;
     let text = Text { file, text: &decoded, guide: GUIDE };
     let comment = |line: &Token<'_>| line.text.starts_with('#') || line.text.starts_with("//");
     // Names may be in a comment too, if there are as many as numbers below.
     let mut lines = text.lines().peekable();
-    let mut names = None;
-    while let Some(line) = lines.next_if(|line| comment(line) || axes(*line).is_some()) {
-        names = axes(line).map(|axes| (line, axes)).or(names);
+    let (mut names, mut block) = (None, None);
+    while let Some(line) = lines.next_if(|line| {
+        comment(line) || axes(*line).is_some() || block.is_none() && announced(*line).is_some()
+    }) {
+        match announced(line) {
+            Some(_) => block = Some((line, 0)),
+            None => names = axes(line).map(|axes| (line, axes)).or(names),
+        }
     }
+    let counted = block.is_some();
     let mut axes = [0, 1, 2].map(|at| (at, 1.0, 1.0));
     if let (Some((line, named)), Some(first)) = (names, lines.peek()) {
         let (given, there) = (cells(uncommented(line)).len(), cells(*first).len());
@@ -91,7 +97,6 @@ fn text(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Result<Vec<Point
         }
     }
     let point = |line: Token<'_>| {
-        interrupt.go_on().map_err(|_| Error::interrupted(file))?;
         let (cells, mut point) = (cells(line), Point3::origin());
         for (number, (at, times, over)) in point.iter_mut().zip(axes) {
             let missing = || text.error(line, "a number is missing").expected(EXPECTED);
@@ -100,7 +105,34 @@ fn text(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Result<Vec<Point
         }
         Ok(point)
     };
-    lines.filter(|line| !comment(line)).map(point).collect()
+    let mut points = Vec::new();
+    for line in lines.filter(|line| !comment(line)) {
+        interrupt.go_on().map_err(|_| Error::interrupted(file))?;
+        if counted && announced(line).is_some() {
+            check_block(&text, block.replace((line, points.len())), points.len())?;
+        } else {
+            points.push(point(line)?);
+        }
+    }
+    check_block(&text, block, points.len())?;
+    Ok(points)
+}
+
+/// The number of points that a line says will follow: a whole number alone.
+fn announced(line: Token<'_>) -> Option<usize> {
+    line.text.trim().parse().ok()
+}
+
+/// Refuses a block that has not as many points as its line says: that line, and how many points there were before it, and are now.
+fn check_block(text: &Text<'_>, block: Option<(Token<'_>, usize)>, now: usize) -> Result<(), Error> {
+    match block {
+        Some((line, before)) if announced(line) != Some(now - before) => {
+            let message =
+                format!("{} points are announced here, and {} follow", clipped(line.text), now - before);
+            Err(text.error(line, message).expected("the number of points that follow"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The parts of a line.
@@ -120,9 +152,19 @@ fn uncommented(line: Token<'_>) -> Token<'_> {
 /// In which columns a line of names has x, y and z, and what these are multiplied with and divided by to be in metres; `None` if it is no
 /// such line.
 fn axes(line: Token<'_>) -> Option<[(usize, f64, f64); 3]> {
-    let wanted = ["x", "y", "z"].map(|name| Column::new(name, "m"));
+    let cells = cells(uncommented(line));
+    NAMES.into_iter().find_map(|names| axes_named(&cells, names))
+}
+
+/// The names of x, y and z: as all write them, and as ParaView does.
+const NAMES: [[&str; 3]; 3] =
+    [["x", "y", "z"], ["Points:0", "Points:1", "Points:2"], ["Points_0", "Points_1", "Points_2"]];
+
+/// As [`axes`], where the columns have these names.
+fn axes_named(cells: &[Token<'_>], names: [&str; 3]) -> Option<[(usize, f64, f64); 3]> {
+    let wanted = names.map(|name| Column::new(name, "m"));
     let mut axes = [None; 3];
-    for (at, cell) in cells(uncommented(line)).into_iter().enumerate() {
+    for (at, cell) in cells.iter().enumerate() {
         let Some((axis, unit)) = find(cell.text, &wanted) else { continue };
         let (times, over) = factor(unit, "m")?;
         if axes[axis].replace((at, times, over)).is_some() {
@@ -198,6 +240,13 @@ mod tests {
             ("a.xyz", "# x y z of a scan\n1 2 3\n4.5 -1 0\n"),
             ("a.xyz", "# i x y z\n\n# done\n1 1 2 3\n2 4.5 -1 0\n"),
             ("a.csv", "z;y;x\n3;2;1\n0;-1;4.5\n"),
+            ("a.pts", "2\n1 2 3 10 0 0 0\n4.5 -1 0 1 1 1 1\n"),
+            ("a.pts", " 1 \n1 2 3\n# next scan\n1\n4.5 -1 0\n0\n"),
+            ("a.txt", "//X Y Z R\n2\n1 2 3 9\n4.5 -1 0 9\n"),
+            ("a.txt", "2\n//R X Y Z\n9 1 2 3\n9 4.5 -1 0\n"),
+            ("a.csv", "\"Points:0\",\"Points:1\",\"Points:2\"\n1,2,3\n4.5,-1,0\n"),
+            ("a.csv", "\"v:0\",\"Points:2\",\"Points:1\",\"Points:0\"\n9,3,2,1\n9,0,-1,4.5\n"),
+            ("a.csv", "i,Points_0,Points_1,Points_2\n0,1,2,3\n1,4.5,-1,0\n"),
         ] {
             assert_eq!(read(name, text.as_bytes()).unwrap(), expected, "{name}");
         }
@@ -214,6 +263,12 @@ mod tests {
             ("x,y,x,z\n1,2,3,4\n", Some(1)),
             ("x,y,z [s]\n1,2,3\n", Some(1)),
             ("1 2 3\nx y z\n", Some(2)),
+            ("3\n1 2 3\n", Some(1)),
+            ("1\n1 2 3\n1 2 3\n", Some(1)),
+            ("1\n1 2 3\n2\n1 2 3\n", Some(3)),
+            ("1 2 3\n1\n1 2 3\n", Some(2)),
+            ("2.5\n1 2 3\n", Some(1)),
+            ("0\n", None),
         ] {
             let e = read("a.xyz", text.as_bytes()).unwrap_err();
             crate::error::check_error(&e);

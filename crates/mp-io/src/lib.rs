@@ -64,8 +64,9 @@ pub use problem_document::{OtherShape, ProblemDocument, ProblemObstacle, Problem
 pub use problem_file::ProblemFile;
 pub use rigid_toml::{RigidMoving, RigidTask};
 pub use robot::{
-    AttachedEntry, DescribedRobot, FoundSrdf, JointRates, MovingJoints, ObstacleEntry, PartChange, PartEntry,
-    RobotEntry, RobotFile, RobotFilePart, RobotPart, RobotProblem, read_robot_text, robot_name,
+    AttachedEntry, DescribedRobot, FoundSrdf, JointLimits, LimitsOfJoint, MovingJoints, ObstacleEntry,
+    PartChange, PartEntry, RobotEntry, RobotFile, RobotFilePart, RobotPart, RobotProblem, read_robot_text,
+    robot_name,
 };
 pub use robots::{FoundRobot, RobotPath};
 pub use shape::ShapeEntry;

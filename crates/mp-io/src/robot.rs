@@ -11,7 +11,7 @@ mod urdf_mesh;
 
 pub use entry::{MovingJoints, RobotEntry, RobotPart};
 use entry::{RobotTables, robots_of};
-pub use joint_limits::JointRates;
+pub use joint_limits::{JointLimits, LimitsOfJoint};
 pub use parts::{PartChange, PartEntry};
 use parts::{PartTable, part_of};
 pub use problem::{DescribedRobot, RobotProblem, read_robot_text};

@@ -68,8 +68,8 @@ impl<'t> Reader<'t> {
 
     fn value_itself(&mut self, event: Event<'t>, at: usize, depth: usize) -> Result<Value, Error> {
         match event {
-            Event::Scalar(.., Some(tag)) if !tag.is_yaml_core_schema() => {
-                Err(self.error(at, "this has a tag, which is not read"))
+            Event::Scalar(text, .., Some(tag)) if !tag.is_yaml_core_schema() => {
+                angle(&text, &tag.suffix).ok_or_else(|| self.error(at, "this has a tag, which is not read"))
             }
             Event::Scalar(text, style, ..) => Ok(scalar(&text, style == ScalarStyle::Plain)),
             Event::SequenceStart(..) => {
@@ -136,15 +136,26 @@ fn scalar(text: &str, plain: bool) -> Value {
         return Value::String(text.to_owned());
     }
     match text {
-        "" | "~" | "null" => Value::Null,
-        "true" => Value::Bool(true),
-        "false" => Value::Bool(false),
+        "" | "~" | "null" | "Null" | "NULL" => Value::Null,
+        "true" | "True" | "TRUE" => Value::Bool(true),
+        "false" | "False" | "FALSE" => Value::Bool(false),
         _ => {
             let number = text.parse::<i64>().ok().map(Number::from);
             let number = number.or_else(|| text.parse().ok().and_then(Number::from_f64));
             number.map_or_else(|| Value::String(text.to_owned()), Value::Number)
         }
     }
+}
+
+/// An angle (rad) with one of the tags of MoveIt, `!degrees 90` and `!radians 1.57`.
+fn angle(text: &str, tag: &str) -> Option<Value> {
+    let number: f64 = text.trim().parse().ok()?;
+    let radians = match tag {
+        "degrees" => number.to_radians(),
+        "radians" => number,
+        _ => return None,
+    };
+    Number::from_f64(radians).map(Value::Number)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::mesh::{Axes, LEFT_OUT, Reading, mesh_error};
+use crate::text::clipped;
 use mp_geom::TriMesh;
 use nalgebra::{Matrix3, Matrix4, Point3, Quaternion, UnitQuaternion, Vector3};
 use serde::Deserialize;
@@ -21,6 +22,7 @@ const BIN: &[u8] = b"BIN\0";
 #[derive(Default)]
 struct Document {
     extensions_required: Vec<String>,
+    extensions_used: Vec<String>,
     scene: usize,
     scenes: Vec<Scene>,
     nodes: Vec<Node>,
@@ -46,11 +48,15 @@ struct Node {
     translation: Option<[f64; 3]>,
     rotation: Option<[f64; 4]>,
     scale: Option<[f64; 3]>,
+    /// How much of each target is in its mesh, in place of what that says.
+    weights: Option<Vec<f64>>,
 }
 
 #[derive(Deserialize)]
 struct Mesh {
     primitives: Vec<Primitive>,
+    #[serde(default)]
+    weights: Vec<f64>,
 }
 
 #[derive(Deserialize)]
@@ -58,6 +64,9 @@ struct Primitive {
     attributes: HashMap<String, usize>,
     indices: Option<usize>,
     mode: Option<u32>,
+    /// What is added to the attributes, times the weights.
+    #[serde(default)]
+    targets: Vec<HashMap<String, usize>>,
 }
 
 #[derive(Deserialize)]
@@ -98,11 +107,9 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
     let (json, rest) = if begins(bytes) { parts(file, bytes)? } else { (bytes, None) };
     let text = crate::files::decode(file, json)?;
     let document: Document = crate::json::parse(file, text, "glTF 2.0", HELP)?;
-    if let Some(extension) =
-        document.extensions_required.iter().find(|name| COMPRESSED.contains(&name.as_str()))
-    {
-        let message = format!("the mesh is compressed by {extension}, which is not read");
-        return Err(Error::new(ErrorKind::Unsupported, file, message).help("export it without compression"));
+    let changes = |name: &&String| !NEUTRAL.iter().any(|known| name.starts_with(known));
+    if let Some(extension) = document.extensions_required.iter().find(changes) {
+        return Err(needed(file, extension));
     }
     let mut scene = Triangles {
         file,
@@ -135,6 +142,10 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
     if scene.left_out {
         (reading.remark)(LEFT_OUT);
     }
+    // Files say that they can be read without these.
+    for extension in document.extensions_used.iter().filter(changes) {
+        (reading.remark)(&format!("the extension {} is not read", clipped(extension)));
+    }
     if !document.skins.is_empty() {
         (reading.remark)("skins are not applied: meshes stay as they are stored");
     }
@@ -151,6 +162,38 @@ const COMPRESSED: [&str; 4] = [
     "KHR_meshopt_compression",
     "KHR_mesh_quantization",
 ];
+
+/// How extensions begin that leave triangles as they are: they are about looks, lights, and words about the file.
+const NEUTRAL: [&str; 13] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_lights_",
+    "KHR_techniques_",
+    "KHR_xmp",
+    "KHR_animation_",
+    "EXT_texture_",
+    "EXT_lights_",
+    "EXT_materials_",
+    "MSFT_texture_",
+    "MSFT_packing_",
+    "ADOBE_materials_",
+    "FB_ngon_encoding",
+];
+
+/// The error of an extension without which a file says that it cannot be read.
+fn needed(file: &str, extension: &str) -> Error {
+    let (message, help) = match COMPRESSED.contains(&extension) {
+        true => (
+            format!("the mesh is compressed by {extension}, which is not read"),
+            "export it without compression".to_owned(),
+        ),
+        false => (
+            format!("the file needs the extension {}, which is not read", clipped(extension)),
+            "export it without this extension".to_owned(),
+        ),
+    };
+    Error::new(ErrorKind::Unsupported, file, message).help(help)
+}
 
 /// The JSON of a binary file, and the bytes after it.
 fn parts<'a>(file: &str, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), Error> {
@@ -241,8 +284,9 @@ impl Triangles<'_> {
                 let all = self.document.meshes.get(mesh);
                 let all = all
                     .ok_or_else(|| self.wrong(format!("node {i} has the mesh {mesh}, which is not there")))?;
+                let weights = node.weights.as_ref().unwrap_or(&all.weights);
                 for (k, primitive) in all.primitives.iter().enumerate() {
-                    self.add(&format!("primitive {k} of mesh {mesh}"), primitive, &place)?;
+                    self.add(&format!("primitive {k} of mesh {mesh}"), primitive, weights, &place)?;
                 }
             }
             stack.extend(node.children.iter().rev().map(|&child| (child, place, depth + 1)));
@@ -273,8 +317,14 @@ impl Triangles<'_> {
         }
     }
 
-    /// Adds a primitive, whose frame is at `place`.
-    fn add(&mut self, what: &str, primitive: &Primitive, place: &Matrix4<f64>) -> Result<(), Error> {
+    /// Adds a primitive, whose frame is at `place`, with so much of each of its targets.
+    fn add(
+        &mut self,
+        what: &str,
+        primitive: &Primitive,
+        weights: &[f64],
+        place: &Matrix4<f64>,
+    ) -> Result<(), Error> {
         let mode = primitive.mode.unwrap_or(4);
         if !(4..=6).contains(&mode) {
             self.left_out = true;
@@ -282,8 +332,18 @@ impl Triangles<'_> {
         }
         let positions = primitive.attributes.get("POSITION");
         let &positions = positions.ok_or_else(|| self.wrong(format!("{what} has no POSITION")))?;
-        let positions = self.numbers(positions, "VEC3")?;
+        let mut positions = self.numbers(positions, "VEC3")?;
         let count = positions.len() / 3;
+        for (target, &weight) in primitive.targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            let Some(&moved) = target.get("POSITION") else { continue };
+            let moved = self.numbers(moved, "VEC3")?;
+            if moved.len() != positions.len() {
+                return Err(
+                    self.wrong(format!("{what} has a target of {} vertices, and {count}", moved.len() / 3))
+                );
+            }
+            positions.iter_mut().zip(&moved).for_each(|(x, moved)| *x += weight * moved);
+        }
         let corners: Vec<u32> = match primitive.indices {
             Some(accessor) => self.numbers(accessor, "SCALAR")?.into_iter().map(|i| i as u32).collect(),
             None => (0..count as u32).collect(),
@@ -328,7 +388,7 @@ impl Triangles<'_> {
             }
         };
         if accessor.kind != kind {
-            return Err(wrong(&format!("is {}, not {kind}", crate::text::clipped(&accessor.kind))));
+            return Err(wrong(&format!("is {}, not {kind}", clipped(&accessor.kind))));
         }
         let view = accessor.buffer_view.filter(|_| accessor.sparse.is_none());
         let view = view.ok_or_else(|| wrong("is sparse, or has no buffer view, which is not read"))?;
@@ -376,6 +436,56 @@ mod tests {
         let (low, high) = (mesh.aabb().min, mesh.aabb().max);
         let off = (low - Point3::new(0.0, -3.0, 1.0)).amax().max((high - Point3::new(2.0, -1.0, 3.0)).amax());
         assert!(off < 1e-14, "{low} {high}");
+    }
+
+    #[test]
+    fn extensions_that_are_needed_are_read_or_refused() {
+        let text = std::fs::read_to_string(format!("{CORPUS}2")).unwrap();
+        let with = |key: &str, name: &str| text.replacen('{', &format!("{{\"{key}\":[\"{name}\"],"), 1);
+        for name in
+            ["KHR_materials_unlit", "KHR_texture_transform", "EXT_texture_webp", "KHR_lights_punctual"]
+        {
+            let read = parse_mesh("m.gltf", with("extensionsRequired", name).as_bytes());
+            assert_eq!(read.unwrap(), parse_mesh("m.gltf", text.as_bytes()).unwrap(), "{name}");
+        }
+        for name in ["EXT_mesh_gpu_instancing", "KHR_mesh_quantization", "MY_own", ""] {
+            let e = parse_mesh("m.gltf", with("extensionsRequired", name).as_bytes()).unwrap_err();
+            assert!(e.kind() == ErrorKind::Unsupported && e.message().contains(name), "{e}");
+            crate::error::check_error(&e);
+            assert!(parse_mesh("m.gltf", with("extensionsUsed", name).as_bytes()).is_ok());
+        }
+    }
+
+    #[test]
+    fn morph_targets_count_by_their_weights() {
+        let text = std::fs::read_to_string(format!("{CORPUS}2")).unwrap();
+        let plain = parse_mesh("m.gltf", text.as_bytes()).unwrap();
+        // The positions are a target too: with a weight of 1 all is twice as far from the origin of the mesh.
+        let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let mesh = &mut json["meshes"][0];
+        let positions = mesh["primitives"][0]["attributes"]["POSITION"].clone();
+        mesh["primitives"][0]["targets"] = serde_json::json!([{"POSITION": positions}, {"NORMAL": 99}]);
+        let node = json["nodes"].as_array().unwrap().iter().position(|n| n.get("mesh").is_some()).unwrap();
+        let mut volume = |of_mesh: &str, of_node: &str| {
+            let number = |text: &str| serde_json::from_str(text).unwrap();
+            json["meshes"][0]["weights"] = number(of_mesh);
+            json["nodes"][node].as_object_mut().unwrap().remove("weights");
+            if !of_node.is_empty() {
+                json["nodes"][node]["weights"] = number(of_node);
+            }
+            parse_mesh("m.gltf", json.to_string().as_bytes())
+                .map(|mesh| mesh.signed_volume() / plain.signed_volume())
+        };
+        let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found}");
+        near(volume("[1, 1]", "").unwrap(), 8.0);
+        near(volume("[0, 1]", "").unwrap(), 1.0);
+        near(volume("[]", "[2.0]").unwrap(), 27.0);
+        near(volume("[1, 1]", "[0, 0]").unwrap(), 1.0);
+        let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let indices = json["meshes"][0]["primitives"][0]["indices"].clone();
+        json["meshes"][0]["primitives"][0]["targets"] = serde_json::json!([{"POSITION": indices}]);
+        json["meshes"][0]["weights"] = serde_json::json!([1]);
+        assert!(parse_mesh("m.gltf", json.to_string().as_bytes()).is_err());
     }
 
     #[test]

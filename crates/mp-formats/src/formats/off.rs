@@ -14,7 +14,7 @@ use nalgebra::{Point3, Vector3};
 pub(crate) fn begins(bytes: &[u8]) -> bool {
     let head = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let end = head.iter().position(|b| b.is_ascii_whitespace() || *b == b'#').unwrap_or(head.len());
-    (3..=8).contains(&end) && head[..end].ends_with(b"OFF")
+    (3..=9).contains(&end) && head[..end].ends_with(b"OFF")
 }
 
 pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {

@@ -24,7 +24,8 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<GridMap, Error> {
     let pixels = size[0] * size[1];
     if !text {
         reader.space()?;
-        return Ok(GridMap { size, brightness: reader.bytes(size, channels, bits, &levels)? });
+        let brightness = reader.bytes(size, channels, bits, &levels)?;
+        return Ok(GridMap { size, brightness, with_alpha: None });
     }
     // One digit at least for each sample, and between two numbers one separator.
     reader.enough(if bits { pixels } else { 2 * channels * pixels - 1 })?;
@@ -36,7 +37,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<GridMap, Error> {
         }
         brightness.push(mean(&pixel[..channels]));
     }
-    Ok(GridMap { size, brightness })
+    Ok(GridMap { size, brightness, with_alpha: None })
 }
 
 /// For each value of a sample from 0 to `white_value`, the 8 bits it becomes.

@@ -100,8 +100,7 @@ impl Image {
 
     /// What the brightness must be.
     fn brightness(&self) -> Vec<f32> {
-        let most = (1_u32 << self.depth) - 1;
-        let eight = |v: u16| (f64::from(v) * 255.0 / f64::from(most)).round() as f32;
+        let eight = |v: u16| eight(v, self.depth);
         let pixel = |p: &[u16]| match self.kind {
             PALETTE => self.palette[usize::from(p[0])].map(f32::from).iter().sum::<f32>() / 3.0,
             GREY | GREY_ALPHA => eight(p[0]),
@@ -109,6 +108,30 @@ impl Image {
         };
         self.samples.chunks(channels(self.kind)).map(pixel).collect()
     }
+
+    /// What it must be with opacity, if there is any transparency.
+    fn with_alpha(&self) -> Option<Vec<f32>> {
+        let chunk = self.transparency.as_deref();
+        let own = matches!(self.kind, GREY_ALPHA | RGBA);
+        let alpha = |p: &[u16]| match (self.kind, chunk) {
+            (GREY_ALPHA | RGBA, _) => eight(p[p.len() - 1], self.depth),
+            (PALETTE, Some(all)) => all.get(usize::from(p[0])).map_or(255.0, |a| f32::from(*a)),
+            // One colour is transparent.
+            (_, Some(one)) => {
+                let clear =
+                    one.chunks(2).map(|two| u16::from_be_bytes([two[0], two[1]])).eq(p.iter().copied());
+                if clear { 0.0 } else { 255.0 }
+            }
+            _ => 255.0,
+        };
+        let pixels = self.samples.chunks(channels(self.kind)).zip(self.brightness());
+        let mean = |(p, brightness): (&[u16], f32)| ((3.0 * brightness).round() + alpha(p)) / 4.0;
+        (own || chunk.is_some()).then(|| pixels.map(mean).collect())
+    }
+}
+
+fn eight(v: u16, depth: u8) -> f32 {
+    (f64::from(v) * 255.0 / f64::from((1_u32 << depth) - 1)).round() as f32
 }
 
 fn chunk(out: &mut Vec<u8>, name: &[u8; 4], content: &[u8]) {
@@ -173,6 +196,7 @@ proptest! {
         let grid = GridMap::parse("map.png", &image.bytes()).unwrap();
         prop_assert_eq!(grid.size, image.size);
         prop_assert_eq!(grid.brightness, image.brightness());
+        prop_assert_eq!(grid.with_alpha, image.with_alpha());
     }
 
     #[test]

@@ -138,6 +138,9 @@ fn read_map(
             let map = RosMap::parse(&place.display().to_string(), &files.read(&place, MAX_TEXT_BYTES)?)?;
             let image = place.parent().unwrap_or(Path::new("")).join(&map.image);
             let grid = grid(&image)?;
+            if grid.with_alpha.is_some() {
+                files.note(&image, "transparency counts as for map_server: brightness is the mean of red, green, blue and opacity");
+            }
             let polygon = map.outline(&grid, unknown_is_free, &files.interrupt());
             (grid, map.resolution, map.origin, polygon)
         }

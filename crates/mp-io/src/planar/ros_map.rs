@@ -126,7 +126,8 @@ impl RosMap {
         Ok(map)
     }
 
-    /// The obstacles of the map whose image is `grid`, unknown pixels included unless they are free; `None` when there are none.
+    /// The obstacles of the map whose image is `grid`, unknown pixels included unless they are free; `None` when there are none. Where the image has
+    /// transparency, it counts as for map_server: a pixel is as bright as the mean of red, green, blue and opacity.
     ///
     /// # Errors
     /// When coordinates are not finite or beyond 10⁶⁰, or `interrupt` says to end.
@@ -147,7 +148,7 @@ impl RosMap {
             }
         };
         let [x, y, yaw] = self.origin;
-        let polygon = grid.outline(self.resolution, [0.0; 2], occupied, interrupt)?;
+        let polygon = grid.outline_with_alpha(self.resolution, [0.0; 2], occupied, interrupt)?;
         Ok(polygon.map(|p| p.transformed(&Isometry2::new([x, y].into(), yaw))))
     }
 }

@@ -68,6 +68,22 @@ fn is_taken(problem: &PlanarProblem, p: Point2<f64>) -> bool {
     mp_geom::planar::PlanarWorld::new(polygons, problem.walls).unwrap().contains(&p)
 }
 
+/// A pixel that is white and transparent is unknown; one that is grey and opaque is free, black and opaque an obstacle.
+#[test]
+fn opacity_of_maps_of_ros_counts() {
+    let map = RosMap::parse("m.yaml", b"image: m.png\nresolution: 1\norigin: [0, 0, 0]\n").unwrap();
+    let with = |alpha: Option<Vec<f32>>| {
+        let grid = GridMap { size: [3, 1], brightness: vec![255.0, 205.0, 0.0], with_alpha: alpha };
+        [false, true].map(|unknown_is_free| {
+            let polygon = map.outline(&grid, unknown_is_free, &mp_stop::Interrupt::never()).unwrap().unwrap();
+            [0.5, 1.5, 2.5].map(|x| polygon.contains(&Point2::new(x, 0.5)))
+        })
+    };
+    assert_eq!(with(None), [[false, true, true], [false, false, true]]);
+    let alpha = vec![191.25, 217.5, 63.75];
+    assert_eq!(with(Some(alpha)), [[true, false, true], [false, false, true]]);
+}
+
 #[test]
 fn nothing_is_free_outside_of_a_map() {
     use nalgebra::{Isometry2, Vector2};

@@ -1,6 +1,6 @@
 //! Robot problems and the files they name.
 
-use super::joint_limits::{self, JointRates};
+use super::joint_limits::{self, JointLimits};
 use super::srdf_near::srdf_near;
 use super::{RobotEntry, RobotFile, RobotFilePart, RobotPart};
 use crate::mjcf::{self, Mjcf};
@@ -22,8 +22,8 @@ pub struct DescribedRobot {
     pub srdf: Option<String>,
     /// Where the SRDF is, if the problem names none and one of this robot was found near the URDF.
     pub srdf_found: Option<PathBuf>,
-    /// How fast its joints may move, as the `joint_limits.yaml` of MoveIt beside the SRDF says.
-    pub rates: JointRates,
+    /// How far and how fast its joints may move, as the `joint_limits.yaml` of MoveIt beside the SRDF says.
+    pub joint_limits: JointLimits,
     /// The name of an SRDF beside the URDF that is not taken.
     pub srdf_beside: Option<String>,
     /// The folder that `package://` means.
@@ -137,14 +137,14 @@ fn described(files: &dyn Files, folder: &Path, file: &RobotFile, i: usize) -> Re
     }
     let own = mjcf.as_ref().filter(|_| srdf.is_none() && !entry.without_srdf);
     srdf = srdf.or(own.map(|mjcf| mjcf.srdf.clone()));
-    let rates = named.as_ref().or(srdf_found.as_ref()).map(|srdf| joint_limits::beside(files, srdf));
+    let joint_limits = named.as_ref().or(srdf_found.as_ref()).map(|srdf| joint_limits::beside(files, srdf));
     let packages = entry.packages.as_ref().map(|name| folder.join(name));
     Ok(DescribedRobot {
         urdf_file,
         urdf,
         srdf,
         srdf_found,
-        rates: rates.unwrap_or_default(),
+        joint_limits: joint_limits.transpose()?.unwrap_or_default(),
         srdf_beside,
         packages,
         solid: entry.solid,

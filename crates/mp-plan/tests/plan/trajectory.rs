@@ -292,6 +292,51 @@ fn what_controllers_run_is_what_is_checked() {
     );
 }
 
+/// As in MoveIt, positions of its file beside the SRDF take the place of those of the URDF, and a note says so.
+#[test]
+fn limits_of_position_are_those_of_moveit() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let joint = |name: &str, kind: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/><axis xyz='0 0 1'/>\
+             <limit lower='-3' upper='3'/></joint>"
+        )
+    };
+    let joints = [joint("a", "revolute", "base", "b1"), joint("b", "continuous", "b1", "b2")].concat();
+    let links = ["base", "b1", "b2"].map(|name| format!("<link name='{name}'/>")).concat();
+    write("two.urdf", &format!("<robot name='two'>{links}{joints}</robot>"));
+    write("two.srdf", "<robot name='two'/>");
+    let load = |file: &str, more: &str| {
+        write("joint_limits.yaml", &format!("joint_limits:\n{file}"));
+        let motion = "[motion]\nstart = [0, 0]\ngoal = [0.5, 1]\n";
+        write("two.toml", &format!("[robot]\nurdf = \"two.urdf\"\n{more}{motion}"));
+        Scene::load(folder.path().join("two.toml")).map_err(|e| e.to_string())
+    };
+    let limits = |file: &str, more: &str| load(file, more).unwrap().limits();
+    assert_eq!(limits("", ""), [Some([-3.0, 3.0]), None]);
+    let narrow = "  a:\n    has_position_limits: true\n    min_position: -1\n    max_position: 1\n";
+    let scene = load(narrow, "").unwrap();
+    let notes = scene.notes().join("\n");
+    assert!(notes.contains("joint_limits.yaml") && notes.contains("a from -1 to 1"), "{notes}");
+    assert_eq!(scene.limits(), [Some([-1.0, 1.0]), None]);
+    // Wider ones too, and the problem comes before the file.
+    assert_eq!(limits(&narrow.replace(": 1", ": 3.5"), "")[0], Some([-1.0, 3.5]));
+    assert_eq!(limits(narrow, "limits = { a = [-2, 2] }\n")[0], Some([-2.0, 2.0]));
+    // One limit with the other of the URDF; there must be room between them.
+    assert_eq!(limits("  a:\n    max_position: 1\n", "")[0], Some([-3.0, 1.0]));
+    let error = load("  a:\n    min_position: 4\n", "").unwrap_err();
+    assert!(error.contains("joint_limits.yaml") && error.contains("from 4 to 3"), "{error}");
+    // As in MoveIt, a continuous joint keeps turning.
+    let scene = load(&narrow.replace("a:", "b:"), "").unwrap();
+    assert!(scene.notes().iter().any(|note| note.contains("not taken") && note.contains(": b")));
+    assert_eq!(scene.limits()[1], None);
+    // A file that cannot be used is an error, as an SRDF is.
+    let error = load("  a:\n    has_velocity_limits: ture\n", "").unwrap_err();
+    assert!(error.contains("joint_limits.yaml:3") && error.contains("ture"), "{error}");
+    assert!(load("  a:\n    has_velocity_limits: ture\n", "srdf = false\n").is_ok());
+}
+
 /// MoveIt's file beside the SRDF comes before the URDF, and the problem before both.
 #[test]
 fn limits_are_those_of_the_problem_of_moveit_and_of_the_urdf() {

@@ -250,8 +250,9 @@ pub enum UrdfError {
     Interrupted,
     /// A joint has a kind that is not handled.
     #[error(
-        "line {line}: joint \"{joint}\" is {kind}: only revolute, continuous, prismatic and fixed joints are handled; for a base \
-         that floats make it fixed, and write `base = \"floating\"` in the robot problem"
+        "line {line}: joint \"{joint}\" is {kind}: only revolute, continuous, prismatic, planar and fixed joints are handled, and \
+         one that floats between the world, a link without shapes, and all of the robot; for a base that floats make it such a one, \
+         or fixed, and write `base = \"floating\"` in the robot problem"
     )]
     Kind {
         /// Where it is in the text.

@@ -153,18 +153,67 @@ fn above(model: &ArmModel, link: &str, group: &str) -> Result<Option<usize>, Str
     }
 }
 
-/// The joints from the link `base` down to the link `tip`.
+/// The joints between two links: those from each of them up to the first link that is above both, or is one of them.
 fn chain(model: &ArmModel, base: &str, tip: &str, group: &str) -> Result<Vec<usize>, String> {
-    above(model, base, group)?;
-    let (mut joints, mut link) = (Vec::new(), tip);
-    while link != base {
-        let Some(joint) = above(model, link, group)?.filter(|_| joints.len() <= model.joints.len()) else {
-            return Err(format!(
-                "the group \"{group}\" has a chain from \"{base}\" to \"{tip}\", which are in no such chain"
-            ));
-        };
+    let [mut from, mut to] = [all_above(model, base, group)?, all_above(model, tip, group)?];
+    // What is above both is not between them.
+    while from.last().is_some_and(|joint| to.last() == Some(joint)) {
+        from.pop();
+        to.pop();
+    }
+    let top = |joints: &[usize], link: &str| {
+        joints.last().map_or(link.to_owned(), |&joint| model.joints[joint].parent.clone())
+    };
+    if top(&from, base) != top(&to, tip) {
+        return Err(format!(
+            "the group \"{group}\" has a chain from \"{base}\" to \"{tip}\", which are in no such chain"
+        ));
+    }
+    from.extend(to);
+    Ok(from)
+}
+
+/// The joints above a link, from the nearest to the first of the robot.
+fn all_above(model: &ArmModel, link: &str, group: &str) -> Result<Vec<usize>, String> {
+    let (mut joints, mut link) = (Vec::new(), link);
+    // Of a loop, which is no robot, each joint once.
+    while let Some(joint) = above(model, link, group)?.filter(|_| joints.len() < model.joints.len()) {
         joints.push(joint);
         link = &model.joints[joint].parent;
     }
     Ok(joints)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Joint, Link};
+
+    /// base -lift- torso, on which hang -left- l and -elbow- inner -right- r.
+    #[test]
+    fn chains_go_over_the_link_that_is_above_both_ends() {
+        let turn = JointKind::Continuous;
+        let joints = [
+            ("lift", "base", "torso"),
+            ("left", "torso", "l"),
+            ("elbow", "torso", "inner"),
+            ("right", "inner", "r"),
+        ];
+        let links = ["base", "torso", "l", "inner", "r", "apart"].map(Link::new);
+        let joints = joints.map(|(name, parent, child)| Joint::new(name, parent, child, turn));
+        let model = ArmModel { links: links.into(), joints: joints.into(), ..ArmModel::default() };
+        let between = |base: &str, tip: &str| {
+            let text = format!(
+                "<robot name='r'><group name='g'><chain base_link='{base}' tip_link='{tip}'/></group></robot>"
+            );
+            SrdfGroups::from_srdf(&text).unwrap().joints(&model, "g")
+        };
+        assert_eq!(between("l", "r").unwrap(), ["left", "elbow", "right"]);
+        assert_eq!(between("r", "l").unwrap(), ["left", "elbow", "right"]);
+        assert_eq!(between("base", "l").unwrap(), ["lift", "left"]);
+        assert_eq!(between("r", "torso").unwrap(), ["elbow", "right"]);
+        assert!(between("apart", "r").unwrap_err().contains("in no such chain"));
+        assert!(between("gone", "r").unwrap_err().contains("\"gone\""));
+        assert!(between("l", "l").unwrap_err().contains("no joint of the group"));
+    }
 }

@@ -53,7 +53,8 @@ pub enum JointKind {
 
 impl JointKind {
     /// The lower and the upper limit, if the kind has limits.
-    pub(super) fn limits(self) -> Option<[f64; 2]> {
+    #[must_use]
+    pub fn limits(self) -> Option<[f64; 2]> {
         match self {
             Self::Revolute { low, high } | Self::Prismatic { low, high } => Some([low, high]),
             Self::Fixed | Self::Continuous => None,

@@ -30,8 +30,10 @@ impl ArmModel {
     ///
     /// [`ArmModel::notes`] says what was left out although it is incomplete or of another name space, and also:
     ///
+    /// - which joints have narrower limits by the soft limits of a `safety_controller`, which count as for MoveIt;
     /// - which joints do not move because their limits are equal. They are not coordinates until
     ///   [`with_limits`](Self::with_limits) gives them other limits;
+    /// - which joint floats between the world, a link without shapes, and the robot: it is fixed;
     /// - which joints are planar: each becomes three joints, two that slide and one that turns;
     /// - which revolute joints turn without end, for their limits are more than 1e6 rad apart;
     /// - which joints that mimic others had their limits ignored, because neither joint could move within both limits.
@@ -114,6 +116,16 @@ impl ArmModel {
         }
         let mut notes = left_out.notes();
         notes.extend(reader.surplus.into_inner());
+        let [within, aside] = reader.soft.into_inner();
+        for (joints, note) in [
+            (
+                within,
+                "the limits of these joints are the soft limits of their safety controllers, as for MoveIt",
+            ),
+            (aside, "soft limits that leave a joint no room are not taken"),
+        ] {
+            notes.extend((!joints.is_empty()).then(|| format!("{note}: {}", some(&joints))));
+        }
         if !empty.is_empty() {
             let note = "shapes of size 0 and meshes without triangles are left out, for there is nothing to touch, in";
             notes.push(format!("{note} {}", some(&empty)));
@@ -147,6 +159,13 @@ impl ArmModel {
                 self.add_planar(name, [parent, end], origin);
                 return Ok(());
             }
+            "floating" if reader.is_first(node) && !self.collides(parent) => {
+                self.notes.push(format!(
+                    "\"{name}\" floats between the world and the robot: it is fixed, unless `base = \"floating\"` of a robot problem moves the \
+                     whole robot"
+                ));
+                JointKind::Fixed
+            }
             written => {
                 let kind = if written == "floating" { "floating" } else { "spherical" };
                 return Err(UrdfError::Kind { line: reader.line(node), joint: name.to_owned(), kind });
@@ -170,6 +189,11 @@ impl ArmModel {
         }
         self.joints.push(joint);
         Ok(())
+    }
+
+    /// Whether the link of that name has shapes.
+    fn collides(&self, link: &str) -> bool {
+        self.links.iter().any(|known| known.name == link && !known.shapes.is_empty())
     }
 
     /// Adds three joints in place of one that is planar, called as MoveIt calls them: `NAME/x` and `NAME/y`, which slide in the plane of

@@ -361,6 +361,37 @@ fn planar_joints_slide_and_turn() {
 }
 
 /// Commas between numbers are blanks. Of too many numbers the first three count, and a note says so.
+/// Humanoids and drones hang on the world by a joint that floats.
+#[test]
+fn a_joint_that_floats_between_the_world_and_the_robot_is_fixed() {
+    let text = |more: &str| {
+        format!(
+            "<robot name=\"r\"><link name=\"world\"/><link name=\"base\"/><link name=\"arm\"/>{more}\n\
+             <joint name=\"fb\" type=\"floating\"><origin xyz=\"0 0 2\"/><parent link=\"world\"/><child link=\"base\"/></joint>\
+             <joint name=\"pan\" type=\"continuous\"><parent link=\"base\"/><child link=\"arm\"/></joint></robot>"
+        )
+    };
+    let model = read(&text("")).unwrap();
+    assert!(model.joints[0].kind == JointKind::Fixed && model.joints[0].origin.translation.z == 2.0);
+    assert!(model.notes.len() == 1 && model.notes[0].contains("\"fb\" floats"), "{:?}", model.notes);
+    let names = |model: &ArmModel| Kinematics::new(model).unwrap().coordinates().len();
+    assert_eq!(names(&model), 1);
+    let bounds = mp_geom::Aabb::new(Point3::new(-1.0, -1.0, -1.0), Point3::new(1.0, 1.0, 1.0));
+    assert!(Kinematics::new(&ArmModel { floating: Some(bounds), ..model }).unwrap().floats());
+    // Not where the world has shapes, or more hangs on it, or in the middle of the robot.
+    let shape = "<collision><geometry><box size=\"1 1 1\"/></geometry></collision>";
+    let walls = text("").replace("<link name=\"world\"/>", &format!("<link name=\"world\">{shape}</link>"));
+    let fixed = |parent: &str, child: &str| {
+        format!(
+            "<link name=\"more\"/><joint name=\"f\" type=\"fixed\"><parent link=\"{parent}\"/><child link=\"{child}\"/></joint>"
+        )
+    };
+    for text in [walls, text(&fixed("world", "more")), text(&fixed("more", "world"))] {
+        let error = read(&text).unwrap_err().to_string();
+        assert!(error.contains("line 2: joint \"fb\" is floating"), "{error}");
+    }
+}
+
 #[test]
 fn commas_part_numbers_and_the_first_ones_count() {
     let commas =
@@ -511,6 +542,38 @@ fn joints_without_room_are_held() {
     assert!(error.contains("\"j\"") && error.contains("equal"), "{error}");
 }
 
+/// As for MoveIt, limits are within those of a safety controller.
+#[test]
+fn soft_limits_are_limits() {
+    let read = |limits: &str, soft: &str| {
+        let text = format!(
+            "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><joint name=\"j\" type=\"revolute\"><parent link=\"a\"/>\
+             <child link=\"b\"/><limit {limits}/><safety_controller k_velocity=\"1\" {soft}/></joint></robot>"
+        );
+        let model = read(&text).unwrap();
+        (model.joints[0].kind.limits().unwrap(), model.notes)
+    };
+    let hard = "lower=\"-3\" upper=\"3\"";
+    for (soft, expected, note) in [
+        ("soft_lower_limit=\"-1\" soft_upper_limit=\"2\"", [-1.0, 2.0], "soft limits of their safety"),
+        ("soft_lower_limit=\"-9\" soft_upper_limit=\"2\"", [-3.0, 2.0], "soft limits of their safety"),
+        ("soft_lower_limit=\"-1\"", [-1.0, 0.0], "soft limits of their safety"),
+        ("soft_lower_limit=\"-9\" soft_upper_limit=\"9\"", [-3.0, 3.0], ""),
+        ("soft_lower_limit=\"-3\" soft_upper_limit=\"3\"", [-3.0, 3.0], ""),
+        ("", [-3.0, 3.0], ""),
+        ("soft_lower_limit=\"4\" soft_upper_limit=\"5\"", [-3.0, 3.0], "no room"),
+        ("soft_lower_limit=\"1\" soft_upper_limit=\"-1\"", [-3.0, 3.0], "no room"),
+    ] {
+        let (limits, notes) = read(hard, soft);
+        assert_eq!((limits, notes.len()), (expected, usize::from(!note.is_empty())), "{soft}: {notes:?}");
+        assert!(notes.iter().all(|said| said.contains(note) && said.contains("\"j\"")), "{notes:?}");
+    }
+    // What follows another has no limits for MoveIt.
+    let close = "<mimic joint=\"open\" multiplier=\"-1\"/>";
+    let soft = format!("{close}<safety_controller soft_lower_limit=\"0\" soft_upper_limit=\"0.1\"/>");
+    assert_eq!(self::read(&GRIPPER.replace(close, &soft)).unwrap(), self::read(GRIPPER).unwrap());
+}
+
 #[test]
 fn followers_without_room_are_followed_no_less() {
     // The other way from what it follows, but with the limits of that.
@@ -535,7 +598,9 @@ fn later_versions_mean_what_they_say() {
             <parent link="a"/><child link="b"/><origin xyz="0 0 0" quat_xyzw="0 0 1 0"/></joint></robot>"#;
         read(&text.replace('V', version)).unwrap().joints[0].origin.rotation.angle()
     };
-    assert!(turned("1.0") == 0.0 && (turned("1.1") - std::f64::consts::PI).abs() < 1e-9);
+    for version in ["1.0", "1.1", "1.1.0", "2", "", "new"] {
+        assert!((turned(version) - std::f64::consts::PI).abs() < 1e-9, "{version}");
+    }
     let slide = |version: &str, limit: &str, origin: &str| {
         read(&format!(
             r#"<robot name="r" version="{version}"><link name="a"/><link name="b"/><joint name="j" type="prismatic">
@@ -544,7 +609,10 @@ fn later_versions_mean_what_they_say() {
         ))
     };
     // A limit that is not written is zero, and none from 1.2 on.
-    for (version, limits) in [("1.0", [0.0, 2.0]), ("1.2", [f64::NEG_INFINITY, 2.0])] {
+    let none = [f64::NEG_INFINITY, 2.0];
+    for (version, limits) in
+        [("1.0", [0.0, 2.0]), ("1", [0.0, 2.0]), ("1.2", none), ("1.2.0", none), ("2", none)]
+    {
         let [low, high] = limits;
         let kind = &slide(version, r#"upper="2""#, "").unwrap().joints[0].kind;
         assert_eq!(*kind, JointKind::Prismatic { low, high });

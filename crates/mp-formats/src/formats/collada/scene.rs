@@ -121,13 +121,7 @@ impl<'a> Walk<'_, 'a> {
         for part in node.children() {
             match part.tag_name().name() {
                 "instance_geometry" => self.geometry(self.document.target(part, "url")?, part, matrix)?,
-                "instance_controller" => {
-                    let controller = self.document.target(part, "url")?;
-                    let skin = child(controller, "skin").or_else(|| child(controller, "morph"));
-                    let skin =
-                        skin.ok_or_else(|| self.document.error(controller, "a controller of nothing"))?;
-                    self.geometry(self.document.target(skin, "source")?, part, matrix)?;
-                }
+                "instance_controller" => self.controller(part, matrix)?,
                 _ => {}
             }
         }
@@ -142,6 +136,26 @@ impl<'a> Walk<'_, 'a> {
             self.node(target, matrix, depth + 1)?;
         }
         Ok(())
+    }
+
+    /// The geometry of a controller, or of the controller that it is of: that of a skin as its `<bind_shape_matrix>` places it.
+    fn controller(&mut self, part: Node<'a, 'a>, mut matrix: Matrix4<f64>) -> Result<(), Error> {
+        let mut target = self.document.target(part, "url")?;
+        let mut deep = 0;
+        while target.tag_name().name() == "controller" {
+            let skin = child(target, "skin").or_else(|| child(target, "morph"));
+            let skin = skin.filter(|_| deep < MAX_DEPTH);
+            let skin = skin.ok_or_else(|| self.document.error(target, "a controller of nothing"))?;
+            if let Some(bind) = child(skin, "bind_shape_matrix") {
+                matrix *= Matrix4::from_row_slice(&self.document.numbers::<16>(bind)?);
+            }
+            if matrix.iter().any(|v| !v.is_finite()) {
+                return Err(self.document.error(skin, "the transforms of the skin overflow"));
+            }
+            target = self.document.target(skin, "source")?;
+            deep += 1;
+        }
+        self.geometry(target, part, matrix)
     }
 
     fn geometry(

@@ -176,6 +176,16 @@ fn look_at_and_controllers() {
         "<library_controllers><controller id=\"c\"><skin source=\"#g\"/></controller></library_controllers><library_visual_scenes>",
     );
     assert_eq!(parse(&text).triangle(0)[1], Point3::new(6.0, 0.0, 0.0));
+    // A skin is where its matrix places it, in the frame of the node; also that of a morph.
+    let bind = "<bind_shape_matrix>0.5 0 0 7  0 0.5 0 0  0 0 0.5 0  0 0 0 1</bind_shape_matrix>";
+    let bound = text.replace("<skin source=\"#g\"/>", &format!("<skin source=\"#g\">{bind}</skin>"));
+    assert_eq!(parse(&bound).triangle(0)[1], Point3::new(12.5, 0.0, 0.0));
+    let morph = "</controller><controller id=\"m\"><morph source=\"#g\"/></controller>";
+    let nested = bound.replace("source=\"#g\"", "source=\"#m\"").replacen("</controller>", morph, 1);
+    assert_eq!(parse(&nested), parse(&bound));
+    for wrong in [bound.replace("7  0", "7"), nested.replace("source=\"#g\"", "source=\"#m\"")] {
+        crate::error::check_error(&parse_mesh("t.dae", wrong.as_bytes()).unwrap_err());
+    }
 }
 
 #[test]

@@ -17,6 +17,29 @@ struct Header {
     texture: bool,
     colors: bool,
     normals: bool,
+    /// Whether the colour of a vertex is before its normal: MeshLab writes them so, and `N` before `C`.
+    color_first: bool,
+}
+
+/// What the letters before `OFF` say, each at most once and in any order, and whether vertices have other dimensions than three.
+fn announced(prefix: &str) -> Option<(Header, bool)> {
+    let (mut header, mut dimensions, mut rest) = (Header::default(), [false; 2], prefix);
+    while !rest.is_empty() {
+        let letters = ["ST", "C", "N", "4", "n"].into_iter().find(|letters| rest.starts_with(letters))?;
+        let known = match letters {
+            "ST" => &mut header.texture,
+            "C" => &mut header.colors,
+            "N" => &mut header.normals,
+            "4" => &mut dimensions[0],
+            _ => &mut dimensions[1],
+        };
+        if std::mem::replace(known, true) {
+            return None;
+        }
+        header.color_first |= letters == "C" && header.normals;
+        rest = &rest[letters.len()..];
+    }
+    Some((header, dimensions.contains(&true)))
 }
 
 impl OffDocument {
@@ -106,20 +129,12 @@ impl<'a> Reader<'a> {
             let message = format!("the file begins with `{}`", clipped(word.text));
             return Err(self.text.error(word, message).expected(what));
         };
-        let mut rest = prefix;
-        let mut take = |letters| match rest.strip_prefix(letters) {
-            Some(r) => {
-                rest = r;
-                true
-            }
-            None => false,
-        };
-        let header = Header { texture: take("ST"), colors: take("C"), normals: take("N") };
-        if rest.is_empty() {
+        let known = announced(prefix);
+        if let Some((header, false)) = known {
             self.lexer = lookahead;
             return Ok(header);
         }
-        let dimensions = matches!(rest, "4" | "n" | "4n");
+        let dimensions = known.is_some();
         let message = format!("`{}` is not read", clipped(word.text));
         let mut e = self.text.error(word, message).expected(what);
         if dimensions {
@@ -186,12 +201,14 @@ impl<'a> Reader<'a> {
             let what = || format!("x y z of vertex {i} of {nv}");
             let p = self.three(&what)?;
             doc.vertices.push(Point3::from(p));
-            if header.normals {
-                doc.normals.push(self.normal(&|| format!("the normal of vertex {i}"))?);
-            }
-            if header.colors {
-                let color = self.vertex_color(i, header.texture)?;
-                doc.colors.push(color);
+            for color in [header.color_first, !header.color_first] {
+                if color && header.colors {
+                    let color = self.vertex_color(i, header)?;
+                    doc.colors.push(color);
+                }
+                if !color && header.normals {
+                    doc.normals.push(self.normal(&|| format!("the normal of vertex {i}"))?);
+                }
             }
             if header.texture {
                 let what = || format!("texture coordinates of vertex {i}");
@@ -202,10 +219,10 @@ impl<'a> Reader<'a> {
     }
 
     /// The colour of a vertex: three numbers when the rest of the line has just as many as that needs, else four.
-    fn vertex_color(&mut self, vertex: usize, texture: bool) -> Result<OffColor, Error> {
+    fn vertex_color(&mut self, vertex: usize, header: Header) -> Result<OffColor, Error> {
         let what = || format!("the colour of vertex {vertex}, three or four numbers");
-        let left = self.lexer.left_on_line();
-        let len = if left == if texture { 5 } else { 3 } { 3 } else { 4 };
+        let after = 3 * usize::from(header.color_first) + 2 * usize::from(header.texture);
+        let len = if self.lexer.left_on_line() == 3 + after { 3 } else { 4 };
         let mut tokens = Vec::with_capacity(4);
         for _ in 0..len {
             tokens.push(self.word(&what())?);
@@ -324,6 +341,47 @@ mod tests {
 
     fn parse(text: &str) -> OffDocument {
         OffDocument::parse("t.off", text.as_bytes()).unwrap()
+    }
+
+    /// The letters of the keyword in any order; where `N` is before `C`, as in files of MeshLab, colours are before normals.
+    #[test]
+    fn keywords_have_their_letters_in_any_order() {
+        let row = |words: [&str; 4]| format!("{} {} {}{}", words[0], words[1], words[2], words[3]);
+        let (normal, rgba, texture) = ("0 0 1", "200 100 50 255", " 0.5 0.25");
+        for (keyword, first, second, last) in [
+            ("STCNOFF", normal, rgba, texture),
+            ("CNSTOFF", normal, rgba, texture),
+            ("CNOFF", normal, rgba, ""),
+            ("NCOFF", rgba, normal, ""),
+            ("NCSTOFF", rgba, normal, texture),
+            ("STNCOFF", rgba, normal, texture),
+            ("NCOFF", "200 100 50", normal, ""),
+            ("NCSTOFF", "200 100 50", normal, texture),
+        ] {
+            let rows = ["0 0 0", "1 0 0", "0 1 0"].map(|at| row([at, first, second, last])).join("\n");
+            let doc = parse(&format!("{keyword}\n3 1 0\n{rows}\n3 0 1 2\n"));
+            assert_eq!(
+                (doc.vertices[1], doc.normals[1]),
+                (Point3::new(1.0, 0.0, 0.0), Vector3::z()),
+                "{keyword}"
+            );
+            assert!(matches!(
+                doc.colors[1],
+                OffColor::Rgba([200, 100, 50, 255]) | OffColor::Rgb([200, 100, 50])
+            ));
+            assert_eq!(doc.texture.len(), if last.is_empty() { 0 } else { 3 }, "{keyword}");
+            assert!(super::super::begins(keyword.as_bytes()));
+        }
+        for keyword in ["CCOFF", "NSTNOFF", "SOFF", "XOFF"] {
+            assert!(fails(&format!("{keyword}\n0 0 0\n")).contains("is not read"), "{keyword}");
+        }
+        for keyword in ["nOFF", "C4OFF", "4CnOFF", "STCN4nOFF"] {
+            let e = OffDocument::parse("t.off", format!("{keyword}\n3\n0 0 0\n").as_bytes()).unwrap_err();
+            assert!(e.kind() == ErrorKind::Unsupported && e.remedy().is_some(), "{e}");
+        }
+        // As it is written, normals are before colours.
+        let doc = parse("NCOFF\n3 1 0\n0 0 0 1 2 3 0 0 1\n1 0 0 1 2 3 0 0 1\n0 1 0 1 2 3 0 0 1\n3 0 1 2\n");
+        assert_eq!(parse(&doc.to_text()), doc);
     }
 
     fn fails(text: &str) -> String {

@@ -37,7 +37,7 @@ fn robots(problem: &RobotProblem) -> impl Iterator<Item = One<'_>> {
 pub fn model_of(files: &dyn Files, problem: &RobotProblem) -> Result<ArmModel, Error> {
     let mut all = robots(problem);
     match (all.next(), all.next()) {
-        (Some(robot), None) => described(files, robot),
+        (Some(robot), None) => described(files, robot).map(|(model, _)| model),
         _ => {
             Err(Error::new(format!("{} has several robots", problem.name))
                 .help("name the URDF of one of them"))
@@ -45,29 +45,20 @@ pub fn model_of(files: &dyn Files, problem: &RobotProblem) -> Result<ArmModel, E
     }
 }
 
-/// The model of the URDF of a robot, at its place and with its limits.
-fn described(files: &dyn Files, robot: One<'_>) -> Result<ArmModel, Error> {
+/// The model of the URDF of a robot, at its place and with its limits, and what a `joint_limits.yaml` has changed, in sentences.
+fn described(files: &dyn Files, robot: One<'_>) -> Result<(ArmModel, Vec<String>), Error> {
     let One { entry, described, .. } = robot;
     let mesh = |name: &str| described.mesh_from(files, name);
     let mut model = ArmModel::from_urdf_until(&described.urdf, mesh, &files.interrupt())
         .map_err(|e| in_urdf(described, e.line().map(|line| line as usize), e.message(), e.remedy()))?;
     model.base = entry.pose();
     model.floating = entry.floating.map(|[low, high]| Aabb::new(low.into(), high.into()));
+    let (mut model, said) = with_joint_limits(model, described)?;
     for (i, (joint, [low, high])) in entry.limits.iter().enumerate() {
         let limited = model.with_limits(joint, *low, *high);
         model = limited.map_err(|e| robot.fault(RobotPart::Limits(i), e, NAMES))?;
         // Joints that mimic it go with it, as far as that is.
         model = model.with_room_for(joint, *low).with_room_for(joint, *high);
-    }
-    // Of joints that the robot does not have nothing is said: the file may be of more of it.
-    for (joint, rates) in &described.rates {
-        for (limit, rate) in rates.iter().zip(Rate::ALL) {
-            if let Some(limit) = limit
-                && model.joints.iter().any(|j| j.name == *joint && j.kind != JointKind::Fixed)
-            {
-                model = model.with_rate(Some(joint), rate, *limit)?;
-            }
-        }
     }
     for (i, (limits, rate)) in entry.max_rates.iter().zip(Rate::ALL).enumerate() {
         for (joint, limit) in limits {
@@ -75,7 +66,60 @@ fn described(files: &dyn Files, robot: One<'_>) -> Result<ArmModel, Error> {
             model = limited.map_err(|e| robot.fault(RobotPart::Rates(i), e, NAMES))?;
         }
     }
-    Ok(model)
+    Ok((model, said))
+}
+
+/// The model with the limits of the `joint_limits.yaml` beside its SRDF, as MoveIt takes them, and what they change, in sentences. Of joints that
+/// the robot does not have nothing is said: the file may be of more of it.
+fn with_joint_limits(mut model: ArmModel, robot: &DescribedRobot) -> Result<(ArmModel, Vec<String>), Error> {
+    let (mut other, mut without) = (Vec::new(), Vec::new());
+    for limits in &robot.joint_limits.joints {
+        let (name, is_it) =
+            (&limits.joint, |j: &&Joint| j.name == limits.joint && j.kind != JointKind::Fixed);
+        let Some(joint) = model.joints.iter().find(is_it) else { continue };
+        match (joint.kind, limits.positions) {
+            (_, [None, None]) => {}
+            (JointKind::Revolute { low, high } | JointKind::Prismatic { low, high }, [from, to])
+                if joint.mimic.is_none() =>
+            {
+                let [from, to] = [from.unwrap_or(low), to.unwrap_or(high)];
+                if from > to {
+                    let message = format!("\"{name}\" may be from {from} to {to} with what the URDF says");
+                    return Err(in_joint_limits(robot, message));
+                }
+                if [from, to] != [low, high] {
+                    other.push(format!("{name} from {} to {}", plain(from), plain(to)));
+                    model =
+                        model.with_limits(name, from, to)?.with_room_for(name, from).with_room_for(name, to);
+                }
+            }
+            (kind, [from, to]) => {
+                let same = kind.limits().is_some_and(|[low, high]| [from, to] == [Some(low), Some(high)]);
+                without.extend((!same).then(|| name.clone()));
+            }
+        }
+        for (limit, rate) in limits.rates.iter().zip(Rate::ALL) {
+            if let Some(limit) = limit {
+                model = model.with_rate(Some(name), rate, *limit)?;
+            }
+        }
+    }
+    let file = robot.joint_limits.file.display();
+    let mut said = Vec::new();
+    if !other.is_empty() {
+        said.push(format!("{file} gives joints other limits than the URDF: {}", other.join(", ")));
+    }
+    if !without.is_empty() {
+        let why = "these joints turn without end or mimic others";
+        said.push(format!("limits of position in {file} are not taken, for {why}: {}", without.join(", ")));
+    }
+    Ok((model, said))
+}
+
+/// An error in the `joint_limits.yaml` beside the SRDF of a robot.
+fn in_joint_limits(robot: &DescribedRobot, message: String) -> Error {
+    let error = mp_io::Error::new(mp_io::ErrorKind::Content, robot.joint_limits.file.display(), message);
+    error.help("the lower limit must not be above the upper: correct the file, or move it away").into()
 }
 
 /// What to do about names that a robot does not have.
@@ -144,9 +188,9 @@ fn together(
 ) -> Result<(ArmModel, usize), Error> {
     let (mut all, mut ignored) = (Vec::new(), Vec::new());
     for robot in robots(problem) {
-        let mut model = described(files, robot)?;
+        let (mut model, said) = described(files, robot)?;
         let prefix = problem.file.prefix(robot.index);
-        ignored.extend(std::mem::take(&mut model.notes));
+        ignored.extend(std::mem::replace(&mut model.notes, said));
         let mut model = with_moving(model, robot, named)?;
         if let Some([low, high]) = robot.entry.planar {
             let help = "give that joint of the URDF another name";

@@ -23,23 +23,25 @@ pub(super) struct Reader<'t, 'a> {
     text: &'t Text<'a>,
     /// Where lines end.
     ends: Vec<usize>,
-    /// The version of URDF, major and minor. From 1.1 on an origin may have a quaternion; from 1.2 on a joint
-    /// whose limit is left out has none.
+    /// The version of URDF, major and minor. From 1.2 on a joint whose limit is left out has none.
     version: (u32, u32),
     /// Notes about attributes with too many numbers.
     pub(super) surplus: RefCell<BTreeSet<String>>,
+    /// Joints whose soft limits are within their limits, and those whose soft limits are not taken.
+    pub(super) soft: RefCell<[Vec<String>; 2]>,
 }
 
 impl<'t, 'a> Reader<'t, 'a> {
     pub(super) fn new(text: &'t Text<'a>, document: &Document<'_>) -> Self {
         let version = attribute(&document.root_element(), "version");
-        let version = version.and_then(|v| v.trim().split_once('.'));
-        let version = version.and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));
+        let mut parts = version.unwrap_or("1.0").split('.').map(|part| part.parse().ok());
+        let version = parts.next().flatten().map(|major| (major, parts.next().flatten().unwrap_or(0)));
         Self {
             text,
             ends: document.input_text().match_indices('\n').map(|(at, _)| at).collect(),
             version: version.unwrap_or((1, 0)),
             surplus: RefCell::default(),
+            soft: RefCell::default(),
         }
     }
 
@@ -104,10 +106,8 @@ impl<'t, 'a> Reader<'t, 'a> {
         let Some(origin) = child(node, "origin") else { return Ok(Isometry3::identity()) };
         let xyz = self.numbers(&origin, "xyz")?.unwrap_or([0.0; 3]);
         let rpy = self.numbers(&origin, "rpy")?;
-        let quaternion = match self.version >= (1, 1) {
-            true => self.numbers(&origin, "quat_xyzw")?,
-            false => None,
-        };
+        // Of version 1.1, but it means nothing else in a file of another one.
+        let quaternion = self.numbers(&origin, "quat_xyzw")?;
         let turn = match (rpy, quaternion) {
             (Some(_), Some(_)) => {
                 return Err(self.text.error(&origin, "<origin> has both rpy and quat_xyzw: leave one out"));
@@ -161,11 +161,44 @@ impl<'t, 'a> Reader<'t, 'a> {
         Ok(kind)
     }
 
+    /// The limits of a joint, within its soft limits.
     pub(super) fn limits(&self, joint: &Node<'_, '_>) -> Result<[f64; 2], UrdfError> {
         let limit = self.needed(joint, "limit")?;
         let unlimited = if self.version >= (1, 2) { f64::INFINITY } else { 0.0 };
         let lower = self.number(&limit, "lower")?.unwrap_or(-unlimited);
-        Ok([lower, self.number(&limit, "upper")?.unwrap_or(unlimited)])
+        let limits = [lower, self.number(&limit, "upper")?.unwrap_or(unlimited)];
+        self.within_soft(joint, limits)
+    }
+
+    /// The part of the limits that is within the soft limits of the safety controller, as for MoveIt. Soft limits that are equal are none, for
+    /// what is not written is 0; those of a joint that mimics another count no more than for MoveIt.
+    fn within_soft(&self, joint: &Node<'_, '_>, [low, high]: [f64; 2]) -> Result<[f64; 2], UrdfError> {
+        let Some(safety) = child(joint, "safety_controller").filter(|_| child(joint, "mimic").is_none())
+        else {
+            return Ok([low, high]);
+        };
+        let soft = |key| self.number(&safety, key).map(|limit| limit.unwrap_or(0.0));
+        let [soft_low, soft_high] = [soft("soft_lower_limit")?, soft("soft_upper_limit")?];
+        let within = [low.max(soft_low), high.min(soft_high)];
+        let taken = soft_low < soft_high && within[0] < within[1];
+        if soft_low != soft_high && low < high && within != [low, high] {
+            let name = self.word(joint, "name")?.to_owned();
+            self.soft.borrow_mut()[usize::from(!taken)].push(name);
+        }
+        Ok(if taken { within } else { [low, high] })
+    }
+
+    /// Whether a joint is the only one at a link above which there is none: that between the world and a robot.
+    pub(super) fn is_first(&self, joint: &Node<'_, '_>) -> bool {
+        let end = |joint: &Node<'_, '_>, end: &str| {
+            child(joint, end).and_then(|node| attribute(&node, "link").map(str::to_owned))
+        };
+        let Some(parent) = end(joint, "parent") else { return false };
+        let robot = joint.document().root_element();
+        let mut others =
+            robot.children().filter(|n| n.tag_name().name() == "joint" && is_own(n) && n != joint);
+        !others
+            .any(|other| ["parent", "child"].iter().any(|name| end(&other, name).as_ref() == Some(&parent)))
     }
 
     /// A child element that a joint must have.
