@@ -75,7 +75,7 @@ pub(crate) fn read(files: &dyn Files, file: &Path, text: String) -> Result<Mjcf,
     let documents = sources.iter().map(Source::parsed).collect::<Result<Vec<_>, _>>()?;
     let model = Model { sources: &sources, documents: &documents };
     let classes = Classes::of(&model)?;
-    let mut reader = Reader::new(&model, &classes, files.interrupt())?;
+    let mut reader = Reader::new(&model, &classes, files)?;
     reader.world()?;
     let srdf = write::srdf(&mut reader)?;
     for note in reader.notes() {

@@ -35,9 +35,10 @@ impl Source {
     }
 }
 
-/// The file at `file` with the content `text`, and those that it includes. Names are relative to its folder, also in those, as MuJoCo has it.
+/// The file at `file` with the content `text`, and those that it includes. Names are relative to its folder, also in those, or else to that of the file
+/// that says them, as MuJoCo has it.
 pub(super) fn sources(files: &dyn Files, file: &Path, text: String) -> Result<Vec<Source>, Error> {
-    let folder = file.parent().unwrap_or(Path::new(""));
+    let folder = folder_of(file);
     let mut all = vec![Source { file: file.to_owned(), text }];
     let mut at = 0;
     while at < all.len() {
@@ -47,7 +48,8 @@ pub(super) fn sources(files: &dyn Files, file: &Path, text: String) -> Result<Ve
         let model = Model { sources: &all[at..=at], documents: std::slice::from_ref(&document) };
         for node in document.descendants().filter(|node| node.has_tag_name("include")) {
             let name = model.own(node, "file")?;
-            let place = place_of(folder, name);
+            let [place, own] = [folder, folder_of(&source.file)].map(|folder| place_of(folder, name));
+            let place = if own != place && !files.holds(&place) && files.holds(&own) { own } else { place };
             if all.iter().chain(&found).any(|known| known.file == place) {
                 let message = format!("{} is included a second time", clipped(name));
                 return Err(model.error(node, message).help("include each file once"));
@@ -69,6 +71,10 @@ pub(super) fn sources(files: &dyn Files, file: &Path, text: String) -> Result<Ve
         at += 1;
     }
     Ok(all)
+}
+
+fn folder_of(file: &Path) -> &Path {
+    file.parent().unwrap_or(Path::new(""))
 }
 
 /// A file that a model in `folder` names, in the way of any operating system.
@@ -104,9 +110,12 @@ impl<'m> Model<'m> {
 
     /// The root of the file that `include` names.
     fn included(&self, include: Element<'m>) -> Option<Element<'m>> {
-        let folder = self.sources[0].file.parent().unwrap_or(Path::new(""));
-        let place = place_of(folder, include.attribute("file")?);
-        let at = self.sources.iter().position(|source| source.file == place)?;
+        let name = include.attribute("file")?;
+        let at = |source: usize| {
+            let place = place_of(folder_of(&self.sources[source].file), name);
+            self.sources.iter().position(|source| source.file == place)
+        };
+        let at = at(0).or_else(|| at(self.source(include)))?;
         Some(self.documents[at].root_element())
     }
 
@@ -120,6 +129,18 @@ impl<'m> Model<'m> {
         let mut all = self.children(self.documents[0].root_element());
         all.retain(|node| node.has_tag_name(name));
         all
+    }
+
+    /// A file that the model names.
+    pub(super) fn place_of(&self, name: &str) -> PathBuf {
+        place_of(folder_of(&self.sources[0].file), name)
+    }
+
+    /// The folder of the file that `node` is in, from that of the model on, if it is another one.
+    pub(super) fn subfolder(&self, node: Element<'m>) -> Option<String> {
+        let [main, own] = [0, self.source(node)].map(|source| folder_of(&self.sources[source].file));
+        let below = own.strip_prefix(main).ok().filter(|below| below.components().next().is_some());
+        below.map(|below| below.display().to_string().replace('\\', "/"))
     }
 
     /// The number of the file that `node` is in.

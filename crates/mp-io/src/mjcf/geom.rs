@@ -69,9 +69,7 @@ pub(super) fn assets(reader: &mut Reader<'_, '_>) -> Result<BTreeMap<String, Mes
         let place = (back * -moved.translation.vector).component_mul(&Vector3::from(scale));
         let pose = Isometry3::from_parts(Translation3::from(place), back);
         let inside = match file {
-            Some(file) if reader.compiler.meshes.is_empty() => file,
-            Some(file) if file.starts_with('/') => file,
-            Some(file) => format!("{}/{file}", reader.compiler.meshes.trim_end_matches('/')),
+            Some(file) => mesh_file(reader, node, &file),
             None => match made(&said)? {
                 Some(mesh) => {
                     let key = format!("mjcf://mesh/{name}");
@@ -84,6 +82,25 @@ pub(super) fn assets(reader: &mut Reader<'_, '_>) -> Result<BTreeMap<String, Mes
         found.insert(name, MeshAsset { name: inside, scale, pose });
     }
     Ok(found)
+}
+
+/// The file of a mesh that `node` names, from the folder of the model on: in the folder of meshes, or else, if `node` is in a file of another folder, in
+/// that folder below it, as MuJoCo has it.
+fn mesh_file<'m>(reader: &Reader<'_, 'm>, node: Element<'m>, file: &str) -> String {
+    let meshes = reader.compiler.meshes.trim_end_matches('/');
+    if file.starts_with('/') {
+        return file.to_owned();
+    }
+    let below = |folder: &str| {
+        let parts = [meshes, folder, file].into_iter().filter(|part| !part.is_empty());
+        parts.collect::<Vec<_>>().join("/")
+    };
+    let first = below("");
+    let holds = |name: &str| reader.files.holds(&reader.model.place_of(name));
+    match reader.model.subfolder(node).map(|folder| below(&folder)) {
+        Some(second) if !holds(&first) && holds(&second) => second,
+        _ => first,
+    }
 }
 
 /// The mesh of an element that names no file: the triangles that it lists, or the hull of its vertices.

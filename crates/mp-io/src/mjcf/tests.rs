@@ -93,6 +93,32 @@ fn a_model_as_urdf_and_srdf() {
     assert!(read.origin.error(Some(line), String::new()).to_string().starts_with("models/more.xml:3:2:"));
 }
 
+/// In files of other folders, names are relative to the model, or else to the file that says them, as MuJoCo has it.
+#[test]
+fn names_in_included_files_may_be_relative_to_these() {
+    let body = "<worldbody><body name='x'><joint/><geom type='mesh' mesh='d'/><include file='b.xml'/></body></worldbody>";
+    let part = format!("<mujoco><asset><mesh file='d.stl'/></asset>{body}</mujoco>");
+    let read_with = |compiler: &str, there: &[&str]| {
+        let files = InMemory(|name: &str| match name {
+            "models/sub/a.xml" => Some(part.clone()),
+            "models/sub/b.xml" => Some("<mujoco><geom size='0.5'/></mujoco>".to_owned()),
+            name => there.contains(&name).then(String::new),
+        });
+        let text = format!("<mujoco>{compiler}<include file='sub/a.xml'/></mujoco>");
+        let urdf =
+            read(&files, Path::new("models/arm.xml"), text).unwrap_or_else(|e| panic!("{}", e.report())).urdf;
+        assert!(urdf.contains("sphere radius=\"0.5\""), "{urdf}");
+        urdf.split("filename=\"").nth(1).unwrap().split('"').next().unwrap().to_owned()
+    };
+    let (meshes, [plain, sub]) = ("<compiler meshdir='m'/>", ["models/d.stl", "models/sub/d.stl"]);
+    assert_eq!(read_with("", &[sub]), "sub/d.stl");
+    assert_eq!(read_with("", &[plain, sub]), "d.stl");
+    assert_eq!(read_with(meshes, &["models/m/sub/d.stl", sub]), "m/sub/d.stl");
+    assert_eq!(read_with(meshes, &["models/m/d.stl", "models/m/sub/d.stl"]), "m/d.stl");
+    // Where there is none, the error is about the first.
+    assert_eq!(read_with(meshes, &[]), "m/d.stl");
+}
+
 #[test]
 fn turns_mean_the_same_however_they_are_given() {
     // A quarter turn about z.

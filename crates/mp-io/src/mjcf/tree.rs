@@ -5,6 +5,7 @@ use super::geom::{GeomShape, MeshAsset, assets};
 use super::pairs::{Bits, Couplings, PairedGeoms};
 use super::pose::{Compiler, turned};
 use mp_formats::error::Error;
+use mp_formats::files::Files;
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
 use nalgebra::{Isometry3, Translation3, Unit, Vector3};
@@ -90,6 +91,7 @@ pub(super) struct Reader<'a, 'm> {
     pub(super) joints: Vec<MjJoint<'m>>,
     pub(super) numbers: Vec<Numbers>,
     pub(super) made: BTreeMap<String, TriMesh>,
+    pub(super) files: &'a dyn Files,
     /// What is passed over, and where.
     left_out: BTreeMap<&'static str, BTreeSet<String>>,
     names: HashSet<String>,
@@ -102,7 +104,7 @@ impl<'a, 'm> Reader<'a, 'm> {
     pub(super) fn new(
         model: &'a Model<'m>,
         classes: &'a Classes<'m>,
-        interrupt: Interrupt,
+        files: &'a dyn Files,
     ) -> Result<Self, Error> {
         let mut read = Self {
             model,
@@ -118,7 +120,8 @@ impl<'a, 'm> Reader<'a, 'm> {
             left_out: BTreeMap::new(),
             names: HashSet::new(),
             bodies: 1,
-            interrupt,
+            files,
+            interrupt: files.interrupt(),
         };
         read.meshes = assets(&mut read)?;
         Ok(read)

@@ -73,7 +73,11 @@ fn is_taken(problem: &PlanarProblem, p: Point2<f64>) -> bool {
 fn opacity_of_maps_of_ros_counts() {
     let map = RosMap::parse("m.yaml", b"image: m.png\nresolution: 1\norigin: [0, 0, 0]\n").unwrap();
     let with = |alpha: Option<Vec<f32>>| {
-        let grid = GridMap { size: [3, 1], brightness: vec![255.0, 205.0, 0.0], with_alpha: alpha };
+        let grid = mp_formats::grid::GridMap {
+            size: [3, 1],
+            brightness: vec![255.0, 205.0, 0.0],
+            with_alpha: alpha,
+        };
         [false, true].map(|unknown_is_free| {
             let polygon = map.outline(&grid, unknown_is_free, &mp_stop::Interrupt::never()).unwrap().unwrap();
             [0.5, 1.5, 2.5].map(|x| polygon.contains(&Point2::new(x, 0.5)))
