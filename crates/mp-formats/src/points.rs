@@ -103,7 +103,7 @@ fn text(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Result<Vec<Point
             let value = any_number(&text, *cells.get(at).ok_or_else(missing)?)?;
             *number = if times == over { value } else { value * times / over };
         }
-        Ok(point)
+        Ok::<_, Error>(point)
     };
     let mut points = Vec::new();
     for line in lines.filter(|line| !comment(line)) {

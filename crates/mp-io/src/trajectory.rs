@@ -25,6 +25,10 @@ pub struct TrajectoryFile {
     pub velocities: Vec<Vec<f64>>,
     /// The accelerations (rad/s² or m/s²); empty if the file has none.
     pub accelerations: Vec<Vec<f64>>,
+    /// Where joints are before (rad or m), by their names, in messages of MoveIt: also joints that are not in the trajectory.
+    pub start: Vec<(String, f64)>,
+    /// What is attached to the robot in messages of MoveIt, by name.
+    pub attached: Vec<String>,
 }
 
 /// A format of files that hold a trajectory.
@@ -58,6 +62,9 @@ impl TrajectoryKind {
 }
 
 impl TrajectoryFile {
+    /// A trajectory may begin so far (rad or m) from where the robot is: `allowed_start_tolerance` of MoveIt.
+    pub const START: f64 = 0.01;
+
     /// Reads `bytes`, the content of a file that errors call `file`. Joints are matched by name to those `wanted`, and their units converted.
     /// `None` if the file has no times: then it is a path, or nothing that is known here.
     ///
@@ -127,7 +134,7 @@ mod tests {
             times: vec![0.0, 0.5, 12.000000001],
             positions: vec![vec![0.1, -2.0], vec![1e-9, 3.0], vec![0.25, PI]],
             velocities: vec![vec![0.0, 0.0], vec![1e-7, -0.3], vec![0.0, 0.0]],
-            accelerations: Vec::new(),
+            ..TrajectoryFile::default()
         }
     }
 

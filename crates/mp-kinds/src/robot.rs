@@ -350,6 +350,11 @@ pub trait Description: Motion {
         None
     }
 
+    /// The joints that the scene holds, and where (rad or m). By default there are none.
+    fn held(&self) -> Vec<(String, f64)> {
+        Vec::new()
+    }
+
     /// What to do about contacts at the start or a goal, besides moving it. By default there is nothing else.
     fn remedy(&self, _touching: &[Contact]) -> Option<String> {
         None

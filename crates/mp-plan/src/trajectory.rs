@@ -3,7 +3,7 @@
 use crate::finish::certificate::certificate;
 use crate::finish::trajectory::{UNKNOWN, check, time};
 use crate::sweep::track_in_time;
-use crate::{Body, BodyShape, Certificate, Error, Pace, PathRows, Scene, TimedPath, Track, Verdict};
+use crate::{Body, BodyShape, Certificate, Error, Pace, PathRows, Scene, TimedPath, Track, Verdict, plain};
 use mp_cspace::Interrupt;
 use mp_io::{Column, RecordedBody, RecordedShape, Recording, TrajectoryFile, TrajectoryKind};
 use mp_time::{Interpolation, Knots, Trajectory};
@@ -106,7 +106,8 @@ impl Scene {
             return Ok(None);
         }
         let Some(read) = TrajectoryFile::parse(name, bytes, kind, &self.columns())? else { return Ok(None) };
-        let TrajectoryFile { joints, times, positions, velocities, accelerations } = read;
+        self.begins_as(name, &read)?;
+        let TrajectoryFile { joints, times, positions, velocities, accelerations, .. } = read;
         let joints = joints.iter().map(|joint| (joint.name.as_str(), joint.unit.as_str()));
         let knots = Knots { times, positions, velocities, accelerations };
         let made = match curve {
@@ -114,6 +115,36 @@ impl Scene {
             None => Trajectory::of_controller(joints, knots),
         };
         made.map(Some).map_err(|e| Error::from(e).context(name.to_owned()))
+    }
+
+    /// Whether the state before the trajectory, if the file has it, is that of the scene: joints that are held, and what is attached.
+    fn begins_as(&self, name: &str, read: &TrajectoryFile) -> Result<(), Error> {
+        let wrong = |message: String, expected: &str| {
+            Err(Error::from(mp_io::Error::new(mp_io::ErrorKind::Content, name, message).expected(expected)))
+        };
+        for (joint, at) in self.robot.held() {
+            let there = read.start.iter().find(|(known, _)| *known == joint).map(|(_, there)| *there);
+            if let Some(there) = there.filter(|there| (there - at).abs() > TrajectoryFile::START) {
+                let message = format!(
+                    "`trajectory_start` has {joint} at {}, and the scene holds it at {}",
+                    plain(there),
+                    plain(at)
+                );
+                return wrong(message, "the same: say where it is held by `hold` in the problem file");
+            }
+        }
+        let bodies = self.bodies();
+        match read
+            .attached
+            .iter()
+            .find(|id| bodies.iter().all(|body| body.pose.is_some() || body.name != **id))
+        {
+            None => Ok(()),
+            Some(id) => wrong(
+                format!("the robot carries \"{id}\" in `trajectory_start`, and not in the scene"),
+                "the same: `[[attached]]` in the problem file fixes things to a link",
+            ),
+        }
     }
 
     /// The content of a file of this kind with a trajectory of the robot. Its curve reads back to the same bits if its times are
@@ -140,7 +171,7 @@ pub const MOMENTS: f64 = 50.0;
 fn of_knots(trajectory: &Trajectory, knots: Knots) -> TrajectoryFile {
     let Knots { times, positions, velocities, accelerations } = knots;
     let joints = trajectory.joints().map(|(name, unit)| Column::new(name, unit)).collect();
-    TrajectoryFile { joints, times, positions, velocities, accelerations }
+    TrajectoryFile { joints, times, positions, velocities, accelerations, ..TrajectoryFile::default() }
 }
 
 /// A body as recordings have it: the robot blue, obstacles grey.

@@ -156,10 +156,9 @@ fn limits_about_the_start_are_those_of_each_item() {
     dir.write("problems.jsonl", "{\"scene\": \"s0.toml\"}\n{\"scene\": \"s50000.toml\"}\n");
     dir.run("all.jsonl", &whole()).unwrap();
     assert_eq!(dir.items("all.jsonl", false).0, [(0, true), (1, true)], "{}", dir.read("all.jsonl"));
-    ["1/2", "2/2"]
-        .into_iter()
-        .zip(["1.jsonl", "2.jsonl"])
-        .for_each(|(shard, out)| drop(dir.shard(out, shard)));
+    for (shard, out) in [("1/2", "1.jsonl"), ("2/2", "2.jsonl")] {
+        dir.shard(out, shard);
+    }
     dir.merge("merged.jsonl", &["1.jsonl", "2.jsonl"]).unwrap();
     assert_eq!(dir.read("merged.jsonl"), dir.read("all.jsonl"));
 }

@@ -156,7 +156,7 @@ fn faulty(
 
 /// As [`TrajectoryFile::to_text`].
 pub(super) fn text(trajectory: &TrajectoryFile) -> String {
-    let TrajectoryFile { joints, times, positions, velocities, accelerations } = trajectory;
+    let TrajectoryFile { joints, times, positions, velocities, accelerations, .. } = trajectory;
     let mut names = vec!["time [s]".to_owned()];
     names.extend(joints.iter().map(ToString::to_string));
     let groups = [("velocity", "/s", velocities), ("acceleration", "/s²", accelerations)];

@@ -193,7 +193,7 @@ mod tests {
             times: vec![0.0, 0.5, 12.000000001],
             positions: vec![vec![0.1, -2.0], vec![1e-9, 3.0], vec![0.25, 1.5]],
             velocities: vec![vec![0.0, 0.0], vec![1e-7, -0.3], vec![0.0, 0.0]],
-            accelerations: Vec::new(),
+            ..TrajectoryFile::default()
         };
         let body = |name: &str, shape| RecordedBody {
             name: name.to_owned(),

@@ -26,6 +26,19 @@ pub(super) struct Message {
 #[serde(default)]
 struct State {
     joint_state: JointState,
+    attached_collision_objects: Vec<Attached>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Attached {
+    object: Named,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Named {
+    id: String,
 }
 
 #[derive(Default, Deserialize)]
@@ -35,8 +48,7 @@ struct JointState {
     position: Vec<f64>,
 }
 
-/// A trajectory may begin so far (rad or m) from where the robot is: `allowed_start_tolerance` of MoveIt.
-const START: f64 = 0.01;
+const START: f64 = TrajectoryFile::START;
 
 /// What `trajectory` is: a list in DisplayTrajectory, one in answers of MoveIt's services.
 #[derive(Deserialize)]
@@ -163,8 +175,13 @@ pub(super) fn made(file: &str, message: Message, wanted: &[Column]) -> Result<Tr
     if several {
         return Err(error("a joint of several degrees of freedom moves, such as a base".to_owned()));
     }
-    let start = message.trajectory_start.unwrap_or_default().joint_state;
-    let begins = |read: TrajectoryFile| {
+    let State { joint_state: start, attached_collision_objects } =
+        message.trajectory_start.unwrap_or_default();
+    let attached: Vec<_> =
+        attached_collision_objects.into_iter().map(|attached| attached.object.id).collect();
+    let begins = |mut read: TrajectoryFile| {
+        read.start = start.name.iter().cloned().zip(start.position.iter().copied()).collect();
+        read.attached.clone_from(&attached);
         let off = |(column, first): (&Column, &f64)| {
             let at = start.name.iter().position(|name| *name == column.name)?;
             let state = start.position.get(at)?;

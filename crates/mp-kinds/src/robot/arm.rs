@@ -463,6 +463,10 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
             false => format!("{joints} joints"),
         }
     }
+    fn held(&self) -> Vec<(String, f64)> {
+        let joints = self.arm.model().joints.iter().filter(|joint| joint.mimic.is_none());
+        joints.filter_map(|joint| Some((joint.name.clone(), joint.kind.held()?))).collect()
+    }
     fn touching(&self, q: &Configuration) -> Vec<Contact> {
         let contacts = self.arm.clone().explain(q.as_slice());
         let touch = |c: mp_robot::ArmContact| Contact {

@@ -297,6 +297,9 @@ impl Description for DrivenScene {
     fn touching(&self, q: &Configuration) -> Vec<Contact> {
         self.robot.touching(&self.parts(q).q)
     }
+    fn held(&self) -> Vec<(String, f64)> {
+        self.robot.held()
+    }
     fn closest(&self, q: &Configuration) -> Option<(String, f64)> {
         self.robot.closest(&self.parts(q).q)
     }

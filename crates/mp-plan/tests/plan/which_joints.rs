@@ -247,3 +247,28 @@ fn what_cannot_be_is_an_error_at_its_place() {
         assert!(words.iter().all(|word| error.contains(word)), "{robot} {motion}: {error}");
     }
 }
+
+/// A message of MoveIt says where all joints are and what the robot carries: a scene where that is otherwise says nothing of it.
+#[test]
+fn a_trajectory_begins_as_the_scene_holds_joints() {
+    let scene = load("hold = { raise = 0.3, finger = 0.05 }", "start = [0, 0]\ngoal = [1, 1]").unwrap();
+    let read = |state: &str| {
+        let text = format!(
+            r#"{{"trajectory_start": {state}, "trajectory": [{{"joint_trajectory": {{"joint_names": ["shoulder", "elbow"],
+            "points": [{{"positions": [0, 0], "time_from_start": {{"sec": 0, "nanosec": 0}}}},
+            {{"positions": [1, 1], "time_from_start": {{"sec": 4, "nanosec": 0}}}}]}}}}]}}"#
+        );
+        let read = scene.parse_trajectory("t.json", text.as_bytes(), mp_io::TrajectoryKind::Json, None);
+        read.map(drop).map_err(|e| e.report())
+    };
+    let at = |raise: f64, others: &str| {
+        let names = r#"["shoulder", "raise", "elbow", "finger"]"#;
+        format!(r#"{{"joint_state": {{"name": {names}, "position": [0, {raise}, 0, 0.05]}}{others}}}"#)
+    };
+    assert_eq!(read(&at(0.305, "")), Ok(()));
+    let error = read(&at(0.1, "")).unwrap_err();
+    assert!(error.contains("raise at 0.1") && error.contains("holds it at 0.3"), "{error}");
+    let carried = r#", "attached_collision_objects": [{"link_name": "tip", "object": {"id": "pole"}}]"#;
+    let error = read(&at(0.3, carried)).unwrap_err();
+    assert!(error.contains("\"pole\"") && error.contains("[[attached]]"), "{error}");
+}
