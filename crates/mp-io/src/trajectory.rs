@@ -77,10 +77,25 @@ impl TrajectoryFile {
         kind: TrajectoryKind,
         wanted: &[Column],
     ) -> Result<Option<Self>, Error> {
+        Self::parse_of(file, bytes, kind, wanted, &[])
+    }
+
+    /// As [`parse`](Self::parse), of joints some of which are `endless`: they turn without end, so that whole turns make no difference between the
+    /// state before the trajectory, which messages of MoveIt have, and its first point.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse).
+    pub fn parse_of(
+        file: &str,
+        bytes: &[u8],
+        kind: TrajectoryKind,
+        wanted: &[Column],
+        endless: &[bool],
+    ) -> Result<Option<Self>, Error> {
         let read = match kind {
             TrajectoryKind::Csv => csv::parse(file, bytes, wanted)?,
-            TrajectoryKind::Json => ros::parse_json(file, bytes, wanted)?,
-            TrajectoryKind::Yaml => ros::parse_yaml(file, bytes, wanted)?,
+            TrajectoryKind::Json => ros::parse_json(file, bytes, wanted, endless)?,
+            TrajectoryKind::Yaml => ros::parse_yaml(file, bytes, wanted, endless)?,
             TrajectoryKind::Mcap => Some(mcap::parse(file, bytes, wanted)?),
         };
         let Some(read) = read else { return Ok(None) };
@@ -283,6 +298,25 @@ mod tests {
                 Ok(_) => assert!(words.is_empty(), "{lift}"),
                 Err(error) => assert!(!words.is_empty() && error.contains(words), "{error}"),
             }
+        }
+        // Whole turns make no difference where a joint has no limits.
+        for (turns, endless, begins) in [
+            (0.0, false, true),
+            (1.0, false, false),
+            (1.0, true, true),
+            (-2.0, true, true),
+            (0.5, true, false),
+        ] {
+            let state = format!(
+                r#"{{"joint_state": {{"name": ["elbow"], "position": [{}]}}}}"#,
+                1.0 + turns * 2.0 * PI
+            );
+            let text = format!(r#"{{"trajectory": [{inside}], "trajectory_start": {state}}}"#);
+            let read = |text: &str| {
+                let (kind, endless) = (TrajectoryKind::Json, [false, endless]);
+                TrajectoryFile::parse_of("t", text.as_bytes(), kind, &wanted(), &endless).is_ok()
+            };
+            assert_eq!(read(&text), begins, "{turns} {endless}");
         }
         let two = format!(r#"{{"trajectory": [{inside}, {inside}]}}"#);
         assert!(read(&two, TrajectoryKind::Json).unwrap_err().contains("2 trajectories"));

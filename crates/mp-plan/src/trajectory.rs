@@ -105,7 +105,14 @@ impl Scene {
         if !self.has_trajectories() {
             return Ok(None);
         }
-        let Some(read) = TrajectoryFile::parse(name, bytes, kind, &self.columns())? else { return Ok(None) };
+        let columns = self.columns();
+        let turns = columns
+            .iter()
+            .zip(self.limits())
+            .map(|(column, limits)| limits.is_none() && column.unit == "rad");
+        let endless: Vec<_> = turns.collect();
+        let read = TrajectoryFile::parse_of(name, bytes, kind, &columns, &endless)?;
+        let Some(read) = read else { return Ok(None) };
         self.begins_as(name, &read)?;
         let TrajectoryFile { joints, times, positions, velocities, accelerations, .. } = read;
         let joints = joints.iter().map(|joint| (joint.name.as_str(), joint.unit.as_str()));

@@ -146,7 +146,7 @@ pub(super) fn parse(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<Traje
         [only] => {
             let several = same(&only.schema, ROBOT_TRAJECTORY);
             let message = read_joint_trajectory(&only.bytes, several).ok_or_else(|| broken(only))?;
-            return made(file, message, wanted);
+            return made(file, message, wanted, &[]);
         }
         more => return Err(error(file, format!("there are {} trajectories", more.len())).expected("one")),
     }
@@ -175,7 +175,7 @@ pub(super) fn parse(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<Traje
         let time_from_start = Time::Seconds(since as f64 / 1e9);
         points.push(Point { positions, velocities: Vec::new(), accelerations: Vec::new(), time_from_start });
     }
-    made(file, Message::of_joints(names, points), wanted)
+    made(file, Message::of_joints(names, points), wanted, &[])
 }
 
 #[cfg(test)]

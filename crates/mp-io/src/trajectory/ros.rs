@@ -8,6 +8,7 @@ use mp_formats::files::decode;
 use mp_formats::json;
 use serde::Deserialize;
 use serde_json::Value;
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 /// Any of the messages. Other members are skipped.
@@ -139,11 +140,12 @@ fn is_message(value: &Value) -> bool {
     ["points", "joint_trajectory", "trajectory"].iter().any(|key| value.get(key).is_some())
 }
 
-/// As [`TrajectoryFile::parse`].
+/// As [`TrajectoryFile::parse_of`].
 pub(super) fn parse_json(
     file: &str,
     bytes: &[u8],
     wanted: &[Column],
+    endless: &[bool],
 ) -> Result<Option<TrajectoryFile>, Error> {
     let text = decode(file, bytes)?;
     // What is no JSON is said by what reads the path.
@@ -151,14 +153,15 @@ pub(super) fn parse_json(
         return Ok(None);
     }
     let message: Message = json::parse(file, text, WHAT, &guide())?;
-    made(file, message, wanted).map(Some)
+    made(file, message, wanted, endless).map(Some)
 }
 
-/// As [`TrajectoryFile::parse`].
+/// As [`TrajectoryFile::parse_of`].
 pub(super) fn parse_yaml(
     file: &str,
     bytes: &[u8],
     wanted: &[Column],
+    endless: &[bool],
 ) -> Result<Option<TrajectoryFile>, Error> {
     let value = yaml::value(file, decode(file, bytes)?)?;
     if !is_message(&value) {
@@ -166,10 +169,16 @@ pub(super) fn parse_yaml(
     }
     let message = serde_json::from_value(value)
         .map_err(|e| Error::new(ErrorKind::Format, file, e.to_string()).expected(WHAT).help(guide()))?;
-    made(file, message, wanted).map(Some)
+    made(file, message, wanted, endless).map(Some)
 }
 
-pub(super) fn made(file: &str, message: Message, wanted: &[Column]) -> Result<TrajectoryFile, Error> {
+/// The trajectory of a message; of joints that are `endless`, whole turns make no difference to where it begins.
+pub(super) fn made(
+    file: &str,
+    message: Message,
+    wanted: &[Column],
+    endless: &[bool],
+) -> Result<TrajectoryFile, Error> {
     let error = |message: String| Error::new(ErrorKind::Content, file, message).help(guide());
     let several = message.multi_dof_joint_trajectory.is_some_and(|joints| !joints.joint_names.is_empty());
     if several {
@@ -182,14 +191,15 @@ pub(super) fn made(file: &str, message: Message, wanted: &[Column]) -> Result<Tr
     let begins = |mut read: TrajectoryFile| {
         read.start = start.name.iter().cloned().zip(start.position.iter().copied()).collect();
         read.attached.clone_from(&attached);
-        let off = |(column, first): (&Column, &f64)| {
+        let off = |(i, (column, first)): (usize, (&Column, &f64))| {
             let at = start.name.iter().position(|name| *name == column.name)?;
             let state = start.position.get(at)?;
-            let there = (state - first).abs() <= START;
+            let turns = if endless.get(i) == Some(&true) { ((state - first) / TAU).round() } else { 0.0 };
+            let there = (state - first - turns * TAU).abs() <= START;
             (!there).then(|| format!("{} is {state} there and {first} at the first point", column.name))
         };
         let first = read.positions.first().into_iter().flatten();
-        match read.joints.iter().zip(first).find_map(off) {
+        match read.joints.iter().zip(first).enumerate().find_map(off) {
             None => Ok(read),
             Some(off) => Err(error(format!("it does not begin at `trajectory_start`: {off}"))
                 .expected(format!("at most {START} between them, as MoveIt has it"))),
@@ -197,12 +207,12 @@ pub(super) fn made(file: &str, message: Message, wanted: &[Column]) -> Result<Tr
     };
     match (message.joint_trajectory, message.trajectory) {
         (Some(inner), _) | (None, Some(Several::One(inner))) => {
-            return made(file, *inner, wanted).and_then(begins);
+            return made(file, *inner, wanted, endless).and_then(begins);
         }
         (None, Some(Several::List(mut all))) => {
             let count = all.len();
             return match (all.pop(), count) {
-                (Some(only), 1) => made(file, only, wanted).and_then(begins),
+                (Some(only), 1) => made(file, only, wanted, endless).and_then(begins),
                 _ => Err(error(format!("there are {count} trajectories")).expected("one")),
             };
         }
