@@ -22,7 +22,7 @@ use std::path::Path;
 pub type Target = fn(&[u8]) -> Result<(), Error>;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 26] = [
+pub const TARGETS: [(&str, Target); 27] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -40,6 +40,7 @@ pub const TARGETS: [(&str, Target); 26] = [
     ("ompl-app", ompl_app),
     ("robot-problem", robot_problem),
     ("mjcf", mjcf),
+    ("joint-limits", joint_limits),
     ("joint-path", joint_path),
     ("json-joint-path", json_joint_path),
     ("csv-path", csv_path),
@@ -285,6 +286,14 @@ pub fn trajectory(bytes: &[u8]) -> Result<(), Error> {
     all.into_iter().find_map(Result::err).filter(|_| !is_one).map_or(Ok(()), Err)
 }
 
+/// Limits of joints of MoveIt.
+///
+/// # Errors
+/// When the bytes are refused.
+pub fn joint_limits(bytes: &[u8]) -> Result<(), Error> {
+    crate::robot::limits_of_joints("f.yaml", bytes).map(drop)
+}
+
 /// Worlds in the plane.
 ///
 /// # Errors
@@ -308,7 +317,8 @@ pub fn ros_map(bytes: &[u8]) -> Result<(), Error> {
 pub fn map_image(bytes: &[u8]) -> Result<(), Error> {
     let grid = GridMap::parse("f.png", bytes)?;
     // Too many corners are an error without a file, which the reader of the problem adds.
-    let _ = grid.outline(0.5, [0.0; 2], |brightness| brightness < 128.0, &mp_stop::Interrupt::never());
+    let _ =
+        grid.outline_with_alpha(0.5, [0.0; 2], |brightness| brightness < 128.0, &mp_stop::Interrupt::never());
     Ok(())
 }
 

@@ -11,6 +11,7 @@ mod urdf_mesh;
 
 pub use entry::{MovingJoints, RobotEntry, RobotPart};
 use entry::{RobotTables, robots_of};
+pub(crate) use joint_limits::parse as limits_of_joints;
 pub use joint_limits::{JointLimits, LimitsOfJoint};
 pub use parts::{PartChange, PartEntry};
 use parts::{PartTable, part_of};

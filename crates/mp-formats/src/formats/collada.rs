@@ -38,6 +38,8 @@ pub struct Scene {
     instances: Vec<Instance>,
     /// What the file says of its coordinates.
     pub(crate) asset: scene::Asset,
+    /// Whether there are morphs.
+    morphs: bool,
 }
 
 pub(crate) fn begins(bytes: &[u8]) -> bool {
@@ -66,10 +68,11 @@ impl Scene {
             .map_err(|e| document::xml_error(file, text, &e))?;
         let document = Document::new(file, text, &xml)?;
         let asset = scene::asset(&document)?;
-        Ok(Self { instances: scene::instances(&document, asset.root(axes))?, asset })
+        let (instances, morphs) = scene::instances(&document, asset.root(axes))?;
+        Ok(Self { instances, asset, morphs })
     }
 
-    /// What was made of axes and unit, for people.
+    /// What was made of axes, unit and morphs, for people.
     pub fn remarks(&self, axes: Axes) -> Vec<String> {
         let scene::Asset { unit, up, .. } = self.asset;
         let turned = match axes {
@@ -81,7 +84,8 @@ impl Scene {
         };
         let scaled = (unit != 1.0)
             .then(|| format!("COLLADA in units of {unit} m, by which coordinates are multiplied"));
-        turned.into_iter().chain(scaled).collect()
+        let morphs = self.morphs.then(|| "morphs are not applied: meshes stay as they are stored".to_owned());
+        turned.into_iter().chain(scaled).chain(morphs).collect()
     }
 
     /// All instances in one mesh.

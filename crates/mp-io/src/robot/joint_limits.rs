@@ -1,8 +1,9 @@
 //! MoveIt's `joint_limits.yaml`, beside the SRDF of a robot: how far and how fast its joints may move.
 
 use crate::yaml;
+use mp_formats::encoding::decode_mesh;
 use mp_formats::error::{Error, ErrorKind};
-use mp_formats::files::{Files, MAX_TEXT_BYTES, decode};
+use mp_formats::files::{Files, MAX_TEXT_BYTES};
 use mp_formats::text::clipped;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -44,14 +45,19 @@ pub(super) fn beside(files: &dyn Files, srdf: &Path) -> Result<JointLimits, Erro
         return Ok(JointLimits::default());
     }
     let name = file.display().to_string();
-    let read = |bytes: Vec<u8>| parse(&name, decode(&name, &bytes)?);
+    let read = |bytes: Vec<u8>| parse(&name, &bytes);
     let joints = files.read(&file, MAX_TEXT_BYTES).and_then(read).map_err(|e| e.help(HELP))?;
     Ok(JointLimits { file, joints })
 }
 
-/// The joints of a file, with what is said of them.
-fn parse(name: &str, text: &str) -> Result<Vec<LimitsOfJoint>, Error> {
-    let file = yaml::value(name, text)?;
+/// The joints of a file that errors call `name`, with what is said of them.
+pub(crate) fn parse(name: &str, bytes: &[u8]) -> Result<Vec<LimitsOfJoint>, Error> {
+    let text = &*decode_mesh(name, bytes)?;
+    let mut file = &yaml::value(name, text)?;
+    // Where parameters of ROS 2 are, around what MoveIt takes from files of its own.
+    for around in ["/**", "ros__parameters", "robot_description_planning"] {
+        file = file.get(around).unwrap_or(file);
+    }
     let joints = match file.get("joint_limits") {
         None | Some(Value::Null) => return Ok(Vec::new()),
         Some(Value::Object(joints)) => joints,
@@ -154,6 +160,7 @@ impl Entry<'_> {
             Some((line, _)) => Error::in_line(ErrorKind::Content, self.name, self.text, line + 1, message),
             None => Error::new(ErrorKind::Content, self.name, message),
         }
+        .help(HELP)
     }
 }
 
@@ -164,8 +171,8 @@ mod tests {
 
     /// The line of an error of the joints `text`, and what it says.
     fn wrong(text: &str) -> (Option<usize>, String) {
-        let error = parse("l", &format!("joint_limits:\n{text}")).unwrap_err();
-        mp_formats::error::check_error(&error.clone().help(HELP));
+        let error = parse("l", format!("joint_limits:\n{text}").as_bytes()).unwrap_err();
+        mp_formats::error::check_error(&error);
         (error.line(), error.report())
     }
 
@@ -178,15 +185,20 @@ mod tests {
         let text = "default_velocity_scaling_factor: 0.1\njoint_limits:\n  lift:\n    has_velocity_limits: true\n    max_velocity: 2\n    \
                     has_acceleration_limits: true\n    max_acceleration: 3.75\n    has_jerk_limits: true\n    max_jerk: 50\n  elbow:\n    has_velocity_limits: false\n    max_velocity: 1.5\n";
         let rates = [Some(2.0), Some(3.75), Some(50.0)];
-        let limits = |text: &str| parse("l", text).unwrap();
+        let limits = |text: &str| parse("l", text.as_bytes()).unwrap();
         assert_eq!(limits(text), [of("elbow", [None; 2], [None; 3]), of("lift", [None; 2], rates)]);
         assert!(limits("").is_empty() && limits("joint_limits:\n").is_empty());
         assert_eq!(limits("joint_limits:\n  lift:\n"), [of("lift", [None; 2], [None; 3])]);
+        // As parameters of ROS 2, and with a comment in another encoding.
+        let deep = "/**:\n  ros__parameters:\n    robot_description_planning:\n      joint_limits: {lift: {max_jerk: 50}}\n";
+        assert_eq!(limits(deep), [of("lift", [None; 2], [None, None, Some(50.0)])]);
+        assert_eq!(parse("l", b"joint_limits: {lift: {max_jerk: 50}} # \xfc\n").unwrap(), limits(deep));
     }
 
     #[test]
     fn positions_are_limits_as_in_moveit() {
-        let limits = |of: &str| parse("l", &format!("joint_limits:\n  j: {{{of}}}\n")).unwrap()[0].positions;
+        let limits =
+            |of: &str| parse("l", format!("joint_limits:\n  j: {{{of}}}\n").as_bytes()).unwrap()[0].positions;
         let both = "min_position: -1, max_position: 2";
         assert_eq!(limits(both), [Some(-1.0), Some(2.0)]);
         assert_eq!(limits(&format!("has_position_limits: true, {both}")), [Some(-1.0), Some(2.0)]);
@@ -202,7 +214,7 @@ mod tests {
     fn words_that_mean_true_and_false() {
         let is = |word: &str| {
             let text = format!("joint_limits:\n  j:\n    has_velocity_limits: {word}\n    max_velocity: 2\n");
-            parse("l", &text).unwrap()[0].rates[0].is_some()
+            parse("l", text.as_bytes()).unwrap()[0].rates[0].is_some()
         };
         for word in ["true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON", "y", "~", "\"true\""] {
             assert!(is(word), "{word}");

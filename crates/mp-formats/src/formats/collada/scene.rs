@@ -18,12 +18,22 @@ const MAX_VISITED: usize = 1_000_000;
 
 /// All instances of geometries, in the order of the importer: those of a node, then of its children, then
 /// of the nodes it instantiates.
-pub(super) fn instances<'a>(document: &Document<'a>, root: Matrix4<f64>) -> Result<Vec<Instance>, Error> {
+/// The second is whether there are morphs among them.
+pub(super) fn instances<'a>(
+    document: &Document<'a>,
+    root: Matrix4<f64>,
+) -> Result<(Vec<Instance>, bool), Error> {
     let scene = visual_scene(document)?;
-    let mut walk =
-        Walk { document, geometries: HashMap::new(), instances: Vec::new(), visited: 0, corners: 0 };
+    let mut walk = Walk {
+        document,
+        geometries: HashMap::new(),
+        instances: Vec::new(),
+        morphs: false,
+        visited: 0,
+        corners: 0,
+    };
     walk.node(scene, root, 0)?;
-    Ok(walk.instances)
+    Ok((walk.instances, walk.morphs))
 }
 
 fn visual_scene<'a>(document: &Document<'a>) -> Result<Node<'a, 'a>, Error> {
@@ -100,6 +110,8 @@ struct Walk<'d, 'a> {
     document: &'d Document<'a>,
     geometries: HashMap<NodeId, Rc<Geometry>>,
     instances: Vec<Instance>,
+    /// Whether a geometry is instantiated as a morph.
+    morphs: bool,
     visited: usize,
     corners: usize,
 }
@@ -144,6 +156,7 @@ impl<'a> Walk<'_, 'a> {
         let mut deep = 0;
         while target.tag_name().name() == "controller" {
             let skin = child(target, "skin").or_else(|| child(target, "morph"));
+            self.morphs |= skin.is_some_and(|skin| skin.tag_name().name() == "morph");
             let skin = skin.filter(|_| deep < MAX_DEPTH);
             let skin = skin.ok_or_else(|| self.document.error(target, "a controller of nothing"))?;
             if let Some(bind) = child(skin, "bind_shape_matrix") {

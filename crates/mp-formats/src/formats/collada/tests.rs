@@ -183,6 +183,8 @@ fn look_at_and_controllers() {
     let morph = "</controller><controller id=\"m\"><morph source=\"#g\"/></controller>";
     let nested = bound.replace("source=\"#g\"", "source=\"#m\"").replacen("</controller>", morph, 1);
     assert_eq!(parse(&nested), parse(&bound));
+    let said = |text: &str| Scene::parse("t.dae", text.as_bytes(), Axes::YUp).unwrap().remarks(Axes::YUp);
+    assert!(said(&bound).is_empty() && said(&nested)[0].starts_with("morphs are not applied"));
     for wrong in [bound.replace("7  0", "7"), nested.replace("source=\"#g\"", "source=\"#m\"")] {
         crate::error::check_error(&parse_mesh("t.dae", wrong.as_bytes()).unwrap_err());
     }
