@@ -25,6 +25,7 @@ const SRDF: &str = r#"<robot name="two">
 <group name="around"><group name="around"/></group>
 <group name="toes"><joint name="of the world"/><link name="toe"/></group>
 <group name="upward"><chain base_link="tip" tip_link="lift"/></group>
+<group name="apart"><chain base_link="tip" tip_link="gone"/></group>
 <group_state name="home" group="arm"><joint name="shoulder" value="0.8"/><joint name="elbow" value="0.2"/></group_state>
 <group_state name="home" group="hand"><joint name="finger" value="0.05"/></group_state>
 <group_state name="up" group="both"><joint name="raise" value="0.3"/><joint name="shoulder" value="-0.5"/></group_state>
@@ -215,6 +216,7 @@ fn what_cannot_be_is_an_error_at_its_place() {
         ),
         ("group = \"legs\"", motion, ["p.toml:4:", "no group \"legs\"", "arm"]),
         ("group = \"toes\"", motion, ["p.toml:4:", "\"toe\"", "does not have"]),
+        ("group = \"apart\"", motion, ["p.toml:4:", "\"gone\"", "does not have"]),
         ("group = \"around\"", motion, ["p.toml:4:", "no joint", "moves"]),
         ("group = \"arm\"\njoints = [\"raise\"]", motion, ["p.toml:5:", "group and a list", "not both"]),
         ("joints = []", motion, ["p.toml:4:", "no joint moves", "names"]),
