@@ -121,6 +121,7 @@ fn turning(above: usize, along: f64, number: usize) -> Joint {
         slides: false,
         number: Some((number, 1.0, 0.0)),
         farthest: 0.0,
+        is_held: false,
     }
 }
 
@@ -173,6 +174,7 @@ fn arms() {
         slides: true,
         number: Some((0, factor, 0.0)),
         farthest: 3.0 * f64::abs(factor),
+        is_held: false,
     };
     let arm = tree(false, vec![slide(0, Vector3::x(), 1.0), slide(1, Vector3::y(), 0.1)]);
     hits_wall(

@@ -1,6 +1,7 @@
 //! The pairs of links that are tested against each other.
 
 use super::kinematics::Kinematics;
+use super::planar_base::PLANAR_NUMBERS;
 use super::robot::LinkBody;
 use super::{ArmError, ArmModel};
 use mp_collide::Query;
@@ -16,6 +17,15 @@ pub(super) struct LinkPair {
 
 /// In this many configurations pairs are looked at to find those that are always close.
 const SAMPLES: usize = 100;
+
+/// The frame of the base of the robot, which may stand, float, or move in the plane by the first three joints.
+pub(super) fn base_frame(model: &ArmModel, kinematics: &Kinematics) -> usize {
+    let planar = model.joints.len() >= PLANAR_NUMBERS.len()
+        && model.joints.iter().zip(PLANAR_NUMBERS).all(|(joint, name)| joint.name == name);
+    let last = model.joints.get(PLANAR_NUMBERS.len() - 1).filter(|_| planar);
+    let body = last.and_then(|joint| kinematics.attached.iter().find(|link| link.name == joint.child));
+    body.map_or(0, |link| link.frame)
+}
 
 /// Which links are compared.
 #[derive(Debug, Default)]
@@ -52,6 +62,7 @@ pub(super) fn compared(
 ) -> Result<Compared, ArmError> {
     let free = described(model, kinematics);
     let frame_of = |body: &LinkBody| free.attached[body.link].frame;
+    let base = base_frame(model, &free);
     let mut interrupt = interrupt.clone();
     let key = |a: usize, b: usize| (a.min(b), a.max(b));
     let mut keys = |pairs: &[(String, String)]| {
@@ -78,7 +89,7 @@ pub(super) fn compared(
         for (i, a) in bodies.iter().enumerate().take(j) {
             interrupt.go_on()?;
             let links = key(a.link, b.link);
-            let joined = joined(&free, bodies, a, b);
+            let joined = joined(&free, bodies, base, a, b);
             let is_kept = kept.contains(&links);
             let guessed = model.may_touch.is_none();
             let left_out = joined == Joined::Yes || (joined == Joined::Welded && guessed);
@@ -126,7 +137,13 @@ pub(super) enum Joined {
     Yes,
 }
 
-pub(super) fn joined(kinematics: &Kinematics, bodies: &[LinkBody], a: &LinkBody, b: &LinkBody) -> Joined {
+pub(super) fn joined(
+    kinematics: &Kinematics,
+    bodies: &[LinkBody],
+    base: usize,
+    a: &LinkBody,
+    b: &LinkBody,
+) -> Joined {
     let frame_of = |link: usize| kinematics.attached[link].frame;
     let moves = |child: &LinkBody, parent: &LinkBody| {
         let child = frame_of(child.link);
@@ -160,7 +177,7 @@ pub(super) fn joined(kinematics: &Kinematics, bodies: &[LinkBody], a: &LinkBody,
         Some([_, lower]) if *lower == child || (!has_shape(*lower) && stands_for(*lower, child)) => {
             Joined::Yes
         }
-        None if frame_of(parent) == 0 => Joined::Beside,
+        None if frame_of(parent) == base => Joined::Beside,
         _ => Joined::Welded,
     }
 }

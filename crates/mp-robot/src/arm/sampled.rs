@@ -1,6 +1,6 @@
 //! Which links may touch, found by sampling, as MoveIt's Setup Assistant does; and the SRDF that says so.
 
-use super::pairs::{Joined, joined};
+use super::pairs::{Joined, base_frame, joined};
 use super::robot::{LinkBody, SharedArm, are_nested};
 use super::{ArmError, ArmModel, Kinematics};
 use mp_collide::Query;
@@ -69,11 +69,12 @@ impl ArmModel {
         let described = described.unwrap_or_else(|| self.clone());
         let model = Self { may_touch: None, kept_apart: Vec::new(), ..described };
         let robot = SharedArm::new(&model, interrupt)?;
+        let base = base_frame(&robot.model, &robot.kinematics);
         let mut candidates = Vec::new();
         for (j, b) in robot.bodies.iter().enumerate() {
             for (i, a) in robot.bodies.iter().enumerate().take(j) {
                 let rigid = a.frame == b.frame;
-                let adjacent = !rigid && joined(&robot.kinematics, &robot.bodies, a, b) == Joined::Yes;
+                let adjacent = !rigid && joined(&robot.kinematics, &robot.bodies, base, a, b) == Joined::Yes;
                 candidates.push(Candidate { bodies: [i, j], adjacent, rigid, at_neutral: false, touched: 0 });
             }
         }

@@ -110,6 +110,8 @@ fn walls_welded_to_the_root_are_compared() {
     // Also of a base that floats.
     let bounds = mp_geom::Aabb::new([-1.0; 3].into(), [1.0; 3].into());
     assert_eq!(compared(&ArmModel { floating: Some(bounds), ..make(2.0) }), ["wall cart"]);
+    // And of one that drives.
+    assert_eq!(compared(&make(2.0).with_planar_base([-1.0; 2], [1.0; 2]).unwrap()), ["wall cart"]);
 }
 
 #[test]

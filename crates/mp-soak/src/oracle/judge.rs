@@ -267,11 +267,11 @@ impl<'c> Bodies<'c> {
 }
 
 impl Case {
-    /// Whether a frame of the robot never moves.
+    /// Whether a frame of the robot never moves, and no joint that is held keeps it from moving.
     fn stands(&self, mut frame: usize) -> bool {
         let super::Moves::Tree(tree) = &self.moves else { return false };
         while frame > 0 {
-            if tree.joints[frame - 1].number.is_some() {
+            if tree.joints[frame - 1].is_joint() {
                 return false;
             }
             frame = tree.joints[frame - 1].above;

@@ -58,6 +58,15 @@ pub struct Joint {
     pub number: Option<(usize, f64, f64)>,
     /// The greatest value (m) if it slides.
     pub farthest: f64,
+    /// Whether it is held at the value that its origin has: it moves nothing, but what is behind it is no part of what is before it.
+    pub is_held: bool,
+}
+
+impl Joint {
+    /// Whether it is no fixed joint.
+    pub(crate) fn is_joint(&self) -> bool {
+        self.number.is_some() || self.is_held
+    }
 }
 
 /// How inputs move a robot.

@@ -5,7 +5,7 @@ use super::{World, by_rates, end, goals, line, list, lists, wide_goal};
 use crate::draw::Draw;
 use crate::oracle::{Body, Case, Joint, Moves, Piece, Shape, Tree};
 use nalgebra::{Isometry3, Point3, Vector3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
 /// The half of each side of the room (m), before it is scaled.
@@ -193,7 +193,7 @@ pub(super) fn without_pairs(draw: &mut Draw, floats: bool, scale: f64, name: &st
         }
         line(&mut urdf, format!("<joint name=\"joint{j}\" type=\"{word}\">{text}</joint>"));
         reach += pose(six).translation.vector.norm() + farthest;
-        joints.push(Joint { above, origin: pose(six), axis, slides, number, farthest });
+        joints.push(Joint { above, origin: pose(six), axis, slides, number, farthest, is_held: false });
     }
     urdf += "</robot>\n";
     reach += lengths.iter().fold(0.0, |most: f64, x| most.max(*x));
@@ -206,7 +206,7 @@ pub(super) fn without_pairs(draw: &mut Draw, floats: bool, scale: f64, name: &st
 impl Made {
     /// The frame that moves with a link: a fixed joint has none of its own.
     pub(super) fn moving_frame(&self, mut link: usize) -> usize {
-        while link > 0 && self.tree.joints[link - 1].number.is_none() {
+        while link > 0 && !self.tree.joints[link - 1].is_joint() {
             link = self.tree.joints[link - 1].above;
         }
         link
@@ -214,19 +214,57 @@ impl Made {
 
     /// Finds out which links are compared, and writes down those that may touch.
     pub(super) fn pair_links(&mut self, draw: &mut Draw) {
+        let mut file = draw.chance(0.5);
+        let (mut all, mut may_touch, neutral_touches) = self.pairs_and_touching(draw, file);
+        // Without this file, links that always touch are found by the program. That cannot be if none touch
+        // at the neutral one.
+        if !file && (neutral_touches || !may_touch.is_empty()) {
+            file = true;
+            (all, may_touch, _) = self.pairs_and_touching(draw, file);
+        }
+        if file {
+            let lines = may_touch.iter().map(|pair| {
+                let [a, b] = pair.map(|link| link - self.first);
+                format!("<disable_collisions link1=\"link{a}\" link2=\"link{b}\" reason=\"Default\"/>\n")
+            });
+            self.srdf = Some(format!("<robot name=\"arm\">\n{}</robot>\n", lines.collect::<String>()));
+        }
+        self.pairs = all;
+    }
+
+    /// The pairs of bodies that a robot with or without an SRDF compares, those of links that may touch as they do in most configurations, and
+    /// whether any touch at the neutral one.
+    fn pairs_and_touching(
+        &self,
+        draw: &mut Draw,
+        file: bool,
+    ) -> (Vec<[usize; 2]>, BTreeSet<[usize; 2]>, bool) {
         let of_link = &self.of_link;
-        // A joint connects the links that move with its child to those that move with its parent; of the root
-        // that stands still, to its parent alone.
+        // A joint connects the links that move with its child to those that move with its parent; with a file its own two
+        // links alone, and of the base only its own. A link without bodies stands for those next to it.
+        let above_of = |link: usize| self.tree.joints[link - 1].above;
+        let is_near = |top: usize, link: usize| {
+            if self.moving_frame(top) != self.moving_frame(link) {
+                return false;
+            }
+            let between: Vec<usize> =
+                std::iter::successors(Some(link), |at| (*at > top).then(|| above_of(*at))).collect();
+            between.last() == Some(&top)
+                && between[1..]
+                    .split_last()
+                    .is_none_or(|(_, inner)| inner.iter().all(|at| !of_link.contains(at)))
+        };
         let joined = |a: usize, b: usize| {
             let child_of = |child: usize, parent: usize| {
                 let moved = self.moving_frame(child);
                 moved > 0 && {
                     let above = self.tree.joints[moved - 1].above;
-                    let body = self.moving_frame(above);
-                    if body > 0 || self.tree.floats {
-                        body == self.moving_frame(parent)
-                    } else {
-                        above == parent
+                    let of_parent = above == parent || (!of_link.contains(&above) && is_near(parent, above));
+                    let of_child = moved == child || (!of_link.contains(&moved) && is_near(moved, child));
+                    match self.moving_frame(above) {
+                        _ if file => of_parent && of_child,
+                        0 => of_parent,
+                        body => body == self.moving_frame(parent),
                     }
                 }
             };
@@ -253,8 +291,7 @@ impl Made {
             let row: Vec<f64> = root.into_iter().chain(sample.iter().copied()).collect();
             case.clearance_at(&row).is_ok_and(|clearance| clearance <= 0.0)
         };
-        let mut may_touch = std::collections::BTreeSet::new();
-        let mut neutral_touches = false;
+        let (mut may_touch, mut neutral_touches) = (BTreeSet::new(), false);
         for pair in &all {
             case.pairs = vec![*pair];
             let count = samples.iter().filter(|sample| touches(&case, sample)).count();
@@ -264,16 +301,7 @@ impl Made {
             }
         }
         all.retain(|pair| !may_touch.contains(&pair.map(|i| of_link[i])));
-        self.pairs = all;
-        // Without this file, links that always touch are found by the program. That cannot be if none touch
-        // at the neutral one.
-        if neutral_touches || !may_touch.is_empty() || draw.chance(0.5) {
-            let lines = may_touch.iter().map(|pair| {
-                let [a, b] = pair.map(|link| link - self.first);
-                format!("<disable_collisions link1=\"link{a}\" link2=\"link{b}\" reason=\"Default\"/>\n")
-            });
-            self.srdf = Some(format!("<robot name=\"arm\">\n{}</robot>\n", lines.collect::<String>()));
-        }
+        (all, may_touch, neutral_touches)
     }
 
     pub(super) fn joint_values(&self, draw: &mut Draw) -> Vec<f64> {

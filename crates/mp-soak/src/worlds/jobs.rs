@@ -72,6 +72,7 @@ fn named(
 /// A random robot, some of whose joints may be held, on a base that stands or moves in the plane.
 fn robot(draw: &mut Draw, scale: f64, name: &str) -> Robot {
     let mut made = without_pairs(draw, false, scale, name);
+    made.pair_links(draw);
     let mut lines = Vec::new();
     if made.limits.len() > 1 && draw.chance(0.5) {
         let number = draw.below(made.limits.len());
@@ -90,7 +91,6 @@ fn robot(draw: &mut Draw, scale: f64, name: &str) -> Robot {
         lines.push(format!("base = {}", list(&six)));
         pose(six)
     };
-    made.pair_links(draw);
     Robot { made, base, lines }
 }
 
@@ -107,7 +107,7 @@ fn hold(made: &mut Made, number: usize, value: f64) {
                         UnitQuaternion::from_axis_angle(&Unit::new_normalize(joint.axis), at),
                     ),
                 };
-                joint.number = None;
+                (joint.number, joint.is_held) = (None, true);
             }
             Some((i, factor, shift)) if i > number => joint.number = Some((i - 1, factor, shift)),
             _ => {}
@@ -133,6 +133,7 @@ fn drive(made: &mut Made, half: f64) {
         slides,
         number: Some((above, 1.0, 0.0)),
         farthest: if slides { half } else { 0.0 },
+        is_held: false,
     };
     let base = [joint(0, Vector3::x(), true), joint(1, Vector3::y(), true), joint(2, Vector3::z(), false)];
     made.tree.joints.splice(0..0, base);
@@ -154,7 +155,8 @@ fn alone(robot: Robot, prefix: &str) -> Made {
         joint.above += 1;
     }
     let (origin, farthest) = (base, 0.0);
-    let root = Joint { above: 0, origin, axis: Vector3::x(), slides: false, number: None, farthest };
+    let root =
+        Joint { above: 0, origin, axis: Vector3::x(), slides: false, number: None, farthest, is_held: false };
     made.tree.joints.insert(0, root);
     made.bodies.iter_mut().for_each(|body| {
         body.frame += 1;

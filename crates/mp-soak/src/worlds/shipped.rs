@@ -147,6 +147,7 @@ fn wrench(draw: &mut Draw) -> World {
         slides: true,
         number: Some((0, 1.0, 0.0)),
         farthest: 0.38,
+        is_held: false,
     };
     let tree = Tree {
         floats: true,
