@@ -25,14 +25,17 @@ impl ArmModel {
         }
     }
 
-    /// The same robot as it was described, with no joint held and no other limits; `None` when that is the same.
+    /// The same robot as it was described, with no joint held and no other limits; `None` when that is the same. Joints that have no room to
+    /// move as they were described are as they are now. Where it is only sound while joints are held, no joint mimics another.
     pub(super) fn as_described(&self) -> Option<Self> {
-        self.joints.iter().any(|joint| joint.described.is_some()).then(|| {
+        let has_room = |kind: &JointKind| kind.limits().is_none_or(|[low, high]| low < high);
+        let free = |joint: &Joint| joint.described.filter(has_room);
+        self.joints.iter().any(|joint| free(joint).is_some()).then(|| {
             let mut described = self.clone();
-            described
-                .joints
-                .iter_mut()
-                .for_each(|joint| joint.kind = joint.described.take().unwrap_or(joint.kind));
+            described.joints.iter_mut().for_each(|joint| joint.kind = free(joint).unwrap_or(joint.kind));
+            if Kinematics::new(&described).is_err() {
+                described.joints.iter_mut().for_each(|joint| joint.mimic = None);
+            }
             described
         })
     }

@@ -42,7 +42,6 @@ pub(super) struct Compared {
 
 /// The tree of a robot as it was described: no joint is held, and limits are its own.
 fn described(model: &ArmModel, kinematics: &Kinematics) -> Kinematics {
-    // A model may be sound only while a joint is held.
     let described = model.as_described().and_then(|described| Kinematics::new(&described).ok());
     described.unwrap_or_else(|| kinematics.clone())
 }

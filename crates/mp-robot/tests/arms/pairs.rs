@@ -321,6 +321,17 @@ fn what_is_held_is_compared_all_the_same() {
         all.sort();
         assert_eq!(found, all);
     }
+    // Also where the joint was described without room, and where one mimics it that could not if it were free.
+    let mut roomless = free.clone();
+    roomless.joints[2].kind = JointKind::Prismatic { low: 0.0, high: 0.0 };
+    assert!(compared(&roomless.with_limits("3", -0.3, 1.0).unwrap()).contains(&"a c".to_owned()));
+    let mut turning = free.clone();
+    turning.joints[3] = joint("4", "c", "d", TURN).mimic("5", 1.0, 0.0);
+    turning.links.push(block("e", 0.1, 9.0));
+    turning.joints.push(joint("5", "base", "e", JointKind::Continuous));
+    let held = turning.holding("5", 0.5).and_then(|held| held.holding("3", 0.4)).unwrap();
+    assert!(compared(&held).contains(&"a c".to_owned()));
+    let held = free.clone().holding("3", -0.3).unwrap();
     // `c` is in `a` there.
     let mut arm = Arm::new(&held, []).unwrap();
     let q = |numbers: &[f64]| Configuration::from(numbers);
