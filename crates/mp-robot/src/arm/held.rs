@@ -25,19 +25,23 @@ impl ArmModel {
         }
     }
 
-    /// The same robot as it was described, with no joint held and no other limits; `None` when that is the same. Joints that have no room to
-    /// move as they were described are as they are now. Where it is only sound while joints are held, no joint mimics another.
+    /// The same robot as it was described, with no joint held, and with the limits that it had and has; `None` when that is the same. With an SRDF, which
+    /// says of all links which may touch, joints whose limits are equal have a hair of room. Where all this is not sound, no joint mimics another.
     pub(super) fn as_described(&self) -> Option<Self> {
-        let has_room = |kind: &JointKind| kind.limits().is_none_or(|[low, high]| low < high);
-        let free = |joint: &Joint| joint.described.filter(has_room);
-        self.joints.iter().any(|joint| free(joint).is_some()).then(|| {
-            let mut described = self.clone();
-            described.joints.iter_mut().for_each(|joint| joint.kind = free(joint).unwrap_or(joint.kind));
-            if Kinematics::new(&described).is_err() {
-                described.joints.iter_mut().for_each(|joint| joint.mimic = None);
+        let mut free = self.clone();
+        for joint in &mut free.joints {
+            joint.kind = joint.described.map_or(joint.kind, |before| with_both_limits(before, joint.kind));
+            if self.may_touch.is_some() && joint.mimic.is_none() {
+                joint.kind = with_room(joint.kind);
             }
-            described
-        })
+        }
+        if free.joints.iter().zip(&self.joints).all(|(free, own)| free.kind == own.kind) {
+            return None;
+        }
+        if Kinematics::new(&free).is_err() {
+            free.joints.iter_mut().for_each(|joint| joint.mimic = None);
+        }
+        Some(free)
     }
 
     /// The same robot of which no other joints move than those of `joints`, and where the others are held: where `at` says, else at
@@ -79,5 +83,27 @@ impl ArmModel {
         let held: Vec<_> = others.map(|joint| (joint.name.clone(), value(&joint.name))).collect();
         let model = held.iter().try_fold(self, |model, (joint, value)| model.holding(joint, *value))?;
         Ok((model, held))
+    }
+}
+
+/// A joint with the room that it had and has.
+fn with_both_limits(before: JointKind, now: JointKind) -> JointKind {
+    let (Some([a, b]), Some([c, d])) = (before.limits(), now.limits()) else {
+        return if before.limits().is_none() { before } else { now };
+    };
+    match (a <= b, now) {
+        (true, JointKind::Prismatic { .. }) => JointKind::Prismatic { low: a.min(c), high: b.max(d) },
+        (true, JointKind::Revolute { .. }) => JointKind::Revolute { low: a.min(c), high: b.max(d) },
+        _ => now,
+    }
+}
+
+/// A joint whose limits are equal, with a hair of room: it has a frame of its own then.
+fn with_room(kind: JointKind) -> JointKind {
+    let Some(at) = kind.held() else { return kind };
+    let hair = 1e-9 * (1.0 + at.abs());
+    match kind {
+        JointKind::Prismatic { .. } => JointKind::Prismatic { low: at - hair, high: at + hair },
+        _ => JointKind::Revolute { low: at - hair, high: at + hair },
     }
 }

@@ -3,7 +3,7 @@
 use super::kinematics::Kinematics;
 use super::planar_base::PLANAR_NUMBERS;
 use super::robot::LinkBody;
-use super::{ArmError, ArmModel};
+use super::{ArmError, ArmModel, JointKind};
 use mp_collide::Query;
 use mp_cspace::{Configuration, Halton, Interrupt, Joints, Rng, Sampler};
 use std::collections::BTreeSet;
@@ -34,7 +34,7 @@ pub(super) struct Compared {
     pub(super) pairs: Vec<LinkPair>,
     /// Pairs that do not, for the joints between them are held.
     pub(super) still_pairs: Vec<[usize; 2]>,
-    /// Bodies that only joints that are held would move: they are compared with obstacles, though they stand still.
+    /// Bodies that stand still for joints that are held or have equal limits: they are compared with obstacles all the same.
     pub(super) still_bodies: Vec<usize>,
     /// What is to be said about them.
     pub(super) notes: Vec<String>,
@@ -120,9 +120,23 @@ pub(super) fn compared(
         let [a, b] = pair.bodies.map(|i| bodies[i].frame);
         if a == b { still_pairs.push(pair.bodies) } else { pairs.push(pair) }
     }
-    let stands = |i: &usize| bodies[*i].frame == 0 && !kinematics.floats() && frame_of(&bodies[*i]) > 0;
+    let stands = |i: &usize| {
+        bodies[*i].frame == 0 && !kinematics.floats() && !is_fixed(model, kinematics, bodies[*i].link)
+    };
     let still_bodies = (0..bodies.len()).filter(stands).collect();
     Ok(Compared { pairs, still_pairs, still_bodies, notes })
+}
+
+/// Whether all joints above a link are fixed: joints whose limits are equal are not.
+fn is_fixed(model: &ArmModel, kinematics: &Kinematics, mut link: usize) -> bool {
+    let above = |link: usize| kinematics.joined.iter().position(|[_, below]| *below == link);
+    while let Some(joint) = above(link) {
+        if model.joints[joint].kind != JointKind::Fixed {
+            return false;
+        }
+        link = kinematics.joined[joint][0];
+    }
+    true
 }
 
 /// Whether a joint connects two links.

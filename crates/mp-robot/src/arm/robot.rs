@@ -349,7 +349,7 @@ impl Scratch {
 ///
 /// - no link that can move has a point in common with an obstacle. Links that are fixed to the base are not tested against
 ///   obstacles, which stand still too: a table may touch the base that it carries. Links that stand still because joints are
-///   [held](ArmModel::holding) are tested;
+///   [held](ArmModel::holding), or have equal limits, are tested;
 /// - no two links have a point in common, except pairs that fixed joints connect, pairs that one joint
 ///   connects (a link without a shape stands for the one that it is fixed to), and pairs that may touch: those of [`ArmModel::may_touch`] if given, else those that touch
 ///   at each of 100 configurations, the neutral one and 99 of the Halton sequence. Pairs within twice the tolerance of each

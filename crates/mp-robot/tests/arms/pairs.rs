@@ -325,6 +325,23 @@ fn what_is_held_is_compared_all_the_same() {
     let mut roomless = free.clone();
     roomless.joints[2].kind = JointKind::Prismatic { low: 0.0, high: 0.0 };
     assert!(compared(&roomless.with_limits("3", -0.3, 1.0).unwrap()).contains(&"a c".to_owned()));
+    // Limits that are equal in the description: one body with what carries it, unless an SRDF says what may touch; obstacles count.
+    let mut equal = free.clone();
+    equal.joints[0].kind = JointKind::Prismatic { low: 0.0, high: 0.0 };
+    equal.joints[2].kind = JointKind::Prismatic { low: -0.3, high: -0.3 };
+    assert!(!compared(&equal).contains(&"a c".to_owned()));
+    assert!(compared(&equal.clone().with_srdf("<robot/>").unwrap()).contains(&"a c".to_owned()));
+    let post = (String::from("post"), cuboid(0.1, 0.1, 0.1).unwrap(), Isometry3::translation(0.1, 0.1, 0.0));
+    let contacts = Arm::new(&equal, [post]).unwrap().explain(&[0.5, 0.0]);
+    assert_eq!((&*contacts[0].link, &*contacts[0].other), ("a", "post"));
+    // Limits that are wider than described.
+    let wide = narrow.clone();
+    let wide = ArmModel {
+        joints: wide.joints.into_iter().map(|joint| Joint { described: None, ..joint }).collect(),
+        ..wide
+    };
+    assert!(!compared(&wide).contains(&"a c".to_owned()));
+    assert!(compared(&wide.with_limits("3", -0.3, 1.0).unwrap()).contains(&"a c".to_owned()));
     let mut turning = free.clone();
     turning.joints[3] = joint("4", "c", "d", TURN).mimic("5", 1.0, 0.0);
     turning.links.push(block("e", 0.1, 9.0));

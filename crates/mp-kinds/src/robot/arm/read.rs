@@ -265,8 +265,10 @@ fn with_start(
 ) -> Result<ArmModel, ArmError> {
     let base = if kinematics.floats() { <FloatingJoints as LinkedSpace>::BASE.len() } else { 0 };
     let tolerance = |name: &str| {
-        let mut all = problem.file.robots.iter().enumerate();
-        let own = all.find(|(i, _)| name.starts_with(&problem.file.prefix(*i)));
+        // Of `a` and `a/b` the longer one.
+        let all = problem.file.robots.iter().enumerate();
+        let own = all.filter(|(i, _)| name.starts_with(&problem.file.prefix(*i)));
+        let own = own.max_by_key(|(i, _)| problem.file.prefix(*i).len());
         own.map_or(0.0, |(_, entry)| entry.limit_tolerance)
     };
     for (coordinate, x) in kinematics.coordinates().iter().zip(problem.file.start.row().iter().skip(base)) {
