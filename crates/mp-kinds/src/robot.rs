@@ -350,8 +350,8 @@ pub trait Description: Motion {
         None
     }
 
-    /// The joints that the scene holds, and where (rad or m). By default there are none.
-    fn held(&self) -> Vec<(String, f64)> {
+    /// The joints that the scene holds, where (rad or m), and whether whole turns make no difference to them. By default there are none.
+    fn held(&self) -> Vec<(String, f64, bool)> {
         Vec::new()
     }
 

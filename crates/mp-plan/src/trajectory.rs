@@ -8,6 +8,7 @@ use mp_cspace::Interrupt;
 use mp_io::{Column, RecordedBody, RecordedShape, Recording, TrajectoryFile, TrajectoryKind};
 use mp_time::{Interpolation, Knots, Trajectory};
 use nalgebra::Point2;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 impl Scene {
@@ -129,9 +130,13 @@ impl Scene {
         let wrong = |message: String, expected: &str| {
             Err(Error::from(mp_io::Error::new(mp_io::ErrorKind::Content, name, message).expected(expected)))
         };
-        for (joint, at) in self.robot.held() {
+        for (joint, at, turns) in self.robot.held() {
+            let off = |there: &f64| {
+                let whole = if turns { ((there - at) / TAU).round() * TAU } else { 0.0 };
+                (there - at - whole).abs() > TrajectoryFile::START
+            };
             let there = read.start.iter().find(|(known, _)| *known == joint).map(|(_, there)| *there);
-            if let Some(there) = there.filter(|there| (there - at).abs() > TrajectoryFile::START) {
+            if let Some(there) = there.filter(off) {
                 let message = format!(
                     "`trajectory_start` has {joint} at {}, and the scene holds it at {}",
                     plain(there),

@@ -26,7 +26,7 @@ use mp_cspace::{
 };
 use mp_geom::{Aabb, TriMesh, continued_six, pose_from_six, six_from_pose};
 use mp_io::{DescribedRobot, Disk, Files, PlacedBody, RobotFilePart, RobotProblem};
-use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, JointKind, PLANAR_NUMBERS};
+use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, Joint, JointKind, PLANAR_NUMBERS};
 use nalgebra::Isometry3;
 use named::NamedValues;
 pub use pose_goals::Reached;
@@ -463,9 +463,10 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
             false => format!("{joints} joints"),
         }
     }
-    fn held(&self) -> Vec<(String, f64)> {
+    fn held(&self) -> Vec<(String, f64, bool)> {
         let joints = self.arm.model().joints.iter().filter(|joint| joint.mimic.is_none());
-        joints.filter_map(|joint| Some((joint.name.clone(), joint.kind.held()?))).collect()
+        let turns = |joint: &Joint| joint.described == Some(JointKind::Continuous);
+        joints.filter_map(|joint| Some((joint.name.clone(), joint.kind.held()?, turns(joint)))).collect()
     }
     fn touching(&self, q: &Configuration) -> Vec<Contact> {
         let contacts = self.arm.clone().explain(q.as_slice());
@@ -482,6 +483,13 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         Some((format!("{} and {}", gap.link, gap.other), gap.distance))
     }
     fn remedy(&self, touching: &[Contact]) -> Option<String> {
+        let with_obstacles = touching.iter().filter(|touch| !touch.with_itself);
+        let mut links = with_obstacles.filter_map(|touch| touch.part.as_deref());
+        if let Some(link) = links.find(|link| self.arm.held_links().any(|held| held == *link)) {
+            return Some(format!(
+                "no joint moves {link}: let one above it move, or hold it elsewhere (`hold` in the problem file)"
+            ));
+        }
         let own = touching.iter().filter(|touch| touch.with_itself);
         let pairs: Vec<_> =
             own.map(|touch| [touch.part.as_deref().unwrap_or_default(), &touch.other]).collect();

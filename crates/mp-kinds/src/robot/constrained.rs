@@ -280,7 +280,7 @@ impl Description for Constrained {
         fn name(&self) -> &str;
         fn space_name(&self) -> String;
         fn touching(&self, q: &Configuration) -> Vec<Contact>;
-        fn held(&self) -> Vec<(String, f64)>;
+        fn held(&self) -> Vec<(String, f64, bool)>;
         fn closest(&self, q: &Configuration) -> Option<(String, f64)>;
         fn remedy(&self, touching: &[Contact]) -> Option<String>;
         fn enclosures(&self, q: &Configuration) -> Vec<[String; 2]>;

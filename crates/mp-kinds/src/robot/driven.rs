@@ -297,7 +297,7 @@ impl Description for DrivenScene {
     fn touching(&self, q: &Configuration) -> Vec<Contact> {
         self.robot.touching(&self.parts(q).q)
     }
-    fn held(&self) -> Vec<(String, f64)> {
+    fn held(&self) -> Vec<(String, f64, bool)> {
         self.robot.held()
     }
     fn closest(&self, q: &Configuration) -> Option<(String, f64)> {

@@ -113,8 +113,8 @@ fn held_joints_have_no_numbers() {
     };
     assert_eq!(path(&held(0.2)).last().unwrap(), &[-0.5, 0.1]);
     let (scene, free) = (held(0.4), held(0.2));
-    let error = scene.plan(&Request::default()).unwrap_err().to_string();
-    assert!(error.contains("upper in obstacle 1"), "{error}");
+    let error = scene.plan(&Request::default()).unwrap_err().report();
+    assert!(error.contains("upper in obstacle 1") && error.contains("no joint moves upper"), "{error}");
     let rows = vec![scene.start(), scene.goals().remove(0)];
     let straight = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
     assert!(free.check(&straight).unwrap().free);

@@ -68,7 +68,7 @@ pub(super) struct SharedArm {
     pub(super) pairs: Vec<LinkPair>,
     /// Pairs of bodies that must not touch, and never move relative to each other.
     pub(super) still_pairs: Vec<[usize; 2]>,
-    /// Bodies that stand still for joints that are held, and must not touch obstacles.
+    /// Bodies that stand still for joints that are held or have equal limits, and must not touch obstacles.
     pub(super) still_bodies: Vec<usize>,
     /// Whether the covers of all links are [exact](Cover::is_exact).
     pub(super) is_of_balls: bool,
@@ -436,6 +436,11 @@ impl Arm {
         let [from_obstacles, from_links] =
             *still.get_or_init(|| robot.still_distances(&obstacles.scene, query));
         (from_obstacles - *kept).min(from_links).max(0.0)
+    }
+
+    /// The names of the links that are compared with obstacles though they stand still, as joints are held.
+    pub fn held_links(&self) -> impl Iterator<Item = &str> {
+        self.robot.still_bodies.iter().map(|i| self.robot.name(*i))
     }
 
     /// The names of the links that are compared with obstacles.
