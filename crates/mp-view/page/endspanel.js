@@ -58,7 +58,9 @@ export class EndsPanel {
     this.fields = scene.columns.map(({ name, unit }, k) => {
       const [low, high] = scene.limits[k] ?? this.range(k);
       const slider = el("input", { type: "range", min: low, max: high, step: (high - low) / STEPS || "any", "aria-label": `${name} as a slider`, oninput: () => this.move(k, slider.valueAsNumber, false), onchange: () => this.move(k, slider.valueAsNumber, true) });
-      const number = el("input", { type: "number", step: "any", "aria-label": `${name} ${unit}`, onchange: () => this.move(k, number.valueAsNumber, true) });
+      // What is typed stays until it is taken, while answers about the value of before come.
+      const taken = (/** @type {() => void} */ then) => () => { delete number.dataset.typed; then(); };
+      const number = el("input", { type: "number", step: "any", "aria-label": `${name} ${unit}`, oninput: () => { number.dataset.typed = ""; }, onblur: taken(() => this.showRow()), onchange: taken(() => this.move(k, number.valueAsNumber, true)) });
       return { slider, number, degrees: unit === "rad" ? el("small", { "aria-hidden": "true" }) : null };
     });
     const rows = this.fields.map(({ slider, number, degrees }, k) =>
@@ -94,7 +96,8 @@ export class EndsPanel {
     this.fields.forEach(({ slider, number, degrees }, k) => {
       if (row[k] === undefined) return;
       slider.valueAsNumber = row[k];
-      if (document.activeElement !== number || number.valueAsNumber !== row[k]) number.value = coordinate(row[k]);
+      const typing = number.dataset.typed !== undefined || (document.activeElement === number && number.valueAsNumber === row[k]);
+      if (!typing) number.value = coordinate(row[k]);
       if (degrees) degrees.textContent = `${((row[k] * 360) / FULL_TURN).toFixed(1)}°`;
     });
   }

@@ -178,6 +178,27 @@ browserTest("a new body is at the middle of the view, where the robot may be", (
   for (const { pose } of obstacles) pose.slice(0, 3).forEach((x, k) => assert.ok(bounds[0][k] <= x && x <= bounds[1][k], `${pose}`));
 }));
 
+browserTest("what is typed of a configuration stays while answers come", () => withPage("rrs-low", async (driver) => {
+  await driver.unfold("Start and goal");
+  await driver.choose("Configuration", "0");
+  const field = await driver.control("spinbutton", "x m");
+  await field.evaluate((element) => element.select());
+  await field.type("12");
+  // Another number changes, and is answered.
+  await driver.page.evaluate(() => {
+    const slider = document.querySelector("input[aria-label='y as a slider']");
+    slider.value = slider.min;
+    slider.dispatchEvent(new Event("input"));
+  });
+  assert.equal(await driver.value("spinbutton", "x m"), "12");
+  await driver.until(() => document.querySelector(".verdict").textContent && !document.querySelector(".verdict.old"));
+  assert.equal(await driver.value("spinbutton", "x m"), "12");
+  await field.type("00");
+  await driver.page.keyboard.press("Tab");
+  await driver.until(() => /outside the limits/.test(document.querySelector(".verdict").textContent));
+  assert.equal(await driver.value("spinbutton", "x m"), "1200");
+}));
+
 browserTest("a goal out of bounds is taken to the nearest place in bounds", () => withPage("rrs-low", async (driver) => {
   await driver.unfold("Start and goal");
   await driver.choose("Configuration", "0");
