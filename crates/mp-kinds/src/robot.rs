@@ -94,9 +94,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// Obstacles: meshes that stand still, in a picture with `more` balls beside theirs. Equal ones share their memory.
-    pub(crate) fn obstacles(bodies: &[PlacedBody], more: usize) -> Vec<Self> {
-        let together = more + bodies.iter().map(|body| body.mesh.count_of_balls()).sum::<usize>();
+    /// Obstacles: meshes that stand still, in a picture of `together` balls. Equal ones share their memory.
+    pub(crate) fn obstacles(bodies: &[PlacedBody], together: usize) -> Vec<Self> {
         let mut drawn = HashMap::new();
         let obstacle = |body: &PlacedBody| {
             let memory = [body.mesh.vertices().as_ptr().addr(), body.mesh.balls().as_ptr().addr()];

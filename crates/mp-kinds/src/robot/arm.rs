@@ -675,9 +675,9 @@ impl<C: LinkedSpace> Appearance for LinkedScene<C> {
     fn bodies(&self) -> Vec<Body> {
         let name = |i: usize| self.arm.model().links[i].name.clone();
         let links: Vec<_> = self.solid_links().collect();
-        let own = links.iter().map(|(_, mesh)| mesh.count_of_balls()).sum();
-        let obstacles = Body::obstacles(&self.obstacles, own);
-        let together = own + self.obstacles.iter().map(|o| o.mesh.count_of_balls()).sum::<usize>();
+        let meshes = links.iter().map(|(_, mesh)| mesh).chain(self.obstacles.iter().map(|o| &o.mesh));
+        let together = meshes.map(TriMesh::count_of_balls).sum();
+        let obstacles = Body::obstacles(&self.obstacles, together);
         let link = |(i, mesh): (usize, TriMesh)| Body {
             name: name(i),
             shape: BodyShape::Mesh(mesh.drawn(together)),

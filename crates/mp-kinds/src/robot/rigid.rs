@@ -577,7 +577,9 @@ impl<M: RigidSpace> Appearance for RigidScene<M> {
         let robot = &self.problem.robot;
         let shape = BodyShape::Mesh(robot.mesh.clone());
         let moving = Body { name: robot.name.clone(), shape, pose: None };
-        std::iter::once(moving).chain(Body::obstacles(&self.problem.obstacles, 0)).collect()
+        let obstacles = &self.problem.obstacles;
+        let together = obstacles.iter().map(|o| o.mesh.count_of_balls()).sum();
+        std::iter::once(moving).chain(Body::obstacles(obstacles, together)).collect()
     }
     fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
         vec![pose::<M>(q)]

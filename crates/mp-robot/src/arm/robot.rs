@@ -429,12 +429,13 @@ impl Arm {
 
     /// The least clearance (m) of what never moves, beyond what is kept: of links that joints hold in their place. Infinite without any.
     pub(super) fn still_clearance(&mut self) -> f64 {
-        let Self { robot, obstacles, query, kept, still, .. } = self;
+        let Self { robot, obstacles, kept, still, .. } = self;
         if robot.still_bodies.is_empty() && robot.still_pairs.is_empty() {
             return f64::INFINITY;
         }
+        // By queries of its own: which clone asks first must not show in what it counts.
         let [from_obstacles, from_links] =
-            *still.get_or_init(|| robot.still_distances(&obstacles.scene, query));
+            *still.get_or_init(|| robot.still_distances(&obstacles.scene, &mut Query::default()));
         (from_obstacles - *kept).min(from_links).max(0.0)
     }
 
