@@ -74,6 +74,7 @@ class Options:
     roadmap: File | None = None
     clearance: float = 0.0
     sharp_clearance: bool = False
+    hybridize: int = 1
 
     def __post_init__(self) -> None:
         """Check each option, so that an error names it.
@@ -89,6 +90,7 @@ class Options:
             text("planner", self.planner)
         whole("seed", self.seed)
         whole("threads", self.threads, 1)
+        whole("hybridize", self.hybridize, 1)
         if self.time is not None:
             number("time", self.time, above=0)
         for name in ("iterations", "queries", "nodes"):
@@ -118,6 +120,7 @@ class Options:
                 "field": self.field,
                 "first_only": bool(self.first_only),
                 **({"sharp_clearance": True} if self.sharp_clearance else {}),
+                **({"hybridize": int(self.hybridize)} if self.hybridize != 1 else {}),
                 "roadmap": None if self.roadmap is None else os.fspath(self.roadmap),
             }
         )
@@ -686,6 +689,7 @@ class Scene:
         roadmap: File | None = None,
         clearance: float = 0.0,
         sharp_clearance: bool = False,
+        hybridize: int = 1,
         progress: bool | Callable[[Progress], object] = False,
         cancel: Cancel | None = None,
     ) -> Report:
@@ -727,6 +731,9 @@ class Scene:
         sharp_clearance : bool
             Whether the report has the clearance of the path as near as it can be measured, which may take as long as planning;
             otherwise it has the bound that the proof of the path gives.
+        hybridize : int
+            How many paths to plan, with this seed and the next ones, and to merge into a shorter one. Each takes as long as the
+            first.
         progress : bool or callable
             Called with :class:`Progress` at most ten times a second, in the calling thread; ``True`` shows a bar of ``tqdm``.
         cancel : Cancel, optional
@@ -752,7 +759,7 @@ class Scene:
         """
         options = Options(
             planner, seed, time, iterations, queries, nodes, settings, metric, motion, threads, finish, field,
-            first_only, roadmap, clearance, sharp_clearance,
+            first_only, roadmap, clearance, sharp_clearance, hybridize,
         )  # fmt: skip
         return self.plan_by(options, progress=progress, cancel=cancel)
 

@@ -261,6 +261,7 @@ impl Portfolio {
         control: &mut Control<'_>,
     ) -> Result<Option<PortfolioOutcome>, Error> {
         self.check()?;
+        request.check_single("a portfolio")?;
         if request.roadmap.is_some() {
             return Err(Error::new("a portfolio keeps no roadmap").help("leave the file of the roadmap out"));
         }

@@ -200,6 +200,10 @@ pub(crate) struct Plan {
     /// Keep the path as the planner found it.
     #[arg(long)]
     pub(crate) no_shorten: bool,
+    /// Plan this many paths, with seeds N, N + 1, …, and merge them into a shorter one. Each takes as long as the first; eight are many.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=100),
+          conflicts_with_all = ["no_shorten", "relax", "routes", "portfolio"])]
+    pub(crate) hybridize: u8,
     /// Instead of shortening the path, remove detours and let a snake relax it in a field: `clearance`, the default (obstacles
     /// repel); in the plane also `paper` (eq. 3 of Baizid et al.), `risk` (the landscape of risk of inexact motion and sensing;
     /// `risk:2` for twice the noise) and `image:FILE` (dark pixels of a PNG or PGM image over the bounds of the robot repel). A picture of a world in the plane shows the field too.

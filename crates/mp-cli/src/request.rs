@@ -47,6 +47,7 @@ pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
             (None, true) => Finish::AsFound,
             (None, false) => Finish::Shorten,
         },
+        hybridize: args.hybridize.into(),
         field: args.relax.clone().unwrap_or_default(),
         roadmap: args.roadmap.clone(),
         // A person reads it, or a certificate says it.

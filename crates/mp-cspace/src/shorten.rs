@@ -13,16 +13,19 @@
 //! | [`tauten`] | joins states of the path, and cuts corners, in turn |
 //! | [`simplify`] | all of these in a good order |
 //! | [`simplified_by_samples`] | the same with few tests, for robots that take long to answer |
+//! | [`hybridized`] | merges several paths into one |
 //! | [`loosen`] | makes room where a finer check finds too little of it |
 //! | [`bypass`] | leads edges round what they hit where that does not help |
 
 mod bspline;
 mod greedy;
+mod hybrid;
 mod loosen;
 mod random;
 mod taut;
 
 pub use bspline::bspline;
+pub use hybrid::hybridized;
 pub use loosen::{bypass, loosen};
 pub use random::{partial_shortcut, shortcut};
 pub use taut::tauten;

@@ -39,6 +39,6 @@ pub use numbers::{brief, count, plain, positive_number};
 pub use relax_field::RelaxField;
 pub use robot::motion::{AnyChecker, AnyMotion, AnyVerifier, Counting, TypedMotion};
 pub use robot::*;
-pub use shorten::shorten;
+pub use shorten::{hybridized, shorten};
 
 pub use mp_cspace::{Interrupt, Length};

@@ -71,6 +71,34 @@ pub fn shorten(
     }
 }
 
+/// How many pieces a path of average length is cut into where it may be joined to others.
+const PIECES: f64 = 64.0;
+
+/// The shortest way over pieces of several paths and free motions between them, which keep half of the clearance of shortcuts. `None` for a
+/// robot that moves by inputs, which cannot go over from one path to another.
+///
+/// # Errors
+/// When the tolerance of the robot is not valid.
+pub fn hybridized(
+    kind: &dyn Robot,
+    paths: &[Path<Configuration>],
+    interrupt: &Interrupt,
+) -> Result<Option<Path<Configuration>>, Error> {
+    if kind.input_system().is_some() {
+        return Ok(None);
+    }
+    let (space, unused) = (AnySpace::new(&kind.any_space()), AtomicU64::new(0));
+    let by = match kind.sampled() {
+        Some(resolution) => By::States(resolution),
+        None if kind.kept() == 0.0 => By::Certificates(kind.shortcut_clearance()),
+        None => By::Certificates((NARROW * kind.shortcut_clearance()).max(kind.tolerance())),
+    };
+    let counting = Counting::new(&unused, interrupt.clone());
+    let mut check = possible(kind, interrupt, motions(kind, &space, by, &counting)?);
+    let mean = paths.iter().map(|path| path.length(&space)).sum::<f64>() / paths.len() as f64;
+    Ok(mp_cspace::shorten::hybridized(&space, &mut check, paths, mean / PIECES))
+}
+
 fn shorten_by_samples(
     kind: &dyn Robot,
     path: &Path<Configuration>,

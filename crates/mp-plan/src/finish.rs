@@ -12,7 +12,7 @@ use crate::report::{RunStage, StageTime};
 use crate::{Control, Error, Finish, PathRows, Request, Robot, Stage, StoppedBy};
 use mp_cspace::{Configuration, Interrupt, Path};
 use mp_kinds::proof::{clearance, verified};
-use mp_kinds::shorten;
+use mp_kinds::{hybridized, shorten};
 use std::time::Duration;
 
 /// The parts of the time left that shortening may take, and shortening and verifying the result together. The rest is for verifying the
@@ -66,15 +66,15 @@ pub(crate) fn finish_given(
     let rest = left(control);
     let planned = control.clock.now().saturating_sub(began);
     let began = control.clock.now();
-    let proposed = Proposed { path: &relaxed, nearer: None, proved: true, time: planned, began };
+    let proposed = Proposed { path: &relaxed, others: &[], proved: true, time: planned, began };
     finish(kind, &proposed, request, control, rest, &mut Vec::new())?.map_err(ended)
 }
 
 /// A path that a search has found.
 pub(crate) struct Proposed<'p> {
     pub(crate) path: &'p Path<Configuration>,
-    /// A path to a nearer goal, which may be shorter once both are shortened.
-    pub(crate) nearer: Option<&'p Path<Configuration>>,
+    /// Other paths, which may be shorter once all are shortened: to a nearer goal, or of more searches. With the seed to shorten each.
+    pub(crate) others: &'p [(Path<Configuration>, u64)],
     /// Whether each edge of the path was verified.
     pub(crate) proved: bool,
     /// How long the search took.
@@ -125,13 +125,7 @@ pub(crate) fn finish(
         let for_short = if known || proved.is_some() { 1.0 } else { SHORT_PART };
         let rest = timed.left.map_or(Duration::ZERO, |left| left.mul_f64(1.0 - for_short));
         let interrupt = timed.interrupt(SHORTENING_PART);
-        let (mut short, mut is_proved) = shorten(kind, found, request.seed, &interrupt)?;
-        if let Some(nearer) = proposed.nearer {
-            let (space, other) = (kind.any_space(), shorten(kind, nearer, request.seed, &interrupt)?);
-            if other.0.length(&space) < short.length(&space) {
-                (short, is_proved) = other;
-            }
-        }
+        let (short, is_proved) = shortest(kind, proposed, request, &interrupt)?;
         timed.ends(RunStage::Shortening, &interrupt);
         if short.states != found.states {
             let interrupt = timed.interrupt_before(rest);
@@ -173,6 +167,29 @@ pub(crate) fn finish(
         timed.ends(RunStage::Verifying, &interrupt);
     }
     Ok(finished.map_err(|by| if by == StoppedBy::Time { StoppedBy::Unverified } else { by }))
+}
+
+/// The shortest of the paths after shortening, and whether each edge of it was verified. If that is [requested](Request::hybridize), it is made
+/// of pieces of all.
+fn shortest(
+    kind: &dyn Robot,
+    proposed: &Proposed<'_>,
+    request: &Request,
+    interrupt: &Interrupt,
+) -> Result<(Path<Configuration>, bool), Error> {
+    let space = kind.any_space();
+    let given = [(proposed.path, request.seed)].into_iter().chain(proposed.others.iter().map(|(p, s)| (p, *s)));
+    let shortened = given.map(|(path, seed)| shorten(kind, path, seed, interrupt));
+    let mut all = shortened.collect::<Result<Vec<_>, _>>()?;
+    if request.hybridize > 1 && all.len() > 1 {
+        let paths: Vec<_> = all.iter().map(|(path, _)| path.clone()).collect();
+        if let Some(merged) = hybridized(kind, &paths, interrupt)? {
+            all.push(shorten(kind, &merged, request.seed, interrupt)?);
+        }
+    }
+    let length = |short: &(Path<Configuration>, bool)| short.0.length(&space);
+    let best = all.into_iter().min_by(|a, b| length(a).total_cmp(&length(b)));
+    best.ok_or_else(|| Error::new("there is no path to shorten"))
 }
 
 /// What is timed: the stages of finishing a path.

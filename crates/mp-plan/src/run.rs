@@ -1,6 +1,7 @@
 //! A run in pieces: for programs with an event loop, which plan a little between two events.
 
 pub(crate) mod auto;
+mod more_paths;
 mod nearer_goal;
 pub(crate) mod plan;
 pub(crate) mod planners;
@@ -16,6 +17,7 @@ pub(crate) mod search;
 
 use crate::finish::relax::{Relaxing, relax_if_requested};
 use crate::run::auto::Auto;
+use crate::run::more_paths::find_more_paths;
 use crate::run::plan::{left, reported};
 use crate::run::planners::PlannerKind;
 use crate::run::prepared::Prepared;
@@ -346,6 +348,7 @@ impl<'p, 'k> RobotRun<'p, 'k> {
             proved: !prepared.proves_later(),
             found_unverified,
             first,
+            others: Vec::new(),
             map,
             roadmap,
             won,
@@ -361,7 +364,8 @@ impl<'p, 'k> RobotRun<'p, 'k> {
     /// Finishes the path found, and makes the report.
     fn finish(self, control: &mut Control<'_>) -> Result<Report, Error> {
         let (kind, request) = (self.prepared.kind, &*self.prepared.request);
-        let found = self.into_search(control)?;
+        let mut found = self.into_search(control)?;
+        find_more_paths(kind, request, control, &mut found)?;
         let left = left(request, control, &found);
         reported(kind, request, found, None, control, left)
     }

@@ -51,21 +51,29 @@ impl Layer {
 pub(crate) struct Veil {
     sum: Vec<Colour>,
     weight: Vec<f32>,
+    /// The share of the light from behind that comes through, where there is a surface.
     through: Vec<f32>,
     /// The largest opacity of a surface.
     most: Vec<f32>,
+    /// Whether there is no surface at all.
+    empty: bool,
 }
 
 impl Veil {
     pub(crate) fn new(samples: usize) -> Self {
-        let [weight, most] = [(); 2].map(|()| vec![0.0; samples]);
-        Self { sum: vec![[0.0; 3]; samples], weight, through: vec![1.0; samples], most }
+        // Zeros only: memory that no surface touches is not even there.
+        let [weight, through, most] = [(); 3].map(|()| vec![0.0; samples]);
+        Self { sum: vec![[0.0; 3]; samples], weight, through, most, empty: true }
     }
 
     /// Adds a surface of opacity `alpha` whose colour counts `weight` times.
     #[inline]
     pub(crate) fn add(&mut self, i: usize, colour: Colour, alpha: f32, weight: f32) {
         let w = alpha * weight;
+        self.empty = false;
+        if self.weight[i] == 0.0 {
+            self.through[i] = 1.0;
+        }
         for (sum, c) in self.sum[i].iter_mut().zip(colour) {
             *sum += w * c;
         }
@@ -77,6 +85,9 @@ impl Veil {
     /// Blends the veil over `behind`, of which at most the fraction `most` is hidden, unless one surface alone
     /// hides more.
     pub(crate) fn over(&self, behind: &mut [Colour], most: f32) {
+        if self.empty {
+            return;
+        }
         for (i, b) in behind.iter_mut().enumerate() {
             if self.weight[i] > 0.0 {
                 let hidden = (1.0 - self.through[i]).min(most.max(self.most[i]));

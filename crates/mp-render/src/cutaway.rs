@@ -21,13 +21,14 @@ pub(crate) struct Cutaway {
     opaque: Vec<f32>,
     /// Up to here they are open.
     open: Vec<f32>,
+    /// How far they are open where there are no depths.
+    elsewhere: f32,
 }
 
 impl Cutaway {
     /// Obstacles are open everywhere, or nowhere.
-    pub(crate) fn everywhere(open: bool, samples: usize) -> Self {
-        let depth = vec![if open { f32::INFINITY } else { f32::NEG_INFINITY }; samples];
-        Self { open: depth.clone(), opaque: depth }
+    pub(crate) fn everywhere(open: bool) -> Self {
+        Self { opaque: Vec::new(), open: Vec::new(), elsewhere: f32::from(u8::from(open)) }
     }
 
     /// `path` holds the keys of the path's nearest surface, infinite where there is no path; `slope` is
@@ -43,7 +44,7 @@ impl Cutaway {
             (sum, n) = (sum + f64::from(z), n + 1);
         }
         if n == 0 {
-            return Self::everywhere(false, path.len());
+            return Self::everywhere(false);
         }
         let step = slope * SUPERSAMPLING as f32 * camera.sample_size((sum / f64::from(n)) as f32);
         let mut open = cones(depth.clone(), width, STEEP * step);
@@ -58,13 +59,15 @@ impl Cutaway {
                 |row: &[f32]| -> Vec<f32> { row.iter().flat_map(|z| [z - slack; SUPERSAMPLING]).collect() };
             field.chunks(width).flat_map(|z| row(z).repeat(SUPERSAMPLING)).collect()
         };
-        Self { opaque: samples(opaque), open: samples(open) }
+        Self { opaque: samples(opaque), open: samples(open), elsewhere: 0.0 }
     }
 
     /// How far an obstacle at a depth is open: 0 where it is opaque, 1 where it is faint.
     #[inline]
     pub(crate) fn at(&self, i: usize, depth: f32) -> f32 {
-        let (opaque, open) = (self.opaque[i], self.open[i]);
+        let (Some(&opaque), Some(&open)) = (self.opaque.get(i), self.open.get(i)) else {
+            return self.elsewhere;
+        };
         if depth <= open {
             1.0
         } else if depth < opaque {

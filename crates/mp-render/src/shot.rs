@@ -221,13 +221,12 @@ impl<'s> Shot<'s> {
 
     /// Where obstacles are translucent.
     fn cut(&self, camera: &Camera, lights: &Lights) -> Cutaway {
-        let samples = self.size.0 * self.size.1;
         let transparent = self.scene.mode == Mode::Transparent;
         if transparent || self.map {
-            return Cutaway::everywhere(transparent, samples);
+            return Cutaway::everywhere(transparent);
         }
         // The depth of the path at each sample.
-        let mut nearest = vec![f32::INFINITY; samples];
+        let mut nearest = vec![f32::INFINITY; self.size.0 * self.size.1];
         for robot in self.scene.robots() {
             robot.model.faces(camera, &robot.pose_wb, lights, |i, key, _| nearest[i] = nearest[i].min(key));
         }

@@ -64,6 +64,7 @@ pub fn request(draw: &mut Draw, scene: &Scene, planner: Option<&str>) -> Request
         seed: draw.bits() >> 12,
         threads: if draw.chance(0.9) { 1 } else { draw.count(2, 4) },
         finish,
+        hybridize: if finish == Finish::Shorten && draw.chance(0.03) { draw.count(2, 4) } else { 1 },
         field: if finish == Finish::Relax { field } else { RelaxField::Clearance },
         first_only: draw.chance(0.7),
         sharp_clearance: draw.chance(0.5),

@@ -6,6 +6,7 @@ use crate::finish::{Proposed, finish};
 use crate::report::{RunStage, StageTime};
 use crate::run::FoundRun;
 use crate::run::PLANNING_PART;
+use crate::run::more_paths::find_more_paths;
 use crate::run::nearer_goal::nearer_goal;
 use crate::run::planners::PlannerKind;
 use crate::run::search::{Search, search_within};
@@ -31,7 +32,8 @@ pub(crate) fn plan(kind: &dyn Robot, request: &Request, control: &mut Control<'_
     }
     let mut once = |proves_later| {
         let began = control.time_if_limited(request);
-        let found = search_within(kind, request, control, PLANNING_PART, proves_later)?;
+        let mut found = search_within(kind, request, control, PLANNING_PART, proves_later)?;
+        find_more_paths(kind, request, control, &mut found)?;
         let (left, proved) = (left(request, control, &found), found.proved);
         let report = reported(kind, request, found, None, control, left)?;
         if let (false, Some(length), Some(rows), Some(watch)) =
@@ -187,10 +189,14 @@ pub(crate) fn reported(
     };
     report.path_length_found = Some(path.length(&kind.any_space()));
     let began = control.clock.now();
-    let nearer = nearer_goal(kind, request, &path, control, left);
+    let mut others = found.others;
+    let nearer = [(&path, request.seed)].into_iter().chain(others.iter().map(|(path, seed)| (path, *seed)));
+    let nearer = nearer.filter_map(|(path, seed)| {
+        Some((nearer_goal(kind, &Request { seed, ..request.clone() }, path, control, left)?, seed))
+    });
+    others.extend(nearer.collect::<Vec<_>>());
     let left = left.map(|left| left.saturating_sub(control.clock.now().saturating_sub(began)));
-    let found =
-        Proposed { path: &path, nearer: nearer.as_ref(), proved: found.proved, time: found.time, began };
+    let found = Proposed { path: &path, others: &others, proved: found.proved, time: found.time, began };
     let finished = finish(kind, &found, request, control, left, &mut report.stages)?;
     report.finish_s = control.clock.now().saturating_sub(began).as_secs_f64();
     let finished = match finished {
@@ -244,6 +250,7 @@ pub(crate) fn found_report(
         proved: true,
         found_unverified: false,
         first: None,
+        others: Vec::new(),
         map,
         roadmap: None,
         won: None,

@@ -165,7 +165,7 @@ struct RobotRegional<'s> {
 
 /// The work of a request.
 fn regional<'s>(kind: &'s dyn Robot, request: &'s Request) -> Result<RobotRegional<'s>, Error> {
-    request.check()?;
+    request.check_single("a roadmap by regions")?;
     let planner = PlannerKind::new(&request.planner)?;
     if !matches!(&planner, PlannerKind::Roadmap(info) if info.name == PLANNER) {
         return Err(

@@ -37,7 +37,7 @@ pub(crate) fn routes(
     control: &mut Control<'_>,
 ) -> Result<Vec<Report>, Error> {
     let _span = tracing::info_span!("routes", scene = kind.name(), planner = %request.planner).entered();
-    request.check()?;
+    request.check_single("a list of routes")?;
     let planner = PlannerKind::new(&request.planner)?;
     let spent = control.time_if_limited(request);
     let prepared = Prepared::new(kind, request)?;
@@ -66,6 +66,7 @@ pub(crate) fn routes(
         proved: true,
         found_unverified: false,
         first: None,
+        others: Vec::new(),
         map: listed.map,
         roadmap: None,
         won: None,

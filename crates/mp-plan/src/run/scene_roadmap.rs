@@ -117,7 +117,7 @@ pub(crate) fn build(
     request: &Request,
     control: &mut Control<'_>,
 ) -> Result<RobotRoadmap, Error> {
-    request.check()?;
+    request.check_single("a roadmap for many queries")?;
     let roadmap = grown(&*kind, request, None, control)?;
     Ok(RobotRoadmap { kind, request: request.clone(), roadmap })
 }
@@ -225,6 +225,7 @@ impl RobotRoadmap {
             proved: true,
             found_unverified: false,
             first: None,
+            others: Vec::new(),
             map,
             won: None,
             roadmap: None,

@@ -32,6 +32,8 @@ pub struct Search {
     pub first: Option<(Duration, f64, Path<Configuration>)>,
     /// For a planner that builds a roadmap: the numbers of edges and of connected components.
     pub map: Option<[usize; 2]>,
+    /// Paths of more searches and their seeds, if [requested](Request::hybridize).
+    pub others: Vec<(Path<Configuration>, u64)>,
     /// Of the portfolio `auto`, the search that has found the path.
     pub won: Option<String>,
     /// The roadmap itself, if [requested](Control::keep_roadmap).

@@ -47,11 +47,16 @@ impl DrivenSpace {
     }
 
     pub(super) fn apart(&self, from: &Parts, to: &Parts) -> f64 {
-        let of_velocity = from.velocity.iter().zip(&to.velocity).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
-        let of_position = self.positions().distance(&from.q, &to.q);
-        if from.velocity.is_empty() {
+        self.between((&from.q, &from.velocity), (&to.q, &to.velocity))
+    }
+
+    /// The distance of two configurations with their velocities.
+    fn between(&self, from: (&Configuration, &[f64]), to: (&Configuration, &[f64])) -> f64 {
+        let of_position = self.positions().distance(from.0, to.0);
+        if from.1.is_empty() {
             of_position
         } else {
+            let of_velocity = from.1.iter().zip(to.1).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
             mp_math::hypot(of_position, self.weight * of_velocity.sqrt())
         }
     }
@@ -71,8 +76,9 @@ impl Space for DrivenSpace {
     type State = Configuration;
 
     fn distance(&self, from: &Configuration, to: &Configuration) -> f64 {
-        match [from, to].map(|q| self.parts(q)) {
-            [Some(from), Some(to)] => self.apart(&from, &to),
+        // Asked for each node that may be the nearest: without what else a state has.
+        match (self.system.split(from), self.system.split(to)) {
+            (Some((from, v, _)), Some((to, w, _))) => self.between((&from, v), (&to, w)),
             _ => f64::INFINITY,
         }
     }
@@ -173,10 +179,10 @@ impl Factored for DrivenSpace {
         self.positions().factor_layouts().into_iter().chain(velocities).collect()
     }
     fn embed_factors(&self, state: &Configuration, put: &mut impl FnMut(usize, f64)) {
-        let Some(parts) = self.parts(state) else { return };
-        self.positions().embed_factors(&parts.q, put);
+        let Some((q, velocity, _)) = self.system.split(state) else { return };
+        self.positions().embed_factors(&q, put);
         let first = self.positions().factors();
-        parts.velocity.iter().enumerate().for_each(|(i, v)| put(first + i, *v));
+        velocity.iter().enumerate().for_each(|(i, v)| put(first + i, *v));
     }
 }
 
@@ -188,9 +194,9 @@ impl Embed for DrivenSpace {
         }
     }
     fn embed(&self, state: &Configuration, out: &mut [f64]) -> usize {
-        let Some(parts) = self.parts(state) else { return self.layout().dim() };
-        let n = self.robot.embed(&parts.q, out);
-        parts.velocity.iter().zip(&mut out[n..]).for_each(|(v, x)| *x = self.weight * v);
-        n + parts.velocity.len()
+        let Some((q, velocity, _)) = self.system.split(state) else { return self.layout().dim() };
+        let n = self.robot.embed(&q, out);
+        velocity.iter().zip(&mut out[n..]).for_each(|(v, x)| *x = self.weight * v);
+        n + velocity.len()
     }
 }

@@ -45,17 +45,18 @@ impl System {
         self.numbers + self.velocities + self.inputs + 1
     }
 
+    /// The configuration and the velocity of a vector, if it is a state; then its input and its duration.
+    pub(super) fn split<'s>(&self, all: &'s [f64]) -> Option<(Configuration, &'s [f64], &'s [f64])> {
+        let (q, rest) = (all.len() == self.len()).then(|| all.split_at(self.numbers))?;
+        let (velocity, rest) = rest.split_at(self.velocities);
+        Some((q.into(), velocity, rest))
+    }
+
     /// The parts of a vector, if it is a state.
     pub(super) fn parts(&self, state: &Configuration) -> Option<Parts> {
-        let all = state.as_slice();
-        if all.len() != self.len() {
-            return None;
-        }
-        let (q, rest) = all.split_at(self.numbers);
-        let (velocity, rest) = rest.split_at(self.velocities);
-        let (input, duration) = rest.split_at(self.inputs);
-        let q = Configuration::from(q);
-        Some(Parts { q, velocity: velocity.to_vec(), input: input.to_vec(), duration: duration[0] })
+        let (q, velocity, rest) = self.split(state)?;
+        let (duration, input) = rest.split_last()?;
+        Some(Parts { q, velocity: velocity.to_vec(), input: input.to_vec(), duration: *duration })
     }
 
     /// The vector of a state.
