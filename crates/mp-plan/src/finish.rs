@@ -42,6 +42,7 @@ pub(crate) fn finish_given(
 ) -> Result<Finished, Error> {
     let _span = tracing::info_span!("finish", scene = kind.name()).entered();
     crate::finish::relax::check(kind, request)?;
+    request.objective.check(kind)?;
     let began = control.clock.now();
     let time = request.budget.time_s.and_then(|time| Duration::try_from_secs_f64(time).ok());
     let left = |control: &Control<'_>| {
@@ -125,10 +126,10 @@ pub(crate) fn finish(
         let for_short = if known || proved.is_some() { 1.0 } else { SHORT_PART };
         let rest = timed.left.map_or(Duration::ZERO, |left| left.mul_f64(1.0 - for_short));
         let interrupt = timed.interrupt(SHORTENING_PART);
-        let (mut short, mut is_proved) = shorten(kind, found, request.seed, &interrupt)?;
+        let (mut short, mut is_proved) = shorten(kind, found, request.seed, request.objective, &interrupt)?;
         if let Some(nearer) = proposed.nearer {
-            let (space, other) = (kind.any_space(), shorten(kind, nearer, request.seed, &interrupt)?);
-            if other.0.length(&space) < short.length(&space) {
+            let other = shorten(kind, nearer, request.seed, request.objective, &interrupt)?;
+            if request.objective.cost(kind, &other.0)? < request.objective.cost(kind, &short)? {
                 (short, is_proved) = other;
             }
         }
