@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand};
 use mp_batch::Shard;
 use mp_io::ProblemChanges;
 use mp_plan::{
-    FreeTurns, Interpolation, Length, MetricName, Mode, MotionValidator, Pace, PlannerInfo,
+    FreeTurns, Interpolation, Length, MetricName, Mode, MotionValidator, ObjectiveName, Pace, PlannerInfo,
     PortfolioSchedule, RelaxField, Request, positive_number,
 };
 use std::ffi::OsStr;
@@ -121,6 +121,11 @@ pub(crate) struct Plan {
     /// arm may be nearer to each other.
     #[arg(long, value_name = "M", value_parser = positive_number)]
     pub(crate) clearance: Option<f64>,
+    /// What the path costs: `length`, or `clearance:WEIGHT:RANGE`, ∫ (1 + WEIGHT·(1 − d/RANGE)²) ds for a clearance d below the RANGE (m); both
+    /// may be left out, and are then 10 and a fifth of the size of the robot. Planners that improve their paths (aorrtc, rrt-star,
+    /// informed-rrt-star) lower it, t-rrt prefers states that cost little, and shortening lowers it, whatever the planner.
+    #[arg(long, value_name = "COST", default_value = "length", value_parser = parsed::<ObjectiveName>)]
+    pub(crate) objective: ObjectiveName,
     /// Plan this many times, with seeds N, N + 1, …, and print a table.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: u32,

@@ -39,6 +39,7 @@ pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
         metric: args.metric,
         motion: args.motion,
         clearance: args.clearance.unwrap_or(0.0),
+        objective: args.objective,
         budget: Budget { time_s: Some(args.time), iterations: args.iterations, ..Budget::default() },
         seed: args.seed,
         threads,

@@ -70,6 +70,9 @@ pub(crate) fn summary(report: &Report) -> String {
         };
         row("clearance", text);
     }
+    if let Some(cost) = report.cost {
+        row("cost", brief(cost));
+    }
     if report.stages.iter().any(|stage| stage.ended_by.is_some()) {
         row("stages", stages(report));
     }
@@ -228,6 +231,7 @@ mod tests {
             path_length: time.map(|_| 12.5),
             clearance: time.map(|_| 0.01),
             clearance_kept: 0.0,
+            cost: None,
             shortened: true,
             path_file: None,
             picture_file: None,

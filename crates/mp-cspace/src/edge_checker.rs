@@ -1,5 +1,6 @@
 //! How the edges of trees and roadmaps are made and checked.
 
+use crate::erased::AnyObjective;
 use crate::{
     BoxedVerify, Direction, Extension, Goals, Interrupt, LocalPlanner, Motion, Problem, ProblemParts, Reach,
     Space, Verify,
@@ -23,6 +24,7 @@ pub struct EdgeChecker<'c, C: Space, L: LocalPlanner<C::State>> {
     motions: u64,
     rejected: u64,
     interrupt: Interrupt,
+    objective: Option<AnyObjective<'c, C::State>>,
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
@@ -46,13 +48,19 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
 
     fn boxed(space: &'c C, local: L, verifier: BoxedVerify<'c, C, L>, patience: u64) -> Self {
         let (step, interrupt) = (f64::INFINITY, Interrupt::never());
-        Self { space, local, verifier, step, patience, motions: 0, rejected: 0, interrupt }
+        Self { space, local, verifier, step, patience, motions: 0, rejected: 0, interrupt, objective: None }
     }
 
     /// The same with another longest [step](Self::step).
     #[must_use]
     pub fn with_step(self, step: f64) -> Self {
         Self { step, ..self }
+    }
+
+    /// The same, whose motions cost what this objective says of the straight motion between their ends.
+    #[must_use]
+    pub fn with_objective(self, objective: Option<AnyObjective<'c, C::State>>) -> Self {
+        Self { objective, ..self }
     }
 
     /// The space whose states the edges join.
@@ -134,7 +142,16 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
         if self.interrupt.ask() {
             return Extension::Trapped;
         }
-        self.local.extend(from, toward, direction, reach)
+        let mut extension = self.local.extend(from, toward, direction, reach);
+        if let (Some(objective), Extension::Advanced(motion) | Extension::Reached(motion)) =
+            (&mut self.objective, &mut extension)
+        {
+            motion.cost = match direction {
+                Direction::Forward => objective.cost(from, &motion.end),
+                Direction::Backward => objective.cost(&motion.end, from),
+            };
+        }
+        extension
     }
 
     /// The whole motion from `from`, which is free, to `to`, if the local planner has one; verified where the

@@ -48,6 +48,7 @@
 //! | when a state is free | [`Validity`], or a [`Clearance`] in metres |
 //! | when a motion is free | [`MotionValidity`]: [`Certified`] proves it by a [`MotionClearance`], [`Discrete`] samples it; [`FineDiscrete`] verifies |
 //! | how to move | a [`LocalPlanner`]: [`Straight`]; by inputs: the crate `mp-control` |
+//! | what motions cost | an [`Objective`]: [`PathLength`], [`StateCostIntegral`], a closure |
 //! | what to reach | a [`Goal`]: [`Exactly`], [`Ball`], [`FixedFactors`], a closure |
 //! | what to plan | a [`Problem`], with [`Goals`] and a [verifier](Verify) |
 //! | when to stop | a [`Stop`]: [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
@@ -71,6 +72,7 @@ mod metric;
 mod motion;
 pub mod nn;
 mod numbers;
+mod objective;
 mod observer;
 pub mod obstacles;
 pub mod path;
@@ -105,6 +107,7 @@ pub use motion::{Certified, CoarseToFine, Discrete, FineDiscrete, Spaced};
 pub use mp_stop::{Cancel, Clock, Interrupt, Interrupted, SparseClock, StopReason};
 pub use nn::{DefaultNn, Embed, Hit, KdTree, Linear, MetricTree, NearestNeighbors, NodeId};
 pub use numbers::StateVector;
+pub use objective::{Objective, PathLength, StateCostIntegral, nearness};
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
 pub use path::{Path, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};

@@ -12,12 +12,14 @@
 //! | [`bspline`] | rounds corners by cubic B-spline subdivision |
 //! | [`tauten`] | joins states of the path, and cuts corners, in turn |
 //! | [`simplify`] | all of these in a good order |
+//! | [`cheapen`] | lowers what the path costs by an [`Objective`] |
 //! | [`simplified_by_samples`] | the same with few tests, for robots that take long to answer |
 //! | [`hybridized`] | merges several paths into one |
 //! | [`loosen`] | makes room where a finer check finds too little of it |
 //! | [`bypass`] | leads edges round what they hit where that does not help |
 
 mod bspline;
+mod cheaper;
 mod greedy;
 mod hybrid;
 mod loosen;
@@ -25,12 +27,15 @@ mod random;
 mod taut;
 
 pub use bspline::bspline;
+pub use cheaper::cheapen;
 pub use hybrid::hybridized;
 pub use loosen::{bypass, loosen};
 pub use random::{partial_shortcut, shortcut};
 pub use taut::tauten;
 
-use crate::{CoarseToFine, Factored, MotionValidity, Path, Rng, Space, Validity, trace};
+use crate::{
+    CoarseToFine, Factored, MotionValidity, Objective, Path, PathLength, Rng, Space, Validity, trace,
+};
 
 /// How much work to put into shortening a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,14 +95,14 @@ pub fn reduce<C: Space>(
     check: &mut impl MotionValidity<C::State>,
     path: &Path<C::State>,
 ) -> Path<C::State> {
-    reduced(space, check, Draft::of(space, path)).path()
+    reduced(check, &mut PathLength(space), Draft::of(space, path)).path()
 }
 
-fn reduced<C: Space>(
-    space: &C,
-    check: &mut impl MotionValidity<C::State>,
-    old: Draft<C::State>,
-) -> Draft<C::State> {
+fn reduced<S: Clone>(
+    check: &mut impl MotionValidity<S>,
+    objective: &mut impl Objective<S>,
+    old: Draft<S>,
+) -> Draft<S> {
     let mut kept = vec![0; old.states.len().min(1)];
     let mut free = Vec::new();
     let mut first = 0;
@@ -108,7 +113,7 @@ fn reduced<C: Space>(
             free.extend_from_slice(&old.free[first..]);
             break;
         }
-        while last > first + 1 && !is_shortcut(space, check, &old.states[first..=last]) {
+        while last > first + 1 && !is_shortcut(check, objective, &old.states[first..=last]) {
             last = first + (last - first) / 2;
         }
         kept.push(last);
@@ -119,11 +124,15 @@ fn reduced<C: Space>(
     Draft { states, free, origin: kept.iter().map(|&i| old.origin[i]).collect() }
 }
 
-/// Whether the straight motion between the ends of a piece of path is free and, but for rounding, no longer than it.
-fn is_shortcut<C: Space>(space: &C, check: &mut impl MotionValidity<C::State>, piece: &[C::State]) -> bool {
+/// Whether the straight motion between the ends of a piece of path is free and, but for rounding, costs no more than it.
+fn is_shortcut<S>(
+    check: &mut impl MotionValidity<S>,
+    objective: &mut impl Objective<S>,
+    piece: &[S],
+) -> bool {
     let [first, .., last] = piece else { return false };
-    let along: f64 = piece.windows(2).map(|w| space.distance(&w[0], &w[1])).sum();
-    space.distance(first, last) <= along * (1.0 + 1e-12) && check.check_motion(first, last).is_free()
+    let along: f64 = piece.windows(2).map(|w| objective.cost(&w[0], &w[1])).sum();
+    objective.cost(first, last) <= along * (1.0 + 1e-12) && check.check_motion(first, last).is_free()
 }
 
 /// Whether every edge through `states` is free. The first and the last one are parts of edges of which `known` says whether they were found
@@ -155,10 +164,11 @@ pub fn simplified<C: Factored>(
     effort: Effort,
     rng: &mut Rng,
 ) -> Draft<C::State> {
-    let short = reduced(space, check, Draft::of(space, path));
-    let short = random::straightened(space, check, short, effort, rng);
-    let short = random::straightened_by_factor(space, check, short, effort, rng);
-    let short = reduced(space, check, short);
+    let length = &mut PathLength(space);
+    let short = reduced(check, length, Draft::of(space, path));
+    let short = random::straightened(space, check, length, short, effort, rng);
+    let short = random::straightened_by_factor(space, check, length, short, effort, rng);
+    let short = reduced(check, length, short);
     let short = if effort.taut > 0 { taut::tautened(space, check, short, effort) } else { short };
     let short = bspline::rounded(space, check, short, effort.rounds);
     trace::simplified([path.states.len(), short.states.len()]);
@@ -175,7 +185,7 @@ pub fn simplified_by_samples<C: Factored, V: Validity<C::State>>(
     effort: Effort,
     rng: &mut Rng,
 ) -> Draft<C::State> {
-    let short = reduced(space, check, Draft::of(space, path));
+    let short = reduced(check, &mut PathLength(space), Draft::of(space, path));
     let short = greedy::chosen(space, check, short, near, effort, rng);
     let short = bspline::rounded(space, check, short, effort.rounds);
     trace::simplified([path.states.len(), short.states.len()]);

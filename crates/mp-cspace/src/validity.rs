@@ -38,6 +38,12 @@ pub trait Clearance<S> {
     /// means only "at least `enough`". Zero or less means contact, or that no bound is known.
     fn clearance(&mut self, q: &S, enough: f64) -> f64;
 
+    /// The same without what parts of the robot keep from each other: for costs of being near obstacles, as some
+    /// parts are always near each other. By default [`clearance`](Self::clearance).
+    fn obstacle_clearance(&mut self, q: &S, enough: f64) -> f64 {
+        self.clearance(q, enough)
+    }
+
     /// Whether the robot at `q` certainly touches an obstacle. Override it where an intersection test is
     /// cheaper than a distance. A wrong `false` costs time, never safety.
     fn in_contact(&mut self, q: &S) -> bool {
@@ -140,6 +146,9 @@ impl IntervalClearance {
 impl<S, V: Clearance<S> + ?Sized> Clearance<S> for &mut V {
     fn clearance(&mut self, q: &S, enough: f64) -> f64 {
         (**self).clearance(q, enough)
+    }
+    fn obstacle_clearance(&mut self, q: &S, enough: f64) -> f64 {
+        (**self).obstacle_clearance(q, enough)
     }
     fn in_contact(&mut self, q: &S) -> bool {
         (**self).in_contact(q)

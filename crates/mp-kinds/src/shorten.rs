@@ -2,14 +2,14 @@
 
 use crate::motion::{AnyChecker, By, Counting, motions, motions_of};
 use crate::possible::Possible;
-use crate::{Error, Robot, VERIFIED_FINER};
+use crate::{Error, ObjectiveName, Robot, VERIFIED_FINER};
 use mp_cspace::erased::{AnyCheck, AnySpace};
 use mp_cspace::shorten::{
-    Draft, Effort, bypass, loosen, reduce, shortcut, simplified, simplified_by_samples, simplify,
+    Draft, Effort, bypass, cheapen, loosen, reduce, shortcut, simplified, simplified_by_samples, simplify,
 };
 use mp_cspace::{
-    CoarseToFine, Configuration, Interrupt, Length, MotionCheck, MotionClearance, MotionValidity, Path, Rng,
-    Space,
+    CoarseToFine, Configuration, Interrupt, Length, MotionCheck, MotionClearance, MotionValidity, Objective,
+    Path, Rng, Space,
 };
 use std::collections::HashMap;
 use std::sync::atomic::AtomicU64;
@@ -53,6 +53,9 @@ const FIRST_MOVE: f64 = 0.125;
 /// twice as many, four and eight times, and in the end by the verifier at all of them, and made [looser](loosen) where it is refused, or [led round](bypass) what it hits. If that
 /// does not help, the given path is shortened once more, and the verifier tests each motion of it: that takes many times as many states.
 ///
+/// Where the objective is not the length, the given path and the one made shorter are both made [cheaper](cheapen), by shortcuts that keep the clearance
+/// of shortcuts, or leave a passage as it is; the cheapest of the four is returned. Of a robot that moves by inputs it is one of the two.
+///
 /// Returns the path, and whether the verifier has found each of its edges free.
 ///
 /// # Errors
@@ -61,20 +64,72 @@ pub fn shorten(
     kind: &dyn Robot,
     path: &Path<Configuration>,
     seed: u64,
+    objective: ObjectiveName,
     interrupt: &Interrupt,
 ) -> Result<(Path<Configuration>, bool), Error> {
     let _span = tracing::info_span!("shorten").entered();
     let mut rng = Rng::stream(seed, STREAM);
-    match kind.sampled() {
-        Some(resolution) => shorten_by_samples(kind, path, resolution, &mut rng, interrupt),
-        None => Ok((shorten_by_certificates(kind, path, &mut rng, interrupt)?, false)),
+    if let Some(resolution) = kind.sampled() {
+        return shorten_by_samples(kind, path, resolution, &mut rng, interrupt);
     }
+    let short = shorten_by_certificates(kind, path, &mut rng, interrupt)?;
+    let path = match objective {
+        ObjectiveName::Length => short,
+        _ => cheaper(kind, [&short, path], objective, &mut rng, interrupt)?,
+    };
+    Ok((path, false))
+}
+
+/// The cheapest of some paths, after each was made cheaper, the cheaper one first.
+fn cheaper(
+    kind: &dyn Robot,
+    mut paths: [&Path<Configuration>; 2],
+    objective: ObjectiveName,
+    rng: &mut Rng,
+    interrupt: &Interrupt,
+) -> Result<Path<Configuration>, Error> {
+    let (factors, unused) = (kind.any_space(), AtomicU64::new(0));
+    let space = AnySpace::new(&factors);
+    let counting = Counting::new(&unused, interrupt.clone());
+    let by = By::Certificates(kept_by_shortcuts(kind)[0]);
+    let mut check = possible(kind, interrupt, motions(kind, &space, by, &counting)?);
+    // It goes on to answer when the work is interrupted: what it says decides.
+    let mut objective = objective.make(kind, &space, &Counting::new(&unused, Interrupt::never()))?;
+    let mut known = HashMap::new();
+    let mut cost = |from: &Configuration, to: &Configuration| {
+        let priced = || objective.as_mut().map_or_else(|| space.distance(from, to), |o| o.cost(from, to));
+        *known.entry(bits(from, to)).or_insert_with(priced)
+    };
+    if cost.path_cost(paths[1]) < cost.path_cost(paths[0]) {
+        paths.swap(0, 1);
+    }
+    // What moves by inputs cannot make a part of a motion, or another one, as it likes.
+    let made: Vec<_> = match kind.input_system() {
+        Some(_) => Vec::new(),
+        None => paths.map(|path| cheapen(&factors, &mut check, &mut cost, path, kind.effort(), rng)).into(),
+    };
+    let mut best = (f64::INFINITY, paths[0]);
+    for path in made.iter().chain(paths) {
+        let cost = cost.path_cost(path);
+        if cost < best.0 {
+            best = (cost, path);
+        }
+    }
+    Ok(best.1.clone())
+}
+
+/// The clearances (m) that shortcuts keep where there is room, and in passages.
+fn kept_by_shortcuts(kind: &dyn Robot) -> [f64; 2] {
+    let wide = kind.shortcut_clearance();
+    let least = (NARROW * wide).max(kind.tolerance());
+    // A clearance that was asked for is enough.
+    [if kind.kept() == 0.0 { wide } else { least }, least]
 }
 
 /// How many pieces a path of average length is cut into where it may be joined to others.
 const PIECES: f64 = 64.0;
 
-/// The shortest way over pieces of several paths and free motions between them, which keep half of the clearance of shortcuts. `None` for a
+/// The cheapest way over pieces of several paths and free motions between them, which keep half of the clearance of shortcuts. `None` for a
 /// robot that moves by inputs, which cannot go over from one path to another.
 ///
 /// # Errors
@@ -82,6 +137,7 @@ const PIECES: f64 = 64.0;
 pub fn hybridized(
     kind: &dyn Robot,
     paths: &[Path<Configuration>],
+    objective: ObjectiveName,
     interrupt: &Interrupt,
 ) -> Result<Option<Path<Configuration>>, Error> {
     if kind.input_system().is_some() {
@@ -90,13 +146,17 @@ pub fn hybridized(
     let (space, unused) = (AnySpace::new(&kind.any_space()), AtomicU64::new(0));
     let by = match kind.sampled() {
         Some(resolution) => By::States(resolution),
-        None if kind.kept() == 0.0 => By::Certificates(kind.shortcut_clearance()),
-        None => By::Certificates((NARROW * kind.shortcut_clearance()).max(kind.tolerance())),
+        None => By::Certificates(kept_by_shortcuts(kind)[0]),
     };
     let counting = Counting::new(&unused, interrupt.clone());
     let mut check = possible(kind, interrupt, motions(kind, &space, by, &counting)?);
+    let mut objective = objective.make(kind, &space, &Counting::new(&unused, Interrupt::never()))?;
+    let mut cost = |from: &Configuration, to: &Configuration| match &mut objective {
+        Some(objective) => objective.cost(from, to),
+        None => space.distance(from, to),
+    };
     let mean = paths.iter().map(|path| path.length(&space)).sum::<f64>() / paths.len() as f64;
-    Ok(mp_cspace::shorten::hybridized(&space, &mut check, paths, mean / PIECES))
+    Ok(mp_cspace::shorten::hybridized(&space, &mut check, &mut cost, paths, mean / PIECES))
 }
 
 fn shorten_by_samples(
@@ -151,11 +211,8 @@ fn shorten_by_certificates(
 ) -> Result<Path<Configuration>, Error> {
     let (space, unused) = (AnySpace::new(&kind.any_space()), AtomicU64::new(0));
     let counting = Counting::new(&unused, interrupt.clone());
-    let wide = kind.shortcut_clearance();
-    let least = (NARROW * wide).max(kind.tolerance());
-    // A clearance that was asked for is enough.
+    let [tolerance, least] = kept_by_shortcuts(kind);
     let has_wide = kind.kept() == 0.0;
-    let tolerance = if has_wide { wide } else { least };
     let certified = |tolerance| motions(kind, &space, By::Certificates(tolerance), &counting);
     let mut check = possible(kind, interrupt, certified(tolerance)?);
     let effort = kind.effort();
@@ -285,6 +342,11 @@ impl MotionValidity<Configuration> for Both<'_> {
     }
 }
 
+/// A motion as a key.
+fn bits(from: &Configuration, to: &Configuration) -> Box<[u64]> {
+    from.iter().chain(to.iter()).map(|x| x.to_bits()).collect()
+}
+
 /// A check that remembers its answers. A third of the motions that shortening asks about were asked about before, and a robot of one's own
 /// may take long to answer.
 struct Remembered<'a> {
@@ -295,8 +357,7 @@ struct Remembered<'a> {
 
 impl MotionValidity<Configuration> for Remembered<'_> {
     fn check_motion(&mut self, from: &Configuration, to: &Configuration) -> MotionCheck {
-        let key: Box<[u64]> = from.iter().chain(to.iter()).map(|x| x.to_bits()).collect();
-        *self.known.entry(key).or_insert_with(|| self.check.check_motion(from, to))
+        *self.known.entry(bits(from, to)).or_insert_with(|| self.check.check_motion(from, to))
     }
     fn interrupt_by(&mut self, interrupt: &Interrupt) {
         self.check.interrupt_by(interrupt);

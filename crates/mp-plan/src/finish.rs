@@ -42,6 +42,7 @@ pub(crate) fn finish_given(
 ) -> Result<Finished, Error> {
     let _span = tracing::info_span!("finish", scene = kind.name()).entered();
     crate::finish::relax::check(kind, request)?;
+    request.objective.check(kind)?;
     let began = control.clock.now();
     let time = request.budget.time_s.and_then(|time| Duration::try_from_secs_f64(time).ok());
     let left = |control: &Control<'_>| {
@@ -125,7 +126,7 @@ pub(crate) fn finish(
         let for_short = if known || proved.is_some() { 1.0 } else { SHORT_PART };
         let rest = timed.left.map_or(Duration::ZERO, |left| left.mul_f64(1.0 - for_short));
         let interrupt = timed.interrupt(SHORTENING_PART);
-        let (short, is_proved) = shortest(kind, proposed, request, &interrupt)?;
+        let (short, is_proved) = cheapest(kind, proposed, request, &interrupt)?;
         timed.ends(RunStage::Shortening, &interrupt);
         if short.states != found.states {
             let interrupt = timed.interrupt_before(rest);
@@ -169,27 +170,33 @@ pub(crate) fn finish(
     Ok(finished.map_err(|by| if by == StoppedBy::Time { StoppedBy::Unverified } else { by }))
 }
 
-/// The shortest of the paths after shortening, and whether each edge of it was verified. If that is [requested](Request::hybridize), it is made
+/// The cheapest of the paths after shortening, and whether each edge of it was verified. If that is [requested](Request::hybridize), it is made
 /// of pieces of all.
-fn shortest(
+fn cheapest(
     kind: &dyn Robot,
     proposed: &Proposed<'_>,
     request: &Request,
     interrupt: &Interrupt,
 ) -> Result<(Path<Configuration>, bool), Error> {
-    let space = kind.any_space();
-    let given = [(proposed.path, request.seed)].into_iter().chain(proposed.others.iter().map(|(p, s)| (p, *s)));
-    let shortened = given.map(|(path, seed)| shorten(kind, path, seed, interrupt));
+    let objective = request.objective;
+    let given =
+        [(proposed.path, request.seed)].into_iter().chain(proposed.others.iter().map(|(p, s)| (p, *s)));
+    let shortened = given.map(|(path, seed)| shorten(kind, path, seed, objective, interrupt));
     let mut all = shortened.collect::<Result<Vec<_>, _>>()?;
     if request.hybridize > 1 && all.len() > 1 {
         let paths: Vec<_> = all.iter().map(|(path, _)| path.clone()).collect();
-        if let Some(merged) = hybridized(kind, &paths, interrupt)? {
-            all.push(shorten(kind, &merged, request.seed, interrupt)?);
+        if let Some(merged) = hybridized(kind, &paths, objective, interrupt)? {
+            all.push(shorten(kind, &merged, request.seed, objective, interrupt)?);
         }
     }
-    let length = |short: &(Path<Configuration>, bool)| short.0.length(&space);
-    let best = all.into_iter().min_by(|a, b| length(a).total_cmp(&length(b)));
-    best.ok_or_else(|| Error::new("there is no path to shorten"))
+    let mut best = (f64::INFINITY, 0);
+    for (i, (path, _)) in all.iter().enumerate().filter(|_| all.len() > 1) {
+        let cost = objective.cost(kind, path)?;
+        if cost < best.0 {
+            best = (cost, i);
+        }
+    }
+    Ok(all.swap_remove(best.1))
 }
 
 /// What is timed: the stages of finishing a path.

@@ -120,9 +120,9 @@ pub use mp_kinds::{
     Appearance, ArmScene, Body, BodyShape, Checker, Column, Constraint, Contact, Counted, Description,
     Deviation, Drivable, Drive, DriveModel, DrivenScene, End, Error, ErrorKind, FieldImage, FloatingScene,
     GoalPart, LinkedScene, LinkedSpace, Measured, MetricName, ModelBody, ModelFrame, ModelPair, ModelPart,
-    Motion, MotionModel, MovingScene, PathFormat, PlanarBody, PlanarScene, Queries, Reached, RelaxField,
-    RigidScene, RigidSpace, Robot, SpeedBound, Step, VERIFIED_FINER, WithMoving, brief, count, plain,
-    positive_number, shorten,
+    Motion, MotionModel, MovingScene, ObjectiveName, PathFormat, PlanarBody, PlanarScene, Queries, Reached,
+    RelaxField, RigidScene, RigidSpace, Robot, SpeedBound, Step, VERIFIED_FINER, WithMoving, brief, count,
+    plain, positive_number, shorten,
 };
 
 pub use mp_io::{FoundRobot, FreeTurns, PoseEntry, ProblemChanges, RobotPath, TrajectoryKind};

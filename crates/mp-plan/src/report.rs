@@ -74,6 +74,9 @@ pub struct Report {
     /// The clearance (m) from obstacles that was asked for; left out where none was.
     #[serde(default, skip_serializing_if = "crate::request::is_zero")]
     pub clearance_kept: f64,
+    /// What `path` costs, where the objective of the request was not its length.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost: Option<f64>,
     /// Whether `path` was shortened.
     pub shortened: bool,
     /// A hash of the numbers of `path`. Two runs with the same hash found the same path, to the bit.

@@ -1,6 +1,6 @@
 //! How to plan: plain data.
 
-use crate::{Error, ErrorKind, MetricName, RelaxField};
+use crate::{Error, ErrorKind, MetricName, ObjectiveName, RelaxField};
 use mp_cspace::{Length, registry::Settings};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -37,6 +37,10 @@ pub struct Request {
     /// clearance of the [scene](crate::Scene::keeping), which is zero by default.
     #[serde(skip_serializing_if = "is_zero")]
     pub clearance: f64,
+    /// What the path costs: planners that optimise lower it, and so does shortening. Where it is not the length, only robots whose clearance is
+    /// known can be planned for.
+    #[serde(skip_serializing_if = "ObjectiveName::is_length")]
+    pub objective: ObjectiveName,
     /// When to give up.
     pub budget: Budget,
     /// The seed of all randomness.
@@ -169,6 +173,7 @@ impl Default for Request {
             metric: MetricName::Default,
             motion: MotionValidator::Certified,
             clearance: 0.0,
+            objective: ObjectiveName::Length,
             budget: Budget::default(),
             seed: 1,
             threads: 1,
@@ -240,6 +245,12 @@ impl Request {
     #[must_use]
     pub fn clearance(self, clearance: f64) -> Self {
         Self { clearance, ..self }
+    }
+
+    /// Sets what the path costs.
+    #[must_use]
+    pub fn objective(self, objective: ObjectiveName) -> Self {
+        Self { objective, ..self }
     }
 
     /// Sets the budget of time, in seconds.
@@ -319,7 +330,9 @@ impl Request {
         }
         if self.hybridize > 1 && self.finish != Finish::Shorten {
             let help = "leave one of the two out";
-            return Err(Error::new("paths are merged to be shorter, and this one is not shortened").help(help));
+            return Err(
+                Error::new("paths are merged to be shorter, and this one is not shortened").help(help)
+            );
         }
         if self.roadmap.is_some() && !planner.is_roadmap() {
             let help = "take a planner that builds a roadmap, such as prm";

@@ -12,8 +12,8 @@ use crate::run::{regions::RegionalWork, scene_roadmap::SceneRoadmap};
 use crate::sweep::{resample, sweep, track};
 use crate::{
     Body, Certificate, Column, Constraint, Control, Error, Explanation, Finished, FoundRun, Length,
-    PathFileKind, PathFormat, PathRows, PreparedRun, RelaxField, Report, Request, Robot, SceneFiles, Sweep,
-    Track, Verdict,
+    ObjectiveName, PathFileKind, PathFormat, PathRows, PreparedRun, RelaxField, Report, Request, Robot,
+    SceneFiles, Sweep, Track, Verdict,
 };
 use mp_cspace::registry::{PlannerInfo, Settings};
 use mp_cspace::{Configuration, Interrupt, Interrupted, Rng, Space, Validity};
@@ -554,6 +554,14 @@ impl Scene {
         control: &mut Control<'_>,
     ) -> Result<Finished, Error> {
         finish_given(&*self.robot_for(request)?, path, request, control)
+    }
+
+    /// What a path costs by an objective.
+    ///
+    /// # Errors
+    /// When the path is of another robot, or the clearance of this one is not known.
+    pub fn path_cost(&self, path: &PathRows, objective: ObjectiveName) -> Result<f64, Error> {
+        objective.cost(&*self.robot, &mp_cspace::Path::straight(states(&*self.robot, path)?))
     }
 
     /// Verifies a path from the start to a goal, with a verifier that shares no code with the planners' checks.

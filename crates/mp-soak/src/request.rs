@@ -2,7 +2,8 @@
 
 use crate::draw::Draw;
 use mp_plan::{
-    Budget, Finish, Length, MetricName, MotionValidator, Parameter, PlannerInfo, RelaxField, Request, Scene,
+    Budget, Finish, Length, MetricName, MotionValidator, ObjectiveName, Parameter, PlannerInfo, RelaxField,
+    Request, Scene,
 };
 use std::collections::BTreeMap;
 
@@ -69,6 +70,10 @@ pub fn request(draw: &mut Draw, scene: &Scene, planner: Option<&str>) -> Request
         first_only: draw.chance(0.7),
         sharp_clearance: draw.chance(0.5),
         roadmap: None,
+        objective: match draw.below(10) {
+            0 => ObjectiveName::Clearance { weight: draw.logarithmic(0.1, 100.0), range: None },
+            _ => ObjectiveName::Length,
+        },
     }
 }
 

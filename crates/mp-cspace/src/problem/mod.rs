@@ -10,7 +10,7 @@ pub use goals::Goals;
 pub use verify::Verify;
 pub use workers::Workers;
 
-use crate::erased::{AnyEnergy, AnyGeometry, AnyGradient, AnySpace, AnyStraight};
+use crate::erased::{AnyEnergy, AnyGeometry, AnyGradient, AnyObjective, AnySpace, AnyStraight};
 use crate::{Interrupt, LocalPlanner, Space, obstacles::ObstacleHints};
 use std::fmt;
 use std::sync::Arc;
@@ -25,6 +25,7 @@ pub struct Problem<'c, C: Space, L: LocalPlanner<C::State>> {
     goals: Goals<'c, C::State>,
     obstacles: ObstacleKnowledge<'c, C::State>,
     inputs: Option<InputSystem<'c, C::State>>,
+    objective: Option<AnyObjective<'c, C::State>>,
     interrupt: Interrupt,
 }
 
@@ -191,6 +192,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
                 goals,
                 obstacles: ObstacleKnowledge::default(),
                 inputs: None,
+                objective: None,
                 interrupt: Interrupt::never(),
             }),
         }
@@ -246,6 +248,13 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         Self { inputs: Some(inputs), ..self }
     }
 
+    /// The same problem, for planners that look for the path that costs least by this objective. Others leave
+    /// it aside.
+    #[must_use]
+    pub fn with_objective(self, objective: AnyObjective<'c, C::State>) -> Self {
+        Self { objective: Some(objective), ..self }
+    }
+
     /// The same problem, whose planner asks `interrupt` whether to end also within an iteration.
     ///
     /// A planner that was interrupted has done part of an iteration. So the iteration counts for nothing, and
@@ -273,6 +282,11 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         std::mem::take(&mut self.obstacles)
     }
 
+    /// Takes the objective out of the problem; `None` for the length.
+    pub fn take_objective(&mut self) -> Option<AnyObjective<'c, C::State>> {
+        self.objective.take()
+    }
+
     /// The same problem with a local planner made from its present one, for instance a wrapper of it.
     /// Start and goals are not checked again.
     ///
@@ -282,8 +296,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         self,
         make: impl FnOnce(L) -> Result<M, E>,
     ) -> Result<Problem<'c, C, M>, E> {
-        let Self { space, local, verify, start, goals, obstacles, inputs, interrupt } = self;
-        Ok(Problem { space, local: make(local)?, verify, start, goals, obstacles, inputs, interrupt })
+        let Self { space, local, verify, start, goals, obstacles, inputs, objective, interrupt } = self;
+        let local = make(local)?;
+        Ok(Problem { space, local, verify, start, goals, obstacles, inputs, objective, interrupt })
     }
 }
 

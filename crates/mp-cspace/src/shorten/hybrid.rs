@@ -1,24 +1,24 @@
 //! Several paths merged into one.
 
 use crate::shortest::shortest_paths;
-use crate::{Interrupt, MotionValidity, Path, Space};
+use crate::{Interrupt, MotionValidity, Objective, Path, Space};
 use std::collections::HashSet;
 
-/// The shortest way over pieces of `paths` and bridges between them: straight motions from a state of one path to the state of another
+/// The cheapest way by `objective` over pieces of `paths` and bridges between them: straight motions from a state of one path to the state of another
 /// that is nearest to it, which `check` finds free.
 ///
 /// B. Raveh, A. Enosh and D. Halperin, *A little more, a lot better: improving path quality by a path-merging algorithm*, IEEE Transactions
-/// on Robotics 27(2), 2011. Each of several paths is good somewhere; the merged one is nowhere longer than any of them. Their edges are
-/// taken as free, so that few motions are checked: a bridge is asked about when the shortest way leads over it, and left out if it is
+/// on Robotics 27(2), 2011. Each of several paths is good somewhere; the merged one costs no more than the cheapest of them. Their edges are
+/// taken as free, so that few motions are checked: a bridge is asked about when the cheapest way leads over it, and left out if it is
 /// not free. (There bridges are those of an alignment of two paths, and all are checked.)
 ///
 /// All paths begin with the same state and may end at different goals. Edges are cut into pieces no longer than `step`, where bridges
 /// begin and end. `m` paths of `n` pieces take m²·n² distances and, for each bridge that is not free, a search (Dijkstra 1959). When `check`
-/// is [interrupted](MotionValidity::interrupt_by), the shortest of `paths` is returned; `None` where there is none, or they do not begin
+/// is [interrupted](MotionValidity::interrupt_by), the cheapest of `paths` is returned; `None` where there is none, or they do not begin
 /// with the same state.
 ///
 /// ```
-/// use mp_cspace::{Discrete, Length, Path, Rn, Space, shorten::hybridized};
+/// use mp_cspace::{Discrete, Length, Path, PathLength, Rn, Space, shorten::hybridized};
 /// use nalgebra::Vector2;
 /// let space = Rn::<2>::new([0.0, 0.0], [9.0, 6.0])?;
 /// // A wall with a gate in the middle.
@@ -28,7 +28,7 @@ use std::collections::HashSet;
 /// // One goes astray before the gate, the other one behind it.
 /// let early = path(&[[0.0, 3.0], [2.0, 6.0], [4.0, 3.2], [9.0, 3.2], [9.0, 3.0]]);
 /// let late = path(&[[0.0, 3.0], [0.0, 2.8], [5.0, 2.8], [7.0, 0.0], [9.0, 3.0]]);
-/// let both = hybridized(&space, &mut check, &[early.clone(), late.clone()], 0.1).ok_or("no path")?;
+/// let both = hybridized(&space, &mut check, &mut PathLength(&space), &[early.clone(), late.clone()], 0.1).ok_or("no path")?;
 /// let [early, late, both] = [early, late, both].map(|path| path.length(&space));
 /// assert!(early > 12.0 && late > 12.0 && both < 9.8, "{early} {late} {both}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -36,6 +36,7 @@ use std::collections::HashSet;
 pub fn hybridized<C: Space>(
     space: &C,
     check: &mut impl MotionValidity<C::State>,
+    objective: &mut impl Objective<C::State>,
     paths: &[Path<C::State>],
     step: f64,
 ) -> Option<Path<C::State>> {
@@ -50,7 +51,7 @@ pub fn hybridized<C: Space>(
     let mut arcs: Vec<Vec<(u32, f64)>> = vec![Vec::new(); states.len() + 1];
     for row in &rows {
         for w in row.windows(2) {
-            add(&mut arcs, w[0], w[1], space.distance(&states[w[0] as usize], &states[w[1] as usize]));
+            add(&mut arcs, w[0], w[1], objective.cost(&states[w[0] as usize], &states[w[1] as usize]));
         }
         add(&mut arcs, row[row.len() - 1], end, 0.0);
     }
@@ -60,10 +61,9 @@ pub fn hybridized<C: Space>(
             for &a in from {
                 let away = |b: &u32| space.distance(&states[a as usize], &states[*b as usize]);
                 let nearest = to.iter().map(|b| (away(b), *b)).min_by(|a, b| a.0.total_cmp(&b.0));
-                if let Some((length, b)) = nearest.filter(|(_, b)| *b != a) {
-                    if add(&mut arcs, a, b, length) {
-                        unchecked.insert((a, b));
-                    }
+                let Some((_, b)) = nearest.filter(|(_, b)| *b != a) else { continue };
+                if add(&mut arcs, a, b, objective.cost(&states[a as usize], &states[b as usize])) {
+                    unchecked.insert((a, b));
                 }
             }
         }
@@ -83,8 +83,8 @@ pub fn hybridized<C: Space>(
             return Some(Path::straight(nodes.iter().map(|n| states[*n as usize].clone()).collect()));
         };
         if check.is_interrupted() {
-            let length = |path: &&Path<C::State>| path.length(space);
-            return paths.iter().min_by(|a, b| length(a).total_cmp(&length(b))).cloned();
+            let costs = paths.iter().map(|path| (objective.path_cost(path), path));
+            return costs.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, path)| path.clone());
         }
         arcs[w[0] as usize].retain(|arc| arc.0 != w[1]);
     }

@@ -1,7 +1,7 @@
 //! Random shortcuts.
 
 use super::{Draft, Effort, all_free, reduced};
-use crate::{Factored, MotionValidity, Path, Rng, Space};
+use crate::{Factored, MotionValidity, Objective, Path, PathLength, Rng, Space};
 use rand::RngExt;
 
 /// A path with this many times the states it had is [reduced](super::reduce): each shortcut of one factor asks about all states between its ends.
@@ -20,9 +20,14 @@ pub(super) struct Piece<S> {
 
 /// Of each state, the length of the path up to it.
 pub(super) fn arc_lengths<C: Space>(space: &C, states: &[C::State]) -> Vec<f64> {
+    costs_up_to(&mut PathLength(space), states)
+}
+
+/// Of each state, the cost of the path up to it.
+fn costs_up_to<S>(objective: &mut impl Objective<S>, states: &[S]) -> Vec<f64> {
     let mut s = vec![0.0];
     for w in states.windows(2) {
-        s.push(s[s.len() - 1] + space.distance(&w[0], &w[1]));
+        s.push(s[s.len() - 1] + objective.cost(&w[0], &w[1]));
     }
     s
 }
@@ -51,18 +56,20 @@ pub(super) fn random_piece<C: Space>(
     })
 }
 
-/// Calls `propose` until the effort is used up, and takes the proposals that are shorter and free.
+/// Calls `propose` until the effort is used up, and takes the proposals that cost less and are free.
 ///
 /// A proposal replaces the states strictly between the start of edge `first` and the end of edge `last`.
-fn improve<C: Space>(
+pub(super) fn improve<C: Space>(
     space: &C,
     check: &mut impl MotionValidity<C::State>,
+    objective: &mut impl Objective<C::State>,
     mut draft: Draft<C::State>,
     effort: Effort,
     rng: &mut Rng,
     mut propose: impl FnMut(&[C::State], &[f64], Piece<C::State>, &mut Rng) -> Vec<C::State>,
 ) -> Draft<C::State> {
     let mut s = arc_lengths(space, &draft.states);
+    let mut costs = costs_up_to(objective, &draft.states);
     let mut failed = 0;
     let mut crowded = CROWDED * draft.states.len();
     // A gain within rounding does not count.
@@ -78,9 +85,9 @@ fn improve<C: Space>(
         let mut new = vec![draft.states[first].clone()];
         new.extend(middle);
         new.push(draft.states[last + 1].clone());
-        let length = arc_lengths(space, &new)[new.len() - 1];
-        let is_shorter = s[last + 1] - s[first] - length > least_gain * s[s.len() - 1];
-        if is_shorter && all_free(check, &new, [draft.free[first], draft.free[last]]) {
+        let cost = costs_up_to(objective, &new)[new.len() - 1];
+        let is_cheaper = costs[last + 1] - costs[first] - cost > least_gain * costs[costs.len() - 1];
+        if is_cheaper && all_free(check, &new, [draft.free[first], draft.free[last]]) {
             failed = 0;
             new.pop();
             // The states between keep theirs, if there are any.
@@ -92,10 +99,11 @@ fn improve<C: Space>(
             draft.free.splice(first..=last, vec![true; new.len()]);
             draft.states.splice(first..=last, new);
             if draft.states.len() > crowded {
-                draft = reduced(space, check, draft);
+                draft = reduced(check, objective, draft);
                 crowded = CROWDED * draft.states.len();
             }
             s = arc_lengths(space, &draft.states);
+            costs = costs_up_to(objective, &draft.states);
         }
     }
     draft
@@ -113,17 +121,18 @@ pub fn shortcut<C: Space>(
     effort: Effort,
     rng: &mut Rng,
 ) -> Path<C::State> {
-    straightened(space, check, Draft::of(space, path), effort, rng).path()
+    straightened(space, check, &mut PathLength(space), Draft::of(space, path), effort, rng).path()
 }
 
 pub(super) fn straightened<C: Space>(
     space: &C,
     check: &mut impl MotionValidity<C::State>,
+    objective: &mut impl Objective<C::State>,
     path: Draft<C::State>,
     effort: Effort,
     rng: &mut Rng,
 ) -> Draft<C::State> {
-    improve(space, check, path, effort, rng, |_, _, piece, _| vec![piece.from, piece.to])
+    improve(space, check, objective, path, effort, rng, |_, _, piece, _| vec![piece.from, piece.to])
 }
 
 /// Straightens one random [factor](Factored) of the space between two random places of the path,
@@ -139,12 +148,13 @@ pub fn partial_shortcut<C: Factored>(
     effort: Effort,
     rng: &mut Rng,
 ) -> Path<C::State> {
-    straightened_by_factor(space, check, Draft::of(space, path), effort, rng).path()
+    straightened_by_factor(space, check, &mut PathLength(space), Draft::of(space, path), effort, rng).path()
 }
 
 pub(super) fn straightened_by_factor<C: Factored>(
     space: &C,
     check: &mut impl MotionValidity<C::State>,
+    objective: &mut impl Objective<C::State>,
     path: Draft<C::State>,
     effort: Effort,
     rng: &mut Rng,
@@ -153,7 +163,7 @@ pub(super) fn straightened_by_factor<C: Factored>(
     if factors < 2 {
         return path;
     }
-    improve(space, check, path, effort, rng, |states, s, piece, rng| {
+    improve(space, check, objective, path, effort, rng, |states, s, piece, rng| {
         let factor = rng.random_range(0..factors);
         let (s1, s2) = piece.s;
         let mut new = vec![piece.from.clone()];

@@ -2,7 +2,7 @@
 
 use super::{Draft, Effort, is_shortcut};
 use crate::shorten::random::arc_lengths;
-use crate::{MotionValidity, Path, Space};
+use crate::{MotionValidity, Path, PathLength, Space};
 
 /// A corner that would move less than this part of the length of the path stays.
 const LEAST_MOVE: f64 = 5e-3;
@@ -69,7 +69,7 @@ fn joined<C: Space>(
             if *failures == 0 || check.is_interrupted() {
                 return;
             }
-            if is_shortcut(space, check, &draft.states[first..=last]) {
+            if is_shortcut(check, &mut PathLength(space), &draft.states[first..=last]) {
                 draft.states.drain(first + 1..last);
                 draft.origin.drain(first + 1..last);
                 draft.free.splice(first..last, [true]);
@@ -82,7 +82,7 @@ fn joined<C: Space>(
 }
 
 /// The same path with a state in the middle of each edge.
-fn halved<C: Space>(space: &C, old: &Draft<C::State>) -> Draft<C::State> {
+pub(super) fn halved<C: Space>(space: &C, old: &Draft<C::State>) -> Draft<C::State> {
     let mut new = Draft { states: Vec::new(), free: Vec::new(), origin: Vec::new() };
     for (i, w) in old.states.windows(2).enumerate() {
         new.states.extend([w[0].clone(), space.interpolate(&w[0], &w[1], 0.5)]);

@@ -181,6 +181,9 @@ impl<A: Clearance<S>, S: StateVector> Clearance<Configuration> for OnVectors<A, 
     fn clearance(&mut self, q: &Configuration, enough: f64) -> f64 {
         q.to().map_or(0.0, |q| self.check.clearance(&q, enough))
     }
+    fn obstacle_clearance(&mut self, q: &Configuration, enough: f64) -> f64 {
+        q.to().map_or(0.0, |q| self.check.obstacle_clearance(&q, enough))
+    }
     fn in_contact(&mut self, q: &Configuration) -> bool {
         q.to().is_none_or(|q| self.check.in_contact(&q))
     }

@@ -103,6 +103,9 @@ impl Clearance<Configuration> for Check {
     fn clearance(&mut self, q: &Configuration, enough: f64) -> f64 {
         if self.robot.holds(q) { self.inner.clearance(q, enough) } else { 0.0 }
     }
+    fn obstacle_clearance(&mut self, q: &Configuration, enough: f64) -> f64 {
+        self.inner.obstacle_clearance(q, enough)
+    }
     fn in_contact(&mut self, q: &Configuration) -> bool {
         !self.robot.holds(q) || self.inner.in_contact(q)
     }

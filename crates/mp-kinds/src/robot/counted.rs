@@ -129,6 +129,9 @@ impl<S, R: Clearance<S> + Queries> Clearance<S> for Counted<'_, R> {
     fn clearance(&mut self, q: &S, enough: f64) -> f64 {
         self.query(0.0, |checker| checker.clearance(q, enough))
     }
+    fn obstacle_clearance(&mut self, q: &S, enough: f64) -> f64 {
+        self.query(0.0, |checker| checker.obstacle_clearance(q, enough))
+    }
     fn in_contact(&mut self, q: &S) -> bool {
         self.query(true, |checker| checker.in_contact(q))
     }

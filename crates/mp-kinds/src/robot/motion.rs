@@ -277,6 +277,9 @@ impl Clearance<Configuration> for AnyChecker {
     fn clearance(&mut self, q: &Configuration, enough: f64) -> f64 {
         self.0.clearance(q, enough)
     }
+    fn obstacle_clearance(&mut self, q: &Configuration, enough: f64) -> f64 {
+        self.0.obstacle_clearance(q, enough)
+    }
     fn in_contact(&mut self, q: &Configuration) -> bool {
         self.0.in_contact(q)
     }

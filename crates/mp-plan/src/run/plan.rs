@@ -121,6 +121,7 @@ impl Report {
             path_length: None,
             clearance: None,
             clearance_kept: 0.0,
+            cost: None,
             shortened: false,
             fingerprint: None,
             path_file: None,
@@ -209,6 +210,10 @@ pub(crate) fn reported(
     (report.solved, report.verified, report.shortened) = (true, true, finished.shortened);
     report.path_length = Some(finished.length);
     report.clearance = finished.clearance;
+    if !request.objective.is_length() {
+        let states = finished.path.rows.iter().map(|row| kind.state(row)).collect();
+        report.cost = Some(request.objective.cost(kind, &Path::straight(states))?);
+    }
     let numbers = finished.path.rows.iter().flatten().copied();
     report.fingerprint = Some(format!("{:016x}", mp_kinds::numbers::fingerprint(numbers)));
     report.path = Some(finished.path.rows);

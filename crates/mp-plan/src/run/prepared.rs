@@ -65,6 +65,7 @@ impl<'k> Prepared<'k> {
     fn with(kind: &'k dyn Robot, request: Cow<'k, Request>) -> Result<Self, Error> {
         let planner = PlannerKind::new(&request.planner)?;
         crate::finish::relax::check(kind, &request)?;
+        request.objective.check(kind)?;
         let state = Arc::<RunState>::default();
         let mut prepared = Self::of(kind, request, &planner, &state)?;
         if planner == PlannerKind::Auto {
@@ -166,7 +167,12 @@ impl<'k> Prepared<'k> {
         let problem = problem.map_err(|e| written(kind, e))?;
         let field = self.field.as_ref().map(TreeField::pushing);
         let known = ObstacleKnowledge { field, ..kind.any_obstacles(&counting) };
+        let objective = self.request.objective.make(kind, &self.space, &counting);
         let problem = problem.with_obstacles(known).with_interrupt(interrupt);
+        let problem = match objective.map_err(|e| BuildError::Unmade { reason: e.to_string() })? {
+            Some(objective) => problem.with_objective(objective),
+            None => problem,
+        };
         Ok(match kind.input_system() {
             Some(system) => problem.with_inputs(system),
             None => problem,

@@ -11,6 +11,7 @@ mod hybrid;
 mod kinds;
 mod many_queries;
 mod mjcf;
+mod objective;
 mod own_robot;
 mod parts;
 mod pose_goals;

@@ -131,8 +131,22 @@ impl<Q: Coordinates> Validity<Q> for Arm {
 impl<Q: Coordinates> Clearance<Q> for Arm {
     /// The least distance of links from obstacles, beyond what is kept, and from each other.
     fn clearance(&mut self, q: &Q, enough: f64) -> f64 {
+        self.least_clearance(q, enough, true)
+    }
+
+    fn obstacle_clearance(&mut self, q: &Q, enough: f64) -> f64 {
+        self.least_clearance(q, enough, false)
+    }
+
+    fn in_contact(&mut self, q: &Q) -> bool {
+        self.first_within(&[q], 0.0).is_some()
+    }
+}
+
+impl Arm {
+    fn least_clearance<Q: Coordinates>(&mut self, q: &Q, enough: f64, of_links: bool) -> f64 {
         self.counters.clearance_checks += 1;
-        let mut least = self.still_clearance();
+        let mut least = if of_links { self.still_clearance() } else { f64::INFINITY };
         let Self { robot, obstacles, query, scratch, interrupt, kept, .. } = self;
         if interrupt.ask() || !robot.kinematics.is_configuration(q.as_slice()) {
             return 0.0;
@@ -148,7 +162,7 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
                 return 0.0;
             }
         }
-        for pair in &robot.pairs {
+        for pair in robot.pairs.iter().filter(|_| of_links) {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
             let limit = enough.min(least);
             let distance = query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], limit);
@@ -158,10 +172,6 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
             }
         }
         least
-    }
-
-    fn in_contact(&mut self, q: &Q) -> bool {
-        self.first_within(&[q], 0.0).is_some()
     }
 }
 

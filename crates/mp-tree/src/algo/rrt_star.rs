@@ -17,9 +17,10 @@
 //!    edge that failed. Stepping on returns better paths, each cheaper than the one before.
 //!
 //! **When to use it.** When the length of the path matters more than the time to find it, and one tree can
-//! find a path. The cost is that of the local planner: for straight motions the length of the path. Local
-//! planners that cannot reach a state exactly (sets of inputs) gain nothing.
-//! [Informed RRT*](super::informed_rrt_star) converges faster on problems with one goal.
+//! find a path. The cost is that of the [objective](crate::Problem::with_objective) of the problem, or else of
+//! the local planner: for straight motions the length of the path. Local planners that cannot reach a state
+//! exactly (sets of inputs) gain nothing. [Informed RRT*](super::informed_rrt_star) converges faster on
+//! problems with one goal.
 //!
 //! | parameter | range | default |
 //! |---|---|---|

@@ -33,7 +33,8 @@
 //! entered by refinement: use ρ = 1 there, or shorter steps. [By name](crate::build) the cost is that of
 //! being near obstacles, and the problem must [know](crate::Problem::with_obstacles) the gradient of the
 //! clearance: with the clearance d and the range r the cost is (1 − d/r)² where d < r, and 0 elsewhere; 1 in
-//! contact.
+//! contact. Where the problem has an [objective](crate::Problem::with_objective), it is the cost of states of
+//! that, and `range` is not used.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -74,7 +75,8 @@ use crate::{
     Samples, Selector, SingleTree, TreePlannerParts, Tuning,
 };
 use mp_cspace::{
-    Direction, Extension, LocalPlanner, NodeId, Reach, Rng, Space, Uniform, obstacles::ClearanceGradient,
+    Direction, Extension, LocalPlanner, NodeId, Reach, Rng, Space, Uniform, nearness,
+    obstacles::ClearanceGradient,
 };
 use rand::RngExt;
 
@@ -126,13 +128,15 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let (mut problem, settings) = (args.problem, args.settings);
-    let known = problem.take_obstacles();
-    let mut field = known.gradient.ok_or(BuildError::NoGradient { planner: INFO.name })?;
     let range = settings.length_of(&RANGE, problem.space())?;
-    let mut gradient = vec![0.0; problem.space().dim()];
-    let cost = move |q: &T::State| {
-        let clearance = field.clearance_gradient(q, range, &mut gradient);
-        mp_math::powi(1.0 - (clearance / range).clamp(0.0, 1.0), 2)
+    let cost: Box<dyn FnMut(&T::State) -> f64 + Send + 'c> = if let Some(mut given) = problem.take_objective()
+    {
+        Box::new(move |q| given.state_cost(q))
+    } else {
+        let known = problem.take_obstacles();
+        let mut field = known.gradient.ok_or(BuildError::NoGradient { planner: INFO.name })?;
+        let mut gradient = vec![0.0; problem.space().dim()];
+        Box::new(move |q| nearness(field.clearance_gradient(q, range, &mut gradient), range))
     };
     let default = Temperature::default();
     let with = Temperature {

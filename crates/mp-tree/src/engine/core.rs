@@ -44,6 +44,17 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         })
     }
 
+    /// As [`new`](Self::new), for planners that look for the path that costs least by the objective of the
+    /// problem.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn optimising(mut problem: Problem<'c, C, L>, tuning: &Tuning) -> Result<Self, BuildError> {
+        let objective = problem.take_objective();
+        let core = Self::new(problem, tuning)?;
+        Ok(Self { checker: core.checker.with_objective(objective), ..core })
+    }
+
     /// Adds the start as the root of the first tree, if the tree is empty. Returns the root if it is in the
     /// goal.
     pub fn add_start<Se: Selector<C>, A: Inserter<C, L>>(

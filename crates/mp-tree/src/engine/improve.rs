@@ -12,7 +12,8 @@ use mp_cspace::{
 /// The least part of its cost by which a path must be better than the one before: less may be rounding.
 const GAIN: f64 = 1e-9;
 
-/// A planner that grows one tree from the start and returns ever cheaper verified paths.
+/// A planner that grows one tree from the start and returns ever cheaper verified paths: shorter ones, or by
+/// the [objective](Problem::with_objective) of the problem.
 ///
 /// As [`SingleTree`](crate::SingleTree), but it remembers which nodes are in the goal. Whenever the cheapest
 /// path to any of them costs less than the path returned last, because of a new node or because the tree was
@@ -48,7 +49,7 @@ where
         parts: TreePlannerParts<P, Se, G, A>,
     ) -> Result<Self, BuildError> {
         Ok(Self {
-            core: Core::new(problem, &parts.tuning)?,
+            core: Core::optimising(problem, &parts.tuning)?,
             tree: SearchTree::new(0, Direction::Forward, parts.selector, parts.inserter),
             target_sampler: parts.target_sampler,
             extender: parts.extender,

@@ -56,6 +56,27 @@ fn it_goes_around_a_hill() {
     assert!(ours.0 < 0.6 * plain.0 && ours.1 < 0.5 * plain.1, "T-RRT {ours:?}, RRT {plain:?}");
 }
 
+/// By name, without a gradient: the states of the objective of the problem are compared.
+#[test]
+fn by_name_it_takes_the_objective() {
+    let (space, settings) = (square(), Settings::parse(["step=0.05"]).unwrap());
+    let mean = |name: &str, seed| {
+        let (start, goal) = (Point::new(0.1, 0.5), Point::new(0.9, 0.5));
+        let top = Boxes(vec![([0.49, 0.49], [0.51, 0.51])]);
+        let local =
+            Straight::new(&space, Discrete::new(&space, top.clone(), Length::Fraction(0.01)).unwrap());
+        let objective = StateCostIntegral::new(&space, hill, 1.0, Length::Fraction(0.01)).unwrap();
+        let problem = Problem::new(&space, local, Exact(top), start, goal).unwrap();
+        paid(
+            &solved(build(name, problem.with_objective(Box::new(objective)), &settings).unwrap(), seed),
+            hill,
+        )
+        .0
+    };
+    let [ours, plain] = ["t-rrt", "rrt"].map(|name| (0..10).map(|seed| mean(name, seed)).sum::<f64>());
+    assert!(ours < 0.6 * plain, "T-RRT {ours}, RRT {plain}");
+}
+
 /// By name: through a narrow passage and a wide one, it takes the wide one more often, and keeps away from
 /// walls.
 #[test]

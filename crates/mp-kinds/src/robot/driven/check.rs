@@ -50,6 +50,9 @@ impl Clearance<Configuration> for DrivenChecker {
             _ => 0.0,
         }
     }
+    fn obstacle_clearance(&mut self, q: &Configuration, enough: f64) -> f64 {
+        self.space.parts(q).map_or(0.0, |parts| self.checker.obstacle_clearance(&parts.q, enough))
+    }
     fn in_contact(&mut self, q: &Configuration) -> bool {
         self.space.parts(q).is_none_or(|parts| self.checker.in_contact(&parts.q))
     }
