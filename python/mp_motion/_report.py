@@ -157,6 +157,8 @@ class Report(InScene):
         A lower bound on the clearance along the path, metres.
     clearance_kept : float
         The clearance from obstacles that was asked for, metres; zero for none.
+    cost : float or None
+        What the path costs, where the objective was not its length.
     won : str or None
         Of the planner ``auto``, the search that has found the path.
     shortened : bool
@@ -203,6 +205,7 @@ class Report(InScene):
     picture_file: str | None = None
     certificate_file: str | None = None
     clearance_kept: float = 0.0
+    cost: float | None = None
     won: str | None = None
     calls: int | None = None
     _scene: Scene | None = field(default=None)
@@ -230,8 +233,9 @@ class Report(InScene):
         members: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("_scene", "calls")}
         if self.clearance_kept == 0.0:
             del members["clearance_kept"]
-        if self.won is None:
-            del members["won"]
+        for name in ("cost", "won"):
+            if members[name] is None:
+                del members[name]
         members["columns"] = [vars(column) for column in self.columns]
         members["stages"] = [vars(stage) for stage in self.stages]
         for name in ("path", "first_path"):

@@ -74,6 +74,7 @@ class Options:
     roadmap: File | None = None
     clearance: float = 0.0
     sharp_clearance: bool = False
+    objective: str = "length"
     hybridize: int = 1
 
     def __post_init__(self) -> None:
@@ -100,6 +101,7 @@ class Options:
         motion(self.motion)
         choice("finish", self.finish, get_args(Finish))
         text("field", self.field)
+        text("objective", self.objective)
         number("clearance", self.clearance, least=0)
         flag("first_only", self.first_only)
         flag("sharp_clearance", self.sharp_clearance)
@@ -120,6 +122,7 @@ class Options:
                 "field": self.field,
                 "first_only": bool(self.first_only),
                 **({"sharp_clearance": True} if self.sharp_clearance else {}),
+                **({"objective": self.objective} if self.objective != "length" else {}),
                 **({"hybridize": int(self.hybridize)} if self.hybridize != 1 else {}),
                 "roadmap": None if self.roadmap is None else os.fspath(self.roadmap),
             }
@@ -689,6 +692,7 @@ class Scene:
         roadmap: File | None = None,
         clearance: float = 0.0,
         sharp_clearance: bool = False,
+        objective: str = "length",
         hybridize: int = 1,
         progress: bool | Callable[[Progress], object] = False,
         cancel: Cancel | None = None,
@@ -731,6 +735,9 @@ class Scene:
         sharp_clearance : bool
             Whether the report has the clearance of the path as near as it can be measured, which may take as long as planning;
             otherwise it has the bound that the proof of the path gives.
+        objective : str
+            What the path costs: ``length``, or ``clearance:WEIGHT:RANGE``, being near obstacles too; both numbers may be left
+            out. Planners that improve their paths lower it, and so does shortening; ``report.cost`` has it.
         hybridize : int
             How many paths to plan, with this seed and the next ones, and to merge into a shorter one. Each takes as long as the
             first.
@@ -759,7 +766,7 @@ class Scene:
         """
         options = Options(
             planner, seed, time, iterations, queries, nodes, settings, metric, motion, threads, finish, field,
-            first_only, roadmap, clearance, sharp_clearance, hybridize,
+            first_only, roadmap, clearance, sharp_clearance, objective, hybridize,
         )  # fmt: skip
         return self.plan_by(options, progress=progress, cancel=cancel)
 

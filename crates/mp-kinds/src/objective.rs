@@ -36,19 +36,6 @@ pub enum ObjectiveName {
 }
 
 impl ObjectiveName {
-    /// How each is written, and what it is.
-    pub const ALL: [(&'static str, &'static str); 3] = [
-        ("length", "the length of the path (the default)"),
-        (
-            "clearance",
-            "length, and being near obstacles: ∫ (1 + 10·(1 − d/r)²) ds for a clearance d below r, a fifth of the size of the robot",
-        ),
-        (
-            "clearance:WEIGHT:RANGE",
-            "the same with another weight than 10, and a range in metres, which may be left out",
-        ),
-    ];
-
     /// Whether it is the length.
     #[must_use]
     pub fn is_length(&self) -> bool {
@@ -122,11 +109,8 @@ impl FromStr for ObjectiveName {
                 weight: weight.map_or(Ok(WEIGHT), |weight| number("weight", weight))?,
                 range: range.map(|range| number("range", range)).transpose()?,
             }),
-            _ => {
-                let names: Vec<_> = Self::ALL.iter().map(|(name, _)| *name).collect();
-                Err(Error::new(format!("there is no objective `{s}`"))
-                    .help(format!("there are: {}", names.join(", "))))
-            }
+            _ => Err(Error::new(format!("there is no objective `{s}`"))
+                .help("there are: length, clearance, clearance:WEIGHT, clearance:WEIGHT:RANGE")),
         }
     }
 }

@@ -21,8 +21,8 @@ fn arm() -> (Arm, Joints<Six>) {
     (arm, space)
 }
 
-/// The least distance by the reference implementation, from the model and the names of the pairs only.
-fn plain_distance(arm: &Arm, obstacles: &[RefMesh], q: &[f64], still: &[&str]) -> f64 {
+/// The least distance from obstacles, and from links too, by the reference implementation, from the model and the names of the pairs only.
+fn plain_distance(arm: &Arm, obstacles: &[RefMesh], q: &[f64], still: &[&str]) -> [f64; 2] {
     let identity = Isometry3::identity();
     let links: Vec<(&str, RefMesh)> =
         arm.meshes_at(q).into_iter().map(|(name, mesh)| (name, RefMesh::new(&mesh))).collect();
@@ -32,11 +32,12 @@ fn plain_distance(arm: &Arm, obstacles: &[RefMesh], q: &[f64], still: &[&str]) -
             least = least.min(link.clearance(&identity, obstacle, &identity, f64::INFINITY));
         }
     }
+    let from_obstacles = least;
     for [a, b] in arm.checked_pairs() {
         let find = |name: &str| &links.iter().find(|(n, _)| *n == name).unwrap().1;
         least = least.min(find(a).clearance(&identity, find(b), &identity, f64::INFINITY));
     }
-    least
+    [from_obstacles, least]
 }
 
 fn references(arm: &Arm) -> Vec<RefMesh> {
@@ -50,11 +51,16 @@ fn consistent(mut arm: Arm, still: &[&str], samples: usize) -> [usize; 2] {
     for _ in 0..samples {
         let q = space.sample_uniform(&mut rng);
         let (valid, clearance) = (arm.is_valid(&q), arm.clearance(&q, f64::INFINITY));
-        let plain = plain_distance(&arm, &obstacles, q.as_slice(), still);
+        let [from_obstacles, plain] = plain_distance(&arm, &obstacles, q.as_slice(), still);
         assert_eq!(valid, clearance > 0.0);
         assert_eq!(valid, !arm.in_contact(&q));
         assert!((clearance - plain).abs() < 1e-11 || plain == clearance, "{clearance} {plain}");
         assert!(arm.clearance(&q, 0.01) >= clearance.min(0.01) - 1e-12);
+        let alone = arm.obstacle_clearance(&q, f64::INFINITY);
+        assert!(
+            (alone - from_obstacles).abs() < 1e-11 || alone == from_obstacles,
+            "{alone} {from_obstacles}"
+        );
         counts[usize::from(valid)] += 1;
     }
     counts
@@ -100,7 +106,7 @@ fn answers_of_balls_are_those_of_the_reference() {
             std::iter::repeat_with(|| space.sample_uniform(&mut rng)).find(|q| arm.is_valid(q)).unwrap();
         let size = [0.1, 0.3, 1.0][round % 3];
         let states = [(); 8].map(|()| space.interpolate(&near, &space.sample_uniform(&mut rng), size));
-        let touching = states.map(|q| plain_distance(&arm, &obstacles, q.as_slice(), &["base"]) <= 0.0);
+        let touching = states.map(|q| plain_distance(&arm, &obstacles, q.as_slice(), &["base"])[1] <= 0.0);
         match arm.first_within(&states.each_ref(), 0.0) {
             Some(k) => {
                 assert!(touching[k], "{touching:?} {k}");
@@ -134,7 +140,7 @@ fn eight_states_within_a_clearance_are_those_of_the_reference() {
                 std::iter::repeat_with(|| space.sample_uniform(&mut rng)).find(|q| arm.is_valid(q)).unwrap();
             let size = [0.03, 0.1, 0.3][round % 3];
             let states = [(); 8].map(|()| space.interpolate(&near, &space.sample_uniform(&mut rng), size));
-            let distances = states.map(|q| plain_distance(&arm, &obstacles, q.as_slice(), &["base"]));
+            let distances = states.map(|q| plain_distance(&arm, &obstacles, q.as_slice(), &["base"])[1]);
             for clearance in [0.004, 0.03] {
                 match arm.first_within(&states.each_ref(), clearance) {
                     Some(k) => {
