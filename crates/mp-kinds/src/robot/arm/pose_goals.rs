@@ -3,7 +3,7 @@
 use crate::{Error, Interrupt, brief, count};
 use mp_cspace::{Clearance, Configuration, Joints, Space};
 use mp_geom::pose_from_six;
-use mp_io::{FreeTurns, PoseEntry};
+use mp_io::{FreeTurns, GoalEntry, PoseEntry};
 use mp_robot::{Arm, FreeTurn, InverseKinematics, PoseGoal};
 use nalgebra::{Isometry3, Vector3};
 use serde::Serialize;
@@ -13,6 +13,8 @@ const STARTS: u64 = 400;
 const ENOUGH: usize = 32;
 /// How many starts are tried where nothing was found: out of reach, as far as can be told.
 const AT_LEAST: u64 = 100;
+/// How far a link may be from a place where it is to be: rad, and m or lengths of the arm, whichever is less. Files often have only four digits.
+const NEAR: f64 = 1e-3;
 
 /// A configuration that reaches a place.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -143,6 +145,23 @@ pub(super) fn goals(
         count(found.len(), "configuration")
     );
     Ok((free, said))
+}
+
+impl<C: super::LinkedSpace> super::LinkedScene<C> {
+    /// See [`Description::reaches_place`](crate::Description::reaches_place).
+    pub(super) fn is_at_place(&self, q: &Configuration) -> bool {
+        let goals = self.source.iter().flat_map(|problem| &problem.file.goals);
+        let nears = |goal: &GoalEntry| {
+            let GoalEntry::Pose(entry) = goal else { return false };
+            let goal = goal_of(entry);
+            let solver = InverseKinematics::new(self.arm.kinematics(), goal.clone());
+            solver.is_some_and(|mut solver| {
+                let (place, turn) = goal.error(&solver.pose_at(q.as_slice()));
+                place.norm() <= NEAR * self.arm.length().min(1.0) && turn.norm() <= NEAR
+            })
+        };
+        goals.into_iter().any(nears)
+    }
 }
 
 impl super::ArmScene {
