@@ -84,7 +84,8 @@ fn a_path_ends_where_a_link_is_wanted() {
 #[test]
 fn a_path_that_ends_anywhere_at_a_place_is_free() {
     let goals = "[[-2, 0.3], { link = \"tip\", position = [1.5, 1.5, 0.2], position_tolerance = 0.2 }]";
-    let text = |goals: &str| format!("[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = [0.8, 0.2]\ngoals = {goals}\n");
+    let text =
+        |goals: &str| format!("[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = [0.8, 0.2]\ngoals = {goals}\n");
     let scene = load_text(text(goals)).unwrap();
     let faults = |scene: &Scene, end: [f64; 2]| {
         let rows = vec![vec![0.8, 0.2], end.to_vec()];

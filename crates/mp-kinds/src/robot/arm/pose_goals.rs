@@ -35,6 +35,11 @@ fn goal_of(entry: &PoseEntry) -> PoseGoal {
     PoseGoal { within: entry.within, free, ..PoseGoal::new(&entry.link, pose_from_six(entry.pose)) }
 }
 
+/// The error of a search that was interrupted.
+fn ended() -> [String; 2] {
+    ["the search for goals was ended".to_owned(), "give more time".to_owned()]
+}
+
 /// The configurations of `arm` that reach `entry` and whether each is free, from searches that begin at `from`: up to `enough` free ones,
 /// or all that are found. The free ones come first, each part by its distance from there.
 ///
@@ -70,7 +75,7 @@ pub(super) fn reaching(
     let mut free = 0;
     for start in 0..STARTS {
         if interrupt.ask() {
-            return Err(["the search for goals was ended".to_owned(), "give more time".to_owned()]);
+            return Err(ended());
         }
         if (start >= AT_LEAST && all.is_empty()) || free >= enough {
             break;
@@ -119,11 +124,18 @@ pub(super) fn goals(
     let found = reaching(arm, space, entry, from, ENOUGH, interrupt)?;
     let free: Vec<_> = found.iter().filter(|(_, free)| *free).map(|(q, _)| q.clone()).collect();
     if free.is_empty() {
-        let mut arm = arm.clone();
-        let least = found.iter().map(|(q, _)| arm.explain(q.as_slice()));
+        let (mut arm, mut interrupt) = (arm.clone(), interrupt.clone());
+        let mut explained = Vec::new();
+        for (q, _) in &found {
+            if interrupt.ask() {
+                return Err(ended());
+            }
+            explained.push(arm.explain(q.as_slice()));
+        }
         let deepest =
             |contacts: &Vec<mp_robot::ArmContact>| contacts.iter().map(|c| c.depth).fold(0.0, f64::max);
-        let least = least.min_by(|a, b| deepest(a).total_cmp(&deepest(b))).unwrap_or_default();
+        let least =
+            explained.into_iter().min_by(|a, b| deepest(a).total_cmp(&deepest(b))).unwrap_or_default();
         let named =
             least.iter().take(3).map(|c| format!("{} in {} ({} m deep)", c.link, c.other, brief(c.depth)));
         let named: Vec<_> = named.collect();
