@@ -9,8 +9,9 @@ from numbers import Real
 from typing import Any, cast
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from ._errors import RequestError
+from ._errors import Error, RequestError
 
 #: Numbers of the engine have 64 bits.
 MOST = 2**64 - 1
@@ -40,6 +41,16 @@ def number(name: str, value: Any, *, above: float | None = None, least: float = 
         which = f" above {above:g}" if above is not None else "" if least == -math.inf else f" from {least:g} on"
         raise RequestError(f"`{name}` must be a finite number{which}, not {given}", kind="request")
     return given
+
+
+def numbers(given: ArrayLike) -> NDArray[np.float64]:
+    """Return an array of real numbers, none of which is masked."""
+    array = np.asanyarray(given)
+    if np.ma.is_masked(array):
+        raise Error("some numbers are masked", remedy="fill them, or leave them out")
+    if array.dtype.kind in "bcmM":
+        raise Error(f"an array of {array.dtype} has no metres or radians", remedy="give real numbers")
+    return np.asarray(array, dtype=np.float64)
 
 
 def flag(name: str, value: Any) -> bool:

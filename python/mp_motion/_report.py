@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,12 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from ._scene import File, Scene
+
+
+def at_least(bound: float) -> str:
+    """Return a lower bound in three digits, which are never more than it is."""
+    near = f"{bound:.3g}"
+    return near if float(near) <= bound else f"{bound - 0.5 * 10.0 ** (math.floor(math.log10(bound)) - 2):.3g}"
 
 
 @dataclass(frozen=True)
@@ -264,7 +271,7 @@ class Report(InScene):
     def __str__(self) -> str:
         if self.path is None:
             return f"{self.scene}: not solved by {self.planner}, seed {self.seed}: {self.why}"
-        clearance = "" if self.clearance is None else f", clearance at least {self.clearance:.3g} m"
+        clearance = "" if self.clearance is None else f", clearance at least {at_least(self.clearance)} m"
         return (
             f"{self.scene}: solved in {1e3 * self.time_s:.1f} ms by {self.planner}, seed {self.seed}; "
             f"{len(self.path)} configurations, length {self.path_length:.4g}{clearance}"

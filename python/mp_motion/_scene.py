@@ -15,7 +15,7 @@ from numpy.lib import recfunctions
 from numpy.typing import ArrayLike, NDArray
 
 from . import _mp, _view
-from ._arguments import choice, flag, motion, number, text, whole
+from ._arguments import choice, flag, motion, number, numbers, text, whole
 from ._errors import Error, Interrupted
 from ._mp import Cancel
 from ._names import MetricName, PlannerName
@@ -282,7 +282,7 @@ class Scene:
         files: dict[str, bytes] = {}
         members: dict[str, Any] = shape_members(robot, files)
         if bounds is not None:
-            members["bounds"] = np.asarray(bounds, dtype=np.float64)
+            members["bounds"] = numbers(bounds)
         if planar:
             members["planar"] = True
         document = {
@@ -372,7 +372,7 @@ class Scene:
         if len(moving) + (base is not None) > 1:
             raise Error("a base that moves has no pose", remedy="give one of `base`, `planar_within` and `floating_within`")
         for how, within in moving.items():
-            robot |= {"base": how, "bounds": np.asarray(within, dtype=np.float64)}
+            robot |= {"base": how, "bounds": numbers(within)}
         if base is not None:
             robot["base"] = pose_numbers(base)
         begins = plain(start) if isinstance(start, str | Mapping) else _ordered(start)
@@ -447,7 +447,7 @@ class Scene:
         world = {"walls": walls, "bounds": bounds, "scale": scale, "origin": origin, "threshold": threshold, "unknown": unknown}
         world = {key: np.asarray(value).tolist() for key, value in world.items() if value is not None}
         if image is not None:
-            files["image.pgm"] = _pgm(np.asarray(image))
+            files["image.pgm"] = _pgm(np.asanyarray(image))
             world["image"] = "image.pgm"
         match robot:
             case Disc(radius):
@@ -579,7 +579,7 @@ class Scene:
         >>> len(paths)
         3
         """
-        native = self._native.next_part([float(x) for x in np.asarray(end, dtype=np.float64)])
+        native = self._native.next_part([float(x) for x in numbers(end)])
         return None if native is None else self._from(native, self._robot)
 
     @property
@@ -1051,14 +1051,14 @@ class Scene:
             if any(_table(row)[0] is not None for row in given):
                 path = [self._row(row) for row in given]
         names, table = _table(path)
-        rows = np.ascontiguousarray(table, dtype=np.float64)
+        rows = np.ascontiguousarray(numbers(table))
         if rows.ndim != 2:
             raise Error(f"an array of shape {rows.shape} is no path", remedy="give one configuration in each row")
         return rows if names is None else self._native.named_rows(names, rows)
 
     def _row(self, configuration: ArrayLike | Mapping[str, float]) -> list[float]:
-        names, numbers = _table(configuration)
-        a: Array = np.asarray(numbers, dtype=np.float64)
+        names, given = _table(configuration)
+        a = numbers(given)
         if a.ndim != 1:
             raise Error(f"an array of shape {a.shape} is no configuration", remedy="give one number for each column")
         row: list[float] = (a if names is None else self._native.named_rows(names, a[None, :])[0]).tolist()
@@ -1188,10 +1188,10 @@ def _table(given: Any) -> tuple[list[str] | None, Any]:
 
 def _ordered(configuration: ArrayLike) -> Array:
     """Return numbers that have no names: a scene that is being made cannot match them yet."""
-    names, numbers = _table(configuration)
+    names, given = _table(configuration)
     if names is not None and names != [str(i) for i in range(len(names))]:
         raise Error(f"the numbers are named: {', '.join(names)}", remedy="give them without names, in the order of the robot")
-    return np.asarray(numbers, dtype=np.float64)
+    return numbers(given)
 
 
 def _ends(
@@ -1227,6 +1227,8 @@ def _text_or_file(given: File, name: str, files: dict[str, bytes]) -> str:
 
 def _pgm(image: NDArray[Any]) -> bytes:
     """Return an array of brightness as the content of a PGM file."""
+    if np.ma.is_masked(image):
+        raise Error("some pixels are masked", remedy="fill them: 0 is an obstacle")
     if image.ndim != 2:
         raise Error(f"an image of shape {image.shape} is no map", remedy="give one brightness for each pixel")
     if image.dtype == np.bool_:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _mp
+from ._arguments import numbers
 from ._errors import Error
 
 Array: TypeAlias = NDArray[np.float64]
@@ -37,7 +38,7 @@ def pose_from_matrix(matrix: ArrayLike) -> Array:
     >>> mp.pose_from_matrix([[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]).round(4).tolist()
     [1.0, 2.0, 3.0, 1.5708, 0.0, 0.0]
     """
-    m = np.asarray(matrix, dtype=np.float64)
+    m = numbers(matrix)
     if m.shape != (4, 4):
         raise Error(f"a matrix of shape {m.shape} is no pose", remedy="give one of shape (4, 4)")
     r = m[:3, :3]
@@ -73,7 +74,7 @@ def matrix_from_pose(pose: ArrayLike) -> Array:
     >>> mp.matrix_from_pose([1, 2, 3, 0, 0, 0])[:3, 3].tolist()
     [1.0, 2.0, 3.0]
     """
-    x, y, z, alpha, beta, gamma = (float(v) for v in np.asarray(pose, dtype=np.float64).reshape(6))
+    x, y, z, alpha, beta, gamma = (float(v) for v in numbers(pose).reshape(6))
     ca, cb, cg = math.cos(alpha), math.cos(beta), math.cos(gamma)
     sa, sb, sg = math.sin(alpha), math.sin(beta), math.sin(gamma)
     return np.array(
@@ -103,7 +104,7 @@ def pose_from_xyz_qxyzw(pose: ArrayLike) -> Array:
     >>> mp.pose_from_xyz_qxyzw([1, 2, 3, 0, 0, 0, 1]).tolist()
     [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]
     """
-    v = np.asarray(pose, dtype=np.float64)
+    v = numbers(pose)
     if v.shape != (7,):
         raise Error(f"an array of shape {v.shape} is no pose", remedy="give x y z qx qy qz qw")
     norm = float(np.linalg.norm(v[3:]))
@@ -136,13 +137,13 @@ def pose_from_rotation(position: ArrayLike, rotation: Any) -> Array:
     """
     m = np.eye(4)
     m[:3, :3] = rotation.as_matrix()
-    m[:3, 3] = np.asarray(position, dtype=np.float64)
+    m[:3, 3] = numbers(position)
     return pose_from_matrix(m)
 
 
 def pose_numbers(given: ArrayLike) -> list[float]:
     """Six numbers of a pose that is given as six numbers or as a 4×4 matrix."""
-    a = np.asarray(given, dtype=np.float64)
+    a = numbers(given)
     if a.shape == (4, 4):
         a = pose_from_matrix(a)
     if a.shape != (6,):
@@ -177,12 +178,14 @@ class Mesh:
     solid: bool
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, *, solid: bool = False) -> None:
-        v = np.array(vertices, dtype=np.float64, order="C")
+        v = np.array(numbers(vertices), order="C")
         t = np.asarray(triangles)
         if v.ndim != 2 or v.shape[1] != 3:
             raise Error(f"vertices have the shape {v.shape}", remedy="give an array of shape (n, 3)")
         if t.ndim != 2 or t.shape[1] != 3:
             raise Error(f"triangles have the shape {t.shape}", remedy="give an array of shape (m, 3)")
+        if t.dtype.kind not in "iuf" or (t != np.rint(t)).any():
+            raise Error(f"triangles of {t.dtype} are no indices of vertices", remedy="give whole numbers")
         if t.size and (t.min() < 0 or t.max() >= len(v)):
             raise Error(
                 f"a triangle names vertex {t.min() if t.min() < 0 else t.max()}, of {len(v)}",
@@ -483,7 +486,7 @@ def shape_members(shape: Shape, files: dict[str, bytes]) -> dict[str, Any]:
             cell = {} if shape.cell is None else {"cell": float(shape.cell)}
             return {"points": {"radius": float(shape.radius), "file": name} | cell}
         case HeightField():
-            heights = np.asarray(shape.heights, dtype=np.float64)
+            heights = numbers(shape.heights)
             if heights.ndim != 2:
                 raise Error(f"heights have the shape {heights.shape}", remedy="give an array of shape (ny, nx)")
             bottom = {} if shape.bottom is None else {"bottom": float(shape.bottom)}
@@ -507,7 +510,7 @@ def _rows(points: ArrayLike, what: str) -> list[list[float]]:
 
 
 def _array(points: ArrayLike, what: str) -> Array:
-    rows = np.ascontiguousarray(points, dtype=np.float64)
+    rows = np.ascontiguousarray(numbers(points))
     if rows.ndim != 2 or rows.shape[1] != 3:
         raise Error(f"{what} have the shape {rows.shape}", remedy="give an array of shape (n, 3)")
     return rows

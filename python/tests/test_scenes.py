@@ -93,9 +93,12 @@ def test_meshes_have_the_same_bits() -> None:
         ([[0, 0]], [[0, 0, 0]]),
         ([[0, 0, 0]], [[0, 0]]),
         ([[math.nan, 0, 0]] * 3, [[0, 1, 2]]),
+        ([[0, 0, 0]] * 3, [[0, 1, 1.5]]),
+        ([[0, 0, 0]] * 3, [[0, 1, math.nan]]),
+        ([[0, 0, 0]] * 3, [[False, True, True]]),
     ],
 )
-def test_what_is_no_mesh_is_refused(vertices: list[list[float]], triangles: list[list[int]]) -> None:
+def test_what_is_no_mesh_is_refused(vertices: list[list[float]], triangles: list[list[float]]) -> None:
     with pytest.raises(mp.Error) as raised:
         mp.Scene.rigid(mp.Mesh(vertices, triangles), [0, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0])
     assert raised.value.remedy
@@ -157,6 +160,27 @@ def test_clouds_are_thinned_and_lost_points_left_out() -> None:
 def test_shapes_of_other_arrays_are_refused(shape: mp.Shape) -> None:
     with pytest.raises(mp.Error, match="have the shape"):
         mp.Scene.rigid(shape, [0, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0])
+
+
+def test_arrays_that_are_more_than_their_real_parts_are_refused() -> None:
+    scene = mp.Scene("easy")
+    ends = np.array([scene.start, scene.goals[0]])
+    masked = np.ma.masked_array(ends, mask=[[True] + [False] * 5, [False] * 6])
+    ground = mp.HeightField(np.ma.masked_equal([[0.0, -9999.0], [0.0, 0.0]], -9999.0), (1, 1))
+    for odd in (masked, ends + 1j, ends > 0):
+        with pytest.raises(mp.Error, match=r"masked|metres"):
+            scene.check(odd)
+        with pytest.raises(mp.Error, match=r"masked|metres"):
+            scene.is_free(odd[0])
+    with pytest.raises(mp.Error, match="masked"):
+        mp.Scene.rigid(mp.Box(1, 1, 1), ends[0], ends[1], obstacles=[ground])
+    # Whatever numbers they are of, and wherever they are in memory.
+    whole = mp.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.array([[0.0, 1.0, 2.0]])).triangles
+    assert whole.tolist() == [[0, 1, 2]]
+    path = scene.plan(seed=1).path
+    assert path is not None
+    for same in (np.asfortranarray(path), np.repeat(path, 2, axis=0)[::2], path[::-1][::-1], path.astype(">f8")):
+        assert scene.check(same).clearance == scene.check(path).clearance
 
 
 def test_worlds_of_the_plane() -> None:

@@ -173,7 +173,7 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "FILE")]
     pub(crate) request: Option<PathBuf>,
     /// The file of a roadmap: it is loaded when it exists, and the grown roadmap is saved there. For planners that
-    /// build roadmaps; scene, robot and metric must stay the same.
+    /// build roadmaps; scene, robot, metric and clearance must stay the same.
     #[arg(long, value_name = "FILE")]
     pub(crate) roadmap: Option<PathBuf>,
     /// The file for the path, in the format of its ending: `.txt`, `.json` or `.csv`; `-` for text on standard

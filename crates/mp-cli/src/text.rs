@@ -1,6 +1,6 @@
 //! Summaries and tables of runs, for people.
 
-use mp_plan::{Report, StageTime, StoppedBy, brief, medians};
+use mp_plan::{Report, StageTime, StoppedBy, at_least, brief, medians};
 
 /// A summary of one run, a few lines.
 pub(crate) fn summary(report: &Report) -> String {
@@ -63,9 +63,9 @@ pub(crate) fn summary(report: &Report) -> String {
     if let Some(clearance) = report.clearance {
         let text = match clearance.is_finite() {
             true if report.clearance_kept > 0.0 => {
-                format!("at least {} m, {} m asked for", brief(clearance), brief(report.clearance_kept))
+                format!("at least {} m, {} m asked for", at_least(clearance), brief(report.clearance_kept))
             }
-            true => format!("at least {} m", brief(clearance)),
+            true => format!("at least {} m", at_least(clearance)),
             false => "there is nothing to hit".to_owned(),
         };
         row("clearance", text);

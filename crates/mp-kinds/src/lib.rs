@@ -36,7 +36,7 @@ pub use error::{Error, ErrorKind};
 pub use field::FieldImage;
 pub use goals::GoalPart;
 pub use metric_name::MetricName;
-pub use numbers::{brief, count, plain, positive_number};
+pub use numbers::{at_least, brief, count, plain, positive_number};
 pub use objective::ObjectiveName;
 pub use relax_field::RelaxField;
 pub use robot::motion::{AnyChecker, AnyMotion, AnyVerifier, Counting, TypedMotion};

@@ -15,6 +15,22 @@ pub fn brief(v: f64) -> String {
     if text == "-0" { "0".into() } else { text.into() }
 }
 
+/// A lower bound above zero, brief: never more than it is.
+#[must_use]
+pub fn at_least(v: f64) -> String {
+    let near = brief(v);
+    if near.parse::<f64>().is_ok_and(|shown| shown <= v) {
+        return near;
+    }
+    // It was rounded up: one of its last digit less.
+    let digit = match near.split_once('e') {
+        Some((_, exponent)) => mp_math::powi(10.0, exponent.parse().unwrap_or(0) - 3),
+        None if v >= 100.0 => 0.1,
+        None => 1e-3,
+    };
+    brief(v - 0.5 * digit)
+}
+
 /// Two numbers that are compared: brief, unless they would look the same.
 pub fn told_apart(a: f64, b: f64) -> [String; 2] {
     let short = [a, b].map(brief);

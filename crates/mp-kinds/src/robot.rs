@@ -464,6 +464,11 @@ pub trait Description: Motion {
         Deviation { off: self.any_space().distance(q, wanted), allowed: 1e-3, unit: "" }
     }
 
+    /// Whether a link is where a goal that is a place wants it: [`goals`](Motion::goals) has only some of the configurations that reach it.
+    fn reaches_place(&self, _q: &Configuration) -> bool {
+        false
+    }
+
     /// A configuration as text for messages.
     fn in_words(&self, q: &Configuration) -> String {
         format!("[{}]", self.row(q).into_iter().map(plain).collect::<Vec<_>>().join(", "))

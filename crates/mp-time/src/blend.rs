@@ -11,6 +11,8 @@ use mp_cspace::Curve;
 #[derive(Clone, Debug)]
 pub struct BlendedPath {
     points: Vec<Vec<f64>>,
+    /// Which of the points that were given each of them is.
+    indices: Vec<usize>,
     /// The direction of each line, of unit length.
     directions: Vec<Vec<f64>>,
     lengths: Vec<f64>,
@@ -22,6 +24,8 @@ pub struct BlendedPath {
 
 /// A corner whose directions differ by less is none: the robot need not slow down there.
 const STRAIGHT: f64 = 1e-9;
+/// Points nearer to each other, as a part of the whole length, are one: they would be passed in a few nanoseconds, and times are rounded to those.
+const ONE: f64 = 1e-8;
 
 /// A part of a [`BlendedPath`], with two derivatives by its parameter at each end.
 pub(crate) struct Part {
@@ -39,13 +43,12 @@ pub(crate) struct Part {
 
 impl BlendedPath {
     /// The path through `points`, whose corners are cut by no more than `deviation` (the Euclidean norm of all joints), and by no more than
-    /// half of the lines that meet there. Points that repeat the one before are left out; angles must not jump.
+    /// half of the lines that meet there. Points that repeat the one before, to a hundred-millionth of the whole, are left out; angles must not jump.
     ///
     /// # Errors
     /// When there are no two different points, they have different lengths, or a number is not finite.
     pub fn new(points: &[Vec<f64>], deviation: f64) -> Result<Self, TimeError> {
         let joints = points.first().map_or(0, Vec::len);
-        let mut kept: Vec<Vec<f64>> = Vec::new();
         for (point, q) in points.iter().enumerate() {
             if q.len() != joints {
                 return Err(TimeError::Count {
@@ -57,10 +60,18 @@ impl BlendedPath {
             if !q.iter().all(|x| x.is_finite()) {
                 return Err(TimeError::NotFinite { point });
             }
-            if kept.last().is_none_or(|last| distance(last, q) > 0.0) {
-                kept.push(q.clone());
+        }
+        let least = ONE * points.windows(2).map(|w| distance(&w[0], &w[1])).sum::<f64>();
+        let mut indices: Vec<usize> = Vec::new();
+        for i in 0..points.len() {
+            if indices.last().is_none_or(|last| distance(&points[*last], &points[i]) > least) {
+                indices.push(i);
             }
         }
+        if let [_, .., end] = indices.as_mut_slice() {
+            *end = points.len() - 1;
+        }
+        let kept: Vec<Vec<f64>> = indices.iter().map(|i| points[*i].clone()).collect();
         if kept.len() < 2 {
             return Err(TimeError::TooFew { found: kept.len(), least: 2 });
         }
@@ -75,7 +86,7 @@ impl BlendedPath {
             (0.5 * lengths[i].min(lengths[i + 1])).min(4.0 * deviation.max(0.0) / turn.max(STRAIGHT))
         };
         let reaches = (0..kept.len() - 2).map(reach).collect();
-        Ok(Self { points: kept, directions, lengths, reaches, allowed: deviation.max(0.0) })
+        Ok(Self { points: kept, indices, directions, lengths, reaches, allowed: deviation.max(0.0) })
     }
 
     /// How many corners there are: all points but the ends.
@@ -88,6 +99,12 @@ impl BlendedPath {
     #[must_use]
     pub fn corner(&self, corner: usize) -> &[f64] {
         &self.points[corner + 1]
+    }
+
+    /// Which of the points that were given is at a corner.
+    #[must_use]
+    pub fn index(&self, corner: usize) -> usize {
+        self.indices[corner + 1]
     }
 
     /// By how much corners may be cut (the Euclidean norm of all joints).
@@ -221,5 +238,17 @@ mod tests {
         let wide = BlendedPath::new(&points, 10.0).unwrap();
         assert_eq!(wide.parts().len(), 4);
         assert!(BlendedPath::new(&points[1..3], 0.1).is_err());
+        assert_eq!([path.index(0), path.index(1)], [1, 3]);
+    }
+
+    #[test]
+    fn points_that_are_nearly_one_are_one() {
+        let points = [0.0, 1e-13, 1.0, 1.0 + 1e-13, 2.0, 1.0, 1.0 + 1e-13].map(|x| vec![x, 0.0]);
+        let path = BlendedPath::new(&points, 0.1).unwrap();
+        assert_eq!(path.points, [0.0, 1.0, 2.0, 1.0 + 1e-13].map(|x| vec![x, 0.0]));
+        assert_eq!([path.index(0), path.index(1)], [2, 4]);
+        // Of a small path all points count.
+        let small = points.map(|q| vec![1e-12 * q[0], 0.0]);
+        assert_eq!(BlendedPath::new(&small, 0.1).unwrap().corners(), 2);
     }
 }

@@ -275,10 +275,21 @@ impl Trajectory {
         self.largest(joint, 1)
     }
 
-    /// The largest acceleration of a joint, and when: of a linear curve there is none, for its velocities jump.
+    /// The largest acceleration of a joint, and when. The velocities of a linear curve jump: of each point it has the least that any motion through
+    /// this and both next to it, at their times, needs somewhere (the mean value theorem).
     #[must_use]
     pub fn hardest(&self, joint: usize) -> Extreme {
-        self.largest(joint, 2)
+        let mut most = self.largest(joint, 2);
+        if self.interpolation == Interpolation::Linear {
+            for (i, times) in self.knots.times.windows(3).enumerate() {
+                let [before, after] = [i, i + 1].map(|piece| self.seconds(piece, joint)[1]);
+                let amount = (after - before).abs() / (0.5 * (times[2] - times[0]));
+                if amount > most.amount {
+                    most = Extreme { amount, time: times[1] };
+                }
+            }
+        }
+        most
     }
 
     /// The largest change of the acceleration of a joint within a millisecond, per second (rad/s³ or m/s³), and when: the jerk that a controller
@@ -473,6 +484,22 @@ mod tests {
             assert!((slow.fastest(0).amount - 0.5 * made.fastest(0).amount).abs() < 1e-12);
             assert!((slow.hardest(0).amount - 0.25 * made.hardest(0).amount).abs() < 1e-12);
         }
+    }
+
+    /// A parabola of which only points are known has its acceleration, whatever the times are.
+    #[test]
+    fn straight_lines_have_the_accelerations_that_their_points_need() {
+        let times = vec![0.0, 0.1, 0.5, 0.6, 1.3];
+        let positions: Vec<Vec<f64>> = times.iter().map(|t| vec![3.0 * t * t - t]).collect();
+        let made = Trajectory::of_controller([("j", "rad")], Knots { times, positions, ..Knots::default() });
+        assert!((made.unwrap().hardest(0).amount - 6.0).abs() < 1e-12);
+        let corner = Knots {
+            times: vec![0.0, 1.0, 2.0],
+            positions: vec![vec![0.0], vec![0.4], vec![0.0]],
+            ..Knots::default()
+        };
+        let most = Trajectory::of_controller([("j", "rad")], corner).unwrap().hardest(0);
+        assert_eq!((most.amount, most.time), (0.8, 1.0));
     }
 
     /// Where the last time is rounded down, it is a little before the end.

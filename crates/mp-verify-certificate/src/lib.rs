@@ -36,15 +36,23 @@ pub fn verify(text: &str) -> Result<Proved, String> {
 /// # Errors
 /// Where they differ, in a sentence.
 pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
-    let file::Certificate { path: rows, columns, .. } = file::read(text)?;
-    let mut header = String::new();
+    let file::Certificate { path: rows, columns, curves, .. } = file::read(text)?;
+    if curves.is_some() {
+        let why = "it proves the curves of a trajectory, and a path is straight between its configurations";
+        return Err(why.to_owned());
+    }
+    let mut headers = Vec::new();
     let given: Vec<Vec<f64>> = match serde_json::from_str::<serde_json::Value>(path) {
         Ok(serde_json::Value::Object(mut file)) => {
-            for column in file.get("columns").and_then(|columns| columns.as_array()).into_iter().flatten() {
-                let text = |key| column[key].as_str().unwrap_or_default();
-                header += &format!("{}[{}],", column.as_str().unwrap_or(text("name")), text("unit"));
-            }
             let path = file.remove("path").ok_or("the file of the path has no member `path`")?;
+            for key in ["columns", "names", "joint_names", "jointNames", "name"] {
+                let Some(list) = file.get(key).and_then(|list| list.as_array()) else { continue };
+                let name = |column: &serde_json::Value| {
+                    let text = |key| column[key].as_str().unwrap_or_default();
+                    format!("{}[{}],", column.as_str().unwrap_or(text("name")), text("unit"))
+                };
+                headers.push(list.iter().map(name).collect::<String>());
+            }
             serde_json::from_value(path).map_err(|e| format!("the path cannot be read: {e}"))?
         }
         _ => {
@@ -52,24 +60,27 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
                 let words = line.split([' ', '\t', ',']).filter(|word| !word.is_empty());
                 words.map(|word| word.parse().ok()).collect()
             };
-            let mut lines: Vec<Vec<f64>> =
-                path.lines().filter_map(numbers).filter(|row| !row.is_empty()).collect();
-            let first = path.trim_start().lines().next().filter(|line| numbers(line).is_none());
-            header.extend(first.map(|line| format!("{line},")));
-            // The first line counts, unless it names the columns.
-            if !path.contains(',')
-                && lines.first().is_some_and(|counts| counts[0] == (lines.len() - 1) as f64)
-            {
-                lines.remove(0);
+            let mut lines = path.lines().filter(|line| !line.trim().is_empty()).peekable();
+            headers.extend(lines.next_if(|line| numbers(line).is_none()).map(|line| format!("{line},")));
+            let mut rows = Vec::new();
+            for line in lines {
+                rows.push(numbers(line).ok_or(format!("a line of the path is not numbers: {line}"))?);
             }
-            lines
+            // One or two numbers alone are counts, the first that of the lines which follow.
+            if !path.contains(',')
+                && rows.first().is_some_and(|counts| counts.len() < 3 && counts[0] == (rows.len() - 1) as f64)
+            {
+                rows.remove(0);
+            }
+            rows
         }
     };
     // What a file calls its columns decides what its numbers mean.
     let plain = |name: &str| name.replace(['"', ' '], "").replace("[]", "");
     let own = columns.iter().map(|name| plain(name) + ",");
     let bare = columns.iter().map(|name| plain(name.rsplit_once(" [").map_or(name, |(name, _)| name)) + ",");
-    if ![String::new(), own.collect(), bare.collect()].contains(&plain(&header)) {
+    let known: [String; 2] = [own.collect(), bare.collect()];
+    if let Some(header) = headers.iter().find(|header| !known.contains(&plain(header))) {
         return Err(format!("the columns of the path are not those of the certificate: {header}"));
     }
     if given.len() != rows.len() {

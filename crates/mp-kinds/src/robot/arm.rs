@@ -456,6 +456,9 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
     fn name(&self) -> &str {
         &self.name
     }
+    fn reaches_place(&self, q: &Configuration) -> bool {
+        self.is_at_place(q)
+    }
     fn space_name(&self) -> String {
         let joints = self.arm.coordinates().len();
         match self.arm.kinematics().floats() {

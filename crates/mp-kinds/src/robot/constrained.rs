@@ -303,6 +303,7 @@ impl Description for Constrained {
         fn export(&self, folder: &Path) -> Result<PathBuf, Error>;
         fn row_error(&self, rows: &[Vec<f64>]) -> Option<String>;
         fn deviation(&self, q: &Configuration, wanted: &Configuration) -> Deviation;
+        fn reaches_place(&self, q: &Configuration) -> bool;
         fn in_words(&self, q: &Configuration) -> String;
     }
     fn broken(&self, q: &Configuration) -> Option<String> {

@@ -432,6 +432,8 @@ impl<M: RigidSpace> Motion for RigidScene<M> {
         };
         mesh(&problem.robot.mesh, &Isometry3::identity());
         problem.obstacles.iter().for_each(|o| mesh(&o.mesh, &o.pose));
+        // What is kept decides which edges are blocked for good.
+        numbers.extend(Some(self.kept()).filter(|kept| *kept > 0.0));
         Some(fingerprint(numbers))
     }
 }

@@ -6,7 +6,7 @@ use crate::path::states;
 use crate::{Error, PathRows, Robot};
 use mp_cspace::{Configuration, Interrupt, MotionCheck, Path, Space, path::PathFault};
 use mp_kinds::goals::next_to;
-use mp_kinds::numbers::{brief, plain};
+use mp_kinds::numbers::{at_least, brief, plain};
 use mp_kinds::proof::{clearance, verified};
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,7 @@ impl Verdict {
         if self.free {
             let clearance = match self.clearance.is_finite() {
                 true if self.clearance == 0.0 => "clearance not known".to_owned(),
-                true => format!("clearance at least {} m", brief(self.clearance)),
+                true => format!("clearance at least {} m", at_least(self.clearance)),
                 false => "there is nothing to hit".to_owned(),
             };
             let (time, shape) = match &self.trajectory {
@@ -85,7 +85,7 @@ pub(crate) fn end_faults(kind: &dyn Robot, states: &[Configuration]) -> Vec<Stri
     };
     let nearest = ends.into_iter().min_by(|a, b| a.off.total_cmp(&b.off));
     if let Some(goal) = nearest
-        && !goal.is_near()
+        && !(goal.is_near() || kind.reaches_place(last))
     {
         let which = if kind.goals().len() > 1 { "a goal" } else { "the goal" };
         faults.push(format!("does not end at {which}: {}{} off", brief(goal.off), goal.unit));

@@ -112,9 +112,6 @@ pub(crate) fn time(
         Err(TimeError::TooFew { .. }) => return standing(&rows[0], joints(), &mut verifier, notes),
         made => made?,
     };
-    // The number of the configuration at each corner: some may be there twice.
-    let mut turns: Vec<usize> = (1..rows.len()).filter(|i| rows[*i] != rows[i - 1]).map(|i| i + 1).collect();
-    turns.pop();
     let allowed: Vec<f64> = (0..blended.corners()).map(|corner| blended.deviation(corner)).collect();
     let mut halvings = vec![0; blended.corners()];
     let mut tighten = |blended: &mut BlendedPath, corner: usize| {
@@ -139,7 +136,7 @@ pub(crate) fn time(
             MotionCheck::Free { clearance } => {
                 let tight = |corner: &usize| blended.deviation(*corner) < allowed[*corner] * (1.0 - 1e-9);
                 let tightened = (0..blended.corners()).filter(tight).map(|corner| TightCorner {
-                    configuration: turns[corner],
+                    configuration: blended.index(corner) + 1,
                     time: timing.corners[corner],
                     deviation: timing.deviations[corner],
                 });
@@ -161,7 +158,7 @@ pub(crate) fn time(
             ))
             .help("plan with a clearance, such as 0.01 m"));
         };
-        tracing::debug!(time, corner = turns[nearest], "the curve is not free");
+        tracing::debug!(time, corner = blended.index(nearest) + 1, "the curve is not free");
         tighten(&mut blended, nearest);
     }
 }

@@ -76,6 +76,23 @@ fn sampled_motions_and_roadmaps_mind_it() {
     }
 }
 
+/// What was blocked for a clearance may be free without one: guards and components would be other ones.
+#[test]
+fn a_roadmap_is_of_one_clearance() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("map");
+    let scene = Scene::find("easy").unwrap();
+    let grow = |clearance: f64| {
+        let request = Request::new("visibility-prm").seed(1).iterations(300).clearance(clearance);
+        scene.plan(&Request { roadmap: Some(file.clone()), ..request }).map(|report| report.nodes)
+    };
+    let kept = grow(0.1).unwrap();
+    assert!(grow(0.1).unwrap() >= kept);
+    for other in [0.0, 0.05] {
+        assert!(grow(other).unwrap_err().report().contains("metric or clearance"), "{other}");
+    }
+}
+
 #[test]
 fn ends_too_near_are_said_with_what_is_near() {
     let scene = Scene::find("arm").unwrap();

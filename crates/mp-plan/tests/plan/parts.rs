@@ -5,7 +5,7 @@ use mp_geom::primitives::cuboid;
 use mp_plan::info::{Info, MeshInfo, Surface};
 use mp_plan::{
     End, ErrorKind, Length, MetricName, MotionValidator, PathFileKind, PathRows, RelaxField, Request, Scene,
-    Track, brief, plain, write_file,
+    Track, at_least, brief, plain, write_file,
 };
 use nalgebra::{Isometry3, Point3};
 
@@ -18,6 +18,27 @@ fn errors_say_what_they_are_about() {
     assert_eq!(Scene::load("nowhere.env").unwrap_err().kind(), ErrorKind::File);
     let below = scene.with_ends(&[0.0, 0.0, -99.0, 0.0, 0.0, 0.0], &scene.goals()).unwrap();
     assert_eq!(below.check_ends().unwrap_err().kind(), ErrorKind::NotFree(End::Start));
+}
+
+#[test]
+fn lower_bounds_are_not_more_than_they_are() {
+    for (v, text) in [
+        (0.0, "0"),
+        (0.3, "0.3"),
+        (0.18666, "0.186"),
+        (0.0809, "0.08"),
+        (4.0058e-5, "4.005e-5"),
+        (99.9996, "99.999"),
+        (123.47, "123.4"),
+        (1_234_567.0, "1.234e6"),
+    ] {
+        assert_eq!(at_least(v), text);
+    }
+    for i in 1..20_000 {
+        let v = f64::from(i) * 7.3e-6;
+        let shown: f64 = at_least(v).parse().unwrap();
+        assert!(shown <= v && v - shown <= 1e-3_f64.max(1e-3 * v), "{v}: {shown}");
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Goals that are places of a link.
 
 use mp_io::InMemory;
-use mp_plan::{FreeTurns, Interrupt, PoseEntry, Request, Scene};
+use mp_plan::{FreeTurns, Interrupt, PathRows, PoseEntry, Request, Scene};
 use std::path::Path;
 
 /// Two bars of a metre that turn about z one above the other, and a tip at the end, which turns about the bar.
@@ -78,6 +78,27 @@ fn a_path_ends_where_a_link_is_wanted() {
     let text =
         format!("[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = [0.8, 0.2]\ngoals = [[-2, 0.3], {at}]\n");
     assert_eq!(load_text(text).unwrap().goals().len(), 3);
+}
+
+/// A path of somebody else may end at a configuration that is not one of those that were looked for.
+#[test]
+fn a_path_that_ends_anywhere_at_a_place_is_free() {
+    let goals = "[[-2, 0.3], { link = \"tip\", position = [1.5, 1.5, 0.2], position_tolerance = 0.2 }]";
+    let text =
+        |goals: &str| format!("[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = [0.8, 0.2]\ngoals = {goals}\n");
+    let scene = load_text(text(goals)).unwrap();
+    let faults = |scene: &Scene, end: [f64; 2]| {
+        let rows = vec![vec![0.8, 0.2], end.to_vec()];
+        let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+        scene.check(&path).unwrap().faults
+    };
+    for end in [[0.7, 0.3], [0.75, 0.05], [0.5, 0.5], [0.7, -0.1], [0.2, 0.9], [-2.0, 0.3], [0.8, 0.2]] {
+        let inside = tip(&end).iter().all(|x| (x - 1.5).abs() <= 0.2);
+        assert_eq!(faults(&scene, end).is_empty(), inside || end == [-2.0, 0.3], "{end:?}");
+    }
+    // Other goals of the same scene are no places.
+    let other = scene.with_ends(&[0.8, 0.2], &[vec![-2.0, 0.3]]).unwrap();
+    assert!(!faults(&other, [0.7, 0.1]).is_empty());
 }
 
 #[test]

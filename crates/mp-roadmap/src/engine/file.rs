@@ -44,9 +44,9 @@ pub enum RoadmapError {
         /// The version in the file.
         found: u32,
     },
-    /// The roadmap of another scene or robot.
+    /// The roadmap of another scene or robot, or of another metric or clearance.
     #[error(
-        "made for another scene or robot: expected the fingerprint {expected:016x}, found {found:016x}; \
+        "made for another scene or robot, metric or clearance: expected the fingerprint {expected:016x}, found {found:016x}; \
         build the roadmap anew"
     )]
     OtherScene {

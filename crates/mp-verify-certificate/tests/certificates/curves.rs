@@ -2,7 +2,7 @@
 
 use crate::{certified, sealed};
 use mp_plan::{Interrupt, Knots, Pace, Scene, Trajectory};
-use mp_verify_certificate::verify;
+use mp_verify_certificate::{is_of_path, verify};
 use serde_json::{Value, json};
 
 /// A timed path through a shipped scene, and the certificate of its curve.
@@ -25,6 +25,9 @@ fn curves_of_arms_have_certificates_that_another_program_replays() {
         assert_eq!((proved.scene.as_str(), proved.configurations), (name, made.knots().times.len()));
         assert!(proved.clearance > Some(0.0) && proved.parts >= proved.edges, "{name}");
         assert_eq!(scene.certificate_differences(&text).unwrap(), Vec::<String>::new(), "{name}");
+        // The same rows as a path: what is between them is another motion.
+        let rows = json!({ "path": made.knots().positions }).to_string();
+        assert!(is_of_path(&text, &rows).unwrap_err().contains("curves"), "{name}");
         let file: Value = serde_json::from_str(&text).unwrap();
         let refused = |what: &str, change: &dyn Fn(&mut Value)| {
             let mut changed = file.clone();

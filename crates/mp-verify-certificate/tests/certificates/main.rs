@@ -82,6 +82,33 @@ fn the_columns_of_a_path_are_those_of_its_certificate() {
     }
 }
 
+/// Rows and names that another reader sees are not passed over, and what looks like a count may be a configuration.
+#[test]
+fn nothing_in_the_file_of_a_path_is_passed_over() {
+    let (path, text) = certified("arm");
+    let json = |key: &str, names: Vec<String>| json!({ (key): names, "path": path.rows }).to_string();
+    let names: Vec<String> = path.columns.iter().map(|column| column.name.clone()).collect();
+    for key in ["columns", "names", "joint_names", "jointNames", "name"] {
+        assert_eq!(is_of_path(&text, &json(key, names.clone())), Ok(()), "{key}");
+        let turned = names.iter().rev().cloned().collect();
+        assert!(is_of_path(&text, &json(key, turned)).unwrap_err().contains("columns"), "{key}");
+    }
+    let csv = path.to_csv();
+    assert_eq!(is_of_path(&text, &csv), Ok(()));
+    let (header, rows) = csv.split_once('\n').unwrap();
+    for more in ["\"0\",\"0\",\"0\",\"0\",\"0\",\"0\"", "0;0;0;0;0;0", "0,0,0,0,0,0 # x"] {
+        let (one, others) = rows.split_once('\n').unwrap();
+        let why = is_of_path(&text, &format!("{header}\n{one}\n{more}\n{others}")).unwrap_err();
+        assert!(why.contains("is not numbers"), "{more}: {why}");
+    }
+    // Rows alone, the first of which begins with the number of the others.
+    let rows = path.to_text();
+    let (_, rows) = rows.split_once('\n').unwrap();
+    assert_eq!(is_of_path(&text, rows), Ok(()));
+    let first = format!("{} 0 0 0 0 0\n", path.rows.len());
+    assert!(is_of_path(&text, &(first + rows)).unwrap_err().contains("configurations"));
+}
+
 /// One of each kind of robot and of motion.
 const KINDS: [&str; 11] = [
     "accelerations",

@@ -3,7 +3,7 @@
 use crate::{Error, Interrupt, brief, count};
 use mp_cspace::{Clearance, Configuration, Joints, Space};
 use mp_geom::pose_from_six;
-use mp_io::{FreeTurns, PoseEntry};
+use mp_io::{FreeTurns, GoalEntry, PoseEntry};
 use mp_robot::{Arm, FreeTurn, InverseKinematics, PoseGoal};
 use nalgebra::{Isometry3, Vector3};
 use serde::Serialize;
@@ -13,6 +13,8 @@ const STARTS: u64 = 400;
 const ENOUGH: usize = 32;
 /// How many starts are tried where nothing was found: out of reach, as far as can be told.
 const AT_LEAST: u64 = 100;
+/// How far a link may be from a place where it is to be: rad, and m or lengths of the arm, whichever is less. Files often have only four digits.
+const NEAR: f64 = 1e-3;
 
 /// A configuration that reaches a place.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,6 +33,11 @@ fn goal_of(entry: &PoseEntry) -> PoseGoal {
         FreeTurns::All => FreeTurn::All,
     };
     PoseGoal { within: entry.within, free, ..PoseGoal::new(&entry.link, pose_from_six(entry.pose)) }
+}
+
+/// The error of a search that was interrupted.
+fn ended() -> [String; 2] {
+    ["the search for goals was ended".to_owned(), "give more time".to_owned()]
 }
 
 /// The configurations of `arm` that reach `entry` and whether each is free, from searches that begin at `from`: up to `enough` free ones,
@@ -68,7 +75,7 @@ pub(super) fn reaching(
     let mut free = 0;
     for start in 0..STARTS {
         if interrupt.ask() {
-            return Err(["the search for goals was ended".to_owned(), "give more time".to_owned()]);
+            return Err(ended());
         }
         if (start >= AT_LEAST && all.is_empty()) || free >= enough {
             break;
@@ -117,11 +124,18 @@ pub(super) fn goals(
     let found = reaching(arm, space, entry, from, ENOUGH, interrupt)?;
     let free: Vec<_> = found.iter().filter(|(_, free)| *free).map(|(q, _)| q.clone()).collect();
     if free.is_empty() {
-        let mut arm = arm.clone();
-        let least = found.iter().map(|(q, _)| arm.explain(q.as_slice()));
+        let (mut arm, mut interrupt) = (arm.clone(), interrupt.clone());
+        let mut explained = Vec::new();
+        for (q, _) in &found {
+            if interrupt.ask() {
+                return Err(ended());
+            }
+            explained.push(arm.explain(q.as_slice()));
+        }
         let deepest =
             |contacts: &Vec<mp_robot::ArmContact>| contacts.iter().map(|c| c.depth).fold(0.0, f64::max);
-        let least = least.min_by(|a, b| deepest(a).total_cmp(&deepest(b))).unwrap_or_default();
+        let least =
+            explained.into_iter().min_by(|a, b| deepest(a).total_cmp(&deepest(b))).unwrap_or_default();
         let named =
             least.iter().take(3).map(|c| format!("{} in {} ({} m deep)", c.link, c.other, brief(c.depth)));
         let named: Vec<_> = named.collect();
@@ -143,6 +157,23 @@ pub(super) fn goals(
         count(found.len(), "configuration")
     );
     Ok((free, said))
+}
+
+impl<C: super::LinkedSpace> super::LinkedScene<C> {
+    /// See [`Description::reaches_place`](crate::Description::reaches_place).
+    pub(super) fn is_at_place(&self, q: &Configuration) -> bool {
+        let goals = self.source.iter().flat_map(|problem| &problem.file.goals);
+        let nears = |goal: &GoalEntry| {
+            let GoalEntry::Pose(entry) = goal else { return false };
+            let goal = goal_of(entry);
+            let solver = InverseKinematics::new(self.arm.kinematics(), goal.clone());
+            solver.is_some_and(|mut solver| {
+                let (place, turn) = goal.error(&solver.pose_at(q.as_slice()));
+                place.norm() <= NEAR * self.arm.length().min(1.0) && turn.norm() <= NEAR
+            })
+        };
+        goals.into_iter().any(nears)
+    }
 }
 
 impl super::ArmScene {
