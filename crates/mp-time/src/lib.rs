@@ -27,5 +27,6 @@ mod trajectory;
 
 pub use blend::{Blend, BlendedPath};
 pub use error::TimeError;
+pub use polynomial::range;
 pub use timing::{Limits, Timing, timed};
 pub use trajectory::{Extreme, Interpolation, Knots, Sample, Trajectory};

@@ -49,8 +49,9 @@ pub(crate) fn extremes(c: &Polynomial, a: f64, b: f64) -> [(f64, f64); 2] {
     })
 }
 
-/// Bounds of the values between `a` and `b`, which rounding cannot exceed.
-pub(crate) fn range(c: &Polynomial, a: f64, b: f64) -> [f64; 2] {
+/// Bounds of the values of a polynomial, the constant first, between `a` and `b`, which rounding cannot exceed.
+#[must_use]
+pub fn range(c: &Polynomial, a: f64, b: f64) -> [f64; 2] {
     let [low, high] = extremes(c, a, b).map(|it| it.0);
     let size = a.abs().max(b.abs());
     // Of six terms, and of a turning point that rounding hides, each no more than some units in the last place of what is added up.

@@ -393,7 +393,7 @@ impl LimitFault {
 /// A velocity, an acceleration or jerk may be greater than its limit by this part: files have rounded numbers.
 const ROUNDED: f64 = 1e-3;
 /// A position may be so far beyond its limit (rad or m), as for states of paths.
-const HAIR: f64 = 1e-5;
+pub(crate) const HAIR: f64 = 1e-5;
 /// A joint that is slower stands still (rad/s or m/s).
 const STILL: f64 = 1e-3;
 

@@ -34,6 +34,20 @@ fn curves_of_arms_have_certificates_that_another_program_replays() {
             change(&mut changed);
             verify(&sealed(changed)).map(|_| ()).expect_err(&format!("{name}: {what}"))
         };
+        // Beyond the limits between two points that are within.
+        let mut changed = file.clone();
+        let to = |file: &mut Value, i: usize, by: f64| {
+            let c = &mut file["curves"][0][0][i];
+            *c = json!(c.as_f64().unwrap() + by);
+        };
+        to(&mut changed, 1, 100.0);
+        to(&mut changed, 2, -100.0);
+        let differences = scene.certificate_differences(&sealed(changed)).unwrap();
+        let joint = &scene.columns()[0].name;
+        assert!(
+            differences.iter().any(|d| d.contains(joint) && d.contains("limits")),
+            "{name}: {differences:?}"
+        );
         let edges = proved.edges;
         for edge in [0, edges / 2, edges - 1] {
             // The same ends, by a detour.

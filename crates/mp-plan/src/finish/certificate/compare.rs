@@ -2,9 +2,11 @@
 
 use super::{VERSION, columns};
 use crate::finish::check::end_faults;
+use crate::finish::trajectory::HAIR;
 use crate::path::states;
 use crate::{Error, ModelBody, ModelFrame, ModelPart, MotionModel, PathRows, Robot, plain};
 use mp_cspace::Space;
+use mp_time::range;
 use serde::Deserialize;
 use std::collections::HashSet;
 
@@ -14,6 +16,8 @@ struct Claims {
     columns: Vec<String>,
     model: MotionModel,
     path: Vec<Vec<f64>>,
+    #[serde(default)]
+    curves: Vec<Vec<[f64; 6]>>,
 }
 
 #[derive(Deserialize)]
@@ -55,6 +59,22 @@ pub(crate) fn differences(kind: &dyn Robot, text: &str) -> Result<Vec<String>, E
         outside.map(|i| format!("configuration {} of its path is {}", i + 1, kind.out_of_bounds(&states[i]))),
     );
     found.extend(kind.row_error(&path.rows).map(|odd| format!("its path is odd: {odd}")));
+    let beyond = |(i, curve): (usize, &Vec<[f64; 6]>)| {
+        let mut columns = curve.iter().zip(kind.limits()).zip(kind.columns());
+        columns.find_map(|((polynomial, limits), column)| {
+            let ([low, high], [least, most]) = (limits?, range(polynomial, 0.0, 1.0));
+            let within = low - HAIR <= least && most <= high + HAIR;
+            (!within).then(|| {
+                let [least, most, low, high] = [least, most, low, high].map(plain);
+                let name = column.name;
+                let ends = format!("configurations {} and {} of its path", i + 1, i + 2);
+                format!(
+                    "between {ends} {name} is from {least} to {most}, and its limits are {low} and {high}"
+                )
+            })
+        })
+    };
+    found.extend(claims.curves.iter().enumerate().find_map(beyond));
     if let Some(i) = states.windows(2).position(|ends| !kind.can_move(&ends[0], &ends[1])) {
         found.push(format!("the robot cannot move from configuration {} to {} of its path", i + 1, i + 2));
     }
