@@ -6,6 +6,7 @@ const CLEARANCE: ObjectiveName = ObjectiveName::Clearance { weight: 10.0, range:
 
 /// The length, least clearance and cost of the paths planned for their length and by clearance. `--nocapture` prints them as a row of
 /// docs/results/objectives.md.
+#[allow(clippy::print_stdout, reason = "it is a measurement")]
 fn both(name: &str, planner: &str) -> [[f64; 3]; 2] {
     let scene = Scene::find(name).unwrap();
     let [plain, by_clearance] = [ObjectiveName::Length, CLEARANCE].map(|objective| {

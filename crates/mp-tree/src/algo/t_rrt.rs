@@ -126,11 +126,13 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
+/// A cost of states behind a pointer.
+type StateCost<'c, S> = Box<dyn FnMut(&S) -> f64 + Send + 'c>;
+
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let (mut problem, settings) = (args.problem, args.settings);
     let range = settings.length_of(&RANGE, problem.space())?;
-    let cost: Box<dyn FnMut(&T::State) -> f64 + Send + 'c> = if let Some(mut given) = problem.take_objective()
-    {
+    let cost: StateCost<'c, T::State> = if let Some(mut given) = problem.take_objective() {
         Box::new(move |q| given.state_cost(q))
     } else {
         let known = problem.take_obstacles();
