@@ -38,21 +38,18 @@ pub fn verify(text: &str) -> Result<Proved, String> {
 pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
     let file::Certificate { path: rows, columns, curves, .. } = file::read(text)?;
     if curves.is_some() {
-        let why = "it proves the curves of a trajectory, and a path is straight between its configurations";
-        return Err(why.to_owned());
+        return Err("it proves the curves of a trajectory, not the straight lines of a path".to_owned());
     }
-    let mut headers = Vec::new();
+    let mut headers: Vec<String> = Vec::new();
     let given: Vec<Vec<f64>> = match serde_json::from_str::<serde_json::Value>(path) {
         Ok(serde_json::Value::Object(mut file)) => {
+            let name = |column: &serde_json::Value| {
+                let text = |key| column[key].as_str().unwrap_or_default();
+                format!("{}[{}],", column.as_str().unwrap_or(text("name")), text("unit"))
+            };
+            let list = |key: &&str| Some(file.get(*key)?.as_array()?.iter().map(name).collect());
+            headers.extend(["columns", "names", "joint_names", "jointNames", "name"].iter().filter_map(list));
             let path = file.remove("path").ok_or("the file of the path has no member `path`")?;
-            for key in ["columns", "names", "joint_names", "jointNames", "name"] {
-                let Some(list) = file.get(key).and_then(|list| list.as_array()) else { continue };
-                let name = |column: &serde_json::Value| {
-                    let text = |key| column[key].as_str().unwrap_or_default();
-                    format!("{}[{}],", column.as_str().unwrap_or(text("name")), text("unit"))
-                };
-                headers.push(list.iter().map(name).collect::<String>());
-            }
             serde_json::from_value(path).map_err(|e| format!("the path cannot be read: {e}"))?
         }
         _ => {
@@ -62,17 +59,11 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
             };
             let mut lines = path.lines().filter(|line| !line.trim().is_empty()).peekable();
             headers.extend(lines.next_if(|line| numbers(line).is_none()).map(|line| format!("{line},")));
-            let mut rows = Vec::new();
-            for line in lines {
-                rows.push(numbers(line).ok_or(format!("a line of the path is not numbers: {line}"))?);
-            }
+            let row = |line| numbers(line).ok_or(format!("a line of the path is not numbers: {line}"));
+            let rows = lines.map(row).collect::<Result<Vec<_>, _>>()?;
             // One or two numbers alone are counts, the first that of the lines which follow.
-            if !path.contains(',')
-                && rows.first().is_some_and(|counts| counts.len() < 3 && counts[0] == (rows.len() - 1) as f64)
-            {
-                rows.remove(0);
-            }
-            rows
+            let counts = |row: &Vec<f64>| row.len() < 3 && row.first() == Some(&((rows.len() - 1) as f64));
+            rows[usize::from(!path.contains(',') && rows.first().is_some_and(counts))..].to_vec()
         }
     };
     // What a file calls its columns decides what its numbers mean.
@@ -86,10 +77,8 @@ pub fn is_of_path(text: &str, path: &str) -> Result<(), String> {
     if given.len() != rows.len() {
         return Err(format!("the path has {} configurations, the certificate {}", given.len(), rows.len()));
     }
-    match given.iter().zip(&rows).position(|(a, b)| a != b) {
-        Some(i) => Err(format!("configuration {} of the path is another one in the certificate", i + 1)),
-        None => Ok(()),
-    }
+    let other = given.iter().zip(&rows).position(|(a, b)| a != b).map(|i| i + 1);
+    other.map_or(Ok(()), |i| Err(format!("configuration {i} of the path is another one in the certificate")))
 }
 
 /// Whether bodies of a certificate are the meshes of files: pairs of the name of a body and the content of a
