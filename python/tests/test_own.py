@@ -112,7 +112,7 @@ def test_all_calls_are_reported() -> None:
 def test_a_clearance_can_be_an_objective() -> None:
     report = scene_of(ROBOTS["clearance"]).plan(objective="clearance:10:0.5")
     assert report.solved and report.cost is not None and report.path_length is not None
-    assert report.path_length < report.cost < 2 * report.path_length
+    assert report.path_length < report.cost < 11 * report.path_length
     assert mp.Report.from_json(report.to_json()).cost == report.cost
     with pytest.raises(mp.Error, match="the clearance of .* is not known"):
         scene_of(ROBOTS["valid"]).plan(objective="clearance")
