@@ -21,7 +21,7 @@ const RANKS: &str = "MP_BENCH_RANKS";
 /// A small experiment of each paper.
 const EXPERIMENTS: [&str; 3] = [
     "rrs --quick --runs 1",
-    "rsrt --quick --runs 1 --part clutter --cap 0.004",
+    "rsrt --quick --runs 1 --part clutter --cap 0.001",
     "roadmaps --quick --runs 2 --experiment contact --queries 300",
 ];
 
