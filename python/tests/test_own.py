@@ -114,7 +114,7 @@ def test_a_clearance_can_be_an_objective() -> None:
     assert report.solved and report.cost is not None and report.path_length is not None
     assert report.path_length < report.cost < 11 * report.path_length
     assert mp.Report.from_json(report.to_json()).cost == report.cost
-    with pytest.raises(mp.Error, match="the clearance of .* is not known"):
+    with pytest.raises(mp.Error, match=r"the clearance of .* is not known"):
         scene_of(ROBOTS["valid"]).plan(objective="clearance")
     assert mp.Scene("easy").plan().calls is None
 
