@@ -7,6 +7,9 @@ use mp_cspace::Outcome;
 
 /// The part of the time left that more searches may take in all.
 const PART: f64 = 0.5;
+/// A search is given up after this many times the iterations of the first, or this many where that took few: some seeds take for ever.
+const TIMES: u64 = 20;
+const AT_LEAST: u64 = 100_000;
 
 /// Searches again with the next seeds where a path was found and [more are asked for](Request::hybridize). Their counts and times are added to
 /// those of the first.
@@ -20,13 +23,15 @@ pub(crate) fn find_more_paths(
     if !matches!(found.outcome, Outcome::Solved(_)) {
         return Ok(());
     }
+    let iterations = (TIMES.saturating_mul(found.progress.iterations)).max(AT_LEAST);
+    let iterations = request.budget.iterations.map_or(iterations, |given| given.min(iterations));
     let time_s = left(request, control, found).map(|left| PART * left.as_secs_f64() / more as f64);
     for next in 1..=more {
         if control.cancel.is_raised() || time_s.is_some_and(|time| time <= 0.0) {
             break;
         }
         let again = Request {
-            budget: Budget { time_s, ..request.budget },
+            budget: Budget { time_s, iterations: Some(iterations), ..request.budget },
             seed: request.seed.wrapping_add(next),
             first_only: true,
             roadmap: None,
