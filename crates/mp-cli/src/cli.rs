@@ -124,7 +124,7 @@ pub(crate) struct Plan {
     /// What the path costs: `length`, or `clearance:WEIGHT:RANGE`, ∫ (1 + WEIGHT·(1 − d/RANGE)²) ds for a clearance d below the RANGE (m); both
     /// may be left out, and are then 10 and a fifth of the size of the robot. Planners that improve their paths (aorrtc, rrt-star,
     /// informed-rrt-star) lower it, t-rrt prefers states that cost little, and shortening lowers it, whatever the planner.
-    #[arg(long, value_name = "COST", default_value = "length", value_parser = parsed::<ObjectiveName>)]
+    #[arg(long, value_name = "COST", default_value = "length", value_parser = explained::<ObjectiveName>)]
     pub(crate) objective: ObjectiveName,
     /// Plan this many times, with seeds N, N + 1, …, and print a table.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
@@ -586,12 +586,14 @@ fn parsed<T: FromStr<Err: ToString>>(text: &str) -> Result<T, String> {
     text.parse().map_err(|e: T::Err| e.to_string())
 }
 
+/// As [`parsed`], with what to do about an error.
+fn explained<T: FromStr<Err = mp_plan::Error>>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|e: mp_plan::Error| format!("{e}; {}", e.remedy().unwrap_or_default()))
+}
+
 /// The field of `--relax`, which may have been left out before the name of a scene.
 fn relax_field(text: &str) -> Result<RelaxField, String> {
-    text.parse().map_err(|e: mp_plan::Error| {
-        let names = e.remedy().unwrap_or_default();
-        format!("{e}; {names}. A scene stands before --relax")
-    })
+    explained(text).map_err(|e| format!("{e}. A scene stands before --relax"))
 }
 
 /// A number from 0 to 1.

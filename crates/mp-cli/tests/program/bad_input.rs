@@ -9,6 +9,8 @@ const COMMANDS: &[(&[&str], &[&str])] = &[
     (&["plan", "window.env", "--planner", "rrt-conect"], &["rrt-conect", "'rrt-connect'"]),
     (&["plan", "window.env", "--planner", "dijkstra"], &["dijkstra", "rrt", "rrt-connect"]),
     (&["plan", "window.env", "--metric", "euclidian"], &["'euclidean'"]),
+    (&["plan", "window.env", "--objective", "clear"], &["`clear`", "there are: length, clearance"]),
+    (&["plan", "window.env", "--hybridize", "2", "--no-shorten"], &["--hybridize", "--no-shorten"]),
     (&["plan", "window.env", "--motion", "discreet"], &["certified", "discrete:R"]),
     (&["plan", "window.env", "--motion", "discrete"], &["resolution", "discrete:1%"]),
     (&["plan", "window.env", "--motion", "discrete:0"], &["above zero"]),
