@@ -226,7 +226,7 @@ fn an_arm_of_two_joints_folds() {
 /// Six links among three discs, from one side of one to the other.
 #[test]
 fn an_arm_of_six_joints_finds_its_way() {
-    let places = [(1.12, 0.54), (-0.2, 0.9), (0.0, -0.9)];
+    let places = [(1.06, 0.51), (-0.2, 0.9), (0.0, -0.9)];
     let discs = places.map(|(x, y)| (Vector2::new(x, y), 0.1)).to_vec();
     let space = Rn::<6>::new([-1.5; 6], [1.5; 6]).unwrap();
     let robot = Arm { link: 0.2, radius: 0.02, discs };
