@@ -205,3 +205,21 @@ plain!(
     mp_robot::RobotError,
     mp_snake::SnakeError
 );
+
+/// `TryFrom<String>` and `Into<String>` of a type that is read and written as text, for serde.
+#[macro_export]
+macro_rules! as_text {
+    ($type:ty) => {
+        impl TryFrom<String> for $type {
+            type Error = $crate::Error;
+            fn try_from(text: String) -> Result<Self, $crate::Error> {
+                text.parse()
+            }
+        }
+        impl From<$type> for String {
+            fn from(value: $type) -> Self {
+                value.to_string()
+            }
+        }
+    };
+}

@@ -115,15 +115,4 @@ impl FromStr for ObjectiveName {
     }
 }
 
-impl TryFrom<String> for ObjectiveName {
-    type Error = Error;
-    fn try_from(text: String) -> Result<Self, Error> {
-        text.parse()
-    }
-}
-
-impl From<ObjectiveName> for String {
-    fn from(objective: ObjectiveName) -> Self {
-        objective.to_string()
-    }
-}
+crate::as_text!(ObjectiveName);

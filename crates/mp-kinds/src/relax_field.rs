@@ -81,15 +81,4 @@ impl FromStr for RelaxField {
     }
 }
 
-impl TryFrom<String> for RelaxField {
-    type Error = Error;
-    fn try_from(text: String) -> Result<Self, Error> {
-        text.parse()
-    }
-}
-
-impl From<RelaxField> for String {
-    fn from(field: RelaxField) -> Self {
-        field.to_string()
-    }
-}
+crate::as_text!(RelaxField);

@@ -121,8 +121,8 @@ pub use mp_kinds::{
     Deviation, Drivable, Drive, DriveModel, DrivenScene, End, Error, ErrorKind, FieldImage, FloatingScene,
     GoalPart, LinkedScene, LinkedSpace, Measured, MetricName, ModelBody, ModelFrame, ModelPair, ModelPart,
     Motion, MotionModel, MovingScene, ObjectiveName, PathFormat, PlanarBody, PlanarScene, Queries, Reached,
-    RelaxField, RigidScene, RigidSpace, Robot, SpeedBound, Step, VERIFIED_FINER, WithMoving, at_least, brief,
-    count, plain, positive_number, shorten,
+    RelaxField, RigidScene, RigidSpace, Robot, SpeedBound, Step, VERIFIED_FINER, WithMoving, as_text,
+    at_least, brief, count, plain, positive_number, shorten,
 };
 
 pub use mp_io::{FoundRobot, FreeTurns, PoseEntry, ProblemChanges, RobotPath, TrajectoryKind};

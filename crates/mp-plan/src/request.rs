@@ -50,7 +50,7 @@ pub struct Request {
     /// What is done to the path that the planner found.
     pub finish: Finish,
     /// How many paths to plan, with this seed and the next ones, and to merge into a shorter one (Raveh, Enosh and Halperin 2011). 1, the
-    /// default, plans one. Each takes as long as the first; the path is often a tenth shorter.
+    /// default, plans one. Each takes about as long as the first.
     #[serde(skip_serializing_if = "is_one")]
     pub hybridize: usize,
     /// What pushes the path if it is relaxed.
@@ -126,22 +126,7 @@ impl FromStr for MotionValidator {
     }
 }
 
-macro_rules! as_text {
-    ($($type:ty),*) => {
-        $(impl TryFrom<String> for $type {
-            type Error = Error;
-            fn try_from(text: String) -> Result<Self, Error> {
-                text.parse()
-            }
-        }
-        impl From<$type> for String {
-            fn from(value: $type) -> Self {
-                value.to_string()
-            }
-        })*
-    };
-}
-as_text!(MotionValidator);
+crate::as_text!(MotionValidator);
 
 /// Whether a member is left out: what was written before it was there stays the same.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
