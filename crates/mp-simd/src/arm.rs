@@ -110,6 +110,11 @@ impl Lanes for Neon {
         // SAFETY: see `splat`.
         unsafe { NeonMask(vcltq_f32(self.0, b.0), vcltq_f32(self.1, b.1)) }
     }
+    #[inline(always)]
+    fn select(mask: NeonMask, a: Self, b: Self) -> Self {
+        // SAFETY: see `splat`.
+        unsafe { Self(vbslq_f32(mask.0, a.0, b.0), vbslq_f32(mask.1, a.1, b.1)) }
+    }
 }
 
 /// What comparing [`Neon`]s gives: all bits of a lane or none.

@@ -182,6 +182,8 @@ pub trait Lanes: Copy {
     fn le(self, b: Self) -> Self::Mask;
     /// Where `self` < `b`.
     fn lt(self, b: Self) -> Self::Mask;
+    /// The lanes of `a` where `mask` holds, those of `b` elsewhere.
+    fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
     /// Of eight `f64`: bit `i` is set where `a[i]` < `b[i]`; not where they cannot be compared.
     #[inline(always)]
     fn less(a: &[f64; 8], b: &[f64; 8]) -> u32 {
@@ -278,6 +280,7 @@ mod tests {
                 a.min(b),
                 a.max(b),
                 a.square(),
+                L::select(a.lt(b), a, c),
                 L::splat(self.0[0][3]),
                 L::twice(&std::array::from_fn(|i| self.0[0][i])),
                 L::halves(self.0[0][5], self.0[1][2]),

@@ -76,6 +76,10 @@ impl Lanes for Scalar {
     fn lt(self, b: Self) -> Bits {
         Bits((0..8).fold(0, |m, i| m | (u32::from(self.0[i] < b.0[i]) << i)))
     }
+    #[inline(always)]
+    fn select(mask: Bits, a: Self, b: Self) -> Self {
+        Self(std::array::from_fn(|i| if mask.0 >> i & 1 == 1 { a.0[i] } else { b.0[i] }))
+    }
 }
 
 /// What comparing [`Scalar`]s gives: a bit per lane.

@@ -3,7 +3,7 @@
 use super::{Lanes, Mask};
 use std::arch::wasm32::{
     f32x4, f32x4_abs, f32x4_add, f32x4_div, f32x4_extract_lane, f32x4_le, f32x4_lt, f32x4_mul, f32x4_pmax,
-    f32x4_pmin, f32x4_splat, f32x4_sqrt, f32x4_sub, i32x4_bitmask, v128, v128_and, v128_or,
+    f32x4_pmin, f32x4_splat, f32x4_sqrt, f32x4_sub, i32x4_bitmask, v128, v128_and, v128_bitselect, v128_or,
 };
 use std::ops::{BitAnd, BitOr};
 
@@ -83,6 +83,10 @@ impl Lanes for Simd128 {
     #[inline(always)]
     fn lt(self, b: Self) -> Both {
         Both(f32x4_lt(self.0, b.0), f32x4_lt(self.1, b.1))
+    }
+    #[inline(always)]
+    fn select(mask: Both, a: Self, b: Self) -> Self {
+        Self(v128_bitselect(a.0, b.0, mask.0), v128_bitselect(a.1, b.1, mask.1))
     }
 }
 

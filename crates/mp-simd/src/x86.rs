@@ -107,6 +107,11 @@ impl Lanes for Avx2 {
         Avx2Mask(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, b.0) })
     }
     #[inline(always)]
+    fn select(mask: Avx2Mask, a: Self, b: Self) -> Self {
+        // SAFETY: see `Avx2`.
+        Self(unsafe { _mm256_blendv_ps(b.0, a.0, mask.0) })
+    }
+    #[inline(always)]
     fn less(a: &[f64; 8], b: &[f64; 8]) -> u32 {
         // SAFETY: see `Avx2`.
         let (low, high) = unsafe {
@@ -237,6 +242,14 @@ impl Lanes for Sse2 {
     fn lt(self, b: Self) -> Sse2Mask {
         // SAFETY: see `Sse2`.
         unsafe { Sse2Mask(_mm_cmplt_ps(self.0, b.0), _mm_cmplt_ps(self.1, b.1)) }
+    }
+    #[inline(always)]
+    fn select(mask: Sse2Mask, a: Self, b: Self) -> Self {
+        // SAFETY: see `Sse2`.
+        unsafe {
+            let either = |m, a, b| _mm_or_ps(_mm_and_ps(m, a), _mm_andnot_ps(m, b));
+            Self(either(mask.0, a.0, b.0), either(mask.1, a.1, b.1))
+        }
     }
     #[inline(always)]
     fn less(a: &[f64; 8], b: &[f64; 8]) -> u32 {

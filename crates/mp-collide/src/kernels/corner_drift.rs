@@ -57,6 +57,27 @@ impl<L: Lanes> CornerDrift<L> {
         self.is_less(L::splat(length * self.beside * (1.0 + 1e-5)), wrong, heights)
     }
 
+    /// The lanes whose corners `v` stay farther along `way`, of any length, than the corners `s` of a single triangle. Coordinates are at most `g`, and
+    /// wrong by u·`g` (u = 2⁻²⁴): with the rounding of their products each side is wrong by up to 7u·`g`.
+    #[inline(always)]
+    pub(crate) fn keeps_along(&self, way: &[L; 3], s: &Corners<L>, v: &Corners<L>, g: f32) -> u32 {
+        let low: [L; 3] = three!(k => dot(way, &v[k]).sub(dot(way, &self.drift[k]).abs()));
+        let high: [L; 3] = three!(k => dot(way, &s[k]));
+        // What is added outweighs what is lost to underflow.
+        let length = dot(way, way).add(L::splat(1e-36)).sqrt();
+        let apart = L::splat(self.beside * (1.0 + 1e-5) + 1.2e-6 * g);
+        let high = high[0].max(high[1]).max(high[2]).add(L::splat(TINY));
+        length.mul_add(apart, high).lt(low[0].min(low[1]).min(low[2])).bits()
+    }
+
+    /// A way without its part along the motion: what moves past something is separated from it along that.
+    #[inline(always)]
+    pub(crate) fn across(&self, way: &[L; 3]) -> [L; 3] {
+        let d = &self.drift[0];
+        let along = dot(way, d).div(dot(d, d).max(L::splat(TINY)));
+        three!(k => way[k].sub(d[k].mul(along)))
+    }
+
     /// Where `reach` is less than heights, whatever the error of the normal, which has the rounding of projections in it. Written so that NaN is not.
     #[inline(always)]
     fn is_less(&self, reach: L, wrong: f32, heights: L) -> u32 {

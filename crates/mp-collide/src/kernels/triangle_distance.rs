@@ -37,6 +37,8 @@ const TINY_HEIGHT: f32 = 1e-34;
 pub(crate) struct DistanceBounds {
     pub(crate) near: Lane,
     pub(crate) far: Lane,
+    /// In a motion: the way from the single triangle between the nearest points of edges.
+    pub(crate) join: [Lane; 3],
 }
 
 /// A direction along which triangles may be apart, a little shorter than a unit vector; or zero.
@@ -133,7 +135,8 @@ impl<L: Lanes> DistanceKernel<L> {
     }
 
     /// The lanes, of those in `mask`, whose squared distance from `triangle` (in the frame of the mesh) may be
-    /// at most `best`; without those that the plane of either triangle shows to keep apart in a motion.
+    /// at most `best`; without those that keep apart in a motion, as the plane of either triangle shows, or the line through the nearest points
+    /// of their edges.
     #[inline(always)]
     pub(crate) fn between(
         &self,
@@ -215,12 +218,26 @@ impl<L: Lanes> DistanceKernel<L> {
             return Close::default();
         }
         let mut edges = L::splat(f32::INFINITY);
+        // From the single triangle, along the line through the nearest points of edges.
+        let mut join = [zero; 3];
         for i in 0..3 {
             let ei = [L::splat(e[i][0]), L::splat(e[i][1]), L::splat(e[i][2])];
             let inverse = L::splat(1.0 / ee[i].max(TINY));
             for j in 0..3 {
                 let between = self.edges(&s[i], &ei, L::splat(ee[i]), inverse, j);
-                edges = between.min(edges);
+                let square = dot(&between, &between);
+                if motion.is_some() {
+                    let nearer = square.lt(edges);
+                    join = three!(d => L::select(nearer, between[d], join[d]));
+                }
+                edges = square.min(edges);
+            }
+        }
+        if let Some(motion) = motion {
+            mask &= !motion.keeps_along(&join, &s, &self.v, g);
+            mask &= !motion.keeps_along(&motion.across(&join), &s, &self.v, g);
+            if mask == 0 {
+                return Close::default();
             }
         }
         // A corner whose foot is inside the face: height² / |n|². A penalty rules out feet outside, and normals that
@@ -257,13 +274,16 @@ impl<L: Lanes> DistanceKernel<L> {
         let below = below.mul(L::splat(1.0 - 2e-6)).sub(self.unsound.add(unsound));
         let low = below.max(gap.mul(L::splat(1.0 - 1e-5)));
         low.store(&mut bounds.near);
+        if motion.is_some() {
+            (0..3).for_each(|d| join[d].store(&mut bounds.join[d]));
+        }
         squared.sqrt().add(error).square().mul(L::splat(1.0 + 2e-6)).store(&mut bounds.far);
         Close { near: mask & low.le(L::splat(best)).bits(), crossing: mask & crossing }
     }
 
-    /// Squared distance of an edge (from `p` along `d`, of squared length `dd`) and edges `j` of the eight.
+    /// The way between the nearest points of an edge (from `p` along `d`, of squared length `dd`) and edges `j` of the eight.
     #[inline(always)]
-    fn edges(&self, p: &[L; 3], d: &[L; 3], dd: L, inverse: L, j: usize) -> L {
+    fn edges(&self, p: &[L; 3], d: &[L; 3], dd: L, inverse: L, j: usize) -> [L; 3] {
         let (q, f, ff) = (&self.v[j], &self.f[j], self.ff[j]);
         let r = sub(p, q);
         let (c, b, y) = (dot(d, &r), dot(d, f), dot(f, &r));
@@ -272,8 +292,7 @@ impl<L: Lanes> DistanceKernel<L> {
         let s = unit(b.mul_sub(y, c.mul(ff)).div(determinant));
         let t = unit(b.mul_add(s, y).mul(self.inverse[j]));
         let s = unit(b.mul_sub(t, c).mul(inverse));
-        let w = three!(k => d[k].mul_add(s, r[k]).sub(f[k].mul(t)));
-        dot(&w, &w)
+        three!(k => f[k].mul(t).sub(d[k].mul_add(s, r[k])))
     }
 }
 

@@ -2,11 +2,13 @@
 
 mod closest;
 mod exact;
+mod hulls;
 
 pub use closest::closest;
 pub(crate) use closest::{Closest, closest_to_point, closest_within, crossing, is_farther, is_nearest};
 pub use exact::intersect;
 pub(crate) use exact::passes;
+pub(crate) use hulls::are_apart;
 
 use nalgebra::Point3;
 
