@@ -121,7 +121,8 @@ impl Tables {
 
     /// How many numbers the start has, if it is a list.
     fn numbers_of_start(&self) -> Option<usize> {
-        let start = self.motion.as_ref()?.start.as_ref()?.as_array()?;
+        let start = self.motion.as_ref()?.start.as_ref()?;
+        let start = start.as_array().or_else(|| start.get("numbers")?.as_array())?;
         Some(start.len()).filter(|length| *length > 0)
     }
 }
@@ -407,7 +408,7 @@ fn region(file: &str, text: &str, table: &Spanned<Members>) -> Result<Range<usiz
 }
 
 /// Whether a line is the header of a table other than a part of an obstacle.
-fn is_header(line: &str) -> bool {
+pub(crate) fn is_header(line: &str) -> bool {
     let line = line.trim_start();
     let inner = line.trim_start_matches('[').trim_start();
     let header =
@@ -425,8 +426,14 @@ fn list(numbers: &[f64]) -> String {
     format!("[{}]", numbers.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", "))
 }
 
+/// A name of a member, quoted where it has to be.
+fn bare(key: &str) -> String {
+    let plain = !key.is_empty() && key.bytes().all(|b| b.is_ascii_alphanumeric() || b"-_".contains(&b));
+    if plain { key.to_owned() } else { quoted(key) }
+}
+
 /// A value in one line.
-fn inline(value: &Value) -> String {
+pub(crate) fn inline(value: &Value) -> String {
     let joined = |parts: Vec<String>| parts.join(", ");
     match value {
         Value::String(text) => quoted(text),
@@ -438,7 +445,7 @@ fn inline(value: &Value) -> String {
         Value::Table(all) => {
             format!(
                 "{{ {} }}",
-                joined(all.iter().map(|(key, value)| format!("{key} = {}", inline(value))).collect())
+                joined(all.iter().map(|(key, value)| format!("{} = {}", bare(key), inline(value))).collect())
             )
         }
     }
