@@ -242,6 +242,37 @@ fn meshes_are_written_beside_the_problem() {
     }
 }
 
+/// A start of a robot with accelerations has velocities, after the time if there is one; an edited goal leaves them free.
+#[test]
+fn velocities_of_a_start_are_kept() {
+    let moving = "[[moving]]\ncircle = [0, 0, 0.1]\npath = [[0, 1, 1], [1, 1, 2]]\n";
+    for (given, more, moved, expected) in [
+        ("[2, 2]", "", [0.0, 0.0], "[3, 4]"),
+        ("[2, 2]", "", [0.5, 0.0], "[3, 4, 0.5, 0]"),
+        ("[2, 2, 0, 0.25]", "", [0.0, 0.0], "[3, 4, 0, 0]"),
+        ("[2, 2]", moving, [0.0, 0.0], "[3, 4]"),
+        ("[2, 2, 0, 0.25]", moving, [0.5, 0.0], "[3, 4, 0.5, 0]"),
+    ] {
+        let text = format!(
+            "[world]\nwalls = [[0, 0], [9, 9]]\n[robot]\ndisc = 0.1\nkind = \"accelerations\"\nspeeds = [1, 1]\n\
+             accelerations = [1, 1]\nduration = 0.5\n[motion]\nstart = {given}\ngoal = [6, 6]\ntolerance = 0.4\n{more}"
+        );
+        let files = in_memory(Box::leak(text.into_boxed_str()));
+        let scene = Scene::load_from(&*files, Path::new("p.toml")).unwrap();
+        let problem = scene.problem(files, false).unwrap();
+        let mut document = problem.document().clone();
+        let time = if more.is_empty() { vec![] } else { vec![0.0] };
+        let row = |numbers: &[f64], velocity: &[f64]| [numbers, &time, velocity, &[0.0; 3]].concat();
+        document.start = Some(row(&[3.0, 4.0], &moved));
+        document.goals = Some(vec![row(&[5.0, 5.0], &[0.0; 2])]);
+        let edited = problem.edited(&document, &no_mesh, &scene).unwrap();
+        assert_eq!(edited.start(), row(&[3.0, 4.0], &moved), "{given} {more}");
+        let (saved, _) = problem.saved("q", &document, &no_mesh, None).unwrap();
+        let saved = String::from_utf8(saved[0].1.clone()).unwrap();
+        assert!(saved.contains(&format!("start = {expected}\ngoal = [5, 5]\n")), "{saved}");
+    }
+}
+
 /// Joints that are held where the start says by names stay there when the start is moved, again and again, and when an option gives another.
 #[test]
 fn what_is_held_stays_when_the_start_moves() {
