@@ -2,6 +2,7 @@
 //! an option means what the same text means in a file.
 
 use crate::problem::PlacedBody;
+use crate::problem_document::{inline, is_header};
 use crate::robot::{ObstacleTable, entry};
 use crate::shape::{Meshes, Shaped};
 use crate::toml_problem::TomlText;
@@ -41,6 +42,7 @@ const MARK: &str = " # by ";
 /// The ends in the text of a problem.
 #[derive(Deserialize)]
 struct Ends {
+    robot: Option<Value>,
     motion: Option<Motion>,
 }
 
@@ -111,7 +113,7 @@ impl ProblemChanges {
 /// comments say so.
 ///
 /// # Errors
-/// [`Error`] when the text is no TOML, or there is no start or goal to replace.
+/// [`Error`] when the text is no TOML, there is no start or goal to replace, or it is under a header of its own.
 pub(crate) fn with_ends(
     file: &str,
     text: &str,
@@ -120,15 +122,28 @@ pub(crate) fn with_ends(
     from_options: bool,
 ) -> Result<String, Error> {
     let guide = "docs/formats describes problems";
-    let Ends { motion } = TomlText { file, text, guide }.read()?;
+    let Ends { robot, motion } = TomlText { file, text, guide }.read()?;
     let (start, goal, goals) = motion.map_or((None, None, None), |m| (m.start, m.goal, m.goals));
     let mut replaced: Vec<(Range<usize>, String, &'static str)> = Vec::new();
     let none = |option: &'static str, what: &str| {
         Error::new(ErrorKind::Content, option, format!("{file} has no {what} to replace"))
             .help("add `[motion]` with `start` and `goal` to the problem")
     };
+    for (end, asked, option) in
+        [(&start, from.is_some(), FROM), (&goal, !given.is_empty(), TO), (&goals, !given.is_empty(), TO)]
+    {
+        if let Some(end) = end.as_ref().filter(|_| asked)
+            && (end.get_ref().is_table() || end.get_ref().get(0).is_some_and(Value::is_table))
+            && is_header(&text[end.span().start..])
+        {
+            let message = format!("the ends of {file} stand under headers of their own");
+            return Err(Error::new(ErrorKind::Content, option, message)
+                .help("write them in [motion], such as `start = { joint1 = 0.5 }`"));
+        }
+    }
     if let Some(from) = from {
         let start = start.ok_or_else(|| none(FROM, "start"))?;
+        let from = beside(robot.as_ref(), start.get_ref(), from);
         replaced.push((start.span(), from, FROM));
     }
     match (given, goal, goals) {
@@ -150,6 +165,17 @@ pub(crate) fn with_ends(
         text.replace_range(span, &(value + &mark));
     }
     Ok(text)
+}
+
+/// The value of another start in place of `old`. Joints that the problem does not let move stay where the old one has them by name.
+fn beside(robot: Option<&Value>, old: &Value, from: String) -> String {
+    let chooses = |robot: &Value| robot.get("group").is_some() || robot.get("joints").is_some();
+    let chosen = robot.is_some_and(|r| chooses(r) || r.as_array().is_some_and(|all| all.iter().any(chooses)));
+    let names = old.get("numbers").and(old.get("held")).unwrap_or(old);
+    match chosen && from.starts_with('[') && !names.is_array() {
+        true => format!("{{ numbers = {from}, held = {} }}", inline(names)),
+        false => from,
+    }
 }
 
 /// The numbers that an option gives.
@@ -286,6 +312,35 @@ mod tests {
         let inline = "motion = { start = [0], goal = [1] }\nrobot.urdf = \"r.urdf\"\n";
         let text = changed(Some("2"), &["3", "4"], &[]).applied("p.toml", inline).unwrap();
         assert_eq!(text, "motion = { start = [2.0], goals = [[3.0], [4.0]] }\nrobot.urdf = \"r.urdf\"\n");
+    }
+
+    /// Where not all joints move, another start by numbers says where those are that it has; ends under headers are not replaced.
+    #[test]
+    fn held_joints_stay_where_a_start_by_names_has_them() {
+        let from = |text: &str, from: &str| changed(Some(from), &[], &[]).applied("p.toml", text);
+        let text =
+            |robot: &str, start: &str| format!("robot = {robot}\n[motion]\nstart = {start}\ngoal = [1]\n");
+        let all = "{ urdf = \"r\" }";
+        let [group, joints] = ["{ group = \"g\" }", "[{ urdf = \"r\" }, { joints = [\"a\"] }]"];
+        for (robot, start, expected) in [
+            (group, "{ a = 1, \"x/b c\" = 2.5 }", "{ numbers = [0.5], held = { a = 1, \"x/b c\" = 2.5 } }"),
+            (joints, "\"home\"", "{ numbers = [0.5], held = \"home\" }"),
+            (group, "{ numbers = [1, 2], held = \"home\" }", "{ numbers = [0.5], held = \"home\" }"),
+            (group, "[1, 2]", "[0.5]"),
+            (all, "\"home\"", "[0.5]"),
+        ] {
+            let expected = text(robot, &format!("{expected} # by --from"));
+            assert_eq!(from(&text(robot, start), "0.5").unwrap(), expected);
+        }
+        assert!(from(&text(group, "\"home\""), "up").unwrap().contains("start = \"up\" # by"));
+        for (header, from, to) in
+            [("start", Some("1"), vec![]), ("goal", None, vec!["1"]), ("goals", None, vec!["1"])]
+        {
+            let header =
+                if header == "goals" { "[[motion.goals]]".to_owned() } else { format!("[motion.{header}]") };
+            let error = changed(from, &to, &[]).applied("p.toml", &format!("{header}\na = 1\n")).unwrap_err();
+            assert!(error.to_string().contains("headers of their own"), "{error}");
+        }
     }
 
     #[test]

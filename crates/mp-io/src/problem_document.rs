@@ -103,7 +103,10 @@ type Members = BTreeMap<String, Spanned<Value>>;
 #[derive(Deserialize)]
 struct Tables {
     world: Option<serde::de::IgnoredAny>,
+    robot: Option<Value>,
     motion: Option<MotionTable>,
+    #[serde(default)]
+    moving: Vec<serde::de::IgnoredAny>,
     #[serde(default)]
     obstacle: Vec<Spanned<Members>>,
 }
@@ -121,8 +124,25 @@ impl Tables {
 
     /// How many numbers the start has, if it is a list.
     fn numbers_of_start(&self) -> Option<usize> {
-        let start = self.motion.as_ref()?.start.as_ref()?.as_array()?;
+        let start = self.motion.as_ref()?.start.as_ref()?;
+        let start = start.as_array().or_else(|| start.get("numbers")?.as_array())?;
         Some(start.len()).filter(|length| *length > 0)
+    }
+}
+
+impl Tables {
+    /// The numbers of a configuration that the text has, if its start has `length`: the first ones. Velocities, which the configuration of a robot
+    /// with accelerations has after the time, are of a start alone, where the text has them or the robot is not at rest.
+    fn numbers_of(&self, row: &[f64], length: usize, is_start: bool) -> Vec<f64> {
+        let kind = self.robot.as_ref().and_then(|robot| robot.get("kind")?.as_str());
+        let timed = usize::from(!self.moving.is_empty());
+        let n = row.len().saturating_sub(timed + 1) / 3;
+        if kind != Some("accelerations") || row.len() != 3 * n + timed + 1 || ![n, 2 * n].contains(&length) {
+            return row[..row.len().min(length)].to_vec();
+        }
+        let velocities = &row[n + timed..][..n];
+        let moves = is_start && (length > n || velocities.iter().any(|v| *v != 0.0));
+        [&row[..n], if moves { velocities } else { &[] }].concat()
     }
 }
 
@@ -201,9 +221,9 @@ impl ProblemDocument {
             out += &self.lines(obstacle, &tables, source, mesh)?;
         }
         let length = tables.numbers_of_start().unwrap_or(usize::MAX);
-        let row = |row: &Vec<f64>| list(&row[..row.len().min(length)]);
-        let goals: Vec<String> = self.goals.iter().flatten().map(row).collect();
-        with_ends(file, &out, self.start.as_ref().map(row), &goals, false)
+        let row = |row: &Vec<f64>, is_start: bool| list(&tables.numbers_of(row, length, is_start));
+        let goals: Vec<String> = self.goals.iter().flatten().map(|goal| row(goal, false)).collect();
+        with_ends(file, &out, self.start.as_ref().map(|start| row(start, true)), &goals, false)
     }
 
     /// The table of an obstacle.
@@ -407,7 +427,7 @@ fn region(file: &str, text: &str, table: &Spanned<Members>) -> Result<Range<usiz
 }
 
 /// Whether a line is the header of a table other than a part of an obstacle.
-fn is_header(line: &str) -> bool {
+pub(crate) fn is_header(line: &str) -> bool {
     let line = line.trim_start();
     let inner = line.trim_start_matches('[').trim_start();
     let header =
@@ -425,8 +445,14 @@ fn list(numbers: &[f64]) -> String {
     format!("[{}]", numbers.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", "))
 }
 
+/// A name of a member, quoted where it has to be.
+fn bare(key: &str) -> String {
+    let plain = !key.is_empty() && key.bytes().all(|b| b.is_ascii_alphanumeric() || b"-_".contains(&b));
+    if plain { key.to_owned() } else { quoted(key) }
+}
+
 /// A value in one line.
-fn inline(value: &Value) -> String {
+pub(crate) fn inline(value: &Value) -> String {
     let joined = |parts: Vec<String>| parts.join(", ");
     match value {
         Value::String(text) => quoted(text),
@@ -438,7 +464,7 @@ fn inline(value: &Value) -> String {
         Value::Table(all) => {
             format!(
                 "{{ {} }}",
-                joined(all.iter().map(|(key, value)| format!("{key} = {}", inline(value))).collect())
+                joined(all.iter().map(|(key, value)| format!("{} = {}", bare(key), inline(value))).collect())
             )
         }
     }

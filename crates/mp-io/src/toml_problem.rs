@@ -108,14 +108,30 @@ pub enum GoalEntry {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(
     untagged,
+    deny_unknown_fields,
     expecting = "a start is a list of numbers, a table of joints, such as { joint1 = 0.5 }, where the others are at zero, or the name of \
                  a state of the SRDF, such as \"home\""
 )]
 pub enum StartEntry {
     /// All numbers of a configuration, in order.
     All(Vec<f64>),
-    /// Some of them, by name; the others are zero, or the limit nearest to zero.
-    Named(BTreeMap<String, f64>),
+    /// Values by name; the others are zero, or the limit nearest to zero.
+    Named(NamedStart),
+    /// All numbers of a configuration, and values by name of the joints that are held.
+    Beside {
+        /// The numbers, in order.
+        numbers: Vec<f64>,
+        /// Where the joints are that do not move.
+        held: NamedStart,
+    },
+}
+
+/// Values of joints by name.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub enum NamedStart {
+    /// Those of some joints.
+    Joints(BTreeMap<String, f64>),
     /// A state that the SRDF names.
     State(String),
 }
@@ -125,18 +141,27 @@ impl StartEntry {
     #[must_use]
     pub fn row(&self) -> &[f64] {
         match self {
-            Self::All(values) => values,
-            Self::Named(_) | Self::State(_) => &[],
+            Self::All(numbers) | Self::Beside { numbers, .. } => numbers,
+            Self::Named(_) => &[],
+        }
+    }
+
+    /// What it gives by names.
+    #[must_use]
+    pub fn by_name(&self) -> Option<&NamedStart> {
+        match self {
+            Self::All(_) => None,
+            Self::Named(named) | Self::Beside { held: named, .. } => Some(named),
         }
     }
 
     /// Its numbers, for checks of their size.
     pub(crate) fn numbers(&self) -> Vec<f64> {
-        match self {
-            Self::All(values) => values.clone(),
-            Self::Named(values) => values.values().copied().collect(),
-            Self::State(_) => Vec::new(),
-        }
+        let named = match self.by_name() {
+            Some(NamedStart::Joints(values)) => values.values().copied().collect(),
+            _ => Vec::new(),
+        };
+        [self.row(), &named].concat()
     }
 }
 

@@ -285,13 +285,21 @@ fn faults_of_files_have_their_line() {
 #[test]
 fn times_of_start_and_goal_are_kept() {
     let dir = Dir::empty();
-    let text = MOVING.replace("speed = 1\n", "speed = 1\nstart_time = 1.5\ngoal_time = [9, 10]\n");
-    dir.write("timed.toml", text);
-    assert_eq!(mp(&dir, &["plan", "timed.toml", "--out", "timed.txt"]).code, 0);
-    let rows = rows(&dir, "timed.txt");
-    let times = [rows[0][2], rows[rows.len() - 1][2]];
-    assert!(times[0] == 1.5 && (9.0..=10.0).contains(&times[1]), "{times:?}");
-    assert_eq!(rows[rows.len() - 1][0], 3.5);
+    // Also times later than the usual horizon.
+    for (given, asked) in [("[9, 10]", 9.0..=10.0), ("100", 100.0..=100.0), ("[100, 1e6]", 100.0..=1e6)] {
+        let times = format!("speed = 1\nstart_time = 1.5\ngoal_time = {given}\n");
+        dir.write("timed.toml", MOVING.replace("speed = 1\n", &times));
+        assert_eq!(mp(&dir, &["plan", "timed.toml", "--out", "timed.txt"]).code, 0);
+        let mut rows = rows(&dir, "timed.txt");
+        let times = [rows[0][2], rows[rows.len() - 1][2]];
+        assert!(times[0] == 1.5 && asked.contains(&times[1]), "{given}: {times:?}");
+        assert_eq!(rows[rows.len() - 1][0], 3.5);
+        let last = rows.len() - 1;
+        rows[last][2] = 20.0;
+        let early: String = rows.iter().map(|row| format!("{} {} {}\n", row[0], row[1], row[2])).collect();
+        dir.write("early.txt", format!("{} 3\n{early}", rows.len()));
+        assert_eq!(mp(&dir, &["check", "timed.toml", "early.txt"]).code, 1, "{given}");
+    }
 }
 
 /// How long a path takes: the sum of its last column.

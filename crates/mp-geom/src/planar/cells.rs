@@ -169,8 +169,8 @@ impl Cells {
         (cell, &self.candidates[cell.first as usize..next.first as usize])
     }
 
-    /// The fraction of the segment from `a` at which it leaves a cell; `inverse` holds the reciprocals of its
-    /// components.
+    /// The fraction of the segment from `a` at which it has left a cell by half of the slack; `inverse` holds the reciprocals of its
+    /// components. Without the slack, a segment along a border would leave a cell again and again, where rounding leads it back.
     #[inline]
     pub(super) fn leaves(
         &self,
@@ -183,7 +183,8 @@ impl Cells {
                 return f64::INFINITY;
             }
             let line = i + usize::from(inverse[axis] > 0.0);
-            (self.low[axis] + line as f64 * self.size[axis] - a[axis]) * inverse[axis]
+            let beyond = (0.5 * self.slack).copysign(inverse[axis]);
+            (self.low[axis] + line as f64 * self.size[axis] + beyond - a[axis]) * inverse[axis]
         };
         at(column, 0).min(at(row, 1))
     }

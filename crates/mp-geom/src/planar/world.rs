@@ -312,7 +312,7 @@ impl PlanarWorld {
                 }
             }
             let clear = clear - (p - cells.center(at.0, at.1)).norm();
-            let next = (cells.leaves(a, &inverse, at) + nudge).max(t + nudge).max(t + clear * per_length);
+            let next = cells.leaves(a, &inverse, at).max(t + nudge).max(t + clear * per_length);
             // Infinite or NaN for a segment of no length.
             if next.is_nan() || next >= 1.0 {
                 return;
@@ -401,6 +401,24 @@ mod tests {
                     Some(near) => prop_assert!((near.distance - expected).abs() < 1e-12),
                     None => prop_assert!(expected >= below - 1e-12),
                 }
+            }
+        }
+    }
+
+    /// Edges that are turned by a quarter run along borders of cells but for rounding: they cross few cells. Each of these took billions of steps.
+    #[test]
+    fn segments_along_borders_take_few_steps() {
+        let squares = (0..16).map(|i| [f64::from(i % 4), f64::from(i / 4)]);
+        let squares = squares.map(|[x, y]| Polygon::rectangle([x, y], [x + 0.25, y + 0.25]).unwrap());
+        let world = PlanarWorld::new(squares.collect(), Some([[-1.0, -1.0], [5.0, 5.0]])).unwrap();
+        let cells = world.cells.as_ref().unwrap();
+        let border = |i: usize| nalgebra::center(&cells.center(i, i), &cells.center(i + 1, i + 1));
+        for (i, off) in (0..8).flat_map(|i| [-1e-16, -1e-17, 0.0, 1e-17, 1e-16].map(|off| (i, off))) {
+            let p = border(i);
+            for v in [[off, 1.5], [off, -0.5], [1.5, off], [-0.5, off]] {
+                let q = p + nalgebra::Vector2::from(v);
+                let near = world.nearest_to_segment(&p, &q, f64::INFINITY).unwrap();
+                assert!((near.distance - brute(&world.edges, p, q)).abs() < 1e-12, "{p} {q}");
             }
         }
     }

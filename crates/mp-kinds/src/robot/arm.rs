@@ -252,16 +252,10 @@ impl<C: LinkedSpace> LinkedScene<C> {
             }
             None => Self::arm_of(files, &mut problem)?,
         };
-        let (mut arm, mut said) = (arm, said);
         let own = Self::names(&arm).len();
         let start = problem.file.start.row().get(..own).unwrap_or_default().to_vec();
-        let filtered = self_filter::filter(&arm, &mut problem, &start)?;
-        if !filtered.is_empty() {
-            let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
-            arm = arm.among_until(bodies, &files.interrupt())?;
-            said.retain(|line| !line.ends_with(self_filter::LEFT_OUT));
-            said.extend(filtered);
-        }
+        let start = C::of(&arm)?.state(&start);
+        let (arm, said) = self_filter::filtered(arm, &mut problem, &start, said, &files.interrupt())?;
         Self::with_ends_of(problem, arm, said, &files.interrupt())
     }
 

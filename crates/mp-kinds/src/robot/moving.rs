@@ -104,9 +104,13 @@ impl<K: WithMoving> MovingScene<K> {
         let Some(speed) = timing.speed else {
             return Err(Error::new("obstacles move, and the robot has no speed").help("say how fast it is"));
         };
-        // Time to wait until nothing moves, and then to go around everything.
-        let horizon =
-            timing.horizon.unwrap_or(last.max(timing.start) + 2.0 * still.places().extent() / speed);
+        // Time to wait until nothing moves, and then to go around everything; or until the goal, if that is later.
+        let around = 2.0 * still.places().extent() / speed;
+        let usual = last.max(timing.start) + around;
+        let horizon = timing.horizon.unwrap_or(match timing.goal {
+            Some([from, to]) if from > usual => to.min(from + around),
+            _ => usual,
+        });
         let space = AsVectors(SpaceTime::new(still.places().clone(), horizon, speed)?);
         let start = timed(still.start(), timing.start);
         let exactly = |q: &Configuration| still.row(q).into_iter().map(GoalPart::Exactly).collect();

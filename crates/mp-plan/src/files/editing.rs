@@ -125,7 +125,7 @@ impl SceneProblem {
         let text = std::mem::take(&mut files[0].1);
         let folder = self.file.parent().unwrap_or(Path::new(""));
         let here = || mp_store::folder_of(&self.file).canonicalize().ok();
-        let (mut copies, mut left) = (Vec::new(), Vec::new());
+        let (mut copies, mut left) = (Vec::<(String, Vec<u8>)>::new(), Vec::new());
         let renamed = match (self.on_disk.then(here).flatten(), into) {
             (Some(here), Some(into)) if here == into => text,
             (Some(here), _) => self.renamed(&text, &mut |file| {
@@ -138,9 +138,15 @@ impl SceneProblem {
                     let bytes = known(file).filter(|_| !own.iter().any(|own| own == file))?;
                     let parts: Vec<&str> =
                         file.split(['/', '\\']).filter(|part| !["", ".", ".."].contains(part)).collect();
-                    let copy = format!("{name}_{}", parts.join("_"));
-                    named.push(folder.join(file));
-                    if !copies.iter().any(|(known, _)| *known == copy) {
+                    let place = folder.join(file);
+                    let copied = named.iter().position(|known| *known == place);
+                    let copy = copied.map(|i| copies[i].0.clone()).unwrap_or_else(|| {
+                        let taken: Vec<String> =
+                            copies.iter().map(|copy| copy.0.clone()).chain(own.clone()).collect();
+                        free_name(&format!("{name}_{}", parts.join("_")), &taken)
+                    });
+                    if copied.is_none() {
+                        named.push(place);
                         copies.push((copy.clone(), bytes));
                     }
                     Some(copy)
@@ -175,16 +181,38 @@ impl SceneProblem {
         document: &ProblemDocument,
         mesh: Meshes<'_>,
     ) -> Result<Vec<(String, String)>, Error> {
-        let file_of = |mesh: &str| format!("{name}_{}.off", mesh.replace('.', "_"));
+        let mut taken: Vec<String> = Vec::new();
+        self.renamed(&self.text, &mut |named| {
+            taken.extend(Path::new(named).file_name().map(|file| file.to_string_lossy().into_owned()));
+            None
+        })?;
+        let mut meshes: Vec<(&str, String)> = Vec::new();
+        for obstacle in &document.obstacles {
+            if let ProblemShape::Solid(mp_io::DocumentShape::Mesh { file: mesh, .. }) = &obstacle.shape
+                && !meshes.iter().any(|(known, _)| known == mesh)
+            {
+                let file = free_name(&format!("{name}_{}.off", mesh.replace('.', "_")), &taken);
+                taken.push(file.clone());
+                meshes.push((mesh, file));
+            }
+        }
+        let file_of = |mesh: &str| {
+            meshes.iter().find(|(known, _)| *known == mesh).map(|(_, file)| file.clone()).unwrap_or_default()
+        };
         let text = document.applied(&self.file.display().to_string(), &self.text, &file_of)?;
         let mut files = vec![(format!("{name}.toml"), text)];
-        for obstacle in &document.obstacles {
-            if let ProblemShape::Solid(mp_io::DocumentShape::Mesh { file, .. }) = &obstacle.shape
-                && !files.iter().any(|(known, _)| *known == file_of(file))
-            {
-                files.push((file_of(file), off_text(&mesh(file)?)));
-            }
+        for (known, file) in &meshes {
+            files.push((file.clone(), off_text(&mesh(known)?)));
         }
         Ok(files)
     }
+}
+
+/// `name`, or with the first number from 2 on before its ending with which it is not taken. Upper and lower case may be the same on a disk.
+fn free_name(name: &str, taken: &[String]) -> String {
+    let (stem, ending) =
+        name.rsplit_once('.').map_or((name, String::new()), |(stem, e)| (stem, format!(".{e}")));
+    let numbered = (2..).map(|number: u64| format!("{stem}_{number}{ending}"));
+    let mut names = std::iter::once(name.to_owned()).chain(numbered);
+    names.find(|name| !taken.iter().any(|known| known.eq_ignore_ascii_case(name))).unwrap_or_default()
 }

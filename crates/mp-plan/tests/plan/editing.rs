@@ -242,6 +242,125 @@ fn meshes_are_written_beside_the_problem() {
     }
 }
 
+/// A start of a robot with accelerations has velocities, after the time if there is one; an edited goal leaves them free.
+#[test]
+fn velocities_of_a_start_are_kept() {
+    let moving = "[[moving]]\ncircle = [0, 0, 0.1]\npath = [[0, 1, 1], [1, 1, 2]]\n";
+    for (given, more, moved, expected) in [
+        ("[2, 2]", "", [0.0, 0.0], "[3, 4]"),
+        ("[2, 2]", "", [0.5, 0.0], "[3, 4, 0.5, 0]"),
+        ("[2, 2, 0, 0.25]", "", [0.0, 0.0], "[3, 4, 0, 0]"),
+        ("[2, 2]", moving, [0.0, 0.0], "[3, 4]"),
+        ("[2, 2, 0, 0.25]", moving, [0.5, 0.0], "[3, 4, 0.5, 0]"),
+    ] {
+        let text = format!(
+            "[world]\nwalls = [[0, 0], [9, 9]]\n[robot]\ndisc = 0.1\nkind = \"accelerations\"\nspeeds = [1, 1]\n\
+             accelerations = [1, 1]\nduration = 0.5\n[motion]\nstart = {given}\ngoal = [6, 6]\ntolerance = 0.4\n{more}"
+        );
+        let files = in_memory(Box::leak(text.into_boxed_str()));
+        let scene = Scene::load_from(&*files, Path::new("p.toml")).unwrap();
+        let problem = scene.problem(files, false).unwrap();
+        let mut document = problem.document().clone();
+        let time = if more.is_empty() { vec![] } else { vec![0.0] };
+        let row = |numbers: &[f64], velocity: &[f64]| [numbers, &time, velocity, &[0.0; 3]].concat();
+        document.start = Some(row(&[3.0, 4.0], &moved));
+        document.goals = Some(vec![row(&[5.0, 5.0], &[0.0; 2])]);
+        let edited = problem.edited(&document, &no_mesh, &scene).unwrap();
+        assert_eq!(edited.start(), row(&[3.0, 4.0], &moved), "{given} {more}");
+        let (saved, _) = problem.saved("q", &document, &no_mesh, None).unwrap();
+        let saved = String::from_utf8(saved[0].1.clone()).unwrap();
+        assert!(saved.contains(&format!("start = {expected}\ngoal = [5, 5]\n")), "{saved}");
+    }
+}
+
+/// Joints that are held where the start says by names stay there when the start is moved, again and again, and when an option gives another.
+#[test]
+fn what_is_held_stays_when_the_start_moves() {
+    let two = ARM.replace(
+        "</robot>",
+        "<link name='c'/><joint name='k' type='revolute'><parent link='b'/><child link='c'/><axis xyz='0 0 1'/>\
+         <limit lower='-3' upper='3' velocity='1' effort='1'/></joint></robot>",
+    );
+    let two: &'static str = Box::leak(two.into_boxed_str());
+    let srdf = "<robot name='r'><group name='end'><joint name='k'/></group>\
+                <group_state name='up' group='end'><joint name='j' value='1.25'/><joint name='k' value='0.5'/></group_state></robot>";
+    for start in ["{ j = 1.25, k = 0.5 }", "\"up\""] {
+        let text = format!(
+            "[robot]\nurdf = \"r.urdf\"\nsrdf = \"r.srdf\"\ngroup = \"end\"\n[motion]\nstart = {start}\ngoal = [1]\n"
+        );
+        let text: &'static str = Box::leak(text.into_boxed_str());
+        let files: Arc<dyn Files> = Arc::new(InMemory(move |name: &str| match name {
+            "p.toml" => Some(text.as_bytes()),
+            "r.urdf" => Some(two.as_bytes()),
+            "r.srdf" => Some(srdf.as_bytes()),
+            _ => None,
+        }));
+        let scene = Scene::load_from(&*files, Path::new("p.toml")).unwrap();
+        let problem = scene.problem(files, false).unwrap();
+        let mut document = problem.document().clone();
+        let poses = |scene: &Scene| format!("{:?}", scene.poses(&[0.75]).unwrap());
+        for moved in [-0.5, 2.0] {
+            document.start = Some(vec![moved]);
+            let edited = problem.edited(&document, &no_mesh, &scene).unwrap();
+            assert_eq!((edited.start(), poses(&edited)), (vec![moved], poses(&scene)));
+        }
+        let (saved, _) = problem.saved("q", &document, &no_mesh, None).unwrap();
+        let saved: &'static [(String, Vec<u8>)] = Box::leak(saved.into_boxed_slice());
+        let again: Arc<dyn Files> = Arc::new(InMemory(move |name: &str| {
+            saved.iter().find(|file| file.0 == name).map(|file| file.1.as_slice())
+        }));
+        let read = Scene::load_from(&*again, Path::new("q.toml")).unwrap();
+        assert_eq!((read.start(), poses(&read)), (vec![2.0], poses(&scene)));
+        let problem = read.problem(again, false).unwrap();
+        document.start = Some(vec![-1.0]);
+        let edited = problem.edited(&document, &no_mesh, &read).unwrap();
+        assert_eq!((edited.start(), poses(&edited)), (vec![-1.0], poses(&scene)));
+    }
+}
+
+/// Meshes whose files would have the same name are files of their own: those that are added, those that the problem names, and those in folders.
+#[test]
+fn meshes_with_names_that_are_alike_stay_apart() {
+    let cube = |side: f64| mp_geom::primitives::cuboid(side, side, side).unwrap();
+    const GIVEN: [&str; 3] = ["a/b.off", "a_b.off", "q_four_stl.off"];
+    let mut text = "[robot]\nbox = [0.1, 0.1, 0.1]\n[motion]\nstart = [9, 0, 0, 0, 0, 0]\n\
+                    goals = [[9, 1, 0, 0, 0, 0], [9, 2, 0, 0, 0, 0]]\n"
+        .to_owned();
+    text.extend(GIVEN.map(|file| format!("[[obstacle]]\nmesh = \"{file}\"\n")));
+    let mut all = vec![("p.toml".to_owned(), text.into_bytes())];
+    for (i, file) in GIVEN.into_iter().enumerate() {
+        all.push((file.to_owned(), mp_io::off_text(&cube(1.0 + i as f64)).into_bytes()));
+    }
+    let in_memory = |all: Vec<(String, Vec<u8>)>| -> Arc<dyn Files> {
+        let kept: &'static [(String, Vec<u8>)] = Box::leak(all.into_boxed_slice());
+        Arc::new(InMemory(move |name: &str| {
+            kept.iter().find(|file| file.0 == name).map(|file| file.1.as_slice())
+        }))
+    };
+    let files = in_memory(all);
+    let scene = Scene::load_from(&*files, Path::new("p.toml")).unwrap();
+    let problem = scene.problem(files, false).unwrap();
+    let mut document = problem.document().clone();
+    let added = [("four.stl", 4.0), ("four_stl", 5.0), ("FOUR.stl", 6.0)];
+    for (file, _) in added {
+        let mesh = DocumentShape::Mesh { file: file.to_owned(), off: None, solid: false };
+        document.obstacles.push(obstacle(file, ProblemShape::Solid(mesh), [0.0; 6]));
+    }
+    let mesh = |name: &str| Ok(cube(added.iter().find(|(file, _)| *file == name).unwrap().1));
+    let sides = |scene: &Scene| -> Vec<f64> {
+        let problem = scene.bodies();
+        let side = |body: &mp_plan::Body| match &body.shape {
+            mp_plan::BodyShape::Mesh(mesh) => mesh.aabb().max.x - mesh.aabb().min.x,
+            _ => panic!("{}", body.name),
+        };
+        problem.iter().filter(|body| body.pose.is_some()).map(side).collect()
+    };
+    let expected = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+    assert_eq!(sides(&problem.edited(&document, &mesh, &scene).unwrap()), expected);
+    let (saved, _) = problem.saved("q", &document, &mesh, None).unwrap();
+    assert_eq!(sides(&Scene::load_from(&*in_memory(saved), Path::new("q.toml")).unwrap()), expected);
+}
+
 #[test]
 fn what_is_wrong_is_said() {
     let files = in_memory(PROBLEM);

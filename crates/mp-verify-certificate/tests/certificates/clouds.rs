@@ -92,6 +92,29 @@ fn points_on_the_robot_are_left_out() {
     assert!(verify(&certified_in(&filtered).1).is_ok());
     let error = scene("self_filter = 2").unwrap_err().to_string();
     assert!(error.contains("all 5 points of scan") && error.contains("scene.toml"), "{error}");
+    // Also where ends are chosen, and where the base floats.
+    let scene = |robot: &str, ends: &str| {
+        let text = format!(
+            "[robot]\nurdf = \"r.urdf\"\n{robot}\n[motion]\n{ends}\n[[obstacle]]\nname = \"scan\"\n\
+             points = {{ radius = 0.01, file = \"scan.xyz\" }}\nself_filter = 0.02\n"
+        );
+        std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+        Scene::find(folder.path().join("scene.toml").to_str().unwrap()).unwrap()
+    };
+    let floating = "base = \"floating\"\nbounds = [[-1, -1, -1], [1, 1, 1]]";
+    for (robot, ends, base) in [
+        ("", "start = [0]\ngoal = []", 0),
+        ("", "start = []\ngoal = [1.5]", 0),
+        ("", "start = []\ngoal = []", 0),
+        (floating, "start = [0, 0, 0, 0, 0, 0, 0]\ngoal = [0, 0, 0.5, 0, 0, 0, 0]", 6),
+    ] {
+        let scene = scene(robot, ends);
+        let at = |joint: f64| scene.explain(&[vec![0.0; base], vec![joint]].concat()).unwrap().free;
+        assert!(scene.start().iter().all(|x| *x == 0.0), "{ends}: {:?}", scene.start());
+        assert!(at(0.0) && !at(-1.249), "{ends}");
+        let note = "3 of 5 points of scan are on the robot at the start, and left out";
+        assert_eq!(scene.notes().iter().filter(|line| *line == note).count(), 1, "{:?}", scene.notes());
+    }
 }
 
 /// An arm of which each link is balls of several sizes: each keeps its own in the certificate.

@@ -1,6 +1,7 @@
 //! Arms alone: the ends of a problem that has none are chosen here.
 
 use super::read::{srdf_help, what};
+use super::self_filter::filtered;
 use super::{ArmScene, Configuration, slides, within};
 use crate::robot::Counted;
 use crate::{Error, brief};
@@ -33,7 +34,11 @@ impl ArmScene {
             Error::new(message).help(srdf_help(problem, &[])).context(what(problem))
         };
         let interrupt = files.interrupt();
-        let search = arm.clone().with_interrupt(interrupt.clone());
+        // Points that may be on the robot say nothing of where it starts.
+        let others = problem.file.obstacles.iter().zip(&problem.obstacles);
+        let others = others.filter(|(entry, _)| entry.self_filter.is_none());
+        let others = others.map(|(_, o)| (o.name.clone(), o.mesh.clone(), o.pose));
+        let search = arm.clone().among_until(others, &interrupt)?.with_interrupt(interrupt.clone());
         let mut chosen = Vec::new();
         let given = problem.file.start.row().len() == arm.dof();
         let start = match given {
@@ -60,6 +65,8 @@ impl ArmScene {
             ));
             problem.file.start = StartEntry::All(start.as_slice().to_vec());
         }
+        let (arm, said) = filtered(arm.clone(), &mut problem, &start, said, &interrupt)?;
+        let search = arm.clone().with_interrupt(interrupt.clone());
         let open = |goal: &GoalEntry| matches!(goal, GoalEntry::All(values) if values.is_empty());
         if problem.file.goals.iter().any(open) {
             // No farther than half a turn, or the length of the robot: joints may slide or turn without end.

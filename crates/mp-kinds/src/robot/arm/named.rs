@@ -3,7 +3,7 @@
 use super::{LinkedSpace, read};
 use crate::{Error, count};
 use mp_cspace::FloatingJoints;
-use mp_io::{GoalEntry, GoalPart, MovingJoints, RobotFilePart, RobotProblem, StartEntry};
+use mp_io::{GoalEntry, GoalPart, MovingJoints, NamedStart, RobotFilePart, RobotProblem, StartEntry};
 use mp_robot::{ArmModel, Kinematics, SrdfGroups};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,7 +25,7 @@ impl NamedValues {
     /// When an SRDF is none, or has no state of the name that the start has.
     pub(super) fn of(problem: &RobotProblem) -> Result<Self, Error> {
         let file = &problem.file;
-        let by_name = matches!(file.start, StartEntry::Named(_) | StartEntry::State(_))
+        let by_name = file.start.by_name().is_some()
             || file.robots.iter().any(|robot| robot.moving.is_some())
             || file.goals.iter().any(|goal| matches!(goal, GoalEntry::State(_)));
         let groups = problem.robots.iter().enumerate().map(|(i, robot)| {
@@ -35,10 +35,10 @@ impl NamedValues {
             }
         });
         let mut named = Self { groups: groups.collect::<Result<_, _>>()?, start: Values::new() };
-        named.start = match &file.start {
-            StartEntry::All(_) => Values::new(),
-            StartEntry::Named(values) => values.clone(),
-            StartEntry::State(state) => named.state(problem, RobotFilePart::Start, state)?,
+        named.start = match file.start.by_name() {
+            None => Values::new(),
+            Some(NamedStart::Joints(values)) => values.clone(),
+            Some(NamedStart::State(state)) => named.state(problem, RobotFilePart::Start, state)?,
         };
         Ok(named)
     }
@@ -111,25 +111,24 @@ pub(super) fn resolve(
             ));
         }
     };
-    match problem.file.start.clone() {
-        StartEntry::All(_) => {}
-        StartEntry::Named(values) => {
-            let held = |name: &str| {
-                model.joints.iter().any(|joint| joint.name == name && joint.kind.held().is_some())
-            };
-            if let Some(stray) = values.keys().find(|joint| !names.contains(&joint.as_str()) && !held(joint))
-            {
-                let message = format!("the start names `{stray}`, which the robot does not have");
-                let help = format!("in order: {}", names.join(", "));
-                return Err(problem.file.fault(RobotFilePart::Start, &message, &help).into());
-            }
-            problem.file.start = StartEntry::All(row(&values, &zeros));
-        }
-        StartEntry::State(state) => {
-            tell(&state, &named.start, "at zero or the limit nearest to it");
-            problem.file.start = StartEntry::All(row(&named.start, &zeros));
+    if let Some(NamedStart::Joints(values)) = problem.file.start.by_name() {
+        let held =
+            |name: &str| model.joints.iter().any(|joint| joint.name == name && joint.kind.held().is_some());
+        if let Some(stray) = values.keys().find(|joint| !names.contains(&joint.as_str()) && !held(joint)) {
+            let message = format!("the start names `{stray}`, which the robot does not have");
+            let help = format!("in order: {}", names.join(", "));
+            return Err(problem.file.fault(RobotFilePart::Start, &message, &help).into());
         }
     }
+    problem.file.start = StartEntry::All(match &problem.file.start {
+        StartEntry::All(numbers) | StartEntry::Beside { numbers, .. } => numbers.clone(),
+        StartEntry::Named(given) => {
+            if let NamedStart::State(state) = given {
+                tell(state, &named.start, "at zero or the limit nearest to it");
+            }
+            row(&named.start, &zeros)
+        }
+    });
     let start = problem.file.start.row();
     let others = if start.len() < names.len() { zeros } else { start.to_vec() };
     for i in 0..problem.file.goals.len() {
