@@ -25,7 +25,7 @@ pub struct Configuration(Numbers);
 
 #[derive(Clone)]
 enum Numbers {
-    /// The count, and that many numbers; the others are zero.
+    /// The count, and that many numbers.
     Inline(u8, [f64; INLINE]),
     Heap(Box<[f64]>),
 }
@@ -64,9 +64,30 @@ impl Configuration {
     #[inline]
     #[must_use]
     pub fn of<S: StateVector>(state: &S) -> Self {
-        let mut row = Row { count: 0, few: [0.0; INLINE], many: Vec::new() };
-        state.put(&mut |x| row.push(x));
-        row.done()
+        let mut row = Self::zeros(0);
+        row.set(state);
+        row
+    }
+
+    /// Takes the numbers of a state, in place where they fit.
+    #[inline]
+    pub fn set<S: StateVector>(&mut self, state: &S) {
+        if let Numbers::Inline(count, few) = &mut self.0 {
+            let mut put = 0;
+            state.put(&mut |x| {
+                if let Some(slot) = few.get_mut(put) {
+                    *slot = x;
+                }
+                put += 1;
+            });
+            if put <= INLINE {
+                *count = put as u8;
+                return;
+            }
+        }
+        let mut numbers = Vec::new();
+        state.write(&mut numbers);
+        *self = numbers.into();
     }
 
     /// The state with these numbers; `None` when there is none.
@@ -74,37 +95,6 @@ impl Configuration {
     #[must_use]
     pub fn to<S: StateVector>(&self) -> Option<S> {
         S::read(self.as_slice())
-    }
-}
-
-/// A row that is being written.
-struct Row {
-    count: usize,
-    few: [f64; INLINE],
-    /// All numbers, once there are more than fit.
-    many: Vec<f64>,
-}
-
-impl Row {
-    #[inline]
-    fn push(&mut self, x: f64) {
-        if let Some(slot) = self.few.get_mut(self.count) {
-            *slot = x;
-        } else {
-            if self.many.is_empty() {
-                self.many.extend(self.few);
-            }
-            self.many.push(x);
-        }
-        self.count += 1;
-    }
-
-    #[inline]
-    fn done(self) -> Configuration {
-        match u8::try_from(self.count) {
-            Ok(count) if self.many.is_empty() => Configuration(Numbers::Inline(count, self.few)),
-            _ => Configuration(Numbers::Heap(self.many.into())),
-        }
     }
 }
 
@@ -131,9 +121,16 @@ impl From<Vec<f64>> for Configuration {
 
 impl FromIterator<f64> for Configuration {
     fn from_iter<I: IntoIterator<Item = f64>>(numbers: I) -> Self {
-        let mut row = Row { count: 0, few: [0.0; INLINE], many: Vec::new() };
-        numbers.into_iter().for_each(|x| row.push(x));
-        row.done()
+        let mut numbers = numbers.into_iter();
+        let (mut count, mut few) = (0, [0.0; INLINE]);
+        for (slot, x) in few.iter_mut().zip(numbers.by_ref()) {
+            *slot = x;
+            count += 1;
+        }
+        match numbers.next() {
+            None => Self(Numbers::Inline(count, few)),
+            Some(next) => Self(Numbers::Heap(few.into_iter().chain([next]).chain(numbers).collect())),
+        }
     }
 }
 

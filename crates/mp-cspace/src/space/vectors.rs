@@ -59,7 +59,7 @@ impl<C: Space<State: StateVector>> Space for AsVectors<C> {
     }
     fn interpolate_into(&self, from: &Configuration, to: &Configuration, t: f64, out: &mut Configuration) {
         match (from.to(), to.to()) {
-            (Some(from), Some(to)) => *out = Configuration::of(&self.0.interpolate(&from, &to, t)),
+            (Some(from), Some(to)) => out.set(&self.0.interpolate(&from, &to, t)),
             _ => out.clone_from(if t < 0.5 { from } else { to }),
         }
     }
@@ -116,7 +116,7 @@ impl<C: Factored<State: StateVector>> Factored for AsVectors<C> {
     ) {
         let Some(mut q) = out.to() else { return };
         of_two(from, to, (), |from, to| self.0.interpolate_factor(factor, &from, &to, t, &mut q));
-        *out = Configuration::of(&q);
+        out.set(&q);
     }
     fn factor_layouts(&self) -> Vec<Layout> {
         self.0.factor_layouts()
