@@ -222,16 +222,15 @@ impl<const N: usize> Validity<SVector<f64, N>> for Arm<N> {
 impl<const N: usize> Clearance<SVector<f64, N>> for Arm<N> {
     /// Exact: the distance of a disc's centre from the axis of a link, less both radii.
     fn clearance(&mut self, q: &SVector<f64, N>, _: f64) -> f64 {
-        let mut least = f64::INFINITY;
-        for [from, tip] in self.links(q) {
-            let along = tip - from;
-            for (center, radius) in &self.discs {
-                let to = center - from;
-                let nearest = along * (to.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-                least = least.min((to - nearest).norm() - radius - self.radius);
-            }
-        }
-        least
+        let (links, inverse) = (self.links(q), 1.0 / (self.link * self.link));
+        let clearance = |(center, radius): &(Vector2<f64>, f64)| {
+            let squares = links.iter().map(|[from, tip]| {
+                let (along, to) = (tip - from, center - from);
+                (to - along * (to.dot(&along) * inverse).clamp(0.0, 1.0)).norm_squared()
+            });
+            squares.fold(f64::INFINITY, f64::min).sqrt() - radius - self.radius
+        };
+        self.discs.iter().map(clearance).fold(f64::INFINITY, f64::min)
     }
 }
 impl<const N: usize> MotionClearance<SVector<f64, N>> for Arm<N> {
