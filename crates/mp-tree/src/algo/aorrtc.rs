@@ -91,6 +91,9 @@ const RESAMPLED: usize = 100;
 /// The least part of its cost by which a path must be better.
 const GAIN: f64 = 1e-9;
 
+/// Of trees with fewer than this many times the nodes looked at so far, all are looked at: most are dropped by their cost alone.
+const FEW: usize = 16;
+
 /// The node nearest to `q` in states and costs, of those through which `q` costs at most `bound`.
 fn nearest_within<C: Space, E, Se: Selector<C>>(
     space: &C,
@@ -99,12 +102,16 @@ fn nearest_within<C: Space, E, Se: Selector<C>>(
     q: &C::State,
     bound: f64,
 ) -> Option<NodeId> {
+    let nearer = |best: Option<(f64, NodeId)>, id: NodeId, distance: f64| {
+        let left = bound - tree.cost(id);
+        let found = (mp_math::hypot(distance, left), id);
+        let nearest = best.is_none_or(|best| found.0.total_cmp(&best.0).then(id.cmp(&best.1)).is_lt());
+        if distance <= left && nearest { Some(found) } else { best }
+    };
     let (mut hits, mut k): (Vec<Hit>, usize) = (Vec::new(), 8);
-    loop {
+    while k * FEW <= tree.len() {
         selector.k_nearest(space, tree.states(), q, k, &mut hits);
-        let fit = hits.iter().filter(|hit| tree.cost(hit.id) + hit.distance <= bound);
-        let both = fit.map(|hit| (mp_math::hypot(hit.distance, bound - tree.cost(hit.id)), hit.id));
-        let best = both.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let best = hits.iter().fold(None, |best, hit| nearer(best, hit.id, hit.distance));
         let farthest = hits.last().map_or(f64::INFINITY, |hit| hit.distance);
         // Nodes not seen yet are at least that far away in states alone.
         if hits.len() < k || best.is_some_and(|(distance, _)| distance <= farthest) {
@@ -112,6 +119,13 @@ fn nearest_within<C: Space, E, Se: Selector<C>>(
         }
         k *= 2;
     }
+    let best = (0..tree.len() as NodeId).fold(None, |best: Option<(f64, NodeId)>, id| {
+        let left = bound - tree.cost(id);
+        // It is at least that far away in costs alone.
+        let may_be_nearer = left >= 0.0 && best.is_none_or(|(distance, _)| left <= distance);
+        if may_be_nearer { nearer(best, id, space.distance(tree.state(id), q)) } else { best }
+    });
+    best.map(|(_, id)| id)
 }
 
 /// One step, whose end is given ever cheaper parents.
