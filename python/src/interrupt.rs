@@ -5,6 +5,8 @@
 
 use crate::callback::{Calls, known_to_python};
 use crate::error::internal;
+use crate::leaving::{LEAVING, Work};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -74,7 +76,7 @@ impl mp_plan::Watch for Reporter {
 /// does, `cancel` is raised; the job ends soon, and the exception comes with its result.
 ///
 /// # Errors
-/// When the job panics, or a function of an own robot raises an exception, which is kept in `calls` and ends the job as well.
+/// When the interpreter ends, the job panics, or a function of an own robot raises an exception, which is kept in `calls` and ends the job as well.
 pub(crate) fn work<T: Send>(
     py: Python<'_>,
     cancel: &mp_plan::Cancel,
@@ -82,6 +84,8 @@ pub(crate) fn work<T: Send>(
     calls: Option<&Calls>,
     job: impl FnOnce(Reporter) -> T + Send,
 ) -> PyResult<(T, Option<PyErr>)> {
+    let _work = Work::begin(cancel).ok_or_else(|| PyRuntimeError::new_err(LEAVING))?;
+    let calls = calls.map(|calls| (calls, calls.begin()));
     let (sender, receiver) = channel();
     // A receiver is for one thread at a time.
     let receiver = Mutex::new(receiver);
@@ -102,7 +106,7 @@ pub(crate) fn work<T: Send>(
         })
     });
     match done {
-        (Ok(result), raised) => match calls.and_then(Calls::take) {
+        (Ok(result), raised) => match calls.and_then(|(calls, before)| calls.take_since(before)) {
             Some(e) => Err(e),
             None => Ok((result, raised)),
         },
@@ -116,12 +120,12 @@ pub(crate) fn panic(py: Python<'_>, message: String) -> PyResult<()> {
     work(py, &mp_plan::Cancel::new(), None, None, |_| std::panic::panic_any(message)).map(|((), _)| ())
 }
 
-/// Waits for the end of the work, and says why it was cancelled, if it was here.
+/// Waits for the end of the work, and says why it was cancelled, if it was here. `calls` come with how many exceptions there were before.
 fn attend(
     news: &Receiver<News>,
     cancel: &mp_plan::Cancel,
     progress: Option<&Py<PyAny>>,
-    calls: Option<&Calls>,
+    calls: Option<(&Calls, u64)>,
 ) -> Option<PyErr> {
     let mut raised = None;
     let mut now = Shown::default();
@@ -132,7 +136,7 @@ fn attend(
             _ if raised.is_some() => continue,
             _ => {}
         }
-        if calls.is_some_and(Calls::is_raised) {
+        if calls.is_some_and(|(calls, before)| calls.raised_since(before)) {
             cancel.cancel();
             continue;
         }

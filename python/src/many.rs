@@ -3,6 +3,7 @@
 use crate::callback::{Calls, known_to_python};
 use crate::error::{internal, to_python};
 use crate::interrupt::{Cancel, INTERVAL};
+use crate::leaving::{LEAVING, Work};
 use crate::report::parts;
 use crate::scene::{Scene, request};
 use mp_batch::in_order;
@@ -40,7 +41,8 @@ struct Failures(Arc<Mutex<Raised>>);
 #[derive(Debug, Default)]
 struct Raised {
     error: Option<PyErr>,
-    robots: Vec<Calls>,
+    /// With how many exceptions there were before.
+    robots: Vec<(Calls, u64)>,
 }
 
 impl Failures {
@@ -49,11 +51,17 @@ impl Failures {
     }
 
     fn of_robots(&self) -> bool {
-        self.with(|raised| raised.robots.iter().any(Calls::is_raised))
+        self.with(|raised| raised.robots.iter().any(|(calls, before)| calls.raised_since(*before)))
     }
 
     fn take(&self) -> Option<PyErr> {
-        self.with(|raised| raised.robots.iter().find_map(Calls::take).or_else(|| raised.error.take()))
+        self.with(|raised| {
+            raised
+                .robots
+                .iter()
+                .find_map(|(calls, before)| calls.take_since(*before))
+                .or_else(|| raised.error.take())
+        })
     }
 }
 
@@ -67,14 +75,15 @@ impl Iterator for Drawn {
     type Item = (mp_plan::Scene, Request);
 
     fn next(&mut self) -> Option<Self::Item> {
+        let _work = Work::begin(&mp_plan::Cancel::new())?;
         let drawn = Python::attach(|py| {
             let mut iterator = self.iterator.bind(py).try_iter()?;
             let Some(item) = iterator.next() else { return Ok(None) };
             let (scene, json): (PyRef<'_, Scene>, String) = item?.extract()?;
             if let Some(calls) = scene.calls() {
                 self.failures.with(|raised| {
-                    if !raised.robots.iter().any(|known| known.is(calls)) {
-                        raised.robots.push(calls.clone());
+                    if !raised.robots.iter().any(|(known, _)| known.is(calls)) {
+                        raised.robots.push((calls.clone(), calls.begin()));
                     }
                 });
             }
@@ -174,7 +183,10 @@ impl Many {
         let (sender, receiver) = sync_channel(WAITING);
         let raised = cancel.clone();
         let work = move || {
-            let plan = |_, item| known_to_python(|| catch_unwind(AssertUnwindSafe(|| job(item, &raised))));
+            let plan = |_, item| match Work::begin(&raised) {
+                Some(_work) => known_to_python(|| catch_unwind(AssertUnwindSafe(|| job(item, &raised)))),
+                None => Ok(Err(Error::new(LEAVING))),
+            };
             in_order(items, threads, &raised, plan, |_, result| {
                 let goes_on = result.is_ok();
                 match sender.send(result) {
