@@ -13,8 +13,6 @@ pub(crate) struct Calls(Arc<Counted>);
 struct Counted {
     count: AtomicU64,
     raised: AtomicBool,
-    /// How many exceptions there were that were kept.
-    kept: AtomicU64,
     error: Mutex<Option<PyErr>>,
 }
 
@@ -25,7 +23,7 @@ impl Calls {
     }
 
     /// Whether a function has raised an exception. Then no function is called any more.
-    fn is_raised(&self) -> bool {
+    pub(crate) fn is_raised(&self) -> bool {
         self.0.raised.load(Ordering::Acquire)
     }
 
@@ -37,32 +35,18 @@ impl Calls {
     /// Keeps the first exception.
     fn raise(&self, error: PyErr) {
         let mut kept = self.0.error.lock().unwrap_or_else(PoisonError::into_inner);
-        if !self.0.raised.swap(true, Ordering::AcqRel) {
-            *kept = Some(error);
-            self.0.kept.fetch_add(1, Ordering::AcqRel);
-        }
+        kept.get_or_insert(error);
+        self.0.raised.store(true, Ordering::Release);
     }
 
-    /// Functions are called again, for work that begins. How many exceptions there were before it: of those that come all work that goes on
-    /// ends with the last, as functions have answered none of it meanwhile.
-    pub(crate) fn begin(&self) -> u64 {
-        self.0.raised.store(false, Ordering::Release);
-        self.0.kept.load(Ordering::Acquire)
-    }
-
-    /// Whether there was an exception since [`begin`](Self::begin) has said `before`.
-    pub(crate) fn raised_since(&self, before: u64) -> bool {
-        self.0.kept.load(Ordering::Acquire) != before
-    }
-
-    /// The last exception, if there is one since [`begin`](Self::begin) has said `before`.
-    pub(crate) fn take_since(&self, before: u64) -> Option<PyErr> {
-        if !self.raised_since(before) {
+    /// The exception, if there is one. Functions are called again.
+    pub(crate) fn take(&self) -> Option<PyErr> {
+        if !self.is_raised() {
             return None;
         }
-        self.begin();
-        let last = self.0.error.lock().unwrap_or_else(PoisonError::into_inner);
-        Python::attach(|py| last.as_ref().map(|e| e.clone_ref(py)))
+        let taken = self.0.error.lock().unwrap_or_else(PoisonError::into_inner).take();
+        self.0.raised.store(false, Ordering::Release);
+        taken
     }
 }
 

@@ -85,7 +85,6 @@ pub(crate) fn work<T: Send>(
     job: impl FnOnce(Reporter) -> T + Send,
 ) -> PyResult<(T, Option<PyErr>)> {
     let _work = Work::begin(cancel).ok_or_else(|| PyRuntimeError::new_err(LEAVING))?;
-    let calls = calls.map(|calls| (calls, calls.begin()));
     let (sender, receiver) = channel();
     // A receiver is for one thread at a time.
     let receiver = Mutex::new(receiver);
@@ -106,7 +105,7 @@ pub(crate) fn work<T: Send>(
         })
     });
     match done {
-        (Ok(result), raised) => match calls.and_then(|(calls, before)| calls.take_since(before)) {
+        (Ok(result), raised) => match calls.and_then(Calls::take) {
             Some(e) => Err(e),
             None => Ok((result, raised)),
         },
@@ -120,12 +119,12 @@ pub(crate) fn panic(py: Python<'_>, message: String) -> PyResult<()> {
     work(py, &mp_plan::Cancel::new(), None, None, |_| std::panic::panic_any(message)).map(|((), _)| ())
 }
 
-/// Waits for the end of the work, and says why it was cancelled, if it was here. `calls` come with how many exceptions there were before.
+/// Waits for the end of the work, and says why it was cancelled, if it was here.
 fn attend(
     news: &Receiver<News>,
     cancel: &mp_plan::Cancel,
     progress: Option<&Py<PyAny>>,
-    calls: Option<(&Calls, u64)>,
+    calls: Option<&Calls>,
 ) -> Option<PyErr> {
     let mut raised = None;
     let mut now = Shown::default();
@@ -136,7 +135,7 @@ fn attend(
             _ if raised.is_some() => continue,
             _ => {}
         }
-        if calls.is_some_and(|(calls, before)| calls.raised_since(before)) {
+        if calls.is_some_and(Calls::is_raised) {
             cancel.cancel();
             continue;
         }

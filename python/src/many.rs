@@ -41,8 +41,7 @@ struct Failures(Arc<Mutex<Raised>>);
 #[derive(Debug, Default)]
 struct Raised {
     error: Option<PyErr>,
-    /// With how many exceptions there were before.
-    robots: Vec<(Calls, u64)>,
+    robots: Vec<Calls>,
 }
 
 impl Failures {
@@ -51,17 +50,11 @@ impl Failures {
     }
 
     fn of_robots(&self) -> bool {
-        self.with(|raised| raised.robots.iter().any(|(calls, before)| calls.raised_since(*before)))
+        self.with(|raised| raised.robots.iter().any(Calls::is_raised))
     }
 
     fn take(&self) -> Option<PyErr> {
-        self.with(|raised| {
-            raised
-                .robots
-                .iter()
-                .find_map(|(calls, before)| calls.take_since(*before))
-                .or_else(|| raised.error.take())
-        })
+        self.with(|raised| raised.robots.iter().find_map(Calls::take).or_else(|| raised.error.take()))
     }
 }
 
@@ -82,8 +75,8 @@ impl Iterator for Drawn {
             let (scene, json): (PyRef<'_, Scene>, String) = item?.extract()?;
             if let Some(calls) = scene.calls() {
                 self.failures.with(|raised| {
-                    if !raised.robots.iter().any(|(known, _)| known.is(calls)) {
-                        raised.robots.push((calls.clone(), calls.begin()));
+                    if !raised.robots.iter().any(|known| known.is(calls)) {
+                        raised.robots.push(calls.clone());
                     }
                 });
             }

@@ -329,31 +329,3 @@ def test_functions_are_let_go() -> None:
     del check, report
     gc.collect()
     assert alive() is None
-
-
-def test_an_exception_ends_all_runs_that_go_on() -> None:
-    calls = 0
-
-    def fails(q: np.ndarray) -> bool:
-        nonlocal calls
-        calls += 1
-        if calls == 20_000:
-            raise RuntimeError("once")
-        return bool(np.hypot(*(q - 2)) > 1)
-
-    scene = mp.Scene.own(mp.Robot(mp.Space([0, 0], [4, 4]), valid=fails), start=[0.5, 2], goal=[3.5, 2])
-    ended: list[object] = []
-
-    def run() -> None:
-        try:
-            ended.append(scene.plan("rrt-star", iterations=10**6).stopped_by)
-        except RuntimeError as e:
-            ended.append(str(e))
-
-    threads = [threading.Thread(target=run) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert ended == ["once"] * 4
-    assert scene.plan().solved
