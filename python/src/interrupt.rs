@@ -5,6 +5,8 @@
 
 use crate::callback::{Calls, known_to_python};
 use crate::error::internal;
+use crate::leaving::{LEAVING, Work};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -74,7 +76,7 @@ impl mp_plan::Watch for Reporter {
 /// does, `cancel` is raised; the job ends soon, and the exception comes with its result.
 ///
 /// # Errors
-/// When the job panics, or a function of an own robot raises an exception, which is kept in `calls` and ends the job as well.
+/// When the interpreter ends, the job panics, or a function of an own robot raises an exception, which is kept in `calls` and ends the job as well.
 pub(crate) fn work<T: Send>(
     py: Python<'_>,
     cancel: &mp_plan::Cancel,
@@ -82,6 +84,7 @@ pub(crate) fn work<T: Send>(
     calls: Option<&Calls>,
     job: impl FnOnce(Reporter) -> T + Send,
 ) -> PyResult<(T, Option<PyErr>)> {
+    let _work = Work::begin(cancel).ok_or_else(|| PyRuntimeError::new_err(LEAVING))?;
     let (sender, receiver) = channel();
     // A receiver is for one thread at a time.
     let receiver = Mutex::new(receiver);

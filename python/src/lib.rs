@@ -4,6 +4,7 @@
 mod callback;
 mod error;
 mod interrupt;
+mod leaving;
 mod many;
 mod own;
 mod render;
@@ -28,4 +29,10 @@ mod _mp {
     use crate::scene::{Scene, mesh_off, read_mesh};
     #[pymodule_export]
     use crate::tables::{default_request, meta_planners, metrics, planners, shipped};
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::leaving::register(module)
+    }
 }

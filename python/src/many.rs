@@ -3,6 +3,7 @@
 use crate::callback::{Calls, known_to_python};
 use crate::error::{internal, to_python};
 use crate::interrupt::{Cancel, INTERVAL};
+use crate::leaving::{LEAVING, Work};
 use crate::report::parts;
 use crate::scene::{Scene, request};
 use mp_batch::in_order;
@@ -67,6 +68,7 @@ impl Iterator for Drawn {
     type Item = (mp_plan::Scene, Request);
 
     fn next(&mut self) -> Option<Self::Item> {
+        let _work = Work::begin(&mp_plan::Cancel::new())?;
         let drawn = Python::attach(|py| {
             let mut iterator = self.iterator.bind(py).try_iter()?;
             let Some(item) = iterator.next() else { return Ok(None) };
@@ -174,7 +176,10 @@ impl Many {
         let (sender, receiver) = sync_channel(WAITING);
         let raised = cancel.clone();
         let work = move || {
-            let plan = |_, item| known_to_python(|| catch_unwind(AssertUnwindSafe(|| job(item, &raised))));
+            let plan = |_, item| match Work::begin(&raised) {
+                Some(_work) => known_to_python(|| catch_unwind(AssertUnwindSafe(|| job(item, &raised)))),
+                None => Ok(Err(Error::new(LEAVING))),
+            };
             in_order(items, threads, &raised, plan, |_, result| {
                 let goes_on = result.is_ok();
                 match sender.send(result) {

@@ -158,6 +158,32 @@ def test_a_program_that_leaves_off_in_the_middle_ends() -> None:
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.parametrize(
+    "left",
+    [
+        "results = mp.plan_many([scene] * 9, options, threads=2); next(results)",
+        "Thread(target=lambda: list(mp.plan_many([scene] * 9, options)), daemon=True).start()",
+        "Thread(target=lambda: [scene.plan('rrt-star', time=0.1) for _ in range(999)], daemon=True).start()",
+        "Thread(target=lambda: scene.plan('rrt-star', time=600, threads=2), daemon=True).start()",
+    ],
+)
+def test_functions_of_ones_own_are_not_called_after_the_end(left: str) -> None:
+    script = """
+    import time
+    from threading import Thread
+    import mp_motion as mp
+    def valid(q):
+        time.sleep(0.0005)
+        return True
+    robot = mp.Robot(mp.Space([0, 0], [4, 4]), valid=valid)
+    scene = mp.Scene.own(robot, start=[0.5, 2], goal=[3.5, 2])
+    options = mp.Options("rrt-star", time=0.5)
+    """
+    script = textwrap.dedent(script) + f"{left}\ntime.sleep(0.3)\n"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+
+
 LIST = """{"scene": "easy", "seeds": [3, 1]}
 {"scene": "easy", "request": {"budget": {"iterations": 1}}}
 {"scene": "easy", "request": {"planner": "no-such-planner"}}

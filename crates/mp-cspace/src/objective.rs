@@ -23,7 +23,8 @@ pub trait Objective<S> {
 
     /// The cost of straight motions through all states of a path.
     fn path_cost(&mut self, path: &Path<S>) -> f64 {
-        path.states.windows(2).map(|w| self.cost(&w[0], &w[1])).sum()
+        // The sum of no numbers is −0.
+        0.0 + path.states.windows(2).map(|w| self.cost(&w[0], &w[1])).sum::<f64>()
     }
 }
 

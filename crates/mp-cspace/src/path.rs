@@ -75,7 +75,8 @@ impl<S> Path<S> {
 
     /// Its length in the metric of the space.
     pub fn length<C: Space<State = S>>(&self, space: &C) -> f64 {
-        self.states.windows(2).map(|w| space.distance(&w[0], &w[1])).sum()
+        // The sum of no numbers is −0.
+        0.0 + self.states.windows(2).map(|w| space.distance(&w[0], &w[1])).sum::<f64>()
     }
 
     /// A lower bound (m) on the clearance along the path, or `None` when some edge is not found
@@ -185,6 +186,7 @@ mod tests {
     fn lengths_and_states_by_arc_length() {
         let (space, path) = corner();
         assert_eq!(path.length(&space), 7.0);
+        assert!(Path::straight(vec![path.states[0]]).length(&space).is_sign_positive());
         for (s, x, y) in
             [(-1.0, 0.0, 0.0), (1.5, 1.5, 0.0), (3.0, 3.0, 0.0), (5.0, 3.0, 2.0), (9.0, 3.0, 4.0)]
         {

@@ -58,7 +58,7 @@ pub(crate) fn finish_given(
     if let Some(fault) = verified(kind, &given, &interrupt)?.fault {
         return Err(match interrupt.raised() {
             Some(reason) => ended(reason.into()),
-            None => Error::new(format!("the path is not free: it {}", fault_text(kind, &given, fault)))
+            None => Error::new(format!("the path is not free: {}", fault_text(kind, &given, fault)))
                 .help("only free paths are shortened: plan from one of its configurations to another"),
         });
     }

@@ -3,7 +3,9 @@
 use crate::{ArmScene, Error, Reached, Scene};
 use mp_cspace::Interrupt;
 use mp_io::PoseEntry;
+use mp_kinds::Constrained;
 use nalgebra::Isometry3;
+use std::sync::Arc;
 
 impl Scene {
     /// Configurations that place a link of an arm, the free ones first: see [`ArmScene::reaching`].
@@ -26,7 +28,10 @@ impl Scene {
     /// How many parts of the motion come after this one: zero, but for arms whose problem says so.
     #[must_use]
     pub fn parts_left(&self) -> usize {
-        self.robot::<ArmScene>().map_or(0, ArmScene::parts_left)
+        match self.robot::<Constrained>() {
+            Some(under) => self.clone().of_robot(Arc::clone(under.robot())).parts_left(),
+            None => self.robot::<ArmScene>().map_or(0, ArmScene::parts_left),
+        }
     }
 
     /// The scene of the next part of the motion: see [`ArmScene::next_part`].
@@ -34,6 +39,13 @@ impl Scene {
     /// # Errors
     /// As there.
     pub fn next_part(&self, end: &[f64], interrupt: &Interrupt) -> Result<Option<Self>, Error> {
+        if let Some(under) = self.robot::<Constrained>() {
+            let next = self.clone().of_robot(Arc::clone(under.robot())).next_part(end, interrupt)?;
+            return Ok(next.map(|next| {
+                let robot = under.around(Arc::clone(&next.robot));
+                next.of_robot(robot)
+            }));
+        }
         let Some(arm) = self.robot::<ArmScene>() else { return Ok(None) };
         let Some(next) = arm.next_part(end, interrupt)? else { return Ok(None) };
         let (notes, kept) = (next.said(), self.clearance_kept());

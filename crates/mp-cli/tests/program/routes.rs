@@ -44,6 +44,19 @@ fn two_ways_around_a_block_are_two_routes() {
 }
 
 #[test]
+fn routes_that_are_found_before_the_time_is_up_are_kept() {
+    let dir = Dir::empty();
+    dir.write("block.toml", BLOCK);
+    for planner in ["cyclic-rrt", "prm-star"] {
+        let args = ["--planner", planner, "--routes", "9", "--apart", "30%", "--time", "2", "--json"];
+        let run = mp(&dir, &[&["plan", "block.toml"][..], &args].concat());
+        assert!(run.code == 1 && run.stderr.contains("2 of 9 routes"), "{run:?}");
+        let json = run.json();
+        assert!(json["runs"].as_array().unwrap().iter().all(|run| run["verified"] == true), "{json}");
+    }
+}
+
+#[test]
 fn what_cannot_be_is_said() {
     let dir = Dir::empty();
     dir.write("block.toml", BLOCK);

@@ -146,6 +146,13 @@ impl RobotProblem {
             Some(PartChange::Detach(name)) => {
                 let i = find(&next.attached, "nothing is attached that is called", name)?;
                 let (entry, body) = (next.file.attached.remove(i), next.attached.remove(i));
+                if let Some(on) = next.file.attached.iter().find(|other| other.link == entry.name) {
+                    let (name, on) = (&entry.name, &on.name);
+                    return Err([
+                        format!("\"{name}\" is put down, and carries \"{on}\""),
+                        format!("a part with `detach = \"{on}\"` before this one"),
+                    ]);
+                }
                 let pose = at(&entry.link)? * body.pose;
                 let six = six_from_pose(&pose);
                 let obstacle = super::ObstacleEntry {

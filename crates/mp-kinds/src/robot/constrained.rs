@@ -74,8 +74,15 @@ impl Constrained {
         (self.constraint.holds)(&self.robot.row(q))
     }
 
+    /// The robot without the constraint.
+    #[must_use]
+    pub fn robot(&self) -> &Arc<dyn Robot> {
+        &self.robot
+    }
+
     /// Another robot under the same constraint.
-    fn around(&self, robot: Arc<dyn Robot>) -> Arc<dyn Robot> {
+    #[must_use]
+    pub fn around(&self, robot: Arc<dyn Robot>) -> Arc<dyn Robot> {
         Arc::new(Self { robot, ..self.clone() })
     }
 }

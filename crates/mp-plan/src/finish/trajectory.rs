@@ -94,7 +94,7 @@ pub(crate) fn time(
     if let Some(fault) = verified(kind, &given, interrupt)?.fault {
         return Err(match interrupt.raised() {
             Some(_) => interrupted(),
-            None => Error::new(format!("the path is not free: it {}", fault_text(kind, &given, fault)))
+            None => Error::new(format!("the path is not free: {}", fault_text(kind, &given, fault)))
                 .help("only free paths get times"),
         });
     }

@@ -8,16 +8,18 @@ use crate::run::prepared::Prepared;
 use crate::run::search::Search;
 use crate::run::{PLANNING_PART, Pausing};
 use crate::{Control, Error, Finish, Length, PathRows, Report, Request, Robot, Stage, planners};
-#[cfg(feature = "roadmaps")]
-use mp_cspace::Stop;
 use mp_cspace::{
-    Configuration, Iterations, Outcome, Path, Planner, Progress, Rng, Space, StopReason, Workers,
+    Configuration, Interrupt, Iterations, Outcome, Path, Planner, Progress, Rng, Space, Stop, StopReason,
+    Workers,
 };
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 /// Iterations before routes are looked for; then twice as many each time.
 const FIRST: u64 = 1000;
+
+/// The part of the time after which nothing is listed any more.
+const LISTING_PART: f64 = 0.5 * (PLANNING_PART + 1.0);
 
 /// What was found: paths, the counts, the time, and why it ended.
 struct Listed {
@@ -42,18 +44,30 @@ pub(crate) fn routes(
     let spent = control.time_if_limited(request);
     let prepared = Prepared::new(kind, request)?;
     control.spend_since(spent);
-    prepared.interrupt_by(prepared.interrupt_of(control, PLANNING_PART));
+    let planning = prepared.interrupt_of(control, PLANNING_PART);
+    prepared.interrupt_by(prepared.interrupt_of(control, LISTING_PART));
     let apart = apart.in_space(&kind.any_space());
     control.stage(Stage::Planning);
     let listed = match &planner {
         PlannerKind::Tree(spec) if spec.meta_planners.is_empty() && spec.planner.name == "cyclic-rrt" => {
-            of_tree(&prepared, &spec.to_string(), count, apart, control)?
+            of_tree(&prepared, &spec.to_string(), count, apart, &planning, control)
         }
         PlannerKind::Tree(_) | PlannerKind::Auto => return Err(one_path_only(&planner)),
         #[cfg(feature = "roadmaps")]
-        PlannerKind::Roadmap(info) => of_roadmap(&prepared, info, count, apart, control)?,
+        PlannerKind::Roadmap(info) => of_roadmap(&prepared, info, count, apart, &planning, control),
         #[cfg(not(feature = "roadmaps"))]
         PlannerKind::Roadmap(_) => return Err(one_path_only(&planner)),
+    };
+    let listed = match (listed, prepared.interrupt().raised()) {
+        // Once it is interrupted, start and goal count as not free.
+        (Err(_), Some(ended)) => Listed {
+            paths: Vec::new(),
+            progress: Progress::default(),
+            time: Duration::ZERO,
+            ended,
+            map: None,
+        },
+        (listed, _) => listed?,
     };
     let queries = prepared.queries().load(Ordering::Relaxed);
     let search = |outcome| Search {
@@ -133,23 +147,37 @@ fn is_far(kind: &dyn Robot, report: &Report, others: &[Report], apart: f64) -> R
     Ok(true)
 }
 
-/// The routes in the graph of a planner that grows one.
+/// Takes the routes `found` in place of those listed before. A list that was interrupted may be shorter.
+fn keep(
+    prepared: &Prepared<'_>,
+    listed: &mut Vec<Path<Configuration>>,
+    found: Option<Vec<Path<Configuration>>>,
+) {
+    let found = found.unwrap_or_default();
+    if prepared.interrupt().raised().is_none() || found.len() > listed.len() {
+        *listed = found;
+    }
+}
+
+/// The routes in the graph of a planner that grows one, until `planning` ends it.
 fn of_tree(
     prepared: &Prepared<'_>,
     name: &str,
     count: usize,
     apart: f64,
+    planning: &Interrupt,
     control: &mut Control<'_>,
 ) -> Result<Listed, Error> {
     let workers = Workers::new(prepared.request.threads)?;
     let (clock, began) = (control.clock, control.clock.now());
     let mut planner = prepared.tree_planner(name, &workers)?;
     let (mut rng, mut target) = (Rng::seed(prepared.request.seed), FIRST);
+    let mut paths = Vec::new();
     loop {
         let ended = prepared.watched(control, |stop, events| {
             loop {
                 let mut pausing = Pausing {
-                    stop: &mut *stop,
+                    stop: &mut (&mut *stop).or(planning.clone()),
                     pause: &mut Iterations(target),
                     paused: false,
                     whole: Progress::default(),
@@ -162,7 +190,7 @@ fn of_tree(
                 }
             }
         });
-        let paths = planner.routes(count, apart).unwrap_or_default();
+        keep(prepared, &mut paths, planner.routes(count, apart));
         if paths.len() >= count || ended.is_some() {
             let (progress, time) = (planner.progress(), clock.now().saturating_sub(began));
             let ended = ended.unwrap_or(StopReason::Exhausted);
@@ -172,13 +200,14 @@ fn of_tree(
     }
 }
 
-/// The routes in a roadmap.
+/// The routes in a roadmap, which grows until `planning` ends it.
 #[cfg(feature = "roadmaps")]
 fn of_roadmap(
     prepared: &Prepared<'_>,
     info: &mp_cspace::registry::PlannerInfo,
     count: usize,
     apart: f64,
+    planning: &Interrupt,
     control: &mut Control<'_>,
 ) -> Result<Listed, Error> {
     use crate::run::roadmaps::{GrowingFile, with_checkpoints};
@@ -202,11 +231,12 @@ fn of_roadmap(
     let workers = Workers::new(request.threads)?;
     let mut made = prepared.roadmap_planner(info, workers, file.as_ref())?;
     let (mut rng, mut target) = (Rng::seed(request.seed), FIRST);
+    let mut paths = Vec::new();
     loop {
         let (ended, paused) = with_checkpoints(&mut made, &mut file, |made, due| {
             prepared.watched(control, |stop, events| {
                 let mut pausing = Pausing {
-                    stop,
+                    stop: &mut stop.or(planning.clone()),
                     pause: &mut Iterations(target),
                     paused: false,
                     whole: Progress::default(),
@@ -218,10 +248,15 @@ fn of_roadmap(
         let (map, roadmap) = made.keep(file.as_ref(), true)?;
         let roadmap = roadmap.unwrap_or_default();
         let mut roadmap = AnyRoadmap::new(&prepared.space, roadmap, prepared.index.clone(), NEIGHBOURS)?;
-        let (mut checker, ..) = AnyEdgeChecker::of(prepared.problem()?, PATIENCE);
-        let found =
-            mp_roadmap::erased::routes(&mut roadmap, &mut checker, [kind.start(), goal], count, apart);
-        drop(checker);
+        let found = match (prepared.problem(), prepared.interrupt().raised()) {
+            // Once it is interrupted, start and goal count as not free.
+            (Err(_), Some(_)) => Err(mp_roadmap::Unanswered::Apart),
+            (problem, _) => {
+                let (mut checker, ..) = AnyEdgeChecker::of(problem?, PATIENCE);
+                let ends = [kind.start(), goal];
+                mp_roadmap::erased::routes(&mut roadmap, &mut checker, ends, count, apart)
+            }
+        };
         let [edges, components] = map;
         if count > 1 && edges > 0 && edges + components == made.nodes() {
             let help = match info.parameters.iter().any(|parameter| parameter.name == "cycles") {
@@ -234,7 +269,7 @@ fn of_roadmap(
             ))
             .help(help));
         }
-        let paths = found.unwrap_or_default();
+        keep(prepared, &mut paths, found.ok());
         if paths.len() >= count || !paused {
             let (progress, time) = (made.planner().progress(), clock.now().saturating_sub(began));
             return Ok(Listed { paths, progress, time, ended, map: Some(map) });

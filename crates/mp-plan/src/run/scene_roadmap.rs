@@ -161,7 +161,15 @@ fn grown(
     let prepared = Prepared::new(kind, request)?;
     prepared.interrupt_by(prepared.interrupt_of(control, 1.0));
     control.stage(Stage::Planning);
-    let mut made = prepared.roadmap_planner(info, workers, file.as_ref())?;
+    let made = prepared.roadmap_planner(info, workers, file.as_ref());
+    let mut made = match (made, prepared.interrupt().raised()) {
+        // Once it is interrupted, start and goal count as not free.
+        (Err(_), Some(reason)) => {
+            return Err(Error::new(format!("no roadmap was built: {}", StoppedBy::from(reason)))
+                .help("give it more time"));
+        }
+        (made, _) => made?,
+    };
     if let Some(map) = map {
         made.resume(map)?;
     }

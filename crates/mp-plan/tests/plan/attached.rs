@@ -1,7 +1,8 @@
 //! Things that a link carries.
 
 use crate::which_joints::scene_of;
-use mp_plan::{Interrupt, PathRows, Request, Scene};
+use mp_cspace::Length;
+use mp_plan::{Constraint, Interrupt, PathRows, Request, Scene};
 
 fn load(more: &str, srdf: bool) -> Result<Scene, mp_plan::Error> {
     let of_srdf = if srdf { "srdf = \"r.srdf\"\n" } else { "" };
@@ -132,6 +133,14 @@ fn a_motion_of_several_parts_carries_something() {
     let rows = vec![ends[0].clone(), vec![0.6, 0.0, ends[0][2]]];
     let straight = PathRows { format: second.path_format(), columns: second.columns(), rows };
     assert!(!second.check(&straight).unwrap().free);
+    // A constraint of one's own holds in all parts.
+    let low = Constraint::new("low", Length::Fraction(0.01), |row: &[f64]| row[0] < 0.5);
+    let under = load(CARRY, true).unwrap().under(low).unwrap();
+    assert_eq!(under.parts_left(), 2);
+    let second = under.next_part(&ends[0], &never).unwrap().unwrap();
+    assert_eq!((second.parts_left(), second.name()), (1, "p-2"));
+    let high = second.explain(&ends[1]).unwrap();
+    assert!(!high.free && high.fault.unwrap().contains("low"));
 }
 
 #[test]
@@ -175,4 +184,10 @@ fn parts_that_cannot_be_are_errors_at_their_place() {
         assert!(words.iter().all(|word| error.contains(word)), "{then}: {error}");
     }
     assert!(with("goal = [0, 0, 0]").unwrap().next_part(&[0.0], &Interrupt::never()).is_err());
+    let carried =
+        "[[attached]]\nname = \"lid\"\nlink = \"pole\"\nsphere = 0.01\npose = [0, 0, 0.05, 0, 0, 0]\n";
+    let down = "[[then]]\ndetach = \"pole\"\ngoal = [0, 0, 0]\n";
+    let scene = load(&format!("{MOTION}{POLE}{carried}{down}"), true).unwrap();
+    let error = scene.next_part(&[1.0, -0.1, 0.0], &Interrupt::never()).map(|_| ()).unwrap_err().report();
+    assert!(error.contains("carries \"lid\"") && error.contains("`detach = \"lid\"`"), "{error}");
 }

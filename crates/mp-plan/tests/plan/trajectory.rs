@@ -194,7 +194,11 @@ fn corners_are_rounded_only_as_far_as_is_free() {
     // Paths that are not free get no times.
     let wall = posts("[[obstacle]]\nname = \"wall\"\nbox = [0.1, 1, 1]\nat = [0.5, 0, 0]\n");
     let error = wall.time(&corner(&wall), &pace, &Interrupt::never()).unwrap_err();
-    assert!(error.to_string().contains("the path is not free: it hits tip in wall"), "{error}");
+    assert!(error.to_string().contains("the path is not free: hits tip in wall"), "{error}");
+    let mut beyond = corner(&open);
+    beyond.rows[1][0] = 9.0;
+    let error = open.time(&beyond, &pace, &Interrupt::never()).unwrap_err();
+    assert!(error.to_string().contains("the path is not free: configuration 2 is out of"), "{error}");
     let constraint = Constraint::new("low", Length::Fraction(0.01), |row: &[f64]| row[0] + row[1] < 3.0);
     assert_eq!(timed(&near.under(constraint).unwrap(), &corner(&near), &pace), close);
     // One that holds at the corner alone: it is not rounded at all.

@@ -100,37 +100,45 @@ impl fmt::Debug for Named {
 /// A file is found by its name, or else by the last parts of its name, as many as possible: pages do not know folders.
 impl Files for Named {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
-        let memory = mp_io::InMemory(|name: &str| self.nearest(name));
+        let name = path.to_string_lossy().into_owned();
+        let found = self.nearest(&name);
+        if let [one, others @ ..] = found.as_slice()
+            && let Some(other) = others.iter().find(|other| other.1 != one.1)
+        {
+            let message = format!("this may be {} or {}, which were opened together", one.0, other.0);
+            return Err(mp_io::Error::new(mp_io::ErrorKind::Io, name, message)
+                .help("open only the one that is meant, or name its folder in the scene"));
+        }
+        let memory = mp_io::InMemory(|_: &str| found.first().map(|file| &file.1));
         memory.read(path, limit).map_err(|e| match e.kind() {
-            mp_io::ErrorKind::Io => {
-                let name = path.to_string_lossy().into_owned();
-                mp_io::Error::new(
-                    mp_io::ErrorKind::Io,
-                    name,
-                    "this file was not opened together with the scene",
-                )
-                .help("open it together with the scene: choose or drop all files at once")
-            }
+            mp_io::ErrorKind::Io => mp_io::Error::new(
+                mp_io::ErrorKind::Io,
+                name,
+                "this file was not opened together with the scene",
+            )
+            .help("open it together with the scene: choose or drop all files at once"),
             _ => e,
         })
     }
     fn holds(&self, path: &Path) -> bool {
-        self.nearest(&path.to_string_lossy()).is_some()
+        !self.nearest(&path.to_string_lossy()).is_empty()
     }
 }
 
 impl Named {
-    /// The file of this name, or else the one whose name ends most like it.
-    fn nearest(&self, name: &str) -> Option<&[u8]> {
+    /// The file of this name, or else those whose names end most like it.
+    fn nearest(&self, name: &str) -> Vec<&(String, Vec<u8>)> {
         let parts = |name: &str| -> Vec<String> {
             let parts = name.split(['/', '\\']).filter(|part| !part.is_empty() && *part != ".");
             parts.rev().map(str::to_owned).collect()
         };
         let wanted = parts(name);
-        let alike =
-            |file: &(String, Vec<u8>)| parts(&file.0).iter().zip(&wanted).take_while(|(a, b)| a == b).count();
-        let best = self.0.iter().max_by_key(|file| alike(file)).filter(|file| alike(file) > 0);
-        self.find(name).or_else(|| best.map(|file| file.1.as_slice()))
+        let alike = |file: &(String, Vec<u8>)| match file.0 == name {
+            true => usize::MAX,
+            false => parts(&file.0).iter().zip(&wanted).take_while(|(a, b)| a == b).count(),
+        };
+        let most = self.0.iter().map(alike).max().filter(|most| *most > 0);
+        self.0.iter().filter(|file| Some(alike(file)) == most).collect()
     }
 }
 

@@ -752,6 +752,15 @@ fn files_that_are_missing_or_none_are_said() {
     let error = refused(with_files(json!({"do": "open"}), &[("a.env", env)]));
     assert!(error["message"].as_str().unwrap().contains("not opened together"), "{error}");
     assert!(error["help"].as_str().unwrap().contains("at once"), "{error}");
+    let tetrahedron = b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+    let open = |files: &[(&str, &[u8])]| with_files(json!({"do": "open"}), files);
+    let tied = open(&[("a.env", env), ("a/r.off", tetrahedron), ("b/r.off", b"OFF")]);
+    let error = refused(tied);
+    assert!(error["message"].as_str().unwrap().contains("a/r.off or b/r.off"), "{error}");
+    for second in [("b/r.off", &tetrahedron[..]), ("r.off", &tetrahedron[..]), ("b/s.off", b"OFF")] {
+        let given = open(&[("a.env", env), ("a/r.off", tetrahedron), second]);
+        assert!(!page.reply(given).head.contains_key("error"), "{second:?}");
+    }
     let error = refused(with_files(json!({"do": "open"}), &[("a.off", b"OFF"), ("b.off", b"OFF")]));
     assert!(error["message"].as_str().unwrap().contains("none of these files is a scene"));
     assert!(refused(with_files(json!({"do": "open"}), &[("a.env", b"")])).is_object());

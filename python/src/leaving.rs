@@ -1,0 +1,72 @@
+//! The end of the interpreter. A thread that asks for its lock from then on is ended inside of our code, which aborts the process. So all work
+//! that calls Python ends before.
+
+use mp_plan::Cancel;
+use pyo3::prelude::*;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// What is said to work that begins too late.
+pub(crate) const LEAVING: &str = "the interpreter ends: nothing is planned any more";
+
+/// How often it is asked whether all work has ended, and how many times at most: a function of a user's may never return.
+const INTERVAL: Duration = Duration::from_millis(10);
+const TIMES: usize = 500;
+
+/// What goes on, and what ends it, by numbers.
+struct GoingOn {
+    leaving: bool,
+    next: u64,
+    work: Vec<(u64, Cancel)>,
+}
+
+static GOING_ON: Mutex<GoingOn> = Mutex::new(GoingOn { leaving: false, next: 0, work: Vec::new() });
+
+fn going_on() -> MutexGuard<'static, GoingOn> {
+    GOING_ON.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Work that calls Python, until it is dropped.
+pub(crate) struct Work(u64);
+
+impl Work {
+    /// Begins, unless the interpreter ends. If that happens later, `cancel` is raised.
+    pub(crate) fn begin(cancel: &Cancel) -> Option<Self> {
+        let mut all = going_on();
+        if all.leaving {
+            return None;
+        }
+        all.next += 1;
+        let number = all.next;
+        all.work.push((number, cancel.clone()));
+        Some(Self(number))
+    }
+}
+
+impl Drop for Work {
+    fn drop(&mut self) {
+        going_on().work.retain(|(number, _)| *number != self.0);
+    }
+}
+
+/// Ends all work, and waits for its end.
+#[pyfunction]
+fn leave(py: Python<'_>) {
+    going_on().leaving = true;
+    py.detach(|| {
+        for _ in 0..TIMES {
+            let ended = going_on().work.iter().map(|(_, cancel)| cancel.cancel()).count() == 0;
+            // What has just ended may still make its result.
+            std::thread::sleep(INTERVAL);
+            if ended {
+                return;
+            }
+        }
+    });
+}
+
+/// Has the interpreter call [`leave`] before it ends.
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let leave = wrap_pyfunction!(leave, module)?;
+    module.py().import("atexit")?.call_method1("register", (leave,)).map(drop)
+}
