@@ -52,7 +52,13 @@ impl Drop for Work {
 /// Ends all work, and waits for its end.
 #[pyfunction]
 fn leave(py: Python<'_>) {
-    going_on().leaving = true;
+    let mut all = going_on();
+    all.leaving = true;
+    let none = all.next == 0;
+    drop(all);
+    if none {
+        return;
+    }
     py.detach(|| {
         for _ in 0..TIMES {
             let ended = going_on().work.iter().map(|(_, cancel)| cancel.cancel()).count() == 0;
