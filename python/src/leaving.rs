@@ -13,14 +13,17 @@ pub(crate) const LEAVING: &str = "the interpreter ends: nothing is planned any m
 const INTERVAL: Duration = Duration::from_millis(10);
 const TIMES: usize = 500;
 
-/// What goes on, and what ends it, by numbers.
+/// The work under way.
 struct GoingOn {
+    /// Whether the interpreter ends.
     leaving: bool,
-    next: u64,
+    /// How much work has begun so far.
+    begun: u64,
+    /// The number of each, and what ends it.
     work: Vec<(u64, Cancel)>,
 }
 
-static GOING_ON: Mutex<GoingOn> = Mutex::new(GoingOn { leaving: false, next: 0, work: Vec::new() });
+static GOING_ON: Mutex<GoingOn> = Mutex::new(GoingOn { leaving: false, begun: 0, work: Vec::new() });
 
 fn going_on() -> MutexGuard<'static, GoingOn> {
     GOING_ON.lock().unwrap_or_else(PoisonError::into_inner)
@@ -36,8 +39,8 @@ impl Work {
         if all.leaving {
             return None;
         }
-        all.next += 1;
-        let number = all.next;
+        all.begun += 1;
+        let number = all.begun;
         all.work.push((number, cancel.clone()));
         Some(Self(number))
     }
@@ -54,14 +57,18 @@ impl Drop for Work {
 fn leave(py: Python<'_>) {
     let mut all = going_on();
     all.leaving = true;
-    let none = all.next == 0;
+    let none = all.begun == 0;
     drop(all);
     if none {
         return;
     }
     py.detach(|| {
         for _ in 0..TIMES {
-            let ended = going_on().work.iter().map(|(_, cancel)| cancel.cancel()).count() == 0;
+            let ended = {
+                let all = going_on();
+                all.work.iter().for_each(|(_, cancel)| cancel.cancel());
+                all.work.is_empty()
+            };
             // What has just ended may still make its result.
             std::thread::sleep(INTERVAL);
             if ended {

@@ -1,4 +1,5 @@
-//! How far the corners of eight triangles move over a part of a motion, and whether planes of triangles show that they keep apart meanwhile.
+//! How far the corners of eight triangles move over a part of a motion, and whether a plane of a triangle or another direction shows that they keep apart
+//! meanwhile.
 
 use crate::kernels::leaf_pair::{Corners, TINY};
 use crate::kernels::separating_axes::dot;

@@ -92,8 +92,8 @@ impl<'s> LeafMotion<'s> {
         Self { drift: &interval.in_a, origin: &a.center, keep, beside, maybe }
     }
 
-    /// Whether two triangles that do not intersect in the middle keep the distance, in whatever direction that shows: so the answer is not that of the
-    /// processor, whose lanes try some with errors of their own. `first` is a direction from `b` to `a` to begin with.
+    /// Whether two triangles that do not intersect in the middle keep the distance. All directions count, not only those that lanes try: these
+    /// round as the processor does, and the answer must not depend on it. The search begins with `first`, a direction from `b` to `a`.
     fn gap(&self, a: &Triangle, b: &Triangle, first: Vector3<f64>) -> LeafCheck {
         let mut ends = [Vector3::zeros(); 6];
         for (k, corner) in a.iter().enumerate() {

@@ -91,7 +91,7 @@ const RESAMPLED: usize = 100;
 /// The least part of its cost by which a path must be better.
 const GAIN: f64 = 1e-9;
 
-/// Of trees with fewer than this many times the nodes looked at so far, all are looked at: most are dropped by their cost alone.
+/// Trees with fewer nodes than this many times those that would be asked for are searched node by node: the cost alone rules out most.
 const FEW: usize = 16;
 
 /// The node nearest to `q` in states and costs, of those through which `q` costs at most `bound`.
@@ -103,10 +103,9 @@ fn nearest_within<C: Space, E, Se: Selector<C>>(
     bound: f64,
 ) -> Option<NodeId> {
     let nearer = |best: Option<(f64, NodeId)>, id: NodeId, distance: f64| {
-        let left = bound - tree.cost(id);
-        let found = (mp_math::hypot(distance, left), id);
+        let found = (mp_math::hypot(distance, bound - tree.cost(id)), id);
         let nearest = best.is_none_or(|best| found.0.total_cmp(&best.0).then(id.cmp(&best.1)).is_lt());
-        if distance <= left && nearest { Some(found) } else { best }
+        if tree.cost(id) + distance <= bound && nearest { Some(found) } else { best }
     };
     let (mut hits, mut k): (Vec<Hit>, usize) = (Vec::new(), 8);
     while k * FEW <= tree.len() {
