@@ -1,6 +1,7 @@
 //! Layers of samples in linear light, and their conversion to pixels.
 
 use crate::picture::Picture;
+use std::sync::LazyLock;
 
 /// Linear red, green and blue, 0 to 1.
 pub(crate) type Colour = [f32; 3];
@@ -100,16 +101,7 @@ impl Veil {
 /// Averages `factor` × `factor` samples per pixel, in linear light, into 8-bit sRGB.
 pub(crate) fn resolve(samples: &[Colour], (width, height): (usize, usize), factor: usize) -> Picture {
     let (w, h) = (width / factor, height / factor);
-    // The inverse of the sRGB curve on a grid: exact to well under one step of 8 bits.
-    const GRID: usize = 4096;
-    let curve: Vec<u8> = (0..=GRID)
-        .map(|i| {
-            let v = i as f64 / GRID as f64;
-            let s = if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * mp_math::powf(v, 1.0 / 2.4) - 0.055 };
-            (s * 255.0 + 0.5) as u8
-        })
-        .collect();
-    let share = 1.0 / (factor * factor) as f32;
+    let (share, curve) = (1.0 / (factor * factor) as f32, &*CURVE);
     Picture::from_fn((w, h), |x, y| {
         let mut sum = [0.0; 3];
         for dy in 0..factor {
@@ -123,6 +115,19 @@ pub(crate) fn resolve(samples: &[Colour], (width, height): (usize, usize), facto
         sum.map(|s| curve[(s * share * GRID as f32 + 0.5) as usize])
     })
 }
+
+/// Steps of [`CURVE`].
+const GRID: usize = 4096;
+
+/// The inverse of the sRGB curve on a grid: exact to well under one step of 8 bits.
+static CURVE: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let of = |i: usize| {
+        let v = i as f64 / GRID as f64;
+        let s = if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * mp_math::powf(v, 1.0 / 2.4) - 0.055 };
+        (s * 255.0 + 0.5) as u8
+    };
+    (0..=GRID).map(of).collect()
+});
 
 #[cfg(test)]
 mod tests {

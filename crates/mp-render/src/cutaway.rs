@@ -15,12 +15,12 @@ const RIM: f32 = 0.02;
 /// Depths are averaged twice over so much to each side, as a fraction of the height of the picture.
 const SMOOTH: f32 = 0.01;
 
-/// For every sample, the depths (metres) between which obstacles fade out.
+/// For every pixel, the depths (metres) between which obstacles fade out.
 pub(crate) struct Cutaway {
-    /// From here on obstacles are opaque.
-    opaque: Vec<f32>,
-    /// Up to here they are open.
-    open: Vec<f32>,
+    /// Up to the first they are open, from the second on opaque.
+    depths: Vec<[f32; 2]>,
+    /// Samples in a row.
+    width: u32,
     /// How far they are open where there are no depths.
     elsewhere: f32,
 }
@@ -28,7 +28,7 @@ pub(crate) struct Cutaway {
 impl Cutaway {
     /// Obstacles are open everywhere, or nowhere.
     pub(crate) fn everywhere(open: bool) -> Self {
-        Self { opaque: Vec::new(), open: Vec::new(), elsewhere: f32::from(u8::from(open)) }
+        Self { depths: Vec::new(), width: 1, elsewhere: f32::from(u8::from(open)) }
     }
 
     /// `path` holds the keys of the path's nearest surface, infinite where there is no path; `slope` is
@@ -36,12 +36,14 @@ impl Cutaway {
     pub(crate) fn before(camera: &Camera, path: &[f32], slope: f32, slack: f32) -> Self {
         // The fields are so smooth that one value for each pixel is enough.
         let (width, height) = (camera.width / SUPERSAMPLING, camera.height / SUPERSAMPLING);
-        let pixel = |i: usize| i / camera.width / SUPERSAMPLING * width + i % camera.width / SUPERSAMPLING;
         let (mut depth, mut sum, mut n) = (vec![f32::NEG_INFINITY; width * height], 0.0, 0u32);
-        for (i, &key) in path.iter().enumerate().filter(|(_, key)| key.is_finite()) {
-            let (z, pixel) = (camera.depth(key), pixel(i));
-            depth[pixel] = z.max(depth[pixel]);
-            (sum, n) = (sum + f64::from(z), n + 1);
+        for (y, row) in path.chunks_exact(camera.width).enumerate() {
+            let depth = &mut depth[y / SUPERSAMPLING * width..][..width];
+            for (x, &key) in row.iter().enumerate().filter(|(_, key)| key.is_finite()) {
+                let z = camera.depth(key);
+                depth[x / SUPERSAMPLING] = z.max(depth[x / SUPERSAMPLING]);
+                (sum, n) = (sum + f64::from(z), n + 1);
+            }
         }
         if n == 0 {
             return Self::everywhere(false);
@@ -53,21 +55,21 @@ impl Cutaway {
             smooth(field, width, (SMOOTH * height as f32) as usize);
         }
         let rim = RIM * height as f32 * step;
-        open.iter_mut().zip(&opaque).for_each(|(open, opaque)| *open = open.max(opaque - rim));
-        let samples = |field: Vec<f32>| -> Vec<f32> {
-            let row =
-                |row: &[f32]| -> Vec<f32> { row.iter().flat_map(|z| [z - slack; SUPERSAMPLING]).collect() };
-            field.chunks(width).flat_map(|z| row(z).repeat(SUPERSAMPLING)).collect()
-        };
-        Self { opaque: samples(opaque), open: samples(open), elsewhere: 0.0 }
+        let depths = open.iter().zip(&opaque);
+        let depths =
+            depths.map(|(open, opaque)| [open.max(opaque - rim), *opaque].map(|z| z - slack)).collect();
+        Self { depths, width: camera.width as u32, elsewhere: 0.0 }
     }
 
     /// How far an obstacle at a depth is open: 0 where it is opaque, 1 where it is faint.
     #[inline]
     pub(crate) fn at(&self, i: usize, depth: f32) -> f32 {
-        let (Some(&opaque), Some(&open)) = (self.opaque.get(i), self.open.get(i)) else {
+        const SIDE: u32 = SUPERSAMPLING as u32;
+        if self.depths.is_empty() {
             return self.elsewhere;
-        };
+        }
+        let (y, x) = (i as u32 / self.width / SIDE, i as u32 % self.width / SIDE);
+        let [open, opaque] = self.depths[(y * (self.width / SIDE) + x) as usize];
         if depth <= open {
             1.0
         } else if depth < opaque {

@@ -13,7 +13,7 @@ use crate::view::{Mode, View};
 use crate::{ambient_occlusion, decorate, path, viewpoint};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::TAU;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// The margins on the left, top, right and bottom, as fractions of the picture.
 const MARGINS: [f64; 4] = [0.04, 0.1, 0.04, 0.09];
@@ -72,7 +72,7 @@ pub struct Shot<'s> {
 struct Backdrop {
     layer: Layer,
     /// Translucent obstacles.
-    ghosts: Veil,
+    ghosts: Arc<Veil>,
 }
 
 impl<'s> Shot<'s> {
@@ -216,7 +216,7 @@ impl<'s> Shot<'s> {
         decorate::outlines(&mut layer, &mut ghosts, camera, &scene.obstacles, &cut);
         outline(&mut layer, camera, solid);
         self.ground(&mut layer, camera);
-        Backdrop { layer, ghosts }
+        Backdrop { layer, ghosts: Arc::new(ghosts) }
     }
 
     /// Where obstacles are translucent.

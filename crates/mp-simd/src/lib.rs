@@ -228,6 +228,23 @@ pub fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
     kernel.run::<Scalar>()
 }
 
+/// Runs `kernel` on the widest this CPU has. Unlike [`run`], it is not compiled for plain arrays where there are vectors.
+#[inline]
+fn run_on_widest<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(target_arch = "x86_64")]
+    return match Isa::detect() {
+        // SAFETY: `detect` has just said that the CPU has the features the function enables.
+        Isa::Avx512 => unsafe { x86::avx512(kernel) },
+        // SAFETY: as above.
+        Isa::Avx2 => unsafe { x86::avx2(kernel) },
+        _ => kernel.run::<x86::Sse2>(),
+    };
+    #[cfg(target_arch = "aarch64")]
+    return kernel.run::<arm::Neon>();
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    kernel.run::<Scalar>()
+}
+
 /// Whether this CPU has `isa` (the standard library caches the answer).
 #[cfg(target_arch = "x86_64")]
 #[inline]

@@ -7,10 +7,25 @@ use std::ops::{BitAnd, BitOr};
 #[derive(Clone, Copy)]
 pub(super) struct Scalar([f32; 8]);
 
+// In tests, where kernels are compiled for all sets of instructions, these are called: in line, plain arrays are as much code as all the
+// others together.
 impl Scalar {
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn map(self, f: impl Fn(f32) -> f32) -> Self {
+        Self(self.0.map(f))
+    }
+
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn zip(self, b: Self, f: impl Fn(f32, f32) -> f32) -> Self {
         Self(std::array::from_fn(|i| f(self.0[i], b.0[i])))
+    }
+
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn compare(self, b: Self, holds: impl Fn(f32, f32) -> bool) -> Bits {
+        Bits((0..8).fold(0, |m, i| m | (u32::from(holds(self.0[i], b.0[i])) << i)))
     }
 }
 
@@ -54,11 +69,11 @@ impl Lanes for Scalar {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(self.0.map(f32::abs))
+        self.map(f32::abs)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self(self.0.map(f32::sqrt))
+        self.map(f32::sqrt)
     }
     #[inline(always)]
     fn min(self, b: Self) -> Self {
@@ -70,11 +85,11 @@ impl Lanes for Scalar {
     }
     #[inline(always)]
     fn le(self, b: Self) -> Bits {
-        Bits((0..8).fold(0, |m, i| m | (u32::from(self.0[i] <= b.0[i]) << i)))
+        self.compare(b, |x, y| x <= y)
     }
     #[inline(always)]
     fn lt(self, b: Self) -> Bits {
-        Bits((0..8).fold(0, |m, i| m | (u32::from(self.0[i] < b.0[i]) << i)))
+        self.compare(b, |x, y| x < y)
     }
     #[inline(always)]
     fn select(mask: Bits, a: Self, b: Self) -> Self {

@@ -3,7 +3,7 @@
 //! Each lane is computed by additions, multiplications, divisions and square roots as IEEE 754 has them, never fused, so it has the same
 //! bits on every processor.
 
-use crate::{Isa, Kernel, Lanes, run};
+use crate::{Kernel, Lanes, run_on_widest};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// How many numbers a [`Wide`] has.
@@ -26,7 +26,7 @@ pub trait WideKernel {
 /// Runs `kernel` with the widest instructions of the processor. The results are the same on all.
 #[inline]
 pub fn on_widest<K: WideKernel>(kernel: K) -> K::Output {
-    run(Isa::detect(), AnyLanes(kernel))
+    run_on_widest(AnyLanes(kernel))
 }
 
 /// A kernel that compares in lanes, and uses no `f32`.
@@ -272,7 +272,7 @@ impl WideFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Scalar;
+    use crate::{Isa, Scalar, run};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 

@@ -56,7 +56,7 @@ impl QueryPoses {
         let mut border = Border::new(pair, meshes, Rng::stream(seed, 1))?;
         let near = (0..counts.near)
             .map(|i| {
-                let ends = border.bisected(&[WIDTHS[i % 2] * pair.radius()])?;
+                let ends = border.bisected(&[WIDTHS[i % 2] * border.radius])?;
                 Ok(ends[0][i / 2 % 2])
             })
             .collect::<Result<_>>()?;
@@ -90,6 +90,8 @@ impl Meshes {
 /// Finds poses at the border between free and colliding.
 pub(crate) struct Border<'p> {
     pair: &'p Pair,
+    /// Of the robot, metres.
+    radius: f64,
     meshes: &'p Meshes,
     space: Se3,
     query: Query,
@@ -100,7 +102,7 @@ impl<'p> Border<'p> {
     /// A search that draws from `rng`.
     pub(crate) fn new(pair: &'p Pair, meshes: &'p Meshes, rng: Rng) -> Result<Self> {
         let space = Se3::new(pair.bounds.min.coords, pair.bounds.max.coords).into_error()?;
-        Ok(Self { pair, meshes, space, query: Query::default(), rng })
+        Ok(Self { pair, radius: pair.radius(), meshes, space, query: Query::default(), rng })
     }
 
     /// A free and a colliding pose on a random line for each of `widths` (metres, descending): between the
@@ -125,14 +127,14 @@ impl<'p> Border<'p> {
 
     fn edge(&mut self) -> Result<[Isometry3<f64>; EDGE]> {
         let (from, towards) = (self.draw(false)?, self.space.sample_uniform(&mut self.rng));
-        let step = STEP * self.pair.radius() / self.travel(&from, &towards);
+        let step = STEP * self.radius / self.travel(&from, &towards);
         Ok(std::array::from_fn(|k| between(&from, &towards, k as f64 * step)))
     }
 
     /// An upper bound of how far a point of the robot moves between two poses.
     fn travel(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
         let straight = (to.translation.vector - from.translation.vector).norm();
-        straight + from.rotation.angle_to(&to.rotation) * self.pair.radius()
+        straight + from.rotation.angle_to(&to.rotation) * self.radius
     }
 
     /// A uniform pose that collides, or is free.

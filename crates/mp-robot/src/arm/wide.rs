@@ -111,6 +111,15 @@ impl WideIntervals {
             self.middles.extend_from_slice(interval.middle.as_slice());
         }
         self.halves = std::array::from_fn(|k| intervals[if k < self.count { k } else { 0 }].half);
+        self.displacements.clear();
+        self.displacements
+            .extend((0..kinematics.coordinates.len()).map(|i| kinematics.displacement(i, from, to)));
+        self.place(robot);
+    }
+
+    /// Places links in the middle of the intervals. Not generic, as [`contacts_of_middles`](Self::contacts_of_middles): compiled once, for each
+    /// set of instructions.
+    fn place(&mut self, robot: &SharedArm) {
         self.set_values(robot, self.count);
         self.axes.clear();
         self.near.clear();
@@ -121,9 +130,6 @@ impl WideIntervals {
         self.pairs.resize(robot.pairs.len(), None);
         self.proven =
             ProvenParts { margin: self.margin, halves: Wide(self.halves), ..ProvenParts::default() };
-        self.displacements.clear();
-        self.displacements
-            .extend((0..kinematics.coordinates.len()).map(|i| kinematics.displacement(i, from, to)));
         on_widest(Place {
             robot,
             values: &self.values,
@@ -153,11 +159,21 @@ impl WideIntervals {
         for state in states {
             self.middles.extend_from_slice(state.as_slice());
         }
-        self.set_values(robot, states.len());
+        self.contacts_of_middles(robot, scene, [kept, apart], states.len())
+    }
+
+    fn contacts_of_middles(
+        &mut self,
+        robot: &SharedArm,
+        scene: &Scene,
+        [kept, apart]: [f64; 2],
+        count: usize,
+    ) -> Contacts {
+        self.set_values(robot, count);
         self.open.clear();
         let Self { values, frames, covers, open, .. } = self;
         let place = PlaceCovers { robot, values, frames, covers };
-        on_widest(Within { place, scene, kept, apart, open, asked: (1 << states.len()) - 1 })
+        on_widest(Within { place, scene, kept, apart, open, asked: (1 << count) - 1 })
     }
 
     /// The frame of the base, and the values of the joints, at the first `count` of `middles`, at least one.
