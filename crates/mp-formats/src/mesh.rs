@@ -118,7 +118,8 @@ pub fn read_mesh_with(files: &dyn Files, path: &Path, axes: Axes) -> Result<TriM
     Ok(mesh)
 }
 
-/// The triangle mesh of polygons with at least three corners each, read from `file`.
+/// The triangle mesh of polygons with at least three corners each, read from `file`. Vertices of no polygon are left out: they would
+/// count for its size, and so for the distance that must be kept.
 pub(crate) fn build<'a>(
     file: &str,
     vertices: Vec<Point3<f64>>,
@@ -136,7 +137,8 @@ pub(crate) fn build<'a>(
             return Err(too_large("the polygons take too long to be cut into triangles".to_owned()));
         }
     }
-    TriMesh::from_polygons(vertices, faces).map_err(|e| mesh_error(file, &e))
+    let mesh = TriMesh::from_polygons(vertices, faces).map_err(|e| mesh_error(file, &e))?;
+    Ok(mesh.without_unused_vertices())
 }
 
 /// The error of a file whose triangles do not make a mesh.
@@ -171,6 +173,39 @@ pub fn vertex_beyond(mesh: &TriMesh) -> Option<&Point3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// As of a scan that was cut, or points of a construction.
+    #[test]
+    fn vertices_of_no_face_do_not_count() {
+        let collada = |far: &str| {
+            let source = format!(
+                "<source id=\"p\"><float_array id=\"a\" count=\"12\">0 0 0 {far} 1 0 0 0 1 0</float_array><technique_common>\
+                <accessor source=\"#a\" count=\"4\" stride=\"3\"><param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/>\
+                <param name=\"Z\" type=\"float\"/></accessor></technique_common></source>"
+            );
+            let mesh = format!(
+                "<mesh>{source}<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices><triangles count=\"1\">\
+                <input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>0 2 3</p></triangles></mesh>"
+            );
+            format!(
+                "<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><library_geometries><geometry id=\"g\">\
+                {mesh}</geometry></library_geometries><library_visual_scenes><visual_scene id=\"s\"><node><instance_geometry url=\"#g\"/></node>\
+                </visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>"
+            )
+        };
+        let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+            property list uchar int vertex_indices\nend_header\n0 0 0\n9 9 9\n1 0 0\n0 1 0\n3 0 2 3\n";
+        for (file, text) in [
+            ("a.obj", "v 0 0 0\nv 9 9 9\nv 1 0 0\nv 0 1 0\nf 1 3 4\nl 1 2\n"),
+            ("a.off", "OFF\n4 1 0\n0 0 0\n9 9 9\n1 0 0\n0 1 0\n3 0 2 3\n"),
+            ("a.ply", ply),
+            ("a.dae", &collada("9 9 9")),
+        ] {
+            let mesh = parse_mesh(file, text.as_bytes()).unwrap();
+            let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from);
+            assert_eq!((mesh.vertices(), mesh.triangles()), (&corners[..], &[[0, 1, 2]][..]), "{file}");
+        }
+    }
 
     #[test]
     fn polygons_that_would_take_hours_are_refused() {

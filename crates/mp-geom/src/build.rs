@@ -166,6 +166,22 @@ impl TriMesh {
             .map_or_else(|_| self.clone(), |welded| Self { solids: self.solids.clone(), ..welded })
     }
 
+    /// The same triangles, without vertices that none of them has. A surface.
+    #[must_use]
+    pub fn without_unused_vertices(self) -> Self {
+        let mut names = vec![u32::MAX; self.vertices().len()];
+        self.triangles().iter().flatten().for_each(|&v| names[v as usize] = 0);
+        if names.iter().all(|&name| name == 0) {
+            return self;
+        }
+        let used = names.iter_mut().filter(|name| **name == 0);
+        used.zip(0..).for_each(|(name, number)| *name = number);
+        let kept = self.vertices().iter().zip(&names).filter(|(_, name)| **name != u32::MAX);
+        let vertices: Vec<_> = kept.map(|(vertex, _)| *vertex).collect();
+        let triangles = self.triangles().iter().map(|t| t.map(|v| names[v as usize])).collect();
+        Self::surface(vertices.into(), triangles)
+    }
+
     /// The mesh turned inside out: every triangle reversed. It is a surface: around solids there is room now.
     #[must_use]
     pub fn reversed(&self) -> Self {
@@ -181,6 +197,15 @@ mod tests {
         [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (2.0, 0.0), (2.0, 1.0)]
             .map(|(x, y)| Point3::new(x, y, 0.0))
             .to_vec()
+    }
+
+    #[test]
+    fn unused_vertices_are_dropped_and_the_others_keep_their_order() {
+        let mesh = TriMesh::new(grid(), vec![[5, 3, 2], [2, 0, 5]]).unwrap();
+        let used = mesh.clone().without_unused_vertices();
+        assert_eq!(used.vertices(), [0, 2, 3, 5].map(|i: usize| grid()[i]));
+        assert_eq!(used.triangles(), [[3, 2, 1], [1, 0, 3]]);
+        assert_eq!(used.clone().without_unused_vertices(), used);
     }
 
     fn upward(mesh: &TriMesh) -> Vec<bool> {

@@ -103,6 +103,12 @@ impl TriMesh {
         self.moments(&self.aabb().center()).0
     }
 
+    /// Whether its [`signed_volume`](Self::signed_volume) is more than rounding.
+    #[must_use]
+    pub fn encloses_volume(&self) -> bool {
+        self.signed_volume().abs() > 1e-14 * self.area() * self.aabb().diagonal()
+    }
+
     /// Volume, centroid and inertia of the solid bounded by the mesh, which may have several parts, cavities,
     /// and parts touching in edges or vertices. Where parts overlap the overlap counts twice.
     ///
@@ -117,8 +123,7 @@ impl TriMesh {
         let bounds = self.aabb();
         let reference = bounds.center();
         let (volume, first, second) = self.moments(&reference);
-        // Below this, the volume is only rounding.
-        if volume.abs() <= 1e-14 * self.area() * bounds.diagonal() {
+        if !self.encloses_volume() {
             return Err(MassError::NoVolume);
         }
         let offset = first / volume;

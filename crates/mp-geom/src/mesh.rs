@@ -147,7 +147,7 @@ impl TriMesh {
         Self::surface(Arc::clone(&self.vertices), triangles)
     }
 
-    fn surface(vertices: Arc<Vec<Point3<f64>>>, triangles: Vec<[u32; 3]>) -> Self {
+    pub(crate) fn surface(vertices: Arc<Vec<Point3<f64>>>, triangles: Vec<[u32; 3]>) -> Self {
         Self { vertices, triangles: triangles.into(), solids: Arc::default(), balls: Arc::default() }
     }
 

@@ -3,6 +3,7 @@
 use crate::mesh::check_finite;
 use crate::{MeshError, TriMesh};
 use nalgebra::Point3;
+use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
@@ -33,6 +34,16 @@ pub enum SolidError {
     /// Some components face outward, and one that is not inside of them inward.
     #[error("one component of the surface faces inward, others outward, and it is no cavity of these")]
     Mixed,
+    /// The triangles of some components are there once for each side, those of others are not.
+    #[error(
+        "the triangles of one component are there once for each side, those of others are not: nothing says what is inside"
+    )]
+    TwoSided,
+}
+
+/// Whether the surface is that of a solid: closed, oriented and around a volume.
+fn bounds_volume(mesh: &TriMesh) -> bool {
+    mesh.is_closed_and_oriented() && mesh.encloses_volume()
 }
 
 /// A winding number of at least this is taken for that of a component with others around it, which it may
@@ -48,12 +59,12 @@ impl TriMesh {
         &self.solids
     }
 
-    /// The mesh as a solid. A mesh that faces inward is reversed. Components that face inward inside of
-    /// others are cavities.
+    /// The mesh as a solid. A mesh that faces inward is reversed, and one whose triangles are all there for both sides keeps
+    /// one of them. Components that face inward inside of others are cavities.
     ///
     /// # Errors
     /// [`SolidError`] when it is not closed or not consistently oriented, vertices in one place counting as
-    /// one, or encloses no volume, or a component faces inward that is no cavity.
+    /// one, or encloses no volume, or a component faces inward that is no cavity, or faces both ways among others that do not.
     pub fn into_solid(self) -> Result<Self, SolidError> {
         if !self.is_closed_and_oriented() {
             let found = self.topology();
@@ -63,11 +74,14 @@ impl TriMesh {
                 _ => SolidError::Open { edges: found.boundary_edges.len().max(1) },
             });
         }
-        let volume = self.signed_volume();
-        let mesh = if volume < 0.0 { self.reversed() } else { self };
-        if volume.is_nan() || volume == 0.0 {
-            return Err(SolidError::Flat);
+        if !self.encloses_volume() {
+            return match self.one_side().filter(bounds_volume) {
+                Some(side) => side.into_solid(),
+                None if self.parts().iter().any(Self::encloses_volume) => Err(SolidError::Mixed),
+                None => Err(SolidError::Flat),
+            };
         }
+        let mesh = if self.signed_volume() < 0.0 { self.reversed() } else { self };
         let parts: Vec<_> = mesh.parts().into_iter().map(|part| (part.aabb(), part)).collect();
         let is_cavity = |i: usize| {
             let corner = parts[i].1.triangle(0)[0];
@@ -75,10 +89,43 @@ impl TriMesh {
                 parts.iter().enumerate().filter(|(j, (bounds, _))| *j != i && bounds.contains(&corner));
             around.map(|(_, (_, part))| part.winding_number(&corner)).sum::<f64>() > AROUND
         };
-        match parts.iter().enumerate().all(|(i, (_, part))| part.signed_volume() >= 0.0 || is_cavity(i)) {
-            true => Ok(mesh.trusted_solid()),
-            false => Err(SolidError::Mixed),
+        for (i, (_, part)) in parts.iter().enumerate() {
+            // A flat part has no inside, wherever it is.
+            if !part.encloses_volume() {
+                if part.one_side().is_some_and(|side| bounds_volume(&side)) {
+                    return Err(SolidError::TwoSided);
+                }
+            } else if part.signed_volume() < 0.0 && !is_cavity(i) {
+                return Err(SolidError::Mixed);
+            }
         }
+        Ok(mesh.trusted_solid())
+    }
+
+    /// One triangle of each two that are the same but for their sides; `None` unless all triangles come in such pairs.
+    #[must_use]
+    pub fn one_side(&self) -> Option<Self> {
+        /// The corners from the least on, which keeps the side.
+        fn turned(corners: [[u64; 3]; 3]) -> [[u64; 3]; 3] {
+            let [a, b, c] = corners;
+            [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or(corners)
+        }
+        let bits = |i: u32| -> [u64; 3] {
+            let v = self.vertices()[i as usize];
+            // Zeros of both signs are the same place.
+            [v.x, v.y, v.z].map(|x| (x + 0.0).to_bits())
+        };
+        let mut unpaired: HashMap<_, Vec<u32>> = HashMap::new();
+        let mut side = Vec::new();
+        for (i, triangle) in (0..).zip(self.triangles()) {
+            let [a, b, c] = triangle.map(bits);
+            match unpaired.get_mut(&turned([a, c, b])).and_then(Vec::pop) {
+                Some(first) => side.push(self.triangles()[first as usize]),
+                None => unpaired.entry(turned([a, b, c])).or_default().push(i),
+            }
+        }
+        let paired = !side.is_empty() && unpaired.values().all(Vec::is_empty);
+        if paired { Self::new(self.vertices().to_vec(), side).ok() } else { None }
     }
 
     /// The mesh as a surface: it has no inside.
@@ -263,6 +310,21 @@ mod tests {
         assert_eq!(turned.into_solid(), Err(SolidError::NotOriented { edges: 3 }));
         let mixed = TriMesh::merged([&cube(3.0), &at(&inward, 9.0)]).unwrap();
         assert_eq!(mixed.into_solid(), Err(SolidError::Mixed));
+        let even = TriMesh::merged([&surface(&cube(1.0)), &at(&inward, 9.0)]).unwrap();
+        assert_eq!(even.into_solid(), Err(SolidError::Mixed));
+        // As SketchUp writes surfaces: all triangles once for each side.
+        for side in [surface(&cube(1.0)), inward.clone()] {
+            let both = TriMesh::merged([&side, &side.reversed()]).unwrap().into_solid().unwrap();
+            assert_eq!((inside(&both, [0.1, 0.2, 0.0]), both.triangles().len()), (1, 12));
+        }
+        for x in [0.0, 0.1, 9.0] {
+            let some = TriMesh::merged([&inward, &surface(&cube(1.0)), &surface(&at(&cube(2.0), x + 3.0))]);
+            assert_eq!(some.unwrap().into_solid(), Err(SolidError::TwoSided));
+        }
+        let open = TriMesh::new(cube(1.0).vertices().to_vec(), cube(1.0).triangles()[..10].to_vec()).unwrap();
+        let open = TriMesh::merged([&open, &open.reversed()]).unwrap();
+        assert_eq!(open.into_solid(), Err(SolidError::Flat));
+
         let sheet = cube(1.0).scaled([1.0, 1.0, 0.0]).unwrap();
         assert_eq!(sheet.into_solid(), Err(SolidError::Flat));
         let point = TriMesh::from_soup(&[[Point3::origin(); 3]]).unwrap();

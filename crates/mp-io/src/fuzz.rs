@@ -187,7 +187,7 @@ pub fn gltf(bytes: &[u8]) -> Result<(), Error> {
 /// # Errors
 /// When the bytes are refused.
 pub fn collada(bytes: &[u8]) -> Result<(), Error> {
-    let scene = Scene::parse("f.dae", bytes, Axes::YUp)?;
+    let scene = Scene::parse("f.dae", bytes, Axes::YUp, mp_stop::Interrupt::never())?;
     let _ = scene.center();
     scene.to_mesh("f.dae").map(drop)
 }

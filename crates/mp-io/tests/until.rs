@@ -73,7 +73,18 @@ fn meshes_and_maps() {
         vertices.join("\n"),
         faces(0, "3 ")
     );
+    let collada = format!(
+        "<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><library_geometries><geometry id=\"g\"><mesh>\
+         <source id=\"p\"><float_array id=\"a\">{}</float_array></source>\
+         <vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>\
+         <triangles count=\"{rows}\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>{}</p></triangles></mesh></geometry></library_geometries>\
+         <library_visual_scenes><visual_scene id=\"s\"><node><instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes>\
+         <scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>",
+        vertices.join(" "),
+        faces(0, "")
+    );
     for (name, bytes) in [
+        ("a.dae", collada.into_bytes()),
         ("a.obj", obj.into_bytes()),
         ("a.off", off.into_bytes()),
         ("a.ply", ply.into_bytes()),

@@ -31,6 +31,12 @@ impl BodyRadii {
         }
     }
 
+    /// The largest distance of a point from the origin, but at most the length of the box: of a body far from its origin that.
+    pub(crate) fn size(&self) -> f64 {
+        let diagonal = self.corners.iter().map(|c| (c - self.corners[0]).norm()).fold(0.0, f64::max);
+        self.radius.min(diagonal)
+    }
+
     /// An upper bound on the distance of a point of the body from the line through the origin along the
     /// unit vector `axis`.
     #[must_use]

@@ -287,14 +287,14 @@ impl<P: Placement> RigidBody<P> {
         self.counters.take(&mut self.query)
     }
 
-    /// The default tolerance (m) of certified motion checks: 1e-4 of the robot's radius (for a point, 1e-6 of the
-    /// size of the obstacles), and at least what coordinates can resolve. A [`Verifier`](crate::Verifier) uses a tenth of
+    /// The default tolerance (m) of certified motion checks: 1e-4 of the robot's radius, or of its length where it is far from its
+    /// origin (for a point, 1e-6 of the size of the obstacles), and at least what coordinates can resolve. A [`Verifier`](crate::Verifier) uses a tenth of
     /// it, so that it proves whatever [`Certified`](mp_cspace::Certified) accepts at this tolerance.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         let (obstacles, radius) = (&self.shared.obstacles, self.radius());
         let size = if obstacles.bounds.is_empty() { 0.0 } else { obstacles.bounds.diagonal() };
-        let wanted = if radius > 0.0 { 1e-4 * radius } else { 1e-6 * size };
+        let wanted = if radius > 0.0 { 1e-4 * self.radii().size() } else { 1e-6 * size };
         resolved_tolerance(wanted, obstacles.farthest() + radius)
     }
 

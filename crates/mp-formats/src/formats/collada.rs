@@ -16,6 +16,7 @@ use crate::mesh::{Axes, Reading, build, mesh_error};
 use document::Document;
 use geometry::Geometry;
 use mp_geom::TriMesh;
+use mp_stop::Interrupt;
 use nalgebra::{Matrix4, Point3};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -51,7 +52,7 @@ pub(crate) fn begins(bytes: &[u8]) -> bool {
 /// Reads `bytes`, the content of a COLLADA file that errors call `file`: all meshes of its visual scene, in
 /// metres, Y up, as one mesh.
 pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {
-    let scene = Scene::parse(file, bytes, reading.axes)?;
+    let scene = Scene::parse(file, bytes, reading.axes, reading.interrupt.clone())?;
     scene.remarks(reading.axes).iter().for_each(|remark| (reading.remark)(remark));
     scene.to_mesh(file)
 }
@@ -60,13 +61,13 @@ impl Scene {
     /// Reads `bytes`, the content of a file that errors call `file`.
     ///
     /// # Errors
-    /// [`Error`] when it is no COLLADA.
-    pub fn parse(file: &str, bytes: &[u8], axes: Axes) -> Result<Self, Error> {
+    /// [`Error`] when it is no COLLADA, or `interrupt` says to end.
+    pub fn parse(file: &str, bytes: &[u8], axes: Axes, interrupt: Interrupt) -> Result<Self, Error> {
         let text = &*crate::xml::text(file, bytes)?;
         let options = roxmltree::ParsingOptions { nodes_limit: document::MAX_NODES, ..Default::default() };
         let xml = roxmltree::Document::parse_with_options(text, options)
             .map_err(|e| document::xml_error(file, text, &e))?;
-        let document = Document::new(file, text, &xml)?;
+        let document = Document::new(file, text, &xml, interrupt)?;
         let asset = scene::asset(&document)?;
         let (instances, morphs) = scene::instances(&document, asset.root(axes))?;
         Ok(Self { instances, asset, morphs })

@@ -5,6 +5,9 @@ use crate::error::Error;
 use crate::text::clipped;
 use nalgebra::Point3;
 
+/// Arrays of three or four rows with more columns than this are points by columns: no camera gives as many numbers for a point.
+const MOST_COLUMNS: usize = 32;
+
 pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Vec<Point3<f64>>, Error> {
     if !bytes.starts_with(b"\x93NUMPY") {
         return Err(error(file, 0, "the file does not begin as one of numpy"));
@@ -44,6 +47,12 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Vec<Point3<f64>>, Error> 
     let Some([count, columns]) = shape.as_deref().filter(|shape| shape.get(1) >= Some(&3)) else {
         return Err(expected("another shape"));
     };
+    // A row of x, a row of y, a row of z, and perhaps one more.
+    if (3..=4).contains(count) && *columns > MOST_COLUMNS {
+        return Err(
+            expected("a column for each point").help("save the array with its axes exchanged, array.T")
+        );
+    }
     let row = columns.checked_mul(size).ok_or_else(|| expected("too many columns"))?;
     let (rows, all) = (rows(file, bytes, from + length, *count, row)?, &bytes[from + length..]);
     let number = |bytes: &[u8]| -> Result<f64, Error> {
@@ -112,5 +121,10 @@ mod tests {
             assert!(error.to_string().contains("a.npy"), "{error}");
         }
         assert!(read("a.npy", &array(&head("<f4", "False", "(0, 3)"), &[])).is_err());
+        for by_columns in ["False", "True"] {
+            let turned = array(&head("<f4", by_columns, "(3, 100)"), &[0; 1200]);
+            let error = read("a.npy", &turned).unwrap_err().to_string();
+            assert!(error.contains("a column for each point"), "{error}");
+        }
     }
 }

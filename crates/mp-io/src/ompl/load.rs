@@ -79,7 +79,7 @@ fn mesh_and_center(files: &dyn Files, path: &Path) -> Result<(TriMesh, Vector3<f
     let bytes = files.read(path, MAX_MESH_BYTES)?;
     if Content::of_mesh(path, &bytes) == Some(Content::Collada) {
         let file = path.display().to_string();
-        let scene = Scene::parse(&file, &bytes, Axes::YUp)?;
+        let scene = Scene::parse(&file, &bytes, Axes::YUp, files.interrupt())?;
         scene.remarks(Axes::YUp).iter().for_each(|remark| files.note(path, remark));
         return Ok((scene.to_mesh(&file)?, scene.center()));
     }

@@ -120,23 +120,25 @@ pub(super) fn compared(
         let [a, b] = pair.bodies.map(|i| bodies[i].frame);
         if a == b { still_pairs.push(pair.bodies) } else { pairs.push(pair) }
     }
-    let stands = |i: &usize| {
-        bodies[*i].frame == 0 && !kinematics.floats() && !is_fixed(model, kinematics, bodies[*i].link)
-    };
+    let fixed = fixed_links(model, kinematics);
+    let stands = |i: &usize| bodies[*i].frame == 0 && !kinematics.floats() && !fixed[bodies[*i].link];
     let still_bodies = (0..bodies.len()).filter(stands).collect();
     Ok(Compared { pairs, still_pairs, still_bodies, notes })
 }
 
-/// Whether all joints above a link are fixed: joints whose limits are equal are not.
-fn is_fixed(model: &ArmModel, kinematics: &Kinematics, mut link: usize) -> bool {
-    let above = |link: usize| kinematics.joined.iter().position(|[_, below]| *below == link);
-    while let Some(joint) = above(link) {
-        if model.joints[joint].kind != JointKind::Fixed {
-            return false;
-        }
-        link = kinematics.joined[joint][0];
+/// Of each link, whether all joints above it are fixed: joints whose limits are equal are not.
+pub(super) fn fixed_links(model: &ArmModel, kinematics: &Kinematics) -> Vec<bool> {
+    let mut above = vec![None; kinematics.attached.len()];
+    for ([parent, child], joint) in kinematics.joined.iter().zip(&model.joints) {
+        above[*child] = Some((*parent, joint.kind == JointKind::Fixed));
     }
-    true
+    let is_fixed = |mut link: usize| {
+        while let Some((parent, true)) = above[link] {
+            link = parent;
+        }
+        above[link].is_none()
+    };
+    (0..above.len()).map(is_fixed).collect()
 }
 
 /// Whether a joint connects two links.

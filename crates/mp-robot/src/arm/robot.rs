@@ -1,7 +1,7 @@
 //! An arm among obstacles that stand still.
 
 use super::kinematics::{BaseTravel, Coordinate, Kinematics};
-use super::pairs::{LinkPair, compared};
+use super::pairs::{LinkPair, compared, fixed_links};
 use super::travel::{Chain, axes_into};
 use super::verify::ReferenceArm;
 use super::wide::{Turns, WideIntervals};
@@ -78,7 +78,7 @@ pub(super) struct SharedArm {
     pub(super) not_compared: Vec<String>,
     /// An upper bound (m) on the distance of any of its points from the base in any configuration.
     pub(super) reach: f64,
-    /// As [`reach`](Self::reach), but without what joints slide.
+    /// As [`reach`](Self::reach), but without what joints slide and without what is fixed to a base that stands still.
     pub(super) length: f64,
     pub(super) model: ArmModel,
     /// The arm as verifiers see it, made for the first one.
@@ -91,7 +91,8 @@ impl SharedArm {
             tracing::debug_span!("build", links = model.links.len(), joints = model.joints.len()).entered();
         let kinematics = Kinematics::new(model)?;
         let mut bodies = Vec::new();
-        let (mut first, mut count, mut reach, mut length) = (0, 0_usize, 0.0_f64, 0.0_f64);
+        let fixed = fixed_links(model, &kinematics);
+        let (mut first, mut count, mut reach, mut lengths) = (0, 0_usize, 0.0_f64, [0.0_f64; 2]);
         for (i, (link, place)) in model.links.iter().zip(&kinematics.attached).enumerate() {
             if link.shapes.is_empty() {
                 continue;
@@ -113,7 +114,9 @@ impl SharedArm {
             if !small {
                 return Err(too_large(radius));
             }
-            (reach, length) = (reach.max(radius), length.max(long));
+            reach = reach.max(radius);
+            let length = &mut lengths[usize::from(fixed[i] && !kinematics.floats())];
+            *length = length.max(long);
             let entries = chain.steps.len() + 1;
             let tree = CollisionMesh::new_until(&mesh, interrupt).ok_or(Interrupted)?;
             let ball = mesh.bounding_sphere();
@@ -122,6 +125,9 @@ impl SharedArm {
             bodies.push(LinkBody { link: i, frame, mesh, tree, ball, cover, chain, first });
             first += entries;
         }
+        // Floors, walls and tables may be fixed to a base that stands still.
+        let [moves, stands] = lengths;
+        let length = if moves > 0.0 { moves } else { stands };
         let (model, reference) = (model.clone(), OnceLock::new());
         let turns = kinematics.frames.iter().map(Turns::of).collect();
         let is_of_balls = bodies.iter().all(|body| body.cover.is_exact());

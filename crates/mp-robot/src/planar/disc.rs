@@ -55,7 +55,7 @@ impl DiscRobot {
             return Err(ParameterError { name, expected, value: radius });
         }
         let world = world.into();
-        let tolerance = super::tolerance(&world, radius);
+        let tolerance = super::tolerance(&world, radius, radius);
         Ok(Self { world, radius, tolerance, kept: 0.0, counters: CheckCounters::default() })
     }
 

@@ -39,6 +39,8 @@ pub struct PolygonRobot {
     world: Arc<PlanarWorld>,
     body: Arc<Polygon>,
     radius: f64,
+    /// The radius, but at most the diagonal of the box around the body, which may be far from its origin.
+    size: f64,
     /// The clearance (m) to keep.
     kept: f64,
     counters: CheckCounters,
@@ -72,8 +74,9 @@ impl PolygonRobot {
     #[must_use]
     pub fn new(world: impl Into<Arc<PlanarWorld>>, body: Polygon) -> Self {
         let radius = body.radius_about(&Point2::origin());
-        let counters = CheckCounters::default();
-        Self { world: world.into(), body: body.into(), radius, kept: 0.0, counters }
+        let [low, high] = body.bounds();
+        let (size, counters) = (radius.min((high - low).norm()), CheckCounters::default());
+        Self { world: world.into(), body: body.into(), radius, size, kept: 0.0, counters }
     }
 
     /// The same robot, which keeps the clearance `kept` (m) from obstacles: what is nearer counts as in contact, and clearances are less by
@@ -107,11 +110,11 @@ impl PolygonRobot {
         self.radius
     }
 
-    /// The default tolerance (m) of certified motion checks: 1e-4 of the radius, and at least what coordinates can
-    /// resolve. The verifier uses a tenth of it.
+    /// The default tolerance (m) of certified motion checks: 1e-4 of the radius, or of the length of a body far from its
+    /// origin, and at least what coordinates can resolve. The verifier uses a tenth of it.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
-        (1e-4 * self.radius).max(super::tolerance(&self.world, self.radius))
+        (1e-4 * self.size).max(super::tolerance(&self.world, self.size, self.radius))
     }
 
     /// The checks made by this clone so far.

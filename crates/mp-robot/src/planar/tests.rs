@@ -25,6 +25,16 @@ fn world(rng: &mut Rng, obstacles: usize) -> Arc<PlanarWorld> {
     PlanarWorld::new(polygons, Some([[0.0, 0.0], [4.0, 3.0]])).unwrap().into()
 }
 
+#[test]
+fn the_tolerance_of_a_polygon_far_from_its_origin_is_that_of_its_size() {
+    let world = world(&mut Rng::seed(1), 3);
+    let [near, far] = [0.0, 1000.0].map(|x| {
+        let body = Polygon::rectangle([x - 0.1, -0.1], [x + 0.1, 0.1]).unwrap();
+        PolygonRobot::new(Arc::clone(&world), body).tolerance()
+    });
+    assert!(near <= far && far < 3.0 * near, "{near} {far}");
+}
+
 /// The two checks of a disc agree with sampled configurations along the motion, and with each other except within the
 /// tolerance.
 #[test]

@@ -224,6 +224,17 @@ fn the_tolerance_does_not_grow_with_what_only_places_the_links() {
     for far in [make(1.0, Some(500.0), 0.0), make(1.0, None, 500.0)] {
         assert!(far.tolerance() <= 2.0 * usual.tolerance(), "{}", far.tolerance());
     }
+    // A floor, fixed to a base that stands still; one that a joint moves is a link like others.
+    let with_floor = |under: &str| {
+        let floor = cuboid(1000.0, 1000.0, 1.0).unwrap();
+        let floor = Link::new("floor").with(&floor, &Isometry3::translation(0.0, 0.0, -5.0));
+        let mut made = usual.model().clone();
+        made.links.push(floor);
+        made.joints.push(joint("weld", under, "floor", JointKind::Fixed));
+        Arm::new(&made, []).unwrap().tolerance()
+    };
+    assert_eq!(with_floor("world"), usual.tolerance());
+    assert!(with_floor("arm") > 0.01);
     // What floating point resolves there.
     assert!((make(1e6, None, 0.0).tolerance() / 2e-3 - 1.0).abs() < 0.01);
     // A free configuration near one that is not is found though joints slide far.

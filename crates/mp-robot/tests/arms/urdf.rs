@@ -360,7 +360,6 @@ fn planar_joints_slide_and_turn() {
     assert!((poses[at].rotation * Vector3::x() - y).norm() < 1e-12, "{}", poses[at]);
 }
 
-/// Commas between numbers are blanks. Of too many numbers the first three count, and a note says so.
 /// Humanoids and drones hang on the world by a joint that floats.
 #[test]
 fn a_joint_that_floats_between_the_world_and_the_robot_is_fixed() {
@@ -392,6 +391,8 @@ fn a_joint_that_floats_between_the_world_and_the_robot_is_fixed() {
     }
 }
 
+/// Commas between numbers are blanks. Of too many numbers the first three count, and a note says so, unless the commas may be those
+/// of decimals.
 #[test]
 fn commas_part_numbers_and_the_first_ones_count() {
     let commas =
@@ -400,6 +401,15 @@ fn commas_part_numbers_and_the_first_ones_count() {
     let many = read(&GRIPPER.replace("xyz=\"0.3 0 0\"", "xyz=\"0.3 0 0 7\"")).unwrap();
     assert_eq!(many.joints, read(GRIPPER).unwrap().joints);
     assert!(many.notes.iter().any(|note| note.starts_with("4 numbers where 3 count")), "{:?}", many.notes);
+    for decimals in ["0,3 0 0", "0,3 0,0 0,0", "0,3, 0, 0"] {
+        let error = read(&GRIPPER.replace("0.3 0 0", decimals)).unwrap_err().to_string();
+        assert!(
+            error.contains(&format!(
+                "xyz of <origin> is \"{decimals}\", not 3 numbers: decimals have a point"
+            )),
+            "{error}"
+        );
+    }
 }
 
 #[test]

@@ -158,6 +158,16 @@ where
     free
 }
 
+/// Such as a part in the coordinates of the whole: the tolerance is that of its size.
+#[test]
+fn the_tolerance_of_a_body_far_from_its_origin_is_that_of_its_size() {
+    let part = primitives::cuboid(0.2, 0.2, 0.2).unwrap();
+    let far = part.transformed(&Isometry3::translation(1000.0, 0.0, 0.0));
+    let [near, far] = [part, far].map(|mesh| FreeFlyer::new(&mesh, []).unwrap());
+    assert!((near.tolerance() / (1e-4 * near.radius()) - 1.0).abs() < 1e-9);
+    assert!((1.0..2.1).contains(&(far.tolerance() / near.tolerance())), "{}", far.tolerance());
+}
+
 /// A robot inside of an obstacle and an obstacle inside of the robot, in space and in the plane; bodies of a surface and a solid.
 #[test]
 fn solids_have_an_inside_and_surfaces_have_none() {

@@ -2,7 +2,9 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::text::{Text, Token, clipped, is_not_a_number};
+use mp_stop::Interrupt;
 use roxmltree::Node;
+use std::cell::RefCell;
 use std::collections::HashMap;
 
 /// The most XML nodes of a document.
@@ -13,6 +15,7 @@ pub(super) struct Document<'a> {
     pub(super) text: Text<'a>,
     pub(super) root: Node<'a, 'a>,
     ids: HashMap<&'a str, Node<'a, 'a>>,
+    interrupt: RefCell<Interrupt>,
 }
 
 /// Rows of numbers: a `<source>` seen through its accessor.
@@ -51,7 +54,12 @@ impl Source {
 }
 
 impl<'a> Document<'a> {
-    pub(super) fn new(file: &'a str, text: &'a str, xml: &'a roxmltree::Document<'a>) -> Result<Self, Error> {
+    pub(super) fn new(
+        file: &'a str,
+        text: &'a str,
+        xml: &'a roxmltree::Document<'a>,
+        interrupt: Interrupt,
+    ) -> Result<Self, Error> {
         let root = xml.root_element();
         let mut ids = HashMap::new();
         for node in xml.descendants() {
@@ -59,12 +67,18 @@ impl<'a> Document<'a> {
                 ids.entry(id).or_insert(node);
             }
         }
-        let document = Self { text: Text { file, text, guide: "meshes.md" }, root, ids };
+        let text = Text { file, text, guide: "meshes.md" };
+        let document = Self { text, root, ids, interrupt: RefCell::new(interrupt) };
         if root.tag_name().name() != "COLLADA" {
             let message = format!("the document is <{}>", clipped(root.tag_name().name()));
             return Err(document.error(root, message).expected("<COLLADA>"));
         }
         Ok(document)
+    }
+
+    /// An error when reading is to end.
+    pub(super) fn go_on(&self) -> Result<(), Error> {
+        self.interrupt.borrow_mut().go_on().map_err(|_| Error::interrupted(self.text.file))
     }
 
     /// An error at the start tag of `node`.
@@ -146,6 +160,7 @@ impl<'a> Document<'a> {
         let mut values = Vec::new();
         let mut no_number = None;
         for word in self.words(array) {
+            self.go_on()?;
             match self.text.number(word, "a number of the array") {
                 Ok(value) => values.push(value),
                 // Programs write it for normals of triangles without area.

@@ -222,6 +222,7 @@ impl<'d, 'r, 'a> Reader<'d, 'r, 'a> {
         }
         let (mut used, mut found) = (0, 0);
         for word in self.document.words(sizes) {
+            self.document.go_on()?;
             let n = self.document.text.count(word, "the number of corners of a polygon")?;
             let end = n.checked_mul(self.stride).and_then(|len| len.checked_add(used));
             let Some(polygon) = end.and_then(|end| numbers.get(used..end)) else {
@@ -249,6 +250,7 @@ impl<'d, 'r, 'a> Reader<'d, 'r, 'a> {
     fn numbers(&self, list: Node<'a, 'a>) -> Result<Vec<u32>, Error> {
         let mut out = Vec::new();
         for word in self.document.words(list) {
+            self.document.go_on()?;
             let index = self.index(word, out.len() % self.stride)?;
             out.push(index);
         }

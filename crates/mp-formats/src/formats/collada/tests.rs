@@ -5,6 +5,7 @@ use crate::error::ErrorKind;
 use crate::mesh::Axes;
 use crate::mesh::parse_mesh;
 use mp_geom::TriMesh;
+use mp_stop::Interrupt;
 use nalgebra::{Point3, Vector3};
 
 const ASSET: &str = "<asset><unit meter=\"1\"/><up_axis>Y_UP</up_axis></asset>";
@@ -98,7 +99,11 @@ fn normals_may_be_no_numbers_but_positions_may_not() {
         let text = dae(ASSET, &primitives(word), PLAIN);
         assert_eq!(parse(&text).triangles().len(), 1, "{word}");
         assert!(
-            Scene::parse("t.dae", text.as_bytes(), Axes::YUp).unwrap().center().iter().all(|v| v.is_finite())
+            Scene::parse("t.dae", text.as_bytes(), Axes::YUp, Interrupt::never())
+                .unwrap()
+                .center()
+                .iter()
+                .all(|v| v.is_finite())
         );
         let text = dae(ASSET, TRIANGLE, PLAIN).replace("0 0 0  1 0 0", &format!("0 0 0  1 {word} 0"));
         let e = parse_mesh("t.dae", text.as_bytes()).unwrap_err();
@@ -183,7 +188,9 @@ fn look_at_and_controllers() {
     let morph = "</controller><controller id=\"m\"><morph source=\"#g\"/></controller>";
     let nested = bound.replace("source=\"#g\"", "source=\"#m\"").replacen("</controller>", morph, 1);
     assert_eq!(parse(&nested), parse(&bound));
-    let said = |text: &str| Scene::parse("t.dae", text.as_bytes(), Axes::YUp).unwrap().remarks(Axes::YUp);
+    let said = |text: &str| {
+        Scene::parse("t.dae", text.as_bytes(), Axes::YUp, Interrupt::never()).unwrap().remarks(Axes::YUp)
+    };
     assert!(said(&bound).is_empty() && said(&nested)[0].starts_with("morphs are not applied"));
     for wrong in [bound.replace("7  0", "7"), nested.replace("source=\"#g\"", "source=\"#m\"")] {
         crate::error::check_error(&parse_mesh("t.dae", wrong.as_bytes()).unwrap_err());
@@ -195,11 +202,15 @@ fn the_center_counts_a_corner_once_for_each_normal() {
     let input = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
     // Two coplanar triangles share two corners: four vertices, though the mesh has other positions as well.
     let flat = format!("<triangles>{input}<p>0 1 2 0 2 3</p></triangles>");
-    let center = Scene::parse("t.dae", dae(ASSET, &flat, PLAIN).as_bytes(), Axes::YUp).unwrap().center();
+    let center = Scene::parse("t.dae", dae(ASSET, &flat, PLAIN).as_bytes(), Axes::YUp, Interrupt::never())
+        .unwrap()
+        .center();
     assert!((center - Vector3::new(0.5, 0.5, 0.0)).norm() < 1e-7);
     // An upright triangle on the edge 0 1 has another normal: those two count again.
     let bent = format!("<triangles>{input}<p>0 1 2 0 2 3 0 1 4</p></triangles>");
-    let center = Scene::parse("t.dae", dae(ASSET, &bent, PLAIN).as_bytes(), Axes::YUp).unwrap().center();
+    let center = Scene::parse("t.dae", dae(ASSET, &bent, PLAIN).as_bytes(), Axes::YUp, Interrupt::never())
+        .unwrap()
+        .center();
     let expected = (Vector3::new(2.0, 2.0, 0.0) + Vector3::new(1.0, 0.0, 2.0)) / 7.0;
     assert!((center - expected).norm() < 1e-6, "{center}");
     // Normals of the file that agree join them.
@@ -207,7 +218,9 @@ fn the_center_counts_a_corner_once_for_each_normal() {
     let smooth = format!(
         "{normals}<triangles>{input}<input semantic=\"NORMAL\" source=\"#n\" offset=\"1\"/><p>0 0 1 0 2 0 0 0 2 0 3 0 0 0 1 0 4 0</p></triangles>"
     );
-    let center = Scene::parse("t.dae", dae(ASSET, &smooth, PLAIN).as_bytes(), Axes::YUp).unwrap().center();
+    let center = Scene::parse("t.dae", dae(ASSET, &smooth, PLAIN).as_bytes(), Axes::YUp, Interrupt::never())
+        .unwrap()
+        .center();
     let expected = (Vector3::new(2.0, 2.0, 0.0) + Vector3::new(0.0, 0.0, 2.0)) / 5.0;
     assert!((center - expected).norm() < 1e-6, "{center}");
 }
@@ -223,11 +236,11 @@ fn normals_of_vertices_count_too() {
             "<input semantic=\"POSITION\" source=\"#p\"/><input semantic=\"NORMAL\" source=\"#n\"/>",
         )
         .replace("0 0 2  1 0 2  1 1 2", "0 0 0  1 0 0  1 1 0");
-    let center = Scene::parse("t.dae", text.as_bytes(), Axes::YUp).unwrap().center();
+    let center = Scene::parse("t.dae", text.as_bytes(), Axes::YUp, Interrupt::never()).unwrap().center();
     // Both sides of the first triangle share three vertices; the second has three of its own in the same places.
     assert!((center - Vector3::new(2.0 / 3.0, 1.0 / 3.0, 0.0)).norm() < 1e-6, "{center}");
     let uneven = text.replace("<p>0 1 2 0 2 1 4 5 6</p>", "<p>0 1 2 0 2 1 4 1 2</p>");
-    let center = Scene::parse("t.dae", uneven.as_bytes(), Axes::YUp).unwrap().center();
+    let center = Scene::parse("t.dae", uneven.as_bytes(), Axes::YUp, Interrupt::never()).unwrap().center();
     assert!((center - Vector3::new(0.5, 0.25, 0.0)).norm() < 1e-6, "{center}");
 }
 
@@ -285,7 +298,9 @@ fn sketchup(lines: &str) -> String {
 }
 
 fn center(text: &str) -> Vector3<f64> {
-    Scene::parse("t.dae", text.as_bytes(), Axes::YUp).unwrap_or_else(|e| panic!("{e}")).center()
+    Scene::parse("t.dae", text.as_bytes(), Axes::YUp, Interrupt::never())
+        .unwrap_or_else(|e| panic!("{e}"))
+        .center()
 }
 
 #[test]

@@ -4,7 +4,6 @@ use crate::files::inputs::Recording;
 use crate::{Error, brief, count, plain};
 use mp_geom::TriMesh;
 use serde::Serialize;
-use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
 
@@ -84,8 +83,7 @@ impl Surface {
                 0.5 * (b - a).cross(&(c - a)).norm()
             })
             .sum();
-        // Below this, the volume is only rounding.
-        let encloses = mesh.signed_volume().abs() > 1e-14 * area * aabb.diagonal();
+        let encloses = mesh.encloses_volume();
         let anything = t.degenerate.len() < mesh.triangles().len();
         let mut shape = Self {
             units: "metres",
@@ -107,7 +105,7 @@ impl Surface {
             two_sided: false,
             warnings: Vec::new(),
         };
-        if let Some(side) = one_side(mesh) {
+        if let Some(side) = mesh.one_side() {
             let side = Self::of(&side);
             (shape.two_sided, shape.watertight, shape.warnings) = (true, side.watertight, side.warnings);
             return shape;
@@ -154,31 +152,6 @@ impl Surface {
         };
         format!("{}, {sound}", count(self.triangles, "triangle"))
     }
-}
-
-/// One triangle of each two that are the same but for their sides; `None` unless all triangles come in such pairs.
-fn one_side(mesh: &TriMesh) -> Option<TriMesh> {
-    /// The corners from the least on, which keeps the side.
-    fn turned(corners: [[u64; 3]; 3]) -> [[u64; 3]; 3] {
-        let [a, b, c] = corners;
-        [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or(corners)
-    }
-    let bits = |i: u32| -> [u64; 3] {
-        let v = mesh.vertices()[i as usize];
-        // Zeros of both signs are the same place.
-        [v.x, v.y, v.z].map(|x| (x + 0.0).to_bits())
-    };
-    let mut unpaired: HashMap<_, Vec<u32>> = HashMap::new();
-    let mut side = Vec::new();
-    for (i, triangle) in (0..).zip(mesh.triangles()) {
-        let [a, b, c] = triangle.map(bits);
-        match unpaired.get_mut(&turned([a, c, b])).and_then(Vec::pop) {
-            Some(first) => side.push(mesh.triangles()[first as usize]),
-            None => unpaired.entry(turned([a, b, c])).or_default().push(i),
-        }
-    }
-    let paired = !side.is_empty() && unpaired.values().all(Vec::is_empty);
-    if paired { TriMesh::new(mesh.vertices().to_vec(), side).ok() } else { None }
 }
 
 impl fmt::Display for MeshInfo {

@@ -59,7 +59,7 @@ impl<'t, 'a> Reader<'t, 'a> {
     }
 
     /// An attribute of `N` numbers, if it is there. Commas between them are taken for blanks. Where several are wanted and there are more, the
-    /// first ones are taken, with a note.
+    /// first ones are taken, with a note, unless there are commas: they may be those of decimals.
     pub(super) fn numbers<const N: usize>(
         &self,
         node: &Node<'_, '_>,
@@ -70,7 +70,7 @@ impl<'t, 'a> Reader<'t, 'a> {
         let found = words.clone().count();
         let read: Option<Vec<f64>> = words.map(|word| word.parse().ok()).collect();
         match read {
-            Some(read) if found == N || (found > N && N > 1) => {
+            Some(read) if found == N || (found > N && N > 1 && !value.contains(',')) => {
                 if found > N {
                     let note = format!("{found} numbers where {N} count: the first ones are taken");
                     self.surplus.borrow_mut().insert(note);
@@ -80,7 +80,9 @@ impl<'t, 'a> Reader<'t, 'a> {
             _ => {
                 let shown: String = value.chars().take(40).collect();
                 let numbers = if N == 1 { "a number".to_owned() } else { format!("{N} numbers") };
-                let message = format!("{key} of <{}> is \"{shown}\", not {numbers}", node.tag_name().name());
+                let why = if value.contains(',') { ": decimals have a point, no comma" } else { "" };
+                let message =
+                    format!("{key} of <{}> is \"{shown}\", not {numbers}{why}", node.tag_name().name());
                 Err(self.text.error(node, message))
             }
         }
