@@ -8,6 +8,7 @@ use crate::report::parts;
 use crate::scene::{Scene, request};
 use mp_batch::in_order;
 use mp_plan::{Control, Error, Report, Request};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -25,6 +26,8 @@ type Planned = std::thread::Result<Result<Report, Error>>;
 #[pyclass(frozen, module = "mp_motion._mp")]
 #[derive(Debug)]
 pub(crate) struct Many {
+    /// The process whose threads plan: one that is forked does not have them.
+    process: u32,
     results: Mutex<Option<Receiver<Planned>>>,
     thread: Mutex<Option<JoinHandle<()>>>,
     /// Ends the work; and what the user gave, which is not ours to raise.
@@ -115,6 +118,11 @@ impl Many {
 
     /// The next report in parts, or the error of a problem that cannot be planned.
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
+        if self.is_elsewhere() {
+            let message =
+                "these problems are planned by the process that was forked: call `plan_many` in this one";
+            return Err(PyRuntimeError::new_err(message));
+        }
         loop {
             let taken = py.detach(|| {
                 let results = self.results.lock().unwrap_or_else(PoisonError::into_inner);
@@ -146,6 +154,9 @@ impl Many {
 
     /// Ends the work, and waits for its end.
     fn close(&self, py: Python<'_>) -> PyResult<()> {
+        if self.is_elsewhere() {
+            return Ok(());
+        }
         let of = |mutex: &Mutex<Option<JoinHandle<()>>>| {
             mutex.lock().unwrap_or_else(PoisonError::into_inner).take()
         };
@@ -164,6 +175,11 @@ impl Many {
 }
 
 impl Many {
+    /// Whether this process was forked from the one that plans.
+    fn is_elsewhere(&self) -> bool {
+        self.process != std::process::id()
+    }
+
     /// Does `job` with all items, as [`mp_batch::plan_many`] does, in threads that the interpreter knows, and with functions that may fail.
     fn start<I: Send + 'static>(
         items: impl Iterator<Item = I> + Send + 'static,
@@ -190,6 +206,7 @@ impl Many {
             });
         };
         Self {
+            process: std::process::id(),
             results: Mutex::new(Some(receiver)),
             thread: Mutex::new(Some(std::thread::spawn(work))),
             cancel,
