@@ -186,7 +186,7 @@ def test_functions_of_ones_own_are_not_called_after_the_end(left: str) -> None:
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
 def test_a_forked_process_has_no_work_of_the_other() -> None:
-    # A process of its own, which forks while it plans. The time is that of the ends of the forked ones, of which one waits 5 s for work that goes on.
+    # In a process of its own, which forks while it plans. At its end a process waits up to 5 s for work that goes on.
     script = """
     import os, sys, time
     import mp_motion as mp
