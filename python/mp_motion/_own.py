@@ -81,7 +81,8 @@ class Robot:
     """A robot of yours: a space, and functions that say when a configuration is free.
 
     The functions are called from threads of the engine, one at a time, with arrays of shape (n,). An exception that one raises
-    ends the run, and comes out of the method that was called.
+    ends the run, and comes out of the method that was called, and of those that other threads have called meanwhile with this
+    robot.
 
     Parameters
     ----------

@@ -3,9 +3,9 @@
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The calls of a robot's functions: how many there were, and the exception that one raised, until the work that called it ends with it.
+/// The calls of a robot's functions: how many there were, and the exception that one raised, until all work that was going on with the robot has ended with it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Calls(Arc<Counted>);
 
@@ -13,7 +13,41 @@ pub(crate) struct Calls(Arc<Counted>);
 struct Counted {
     count: AtomicU64,
     raised: AtomicBool,
-    error: Mutex<Option<PyErr>>,
+    going: Mutex<Going>,
+}
+
+/// The work that goes on.
+#[derive(Debug, Default)]
+struct Going {
+    /// The process that does it: one that is forked does not.
+    process: u32,
+    works: usize,
+    error: Option<PyErr>,
+}
+
+/// Work that calls functions of a robot, until it is dropped.
+#[derive(Debug)]
+pub(crate) struct Calling(Calls);
+
+impl Calling {
+    /// The exception that a function raised meanwhile, for this or other work: then no answer can be relied on.
+    pub(crate) fn raised(&self, py: Python<'_>) -> Option<PyErr> {
+        self.0.going().error.as_ref().map(|error| error.clone_ref(py))
+    }
+}
+
+impl Drop for Calling {
+    fn drop(&mut self) {
+        let mut going = self.0.going();
+        going.works = going.works.saturating_sub(1);
+        if going.works == 0 {
+            let ended = going.error.take();
+            self.0.0.raised.store(false, Ordering::Release);
+            // What ends with it is not ours, and may come back here.
+            drop(going);
+            drop(ended);
+        }
+    }
 }
 
 impl Calls {
@@ -27,26 +61,25 @@ impl Calls {
         self.0.raised.load(Ordering::Acquire)
     }
 
-    /// Whether they are the same.
-    pub(crate) fn is(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
+    /// Begins work.
+    pub(crate) fn begin(&self) -> Calling {
+        let mut going = self.going();
+        let process = std::process::id();
+        if going.process != process {
+            (going.process, going.works) = (process, 0);
+        }
+        going.works += 1;
+        Calling(self.clone())
+    }
+
+    fn going(&self) -> MutexGuard<'_, Going> {
+        self.0.going.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Keeps the first exception.
     fn raise(&self, error: PyErr) {
-        let mut kept = self.0.error.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.get_or_insert(error);
+        self.going().error.get_or_insert(error);
         self.0.raised.store(true, Ordering::Release);
-    }
-
-    /// The exception, if there is one. Functions are called again.
-    pub(crate) fn take(&self) -> Option<PyErr> {
-        if !self.is_raised() {
-            return None;
-        }
-        let taken = self.0.error.lock().unwrap_or_else(PoisonError::into_inner).take();
-        self.0.raised.store(false, Ordering::Release);
-        taken
     }
 }
 

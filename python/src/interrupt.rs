@@ -85,6 +85,7 @@ pub(crate) fn work<T: Send>(
     job: impl FnOnce(Reporter) -> T + Send,
 ) -> PyResult<(T, Option<PyErr>)> {
     let _work = Work::begin(cancel).ok_or_else(|| PyRuntimeError::new_err(LEAVING))?;
+    let calling = calls.map(Calls::begin);
     let (sender, receiver) = channel();
     // A receiver is for one thread at a time.
     let receiver = Mutex::new(receiver);
@@ -105,7 +106,7 @@ pub(crate) fn work<T: Send>(
         })
     });
     match done {
-        (Ok(result), raised) => match calls.and_then(Calls::take) {
+        (Ok(result), raised) => match calling.and_then(|calling| calling.raised(py)) {
             Some(e) => Err(e),
             None => Ok((result, raised)),
         },

@@ -3,6 +3,7 @@
 
 use mp_plan::Cancel;
 use pyo3::prelude::*;
+use pyo3::types::IntoPyDict;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -78,8 +79,24 @@ fn leave(py: Python<'_>) {
     });
 }
 
-/// Has the interpreter call [`leave`] before it ends.
+/// A process that was forked has none of the threads: none of their work goes on here.
+#[pyfunction]
+fn forked() {
+    // If a thread that is gone has locked it, that stays so.
+    if let Ok(mut all) = GOING_ON.try_lock() {
+        all.work.clear();
+    }
+}
+
+/// Has the interpreter call [`leave`] before it ends, and [`forked`] in each process that it forks.
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let leave = wrap_pyfunction!(leave, module)?;
-    module.py().import("atexit")?.call_method1("register", (leave,)).map(drop)
+    module.py().import("atexit")?.call_method1("register", (leave,))?;
+    // Not on Windows.
+    let os = module.py().import("os")?;
+    if os.hasattr("register_at_fork")? {
+        let forked = [("after_in_child", wrap_pyfunction!(forked, module)?)].into_py_dict(module.py())?;
+        os.call_method("register_at_fork", (), Some(&forked))?;
+    }
+    Ok(())
 }

@@ -8,6 +8,7 @@ use crate::report::parts;
 use crate::scene::{Scene, request};
 use mp_batch::in_order;
 use mp_plan::{Control, Error, Report, Request};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -25,6 +26,8 @@ type Planned = std::thread::Result<Result<Report, Error>>;
 #[pyclass(frozen, module = "mp_motion._mp")]
 #[derive(Debug)]
 pub(crate) struct Many {
+    /// The process whose threads plan: one that is forked does not have them.
+    process: u32,
     results: Mutex<Option<Receiver<Planned>>>,
     thread: Mutex<Option<JoinHandle<()>>>,
     /// Ends the work; and what the user gave, which is not ours to raise.
@@ -34,14 +37,14 @@ pub(crate) struct Many {
     failures: Failures,
 }
 
-/// The iterator of problems, and the failures of the robots that it gave.
+/// The exception of the iterator of problems, and that of a function of a robot.
 #[derive(Clone, Debug, Default)]
 struct Failures(Arc<Mutex<Raised>>);
 
 #[derive(Debug, Default)]
 struct Raised {
-    error: Option<PyErr>,
-    robots: Vec<Calls>,
+    drawing: Option<PyErr>,
+    robot: Option<PyErr>,
 }
 
 impl Failures {
@@ -49,12 +52,12 @@ impl Failures {
         use_it(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    fn of_robots(&self) -> bool {
-        self.with(|raised| raised.robots.iter().any(Calls::is_raised))
+    fn of_robot(&self) -> Option<PyErr> {
+        self.with(|raised| raised.robot.take())
     }
 
-    fn take(&self) -> Option<PyErr> {
-        self.with(|raised| raised.robots.iter().find_map(Calls::take).or_else(|| raised.error.take()))
+    fn any(&self) -> Option<PyErr> {
+        self.with(|raised| raised.robot.take().or_else(|| raised.drawing.take()))
     }
 }
 
@@ -65,7 +68,7 @@ struct Drawn {
 }
 
 impl Iterator for Drawn {
-    type Item = (mp_plan::Scene, Request);
+    type Item = (mp_plan::Scene, Request, Option<Calls>);
 
     fn next(&mut self) -> Option<Self::Item> {
         let _work = Work::begin(&mp_plan::Cancel::new())?;
@@ -73,17 +76,10 @@ impl Iterator for Drawn {
             let mut iterator = self.iterator.bind(py).try_iter()?;
             let Some(item) = iterator.next() else { return Ok(None) };
             let (scene, json): (PyRef<'_, Scene>, String) = item?.extract()?;
-            if let Some(calls) = scene.calls() {
-                self.failures.with(|raised| {
-                    if !raised.robots.iter().any(|known| known.is(calls)) {
-                        raised.robots.push(calls.clone());
-                    }
-                });
-            }
-            Ok(Some((scene.scene.clone(), request(&json)?)))
+            Ok(Some((scene.scene.clone(), request(&json)?, scene.calls().cloned())))
         });
         drawn.unwrap_or_else(|e: PyErr| {
-            self.failures.with(|raised| raised.error = Some(e));
+            self.failures.with(|raised| raised.drawing = Some(e));
             None
         })
     }
@@ -97,16 +93,18 @@ impl Many {
         let failures = Failures::default();
         let drawn = Drawn { iterator: problems, failures: failures.clone() };
         let theirs = cancel.map(|cancel| cancel.0.clone());
-        Self::start(
-            drawn,
-            threads,
-            theirs,
-            failures,
-            |(scene, request): (mp_plan::Scene, Request), cancel| {
-                let mut control = Control { cancel: cancel.clone(), ..Control::default() };
-                scene.plan_with(&request, &mut control)
-            },
-        )
+        let raised = failures.clone();
+        let plan = move |(scene, request, calls): (mp_plan::Scene, Request, Option<Calls>),
+                         cancel: &mp_plan::Cancel| {
+            let calling = calls.as_ref().map(Calls::begin);
+            let mut control = Control { cancel: cancel.clone(), ..Control::default() };
+            let report = scene.plan_with(&request, &mut control);
+            if let Some(e) = calling.and_then(|calling| Python::attach(|py| calling.raised(py))) {
+                raised.with(|raised| drop(raised.robot.replace(e)));
+            }
+            report
+        };
+        Self::start(drawn, threads, theirs, failures, plan)
     }
 
     fn __iter__(this: PyRef<'_, Self>) -> PyRef<'_, Self> {
@@ -115,6 +113,11 @@ impl Many {
 
     /// The next report in parts, or the error of a problem that cannot be planned.
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
+        if self.is_elsewhere() {
+            let message =
+                "these problems are planned by the process that was forked: call `plan_many` in this one";
+            return Err(PyRuntimeError::new_err(message));
+        }
         loop {
             let taken = py.detach(|| {
                 let results = self.results.lock().unwrap_or_else(PoisonError::into_inner);
@@ -124,9 +127,7 @@ impl Many {
             if self.theirs.as_ref().is_some_and(mp_plan::Cancel::is_raised) {
                 self.cancel.cancel();
             }
-            if self.failures.of_robots()
-                && let Some(e) = self.failures.take()
-            {
+            if let Some(e) = self.failures.of_robot() {
                 return Err(e);
             }
             match taken {
@@ -138,7 +139,7 @@ impl Many {
                 Some(Err(RecvTimeoutError::Timeout)) => {}
                 None | Some(Err(RecvTimeoutError::Disconnected)) => {
                     self.close(py)?;
-                    return self.failures.take().map_or(Ok(None), Err);
+                    return self.failures.any().map_or(Ok(None), Err);
                 }
             }
         }
@@ -146,6 +147,9 @@ impl Many {
 
     /// Ends the work, and waits for its end.
     fn close(&self, py: Python<'_>) -> PyResult<()> {
+        if self.is_elsewhere() {
+            return Ok(());
+        }
         let of = |mutex: &Mutex<Option<JoinHandle<()>>>| {
             mutex.lock().unwrap_or_else(PoisonError::into_inner).take()
         };
@@ -164,6 +168,11 @@ impl Many {
 }
 
 impl Many {
+    /// Whether this process was forked from the one that plans.
+    fn is_elsewhere(&self) -> bool {
+        self.process != std::process::id()
+    }
+
     /// Does `job` with all items, as [`mp_batch::plan_many`] does, in threads that the interpreter knows, and with functions that may fail.
     fn start<I: Send + 'static>(
         items: impl Iterator<Item = I> + Send + 'static,
@@ -190,6 +199,7 @@ impl Many {
             });
         };
         Self {
+            process: std::process::id(),
             results: Mutex::new(Some(receiver)),
             thread: Mutex::new(Some(std::thread::spawn(work))),
             cancel,

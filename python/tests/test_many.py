@@ -184,6 +184,33 @@ def test_functions_of_ones_own_are_not_called_after_the_end(left: str) -> None:
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+def test_a_forked_process_has_no_work_of_the_other() -> None:
+    # In a process of its own, which forks while it plans. At its end a process waits up to 5 s for work that goes on.
+    script = """
+    import os, sys, time
+    import mp_motion as mp
+    def valid(q):
+        time.sleep(0.0005)
+        return True
+    robot = mp.Robot(mp.Space([0, 0], [4, 4]), valid=valid)
+    scene = mp.Scene.own(robot, start=[0.5, 2], goal=[3.5, 2])
+    results = mp.plan_many([scene] * 99, mp.Options("rrt-star", time=0.5), threads=2)
+    next(results)
+    begin = time.monotonic()
+    for end in ["pass", "results.close()", "next(results)", "list(mp.plan_many([scene], mp.Options(time=1)))"]:
+        if os.fork() == 0:
+            exec(end)
+            sys.exit(7)
+        print(os.waitstatus_to_exitcode(os.wait()[1]), flush=True)
+    print(time.monotonic() - begin < 4)
+    results.close()
+    """
+    done = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=120)
+    assert done.stdout.split() == ["7", "7", "1", "7", "True"], done
+    assert "planned by the process that was forked" in done.stderr
+
+
 LIST = """{"scene": "easy", "seeds": [3, 1]}
 {"scene": "easy", "request": {"budget": {"iterations": 1}}}
 {"scene": "easy", "request": {"planner": "no-such-planner"}}

@@ -272,6 +272,38 @@ def test_an_error_in_the_middle_ends_a_long_run_at_once() -> None:
         scene_of(mp.Robot(SPACE, valid=valid)).roadmap(mp.Options("prm", time=600, nodes=10**7))
 
 
+def test_an_exception_ends_all_work_with_the_robot() -> None:
+    # What goes on in another thread cannot know its answer either: it was "not free", or "not solved".
+    begun, fail = threading.Barrier(2), threading.Event()
+
+    def valid(q: Array) -> bool:
+        if q[0] in (1, 2) and not fail.is_set():
+            begun.wait(10)
+            if q[0] == 2:
+                raise ZeroDivisionError
+            fail.wait(10)
+        return True
+
+    scene = mp.Scene.own(mp.Robot(mp.Space([0, 0], [4, 4]), valid=valid), start=[0.5, 2], goal=[3.5, 2])
+    raised: list[str] = []
+
+    def asked(x: float) -> None:
+        try:
+            scene.is_free([x, 1])
+        except ZeroDivisionError:
+            raised.append(str(x))
+        fail.set()
+
+    threads = [threading.Thread(target=asked, args=(x,)) for x in (1, 2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(raised) == ["1", "2"]
+    # Then all is as before.
+    assert scene.is_free([1, 1]) and scene.plan().solved
+
+
 def test_other_threads_run_between_the_calls() -> None:
     ticks, over = 0, threading.Event()
 

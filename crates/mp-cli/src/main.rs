@@ -51,7 +51,7 @@ fn main() -> ExitCode {
         Command::View(args) => view::run(args),
         Command::Scenes => scenes(),
         Command::Robots(args) => robots::run(args),
-        Command::Bench(args) => programs::run(programs::BENCH, args),
+        Command::Bench(args) => programs::turn_into(programs::BENCH, args),
         Command::VerifyCertificate(args) => programs::verify_certificate(args),
         Command::Completions { shell } => completions(*shell),
         Command::Man => man(),

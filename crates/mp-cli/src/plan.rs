@@ -249,6 +249,10 @@ fn parts(
         match begun.map_err(|e| e.context(format!("part {} of {count}", number + 1))) {
             Ok(Some(next)) => scene = next,
             Ok(None) => break,
+            Err(_) if interrupt.raised().is_some() => {
+                note(&format!("interrupted: part {} of {count} was not begun", number + 1));
+                break;
+            }
             Err(e) => {
                 cannot_begin = Some(e);
                 break;

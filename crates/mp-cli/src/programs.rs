@@ -6,7 +6,7 @@ use crate::input::scene;
 use crate::output::print;
 use mp_plan::Error;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The program with the benchmarks, and its folder in the repository.
@@ -42,7 +42,7 @@ pub(crate) fn verify_certificate(args: &Passed) -> Result<bool, Error> {
                 Error::new("--scene needs one scene").help("--scene SCENE: a file or a name")
             })?);
     }
-    let Some(named) = named else { return run(VERIFY_CERTIFICATE, args) };
+    let Some(named) = named else { return turn_into(VERIFY_CERTIFICATE, args) };
     let named = PathBuf::from(named);
     let scene = scene(&named, &mp_io::ProblemChanges::default())?;
     let file = file.ok_or_else(|| {
@@ -74,18 +74,41 @@ pub(crate) fn verify_certificate(args: &Passed) -> Result<bool, Error> {
     Ok(differences.is_empty())
 }
 
-/// Runs a program with the arguments, from the folder of this program or from the search path. True when it succeeds.
-pub(crate) fn run([program, folder]: [&str; 2], args: &Passed) -> Result<bool, Error> {
+/// A program, from the folder of this program or from the search path.
+fn found(program: &str) -> PathBuf {
     let name = format!("{program}{}", std::env::consts::EXE_SUFFIX);
     let beside = std::env::current_exe().ok().and_then(|exe| Some(exe.parent()?.join(&name)));
-    let program = beside.filter(|file| file.is_file()).unwrap_or_else(|| PathBuf::from(&name));
+    beside.filter(|file| file.is_file()).unwrap_or_else(|| PathBuf::from(&name))
+}
+
+fn cannot_run(program: &Path, folder: &str, e: &std::io::Error) -> Error {
+    Error::new(format!("cannot run {}: {e}", program.display()))
+        .help(format!("install it: cargo install --path {folder}"))
+}
+
+/// Runs a program with the arguments in place of this one: signals reach it, and nothing is left of it when it is ended.
+#[cfg(unix)]
+pub(crate) fn turn_into([program, folder]: [&str; 2], args: &Passed) -> Result<bool, Error> {
+    use std::os::unix::process::CommandExt;
+    let program = found(program);
+    Err(cannot_run(&program, folder, &Command::new(&program).args(&args.arguments).exec()))
+}
+
+/// Runs a program with the arguments.
+#[cfg(not(unix))]
+pub(crate) fn turn_into(program: [&str; 2], args: &Passed) -> Result<bool, Error> {
+    run(program, args)
+}
+
+/// Runs a program with the arguments. True when it succeeds.
+fn run([program, folder]: [&str; 2], args: &Passed) -> Result<bool, Error> {
+    let program = found(program);
     match Command::new(&program).args(&args.arguments).status() {
         Ok(status) => match status.code() {
             Some(0) => Ok(true),
             Some(1) => Ok(false),
             code => std::process::exit(code.unwrap_or(130)),
         },
-        Err(e) => Err(Error::new(format!("cannot run {}: {e}", program.display()))
-            .help(format!("install it: cargo install --path {folder}"))),
+        Err(e) => Err(cannot_run(&program, folder, &e)),
     }
 }

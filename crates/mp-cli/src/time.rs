@@ -17,21 +17,15 @@ pub(crate) fn run(args: &cli::Time) -> Result<bool, Error> {
         claims.output("--out", out)?;
     }
     let (rows, interrupt) = (path(&scene, &args.path)?, Interrupt::new(interrupt::flag()));
-    let timed = scene.time(&rows, &args.pace.pace(), &interrupt)?;
+    let pace = args.pace.pace();
+    let timed = scene.time(&rows, &pace, &interrupt)?;
     let trajectory = match args.rate {
         None => timed.trajectory.clone(),
         Some(rate) => {
-            let sampled = timed.trajectory.resampled(rate)?.in_nanoseconds()?;
-            let verdict = scene.check_trajectory(&sampled, &interrupt)?;
-            let collides = verdict.trajectory.as_ref().is_none_or(|t| t.collides_at.is_some());
-            if collides {
-                return Err(Error::new(format!(
-                    "at {rate} Hz the curve is not free: {}",
-                    verdict.faults.join("; ")
-                ))
-                .help("take a higher rate"));
-            }
-            verdict.faults.iter().for_each(|fault| note(&format!("warning: at {rate} Hz {fault}")));
+            let (sampled, faults) = scene.at_rate(&timed.trajectory, rate, &pace, &interrupt)?;
+            // Those of its ends are those of the path.
+            let faults = faults.iter().filter(|fault| !timed.ends.contains(fault));
+            faults.for_each(|fault| note(&format!("warning: at {rate} Hz {fault}")));
             sampled
         }
     };
@@ -54,6 +48,7 @@ pub(crate) fn kind_of(file: &Path) -> Result<TrajectoryKind, Error> {
 
 /// Says what a trajectory is like to the person watching.
 pub(crate) fn say(timed: &TimedPath) {
+    timed.ends.iter().for_each(|fault| note(&format!("warning: the path {fault}")));
     timed.notes.iter().for_each(|line| note(&format!("note: {line}")));
     note(&format!("trajectory: {}", timed.summary()));
 }

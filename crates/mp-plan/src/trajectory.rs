@@ -57,9 +57,32 @@ impl Scene {
     /// and jerk that are known. Its joints must be those of [`columns`](Self::columns), in this order.
     ///
     /// # Errors
-    /// When the trajectory is of another robot, or the robot has none. One that is not free is no error: see [`Verdict::free`].
+    /// When the trajectory is of another robot, or the robot has none, or `interrupt` ends the proof. One that is not free is no error: see [`Verdict::free`].
     pub fn check_trajectory(&self, trajectory: &Trajectory, interrupt: &Interrupt) -> Result<Verdict, Error> {
-        check(&*self.robot, trajectory, interrupt)
+        check(&*self.robot, trajectory, None, interrupt)
+    }
+
+    /// A [timed](Self::time) trajectory with points `rate` times a second, whose curve between those is proved free, and what else is
+    /// wrong with it, in sentences: limits at this pace that it exceeds, and ends.
+    ///
+    /// # Errors
+    /// When the curve is not free, or is not proved before `interrupt` says to end; and when there would be too many points.
+    pub fn at_rate(
+        &self,
+        trajectory: &Trajectory,
+        rate: f64,
+        pace: &Pace,
+        interrupt: &Interrupt,
+    ) -> Result<(Trajectory, Vec<String>), Error> {
+        let sampled = trajectory.resampled(rate)?.in_nanoseconds()?;
+        let verdict = check(&*self.robot, &sampled, Some(pace), interrupt)?;
+        match verdict.trajectory.is_none_or(|t| t.collides_at.is_some()) {
+            true => {
+                Err(Error::new(format!("at {rate} Hz the curve is not free: {}", verdict.faults.join("; ")))
+                    .help("take a higher rate"))
+            }
+            false => Ok((sampled, verdict.faults)),
+        }
     }
 
     /// The certificate of a trajectory, of the curve between its points: as that [of a path](Self::certificate).

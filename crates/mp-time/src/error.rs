@@ -58,6 +58,14 @@ pub enum TimeError {
         /// The limit that was given (rad or m, per s or s²).
         limit: f64,
     },
+    /// There are not points at this rate: it is not above zero, or there would be more than ten million.
+    #[error("there are no points {rate} times a second: take a rate above 0 Hz and below {most} Hz")]
+    Rate {
+        /// The rate that was given (Hz).
+        rate: f64,
+        /// At this rate (Hz) there would be ten million points.
+        most: f64,
+    },
     /// A path cannot be timed: rounding leaves no speed along it.
     #[error("the path cannot be timed: it is too long, or too short, for its limits")]
     NoSpeed,

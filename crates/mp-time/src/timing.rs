@@ -81,6 +81,12 @@ impl Limits {
     pub fn jerk(&self) -> &[f64] {
         &self.jerk
     }
+
+    /// Those of velocity, acceleration and jerk of each joint.
+    pub fn joints(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        (0..self.velocity.len())
+            .map(|joint| [&self.velocity, &self.acceleration, &self.jerk].map(|of| of[joint]))
+    }
 }
 
 /// A path with times.

@@ -373,7 +373,7 @@ impl Trajectory {
         let count = ((last - first) * rate - 1e-9).ceil();
         // Written so that NaN is refused.
         if !(rate > 0.0 && count < MOST) {
-            return Err(TimeError::Limit { what: "the rate", joint: 0, limit: rate });
+            return Err(TimeError::Rate { rate, most: MOST / (last - first) });
         }
         self.with_points((0..count as usize).map(|i| first + i as f64 / rate).chain([last]))
     }
@@ -533,6 +533,8 @@ mod tests {
         }
         assert_eq!(made.resampled(3.0).unwrap().span(), made.span());
         assert!(made.resampled(0.0).is_err() && made.resampled(f64::NAN).is_err());
+        // 2.5 seconds.
+        assert_eq!(made.resampled(1e9), Err(TimeError::Rate { rate: 1e9, most: 4e6 }));
     }
 
     #[test]

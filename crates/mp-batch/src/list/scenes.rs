@@ -152,6 +152,10 @@ impl ListedProblems {
             let goals = problem.goals.clone().unwrap_or_else(|| scene.goals());
             scene = scene.with_ends(&start, &goals)?;
         }
+        if scene.parts_left() > 0 {
+            return Err(Error::new(format!("the motion of {} has several parts", scene.name()))
+                .help("plan it by `mp plan`, or give the start and the goal of one motion"));
+        }
         let mut request = Request { seed, threads: 1, ..problem.request.clone() };
         if !problem.names_planner {
             request.planner = scene.default_planner().to_owned();
@@ -273,7 +277,13 @@ impl Files for Again<'_> {
         }
         let read = match self.known.get(path) {
             Some(Err(message)) => Err(message.clone()),
-            _ => self.files.read(path, limit).map_err(|e| e.message().to_owned()),
+            known => self.files.read(path, limit).map_err(|e| {
+                // It was there, and is gone.
+                if e.kind() == ErrorKind::Io && known.is_some() {
+                    let _ = self.changed.set(path.to_owned());
+                }
+                e.message().to_owned()
+            }),
         };
         // An error has the same words wherever the list is.
         let bytes = read.map_err(|message| {
@@ -289,7 +299,8 @@ impl Files for Again<'_> {
         self.interrupt.clone()
     }
     fn holds(&self, path: &Path) -> bool {
-        self.files.holds(path)
+        // What is gone is noticed when it is read.
+        self.known.get(path).is_some_and(Result::is_ok) || self.files.holds(path)
     }
     fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
         self.files.absolute(folder)

@@ -130,20 +130,48 @@ fn scenes_that_cannot_be_loaded_fail_at_their_items() {
     }
 }
 
+/// Motions of several parts have several paths: one report cannot say that they are solved.
+#[test]
+fn motions_of_several_parts_fail_at_their_items() {
+    let dir = Dir::new();
+    dir.write(
+        "problems.jsonl",
+        r#"{"scene": "carry"}
+{"scene": "carry", "start": [0, 0.3, 1.2, 0, 1, 0], "goal": [0.1, 0.3, 1.2, 0, 1, 0]}
+"#,
+    );
+    let tally = dir.run("r.jsonl", &whole()).unwrap().tally;
+    assert_eq!([tally.solved, tally.failed], [1, 1], "{}", dir.read("r.jsonl"));
+    assert!(dir.read("r.jsonl").contains("the motion of carry has several parts"));
+}
+
 /// A file that changes after the list was read ends the run: its items would not be those of the header.
 #[test]
 fn a_file_that_changes_meanwhile_ends_the_run() {
     let dir = Dir::new();
-    dir.write("problems.jsonl", "{\"scene\": \"easy\"}\n{\"scene\": \"wall\"}\n");
-    for (file, text) in
-        [("wall.off", WALL.replace("0.1 -1 -1", "0.2 -1 -1")), ("wall.env", crate::SCENE.to_owned() + "\n")]
-    {
+    let srdf = "<robot name=\"r\"><disable_collisions link1=\"a\" link2=\"b\"/></robot>";
+    let joint = "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/><axis xyz=\"1 0 0\"/>\
+                 <limit lower=\"-2\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>";
+    dir.write("r.urdf", format!("<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/>{joint}</robot>"));
+    dir.write("arm.toml", "[robot]\nurdf = \"r.urdf\"\n[motion]\nstart = [0]\ngoal = [1]\n");
+    dir.write("r.srdf", srdf);
+    for (scene, file, text) in [
+        ("wall", "wall.off", WALL.replace("0.1 -1 -1", "0.2 -1 -1")),
+        ("wall", "wall.env", crate::SCENE.to_owned() + "\n"),
+        ("wall", "wall.off", String::new()),
+        // One that is found beside another one.
+        ("arm.toml", "r.srdf", String::new()),
+    ] {
+        dir.write("problems.jsonl", format!("{{\"scene\": \"easy\"}}\n{{\"scene\": \"{scene}\"}}\n"));
         let (problems, out) = (dir.problems(), dir.at("r.jsonl"));
         let mut now = 0;
         let change = |outcome: &ManyOutcome| {
             now = outcome.tally.items;
             if now == 1 {
-                dir.write(file, &text);
+                match text.is_empty() {
+                    true => drop(std::fs::remove_file(dir.at(file))),
+                    false => dir.write(file, &text),
+                }
             }
         };
         let e = problems.run(&out, &whole(), &Cancel::new(), change).unwrap_err();
@@ -151,6 +179,7 @@ fn a_file_that_changes_meanwhile_ends_the_run() {
         std::fs::remove_file(&out).unwrap();
         dir.write("wall.off", WALL);
         dir.write("wall.env", crate::SCENE);
+        dir.write("r.srdf", srdf);
     }
 }
 

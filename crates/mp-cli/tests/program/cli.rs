@@ -414,3 +414,25 @@ fn pictures_of_runs_have_what_the_run_has_grown() {
     let (_, shown) = file("rrt-connect", &[]);
     assert_eq!((&alone["path"], &alone["nodes"]), (&shown["path"], &shown["nodes"]));
 }
+
+/// A signal for `mp bench` is one for the program that measures: it went on alone, and what it said then was lost.
+#[cfg(unix)]
+#[test]
+fn a_signal_reaches_the_program_that_measures() {
+    use std::io::{BufRead, BufReader};
+    let dir = Dir::new();
+    // By a shell: a file that this process has just written may still be open in one that another test starts.
+    let make = r#"cp "$1" mp && printf '#!/bin/sh\n%s\n' "trap 'exit 7' TERM; echo begun; while :; do sleep 0.05; done" > mp-bench && chmod +x mp-bench"#;
+    let mut shell = std::process::Command::new("sh");
+    let made = shell.args(["-c", make, "sh", env!("CARGO_BIN_EXE_mp")]).current_dir(dir.path(".")).status();
+    assert!(made.unwrap().success());
+    let program = dir.path("mp");
+    let mut command = std::process::Command::new(&program);
+    let mut child = command.args(["bench", "rigid"]).stdout(std::process::Stdio::piped()).spawn().unwrap();
+    let mut line = String::new();
+    BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
+    assert_eq!(line, "begun\n");
+    let id = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(7));
+}

@@ -234,3 +234,24 @@ fn ctrl_c_ends_a_film() {
     assert!(run.stderr.contains("interrupted: film.gif was not written"), "{run:?}");
     assert_eq!(dir.entries("."), before);
 }
+
+/// Ctrl-C in the film of the first part of a motion: its path is kept, and the next part is not begun.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_in_the_film_of_a_part_ends_the_motion() {
+    let dir = Dir::new();
+    let child = crate::common::start(&dir, &["plan", "carry", "--out", "p.txt", "--picture", "f.gif"]);
+    let begun = std::time::Instant::now();
+    while !dir.exists("p-1.txt") && begun.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    // The film takes many seconds.
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    let id = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    let run = crate::common::finish(child);
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(run.stderr.contains("interrupted: part 2 of 3 was not begun"), "{run:?}");
+    assert!(run.stdout.contains("part 1 of 3") && dir.exists("p-1.txt"), "{run:?}");
+    assert!(!dir.exists("f-1.gif") && !dir.exists("p-2.txt"));
+}

@@ -66,6 +66,8 @@ pub struct TimedPath {
     pub clearance: f64,
     /// Which limits were taken where none are known, in sentences.
     pub notes: Vec<String>,
+    /// Where the path does not lead from the start to a goal, in sentences: it may be a part of one, or of another problem.
+    pub ends: Vec<String>,
 }
 
 /// What has limits, in the order of [`Robot::rates`].
@@ -91,6 +93,7 @@ pub(crate) fn time(
     let _span = tracing::info_span!("time", scene = kind.name()).entered();
     let (limits, notes) = limits(kind, pace)?;
     let given = Path::straight(states(kind, path)?);
+    let ends = end_faults(kind, &given.states);
     if let Some(fault) = verified(kind, &given, interrupt)?.fault {
         return Err(match interrupt.raised() {
             Some(_) => interrupted(),
@@ -109,7 +112,7 @@ pub(crate) fn time(
             .help("give a finite number of radians (and metres), zero or more"));
     }
     let mut blended = match BlendedPath::new(&rows, deviation) {
-        Err(TimeError::TooFew { .. }) => return standing(&rows[0], joints(), &mut verifier, notes),
+        Err(TimeError::TooFew { .. }) => return standing(&rows[0], joints(), &mut verifier, (notes, ends)),
         made => made?,
     };
     let allowed: Vec<f64> = (0..blended.corners()).map(|corner| blended.deviation(corner)).collect();
@@ -141,7 +144,7 @@ pub(crate) fn time(
                     deviation: timing.deviations[corner],
                 });
                 let (tightened, corners) = (tightened.collect(), blended.corners());
-                return Ok(TimedPath { trajectory, corners, tightened, clearance, notes });
+                return Ok(TimedPath { trajectory, corners, tightened, clearance, notes, ends });
             }
             MotionCheck::Collision { at } | MotionCheck::Unproven { at } => at,
         };
@@ -168,7 +171,7 @@ fn standing<'n>(
     row: &[f64],
     joints: impl IntoIterator<Item = (&'n str, &'n str)>,
     verifier: &mut AnyCheck<'_, Configuration>,
-    notes: Vec<String>,
+    (notes, ends): (Vec<String>, Vec<String>),
 ) -> Result<TimedPath, Error> {
     let still = row.to_vec().into();
     let clearance = match verifier.check_motion(&still, &still) {
@@ -182,7 +185,7 @@ fn standing<'n>(
         accelerations: Vec::new(),
     };
     let trajectory = Trajectory::new(joints, knots, Interpolation::Cubic)?;
-    Ok(TimedPath { trajectory, corners: 0, tightened: Vec::new(), clearance, notes })
+    Ok(TimedPath { trajectory, corners: 0, tightened: Vec::new(), clearance, notes, ends })
 }
 
 fn interrupted() -> Error {
@@ -397,15 +400,19 @@ pub(crate) const HAIR: f64 = 1e-5;
 /// A joint that is slower stands still (rad/s or m/s).
 const STILL: f64 = 1e-3;
 
-/// Checks that the curve of a trajectory is free, leads from the start to a goal, and keeps the limits that are known.
+/// Checks that the curve of a trajectory is free, leads from the start to a goal, and keeps the limits that are known, or those at a pace.
 pub(crate) fn check(
     kind: &dyn Robot,
     trajectory: &Trajectory,
+    pace: Option<&Pace>,
     interrupt: &Interrupt,
 ) -> Result<Verdict, Error> {
     let _span = tracing::info_span!("check", scene = kind.name()).entered();
     let columns = kind.columns();
-    let rates = rates(kind)?;
+    let rates = match pace {
+        None => rates(kind)?,
+        Some(pace) => limits(kind, pace)?.0.joints().map(|rates| rates.map(Some)).collect(),
+    };
     if !trajectory.joints().eq(columns.iter().map(|column| (column.name.as_str(), column.unit.as_str()))) {
         let names: Vec<_> = columns.iter().map(ToString::to_string).collect();
         return Err(Error::new(format!("the joints of the trajectory are not those of {}", kind.name()))
@@ -425,6 +432,9 @@ pub(crate) fn check(
         [only] => verifier.check_motion(only, only),
         _ => check_curve(kind, &mut verifier, trajectory)?,
     };
+    if matches!(checked, MotionCheck::Unproven { .. }) && interrupt.raised().is_some() {
+        return Err(interrupted());
+    }
     let collides_at = checked.failed_at().map(|at| time_of(trajectory, at));
     if let Some(time) = collides_at {
         let state: Configuration = trajectory.at(time).position.into();

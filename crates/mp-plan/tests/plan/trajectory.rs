@@ -2,7 +2,7 @@
 
 use mp_cspace::{Clearance, Configuration, Length, Rng, Validity};
 use mp_plan::{
-    ArmScene, Constraint, Interpolation, Interrupt, Knots, Pace, PathRows, Request, Scene, TimedPath,
+    ArmScene, Cancel, Constraint, Interpolation, Interrupt, Knots, Pace, PathRows, Request, Scene, TimedPath,
     Trajectory, TrajectoryKind,
 };
 use rand::RngExt;
@@ -233,6 +233,68 @@ fn jerk_is_limited_where_the_robot_says_so() {
     let of: Vec<_> = verdict.trajectory.unwrap().limits.into_iter().map(|fault| fault.of).collect();
     assert_eq!(of, ["jerk", "jerk"], "{:?}", verdict.faults);
     assert!(verdict.faults[0].contains("/s³ at "), "{:?}", verdict.faults);
+}
+
+/// An interrupted proof says nothing about collisions.
+#[test]
+fn an_interrupted_check_is_no_collision() {
+    let scene = posts("[[obstacle]]\nname = \"post\"\nbox = [0.1, 0.1, 1]\nat = [0.8499, 0.17, 0]\n");
+    let path = corner(&scene);
+    let made = timed(&scene, &path, &Pace::default()).trajectory;
+    let cancel = Cancel::new();
+    cancel.cancel();
+    let ended = [
+        scene.check_trajectory(&made, &Interrupt::new(cancel.clone())).map(drop),
+        scene.at_rate(&made, 50.0, &Pace::default(), &Interrupt::new(cancel.clone())).map(drop),
+        scene.time(&path, &Pace::default(), &Interrupt::new(cancel)).map(drop),
+    ];
+    for ended in ended {
+        let error = ended.unwrap_err();
+        assert_eq!(error.message(), "the trajectory was not proved in time", "{error}");
+    }
+}
+
+/// Between few points a curve is another one: it is compared with the limits that the trajectory keeps to, also those that are taken where none
+/// is known.
+#[test]
+fn limits_at_a_rate_are_those_of_the_pace() {
+    let pace = Pace { velocity: 0.5, acceleration: 0.5, ..Pace::default() };
+    for (limits, acceleration) in [("max_acceleration = { x = 2, y = 4 }", [1.0, 2.0]), ("", [0.5, 0.5])] {
+        let scene = crane(limits, "");
+        let made = timed(&scene, &corner(&scene), &pace).trajectory;
+        for rate in [200.0, 3.0, 1.1] {
+            let (sampled, faults) = scene.at_rate(&made, rate, &pace, &Interrupt::never()).unwrap();
+            let mut beyond = 0;
+            for (joint, name) in ["x", "y"].into_iter().enumerate() {
+                let is_beyond = sampled.hardest(joint).amount > 1.001 * acceleration[joint];
+                let words = format!("the acceleration of {name} reaches");
+                assert_eq!(
+                    faults.iter().any(|fault| fault.starts_with(&words)),
+                    is_beyond,
+                    "{rate}: {faults:?}"
+                );
+                beyond += usize::from(is_beyond);
+            }
+            assert!(beyond > 0 || rate > 100.0, "{rate}");
+        }
+    }
+    let scene = posts("");
+    let made = timed(&scene, &corner(&scene), &pace).trajectory;
+    let error = scene.at_rate(&made, 1e8, &pace, &Interrupt::never()).unwrap_err();
+    assert!(error.message().contains("take a rate above 0 Hz and below"), "{error}");
+}
+
+/// A path that is a part of another one gets times, and it is said that it leads elsewhere.
+#[test]
+fn ends_that_are_not_those_of_the_scene_are_told() {
+    let scene = posts("");
+    let mut path = corner(&scene);
+    assert!(timed(&scene, &path, &Pace::default()).ends.is_empty());
+    path.rows.pop();
+    assert_eq!(timed(&scene, &path, &Pace::default()).ends, ["does not end at the goal: 1 off"]);
+    path.rows.remove(0);
+    let ends = timed(&scene, &path, &Pace::default()).ends;
+    assert_eq!(ends, ["does not begin at the start: 1 off", "does not end at the goal: 1 off"]);
 }
 
 #[test]
