@@ -89,7 +89,7 @@ fn soak(arguments: &Arguments) -> Result<bool, String> {
     }
     let stop = Cancel::new();
     let raised = stop.clone();
-    ctrlc::set_handler(move || raised.cancel()).map_err(|e| e.to_string())?;
+    mp_stop::signals::on_first(Duration::ZERO, move || raised.cancel()).map_err(|e| e.to_string())?;
     let live = std::io::stderr().is_terminal();
     let mut told = Instant::now();
     let mut progress = |tally: &Tally| {

@@ -22,6 +22,11 @@
 //! assert_eq!(sum, 500_500);
 //! assert_eq!(interrupt.raised(), Some(StopReason::Cancelled));
 //! ```
+//!
+//! With the feature `signals`, `signals::on_first` raises a [`Cancel`] at Ctrl-C or SIGTERM.
+
+#[cfg(feature = "signals")]
+pub mod signals;
 
 use std::fmt;
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};

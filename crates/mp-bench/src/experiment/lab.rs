@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mp_batch::Shard;
 use mp_cspace::Cancel;
 use mp_plan::{Error, write_file};
+use mp_stop::signals;
 use mp_store::Lock;
 use rayon::prelude::*;
 use serde_json::Value;
@@ -320,7 +321,7 @@ pub(crate) fn interrupted() -> bool {
     interrupt().is_raised()
 }
 
-/// A flag that is set by the first Ctrl-C. The second one ends the program at once. Among other ranks, that
+/// A flag that is set by the first Ctrl-C or SIGTERM. The next one ends the program at once. Among other ranks, that
 /// of who began the measurement.
 fn interrupt() -> Cancel {
     if let Some(cancel) = ranks::cancel() {
@@ -330,13 +331,7 @@ fn interrupt() -> Cancel {
     let raised = RAISED.get_or_init(|| {
         let raised = Cancel::new();
         let shared = raised.clone();
-        let handler = ctrlc::set_handler(move || {
-            if shared.is_raised() {
-                std::process::exit(130);
-            }
-            shared.cancel();
-        });
-        if let Err(e) = handler {
+        if let Err(e) = signals::on_first(Duration::ZERO, move || shared.cancel()) {
             tracing::warn!("Ctrl-C will end the program at once: {e}");
         }
         raised

@@ -363,6 +363,36 @@ fn ctrl_c_stops_at_once_and_says_so() {
     assert!(!dir.exists("p.txt"));
 }
 
+/// As `timeout` ends a program: it sends the signal to it and to its group.
+#[cfg(unix)]
+#[test]
+fn sigterm_keeps_what_was_found() {
+    let dir = Dir::new();
+    let child = crate::common::start(
+        &dir,
+        &[
+            "plan",
+            "window.env",
+            "--planner",
+            "rrt-star",
+            "--iterations",
+            "1000000000",
+            "--json",
+            "--out",
+            "p.txt",
+        ],
+    );
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    let id = child.id().to_string();
+    let kill = || std::process::Command::new("kill").args(["-TERM", &id]).status().unwrap();
+    assert!(kill().success());
+    kill();
+    let run = crate::common::finish(child);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert_eq!(run.json()["stopped_by"], "interrupted");
+    assert_eq!(mp(&dir, &["check", "window.env", "p.txt"]).code, 0);
+}
+
 /// A page, and a scene file, of a run show the trees or the roadmap that the run has grown.
 #[test]
 fn pictures_of_runs_have_what_the_run_has_grown() {
