@@ -389,7 +389,9 @@ fn sigterm_keeps_what_was_found() {
     kill();
     let run = crate::common::finish(child);
     assert_eq!(run.code, 0, "{run:?}");
-    assert_eq!(run.json()["stopped_by"], "interrupted");
+    let planning =
+        run.json()["stages"].as_array().unwrap().iter().find(|s| s["stage"] == "planning").cloned();
+    assert_eq!(planning.unwrap()["ended_by"], "interrupted");
     assert_eq!(mp(&dir, &["check", "window.env", "p.txt"]).code, 0);
 }
 
