@@ -5,7 +5,8 @@ use pyo3::types::PyTuple;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The calls of a robot's functions: how many there were, and the exception that one raised, until all work that was going on with the robot has ended with it.
+/// The calls of a robot's functions: how many there were, and the exception that one raised. It is kept until all work that goes on with
+/// the robot has ended with it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Calls(Arc<Counted>);
 
@@ -16,7 +17,7 @@ struct Counted {
     going: Mutex<Going>,
 }
 
-/// The work that goes on.
+/// The work that goes on with a robot.
 #[derive(Debug, Default)]
 struct Going {
     /// The process that does it: one that is forked does not.

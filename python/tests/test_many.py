@@ -158,6 +158,23 @@ def test_a_program_that_leaves_off_in_the_middle_ends() -> None:
     assert done.returncode == 0, done.stderr
 
 
+def in_a_process(work: str) -> subprocess.CompletedProcess[str]:
+    """Runs Python code in a process of its own, with a scene of a robot of one's own whose function takes its time."""
+    scene = """
+    import os, sys, time
+    from threading import Thread
+    import mp_motion as mp
+    def valid(q):
+        time.sleep(0.0005)
+        return True
+    robot = mp.Robot(mp.Space([0, 0], [4, 4]), valid=valid)
+    scene = mp.Scene.own(robot, start=[0.5, 2], goal=[3.5, 2])
+    options = mp.Options("rrt-star", time=0.5)
+    """
+    script = textwrap.dedent(scene) + work
+    return subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
+
+
 @pytest.mark.parametrize(
     "left",
     [
@@ -168,19 +185,7 @@ def test_a_program_that_leaves_off_in_the_middle_ends() -> None:
     ],
 )
 def test_functions_of_ones_own_are_not_called_after_the_end(left: str) -> None:
-    script = """
-    import time
-    from threading import Thread
-    import mp_motion as mp
-    def valid(q):
-        time.sleep(0.0005)
-        return True
-    robot = mp.Robot(mp.Space([0, 0], [4, 4]), valid=valid)
-    scene = mp.Scene.own(robot, start=[0.5, 2], goal=[3.5, 2])
-    options = mp.Options("rrt-star", time=0.5)
-    """
-    script = textwrap.dedent(script) + f"{left}\ntime.sleep(0.3)\n"
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
+    done = in_a_process(f"{left}\ntime.sleep(0.3)\n")
     assert done.returncode == 0, done.stderr
 
 
@@ -188,14 +193,7 @@ def test_functions_of_ones_own_are_not_called_after_the_end(left: str) -> None:
 def test_a_forked_process_has_no_work_of_the_other() -> None:
     # In a process of its own, which forks while it plans. At its end a process waits up to 5 s for work that goes on.
     script = """
-    import os, sys, time
-    import mp_motion as mp
-    def valid(q):
-        time.sleep(0.0005)
-        return True
-    robot = mp.Robot(mp.Space([0, 0], [4, 4]), valid=valid)
-    scene = mp.Scene.own(robot, start=[0.5, 2], goal=[3.5, 2])
-    results = mp.plan_many([scene] * 99, mp.Options("rrt-star", time=0.5), threads=2)
+    results = mp.plan_many([scene] * 99, options, threads=2)
     next(results)
     begin = time.monotonic()
     for end in ["pass", "results.close()", "next(results)", "list(mp.plan_many([scene], mp.Options(time=1)))"]:
@@ -206,7 +204,7 @@ def test_a_forked_process_has_no_work_of_the_other() -> None:
     print(time.monotonic() - begin < 4)
     results.close()
     """
-    done = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=120)
+    done = in_a_process(textwrap.dedent(script))
     assert done.stdout.split() == ["7", "7", "1", "7", "True"], done
     assert "planned by the process that was forked" in done.stderr
 

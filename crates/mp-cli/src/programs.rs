@@ -86,7 +86,7 @@ fn cannot_run(program: &Path, folder: &str, e: &std::io::Error) -> Error {
         .help(format!("install it: cargo install --path {folder}"))
 }
 
-/// Runs a program with the arguments in place of this one: signals reach it, and nothing is left of it when it is ended.
+/// Turns this process into a program with the arguments: signals reach it, and its exit code is the one that is seen.
 #[cfg(unix)]
 pub(crate) fn turn_into([program, folder]: [&str; 2], args: &Passed) -> Result<bool, Error> {
     use std::os::unix::process::CommandExt;
@@ -94,7 +94,7 @@ pub(crate) fn turn_into([program, folder]: [&str; 2], args: &Passed) -> Result<b
     Err(cannot_run(&program, folder, &Command::new(&program).args(&args.arguments).exec()))
 }
 
-/// Runs a program with the arguments.
+/// Runs a program with the arguments: other systems cannot turn one process into another.
 #[cfg(not(unix))]
 pub(crate) fn turn_into(program: [&str; 2], args: &Passed) -> Result<bool, Error> {
     run(program, args)

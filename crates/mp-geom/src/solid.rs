@@ -64,7 +64,7 @@ impl TriMesh {
     ///
     /// # Errors
     /// [`SolidError`] when it is not closed or not consistently oriented, vertices in one place counting as
-    /// one, or encloses no volume, or a component faces inward that is no cavity, or faces both ways among others that do not.
+    /// one, or encloses no volume, or a component faces inward that is no cavity, or only some components are there for both sides.
     pub fn into_solid(self) -> Result<Self, SolidError> {
         if !self.is_closed_and_oriented() {
             let found = self.topology();

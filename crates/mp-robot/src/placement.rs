@@ -31,7 +31,8 @@ impl BodyRadii {
         }
     }
 
-    /// The largest distance of a point from the origin, but at most the length of the box: of a body far from its origin that.
+    /// The size of the body (m): the largest distance of a point from the origin or, where that is less, the diagonal of the box around
+    /// it, as of a body far from its origin.
     pub(crate) fn size(&self) -> f64 {
         let diagonal = self.corners.iter().map(|c| (c - self.corners[0]).norm()).fold(0.0, f64::max);
         self.radius.min(diagonal)

@@ -3,11 +3,13 @@
 use std::io;
 use std::time::Duration;
 
-/// Does `action` at the first Ctrl-C or, on Unix, at the first SIGTERM, which schedulers, containers and `timeout` send before they kill. The
-/// next one ends the program at once, with exit code 128 and the number of the signal.
+/// Does `action` at the first Ctrl-C, in a thread of its own. On Unix also at the first SIGTERM, which schedulers, containers and `timeout`
+/// send before they kill. The next signal ends the program at once, with 128 and the number of the signal as exit code.
 ///
-/// Signals of one kind may come several times for one: SIGTERM within a second of the first, as `timeout` sends it to a process and to
-/// its group, and Ctrl-C within `in_a_row`, as starters of several processes send it, do not count. Call it once in a program.
+/// One signal may arrive several times: `timeout` sends SIGTERM to a process and to its group, `mpirun` repeats what it gets. So another
+/// SIGTERM counts from one second after the first signal on, and another Ctrl-C from `in_a_row` on.
+///
+/// Call it once in a program.
 ///
 /// # Errors
 /// When the system does not let the program listen.

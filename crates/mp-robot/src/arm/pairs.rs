@@ -126,7 +126,7 @@ pub(super) fn compared(
     Ok(Compared { pairs, still_pairs, still_bodies, notes })
 }
 
-/// Of each link, whether all joints above it are fixed: joints whose limits are equal are not.
+/// For each link, whether all joints between the base and it are fixed. Joints whose limits are equal do not count as fixed.
 pub(super) fn fixed_links(model: &ArmModel, kinematics: &Kinematics) -> Vec<bool> {
     let mut above = vec![None; kinematics.attached.len()];
     for ([parent, child], joint) in kinematics.joined.iter().zip(&model.joints) {
