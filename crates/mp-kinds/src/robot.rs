@@ -11,8 +11,8 @@ mod moving;
 mod planar;
 mod rigid;
 
-pub use arm::model_of;
 pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace, Reached};
+pub use arm::{model_of, read_robots};
 pub use constrained::{Constrained, Constraint};
 pub use driven::greatest_speed;
 pub use driven::{Drivable, DrivenScene, SpeedBound};

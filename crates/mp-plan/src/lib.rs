@@ -83,6 +83,7 @@ pub use explain::Explanation;
 pub use files::editing::SceneProblem;
 pub use files::find::{SceneFiles, find_problem, shipped_files};
 pub use files::info;
+pub use files::inputs::RobotsRead;
 pub use files::robot_pairs::RobotPairs;
 pub use finish::Finished;
 pub use finish::certificate::Certificate;

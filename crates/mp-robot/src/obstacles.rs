@@ -22,14 +22,20 @@ const MAX_MERGED: usize = 50_000;
 const MAX_TOGETHER: usize = 500_000;
 const FEW: usize = 200;
 
-/// More obstacles than this are one mesh for verifiers, whose tree says soon which of them are near.
-const MANY: usize = 64;
+/// More obstacles than this are one mesh for arms and their verifiers, whose tree says soon which of them are near. The trees of fewer ones
+/// answer as fast, and making one of all may take longer than planning.
+pub(crate) const MANY: usize = 64;
 
 /// A mesh as verifiers see it, and its pose in the world.
-pub(crate) type PlacedReference = (RefMesh, Isometry3<f64>);
+pub(crate) type PlacedReference = (Arc<RefMesh>, Isometry3<f64>);
 
-/// Whether a mesh is a solid, once that is known.
-type IsSolid = Arc<OnceLock<bool>>;
+/// What is known of a mesh in its own frame, found at the first use.
+#[derive(Debug, Default)]
+struct Known {
+    is_solid: OnceLock<bool>,
+    /// The mesh for verifiers.
+    reference: OnceLock<Arc<RefMesh>>,
+}
 
 /// Named obstacles that stand still. Clones of a robot share them.
 #[derive(Debug)]
@@ -37,8 +43,8 @@ pub(crate) struct Obstacles {
     pub(crate) scene: Scene,
     /// Each obstacle, in the world frame.
     pub(crate) placed: Vec<(BodyId, Arc<TriMesh>)>,
-    /// Each obstacle in its own frame, and whether it is a solid, found at the first use.
-    own: Vec<(TriMesh, IsSolid)>,
+    /// Each obstacle in its own frame. Equal ones share what is known of them.
+    own: Vec<(TriMesh, Arc<Known>)>,
     /// The box around all of them; empty when there are none.
     pub(crate) bounds: Aabb,
     /// The obstacles that are solids, made at the first use.
@@ -51,14 +57,15 @@ pub(crate) struct Obstacles {
 
 impl Obstacles {
     /// The obstacles of a robot that has `triangles` triangles itself. Each obstacle is a name, a mesh and its pose in the
-    /// world. The trees of meshes that `known` has are taken from there, and all of `known` if nothing differs.
+    /// world. The trees of meshes that `known` has are taken from there, and all of `known` if nothing differs. More than `many` get one
+    /// tree of all.
     ///
     /// # Errors
     /// `too_many`, of the number of triangles, when there are more than [`MAX_TRIANGLES`]; when an obstacle cannot be placed, or
     /// `interrupt` says to end.
     pub(crate) fn new<E: From<SceneError> + From<Interrupted>>(
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
-        triangles: usize,
+        (triangles, many): (usize, usize),
         too_many: impl Fn(usize) -> E,
         known: Option<&Arc<Self>>,
         interrupt: &Interrupt,
@@ -66,7 +73,8 @@ impl Obstacles {
         let (mut scene, mut placed, mut own, mut count) = (Scene::new(), Vec::new(), Vec::new(), triangles);
         let (mut unchanged, mut asked) = (true, interrupt.clone());
         // Meshes that share their memory have one tree.
-        let mut trees: HashMap<[usize; 4], (CollisionMesh, IsSolid)> = HashMap::new();
+        let mut trees: HashMap<[usize; 4], (CollisionMesh, Arc<Known>)> = HashMap::new();
+        let alike = known.map(|known| known.alike()).unwrap_or_default();
         let obstacles: Vec<_> = obstacles.into_iter().collect();
         let sizes = obstacles.iter().map(|(_, mesh, _)| mesh.triangles().len());
         let together = sizes.filter(|size| *size <= MAX_MERGED).fold(0, usize::saturating_add);
@@ -77,9 +85,9 @@ impl Obstacles {
                 return Err(too_many(count));
             }
             asked.go_on()?;
-            let same = known.and_then(|known| known.find(i, &mesh));
-            let (tree, solid) = match same {
-                Some((body, _, solid)) => (body.mesh().clone(), Arc::clone(solid)),
+            let same = known.and_then(|known| known.find([Some(&i), alike.get(&look(&mesh))], &mesh));
+            let (tree, own_known) = match same {
+                Some((body, _, own_known)) => (body.mesh().clone(), Arc::clone(own_known)),
                 None => match trees.entry(memory(&mesh)) {
                     Entry::Occupied(known) => known.get().clone(),
                     Entry::Vacant(new) => {
@@ -102,22 +110,28 @@ impl Obstacles {
                 false => scene.insert(name, tree, pose)?,
             };
             placed.push((id, in_world));
-            own.push((mesh, solid));
+            own.push((mesh, own_known));
         }
         if let Some(known) = known.filter(|known| unchanged && known.placed.len() == placed.len()) {
             return Ok(Arc::clone(known));
         }
-        scene.merge_static_until(interrupt)?;
+        if placed.len() > many {
+            scene.merge_static_until(interrupt)?;
+        }
         let bounds = placed.iter().map(|(_, mesh)| mesh.aabb()).fold(Aabb::empty(), |a, b| a.union(&b));
         let (solids, reference, references) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
         Ok(Arc::new(Self { scene, placed, own, bounds, solids, reference, references }))
     }
 
-    /// An obstacle with this mesh, the mesh in the world, and whether it is a solid. The obstacle with the number `i` comes
-    /// before others.
-    fn find(&self, i: usize, mesh: &TriMesh) -> Option<(&Body, &Arc<TriMesh>, &IsSolid)> {
-        let same = |j: &usize| self.own.get(*j).is_some_and(|(own, _)| own == mesh);
-        let j = std::iter::once(i).chain(0..self.own.len()).find(same)?;
+    /// The first obstacle of each [look](look).
+    fn alike(&self) -> HashMap<[u64; 4], usize> {
+        self.own.iter().enumerate().rev().map(|(i, (mesh, _))| (look(mesh), i)).collect()
+    }
+
+    /// The first of some obstacles that has this mesh, the mesh in the world, and what is known of it.
+    fn find(&self, some: [Option<&usize>; 2], mesh: &TriMesh) -> Option<(&Body, &Arc<TriMesh>, &Arc<Known>)> {
+        let same = |j: &&usize| self.own.get(**j).is_some_and(|(own, _)| own == mesh);
+        let j = *some.into_iter().flatten().find(same)?;
         let (id, in_world) = &self.placed[j];
         Some((self.scene.body(*id)?, in_world, &self.own[j].1))
     }
@@ -128,13 +142,13 @@ impl Obstacles {
         query: &'a mut Query,
         p: Point3<f64>,
     ) -> impl Iterator<Item = &'a str> {
-        self.placed.iter().zip(&self.own).filter_map(move |((id, mesh), (own, closed))| {
+        self.placed.iter().zip(&self.own).filter_map(move |((id, mesh), (own, known))| {
             let body = self.scene.body(*id)?;
             let inside = own.solids().is_empty()
                 && query
                     .winding(body.mesh(), &body.pose().inverse_transform_point(&p))
                     .is_some_and(|n| n > 0)
-                && *closed.get_or_init(|| is_solid(mesh));
+                && *known.is_solid.get_or_init(|| is_solid(mesh));
             inside.then(|| body.name())
         })
     }
@@ -155,10 +169,10 @@ impl Obstacles {
 
     pub(crate) fn solids(&self) -> &[(BodyId, SolidObstacle)] {
         self.solids.get_or_init(|| {
-            let named = self.placed.iter().zip(&self.own).filter_map(|((id, mesh), (_, solid))| {
+            let named = self.placed.iter().zip(&self.own).filter_map(|((id, mesh), (_, known))| {
                 let name = self.scene.body(*id)?.name();
                 // Whether it is a solid does not depend on its pose.
-                let solid = *solid.get_or_init(|| is_solid(mesh));
+                let solid = *known.is_solid.get_or_init(|| is_solid(mesh));
                 solid.then(|| (*id, SolidObstacle::new(name, mesh)))
             });
             named.collect()
@@ -199,16 +213,20 @@ impl Obstacles {
     /// When it was interrupted.
     pub(crate) fn make_references(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         make_once(&self.references, interrupt, || {
-            let of = |mesh: &TriMesh, pose: Isometry3<f64>| {
-                RefMesh::new_until(mesh, interrupt).map(|mesh| (mesh, pose)).ok_or(Interrupted)
-            };
+            let of = |mesh: &TriMesh| RefMesh::new_until(mesh, interrupt).map(Arc::new).ok_or(Interrupted);
             if self.placed.len() > MANY {
-                return self.merged().iter().map(|mesh| of(mesh, Isometry3::identity())).collect();
+                return self.merged().iter().map(|mesh| Ok((of(mesh)?, Isometry3::identity()))).collect();
             }
             let own = self.placed.iter().zip(&self.own);
-            own.map(|((id, in_world), (mesh, _))| match self.scene.body(*id) {
-                Some(body) => of(mesh, *body.pose()),
-                None => of(in_world, Isometry3::identity()),
+            own.map(|((id, in_world), (mesh, known))| {
+                let Some(body) = self.scene.body(*id) else {
+                    return Ok((of(in_world)?, Isometry3::identity()));
+                };
+                make_once(&known.reference, interrupt, || of(mesh))?;
+                Ok((
+                    known.reference.get().map_or_else(|| of(mesh), |made| Ok(Arc::clone(made)))?,
+                    *body.pose(),
+                ))
             })
             .collect()
         })
@@ -225,6 +243,15 @@ impl Obstacles {
 fn memory(mesh: &TriMesh) -> [usize; 4] {
     let [vertices, triangles] = [mesh.vertices().as_ptr().addr(), mesh.triangles().as_ptr().addr()];
     [vertices, triangles, mesh.solids().as_ptr().addr(), mesh.balls().as_ptr().addr()]
+}
+
+/// What equal meshes have in common, found in no time: how many vertices and triangles they have, and the bits of the first vertex and of the last.
+fn look(mesh: &TriMesh) -> [u64; 4] {
+    let vertices = mesh.vertices();
+    let bits = |p: Option<&Point3<f64>>| {
+        p.map_or(0, |p| p.iter().fold(0, |all: u64, x| all.rotate_left(21) ^ x.to_bits()))
+    };
+    [vertices.len() as u64, mesh.triangles().len() as u64, bits(vertices.first()), bits(vertices.last())]
 }
 
 /// Makes what `cell` holds, if it holds nothing yet, unless `interrupt` says to end.
@@ -259,7 +286,7 @@ mod tests {
 
     fn made(obstacles: &[Named], known: Option<&Arc<Obstacles>>) -> Arc<Obstacles> {
         let too_many = |_| crate::RobotError::from(SceneError::Full);
-        Obstacles::new(obstacles.iter().cloned(), 0, too_many, known, &Interrupt::never()).unwrap()
+        Obstacles::new(obstacles.iter().cloned(), (0, 0), too_many, known, &Interrupt::never()).unwrap()
     }
 
     /// Clones of a mesh have one tree, whatever their poses; equal meshes in other memory have their own.
@@ -277,7 +304,13 @@ mod tests {
             let number = |mesh: &CollisionMesh| alone.iter().position(|known| known.is_same(mesh)).unwrap();
             alone.iter().map(number).collect()
         };
-        assert_eq!(trees(&[&one, &other, &one, &one.clone(), &ball(0.2)]), [0, 1, 0, 0, 4]);
+        let some = [&one, &other, &one, &one.clone(), &ball(0.2)];
+        assert_eq!(trees(&some), [0, 1, 0, 0, 4]);
+        let of_verifiers = made(&named(&some), None).references();
+        let same = |(mesh, _): &PlacedReference| {
+            of_verifiers.iter().position(|(known, _)| Arc::ptr_eq(known, mesh)).unwrap()
+        };
+        assert_eq!(of_verifiers.iter().map(same).collect::<Vec<_>>(), [0, 1, 0, 0, 4]);
         // Answers do not depend on it.
         let (shared, own) = (made(&named(&[&one, &one, &one]), None), {
             let copies = [ball(0.1), ball(0.1), ball(0.1)];
@@ -334,6 +367,8 @@ mod tests {
             let mut after = before.to_vec();
             change(&mut after);
             let (shared, alone) = (made(&after, Some(&known)), made(&after, None));
+            let [before, now] = [&known, &shared].map(|o| Arc::clone(&o.references()[0].0));
+            assert!(Arc::ptr_eq(&before, &now), "as verifiers see it");
             assert!(!Arc::ptr_eq(&known, &shared));
             assert!(Arc::ptr_eq(&known.placed[0].1, &shared.placed[0].1));
             assert_eq!(shared.placed, alone.placed);

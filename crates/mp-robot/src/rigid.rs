@@ -199,7 +199,7 @@ impl<P: Placement> RigidBody<P> {
         }
         let too_many = |count| RobotError::TooManyTriangles { count, max: MAX_TRIANGLES };
         let known = before.map(|before| &before.obstacles);
-        let obstacles = Obstacles::new(obstacles, robot.triangles().len(), too_many, known, interrupt)?;
+        let obstacles = Obstacles::new(obstacles, (robot.triangles().len(), 0), too_many, known, interrupt)?;
         let tree = || CollisionMesh::new_until(robot, interrupt).ok_or(RobotError::Interrupted);
         let shared = Shared {
             robot_mesh: robot.clone(),

@@ -3,7 +3,7 @@
 
 use super::{ProblemList, SceneFingerprint};
 use mp_io::{Disk, ErrorKind, Files};
-use mp_plan::{Cancel, Error, Interrupt, Request, Scene, SceneFiles, in_parallel, shipped_files};
+use mp_plan::{Cancel, Error, Interrupt, Request, RobotsRead, Scene, SceneFiles, in_parallel, shipped_files};
 use std::collections::HashMap;
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
@@ -54,9 +54,12 @@ impl ProblemList {
         });
         let places = places.collect::<Result<Vec<_>, _>>()?;
         let (seen, folder) = (Mutex::new(Seen::default()), self.folder().to_owned());
+        let (robots, shipped_robots) = <(RobotsRead, RobotsRead)>::default();
         let read = |i: usize| match &places[i] {
-            place if place.shipped => read_once(place, &shipped_files(), &Mutex::default(), interrupt),
-            place => read_once(place, &InFolder(&folder), &seen, interrupt),
+            place if place.shipped => {
+                read_once(place, &shipped_files(), (&Mutex::default(), &shipped_robots), interrupt)
+            }
+            place => read_once(place, &InFolder(&folder), (&seen, &robots), interrupt),
         };
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let read = in_parallel(places.len(), threads, &Cancel::new(), read);
@@ -378,12 +381,12 @@ impl Files for Reading<'_> {
 fn read_once(
     place: &SceneFiles,
     files: &dyn Files,
-    seen: &Mutex<Seen>,
+    (seen, robots): (&Mutex<Seen>, &RobotsRead),
     interrupt: &Interrupt,
 ) -> (SceneFiles, String) {
     let reading = Reading { files, seen, interrupt, inputs: Mutex::default(), folders: Mutex::default() };
     // What is wrong is said at the items of the scene.
-    let _ = Scene::load_from(&reading, &place.file);
+    let _ = Scene::read_files(&reading, &place.file, robots);
     let Reading { inputs, folders, .. } = reading;
     let inputs = inputs.into_inner().unwrap_or_else(PoisonError::into_inner);
     let fingerprint = fingerprint_of(inputs.iter().map(|(_, bytes)| bytes.as_slice()));

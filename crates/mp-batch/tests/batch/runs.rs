@@ -240,6 +240,55 @@ fn few_of_many_scenes_are_there_at_a_time() {
     }
 }
 
+/// A robot of which some joints move is shared where the start holds the others at the same values, and made anew where it does not.
+#[test]
+fn robots_with_held_joints_are_shared() {
+    let dir = Dir::new();
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name=\"{name}\" type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{child}\"/><axis xyz=\"1 0 0\"/>\
+             <limit lower=\"-2\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>"
+        )
+    };
+    let shape = "<collision><geometry><mesh filename=\"stick.off\"/></geometry></collision>";
+    let joints = [joint("j", "a", "b"), joint("k", "b", "c")].concat();
+    let urdf = format!(
+        "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><link name=\"c\">{shape}</link>{joints}</robot>"
+    );
+    dir.write("r.urdf", urdf);
+    let (held, mut list) = ([0.25, 0.25, 0.5, 0.5, 0.0], String::new());
+    for (i, k) in held.iter().enumerate() {
+        let k = if *k == 0.0 { String::new() } else { format!(", k = {k}") };
+        let motion = format!("[motion]\nstart = {{ j = -1{k} }}\ngoal = {{ j = 1 }}\n");
+        let robot = "[robot]\nurdf = \"r.urdf\"\njoints = [\"j\"]\n";
+        let obstacle = format!("[[obstacle]]\nbox = [0.2, 0.2, 0.2]\npose = [0.{i}, 2, 0, 0, 0, 0]\n");
+        dir.write(&format!("s{i}.toml"), format!("{robot}{motion}{obstacle}"));
+        list += &format!("{{\"scene\": \"s{i}\"}}\n");
+    }
+    dir.write("problems.jsonl", &list);
+    dir.run("r.jsonl", &whole()).unwrap();
+    let written = dir.read("r.jsonl");
+    let lines = written.lines().skip(1).map(|line| serde_json::from_str::<Value>(line).unwrap());
+    for (i, line) in lines.take(held.len()).enumerate() {
+        let scene = mp_plan::Scene::load(dir.at(&format!("s{i}.toml"))).unwrap();
+        let fingerprint = scene.plan(&mp_plan::Request::default()).unwrap().fingerprint;
+        assert!(fingerprint.is_some());
+        assert_eq!(line["report"]["fingerprint"].as_str(), fingerprint.as_deref(), "{i}");
+    }
+
+    let problems = dir.problems();
+    let load = |item| problems.problem(item, None).map(|(scene, _)| scene);
+    let [first, other] = [load(0).unwrap(), load(2).unwrap()];
+    assert!(
+        first.notes() != other.notes() && format!("{:?}", other.notes()).contains("k at 0.5"),
+        "{:?}",
+        other.notes()
+    );
+    // The robot of the last one has been read.
+    std::fs::remove_file(dir.at("stick.off")).unwrap();
+    assert!(load(3).is_ok() && load(1).is_err() && load(4).is_err());
+}
+
 #[test]
 fn threads_do_not_matter() {
     let dir = Dir::new();

@@ -51,7 +51,7 @@ pub struct RobotProblem {
 
 impl RobotProblem {
     /// Whether both problems have the same robots: of the same files with the same descriptions, at the same places, with the same
-    /// limits, none of which are for a start.
+    /// limits, none of which are for a start, and the same joints that move. Where not all do, the start may say where others are held.
     #[must_use]
     pub fn same_robots(&self, other: &Self) -> bool {
         let same = |(a, b): (&RobotEntry, &RobotEntry)| {
@@ -59,8 +59,7 @@ impl RobotProblem {
                 && (&a.limits, &a.hold, &a.driven) == (&b.limits, &b.hold, &b.driven)
                 && a.max_rates == b.max_rates
                 && (a.limit_tolerance, b.limit_tolerance) == (0.0, 0.0)
-                // Where not all joints move, the start may say where the others are held.
-                && (&a.moving, &b.moving) == (&None, &None)
+                && a.moving == b.moving
         };
         let (a, b) = (&self.file, &other.file);
         self.robots == other.robots

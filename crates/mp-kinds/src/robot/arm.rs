@@ -28,9 +28,9 @@ use mp_geom::{Aabb, TriMesh, continued_six, pose_from_six, six_from_pose};
 use mp_io::{DescribedRobot, Disk, Files, PlacedBody, RobotFilePart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, Joint, JointKind, PLANAR_NUMBERS};
 use nalgebra::Isometry3;
-use named::NamedValues;
+use named::{NamedValues, Values};
 pub use pose_goals::Reached;
-pub use read::model_of;
+pub use read::{model_of, read_robots};
 use read::{srdf_help, what};
 use std::collections::HashSet;
 use std::fmt::Debug;
@@ -139,8 +139,10 @@ pub struct LinkedScene<C> {
     entries: Vec<usize>,
     /// What decides which links may touch without being asked for, in sentences.
     said: Vec<String>,
-    /// Which configurations reach goals that are places of links, in sentences.
-    of_goals: Vec<String>,
+    /// What numbers the ends have that the problem leaves out, and which configurations reach goals that are places of links, in sentences.
+    of_ends: Vec<String>,
+    /// Where the start of the problem says that joints are held.
+    held: Values,
     /// The problem that it was made from, to locate errors in its file.
     source: Option<Box<RobotProblem>>,
 }
@@ -207,7 +209,8 @@ impl<C: LinkedSpace> LinkedScene<C> {
             goal_parts: None,
             entries: Vec::new(),
             said: Vec::new(),
-            of_goals: Vec::new(),
+            of_ends: Vec::new(),
+            held: Values::new(),
             source: None,
         })
     }
@@ -241,38 +244,42 @@ impl<C: LinkedSpace> LinkedScene<C> {
                 known.same_robots(&problem) && (same_start || !read::depends_on_start(before.arm.model()))
             })
         };
-        let known = before.filter(is_same);
-        let (arm, said) = match known {
+        let named = NamedValues::of(&problem)?;
+        let is_held_the_same = |before: &&Self| before.held == named.beside(&Self::names(&before.arm));
+        let (arm, said, of_ends) = match before.filter(is_same).filter(is_held_the_same) {
             Some(before) => {
                 let (kinematics, model) = (before.arm.kinematics(), before.arm.model());
-                let named = NamedValues::of(&problem)?;
-                named::resolve(&mut problem, &named, kinematics, model)?;
+                let of_ends = named::resolve(&mut problem, &named, kinematics, model)?;
                 let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
-                (before.arm.among_until(bodies, &files.interrupt())?, before.said.clone())
+                (before.arm.among_until(bodies, &files.interrupt())?, before.said.clone(), of_ends)
             }
-            None => Self::arm_of(files, &mut problem)?,
+            None => Self::arm_of(files, &mut problem, &named)?,
         };
+        let held = named.beside(&Self::names(&arm));
         let own = Self::names(&arm).len();
         let start = problem.file.start.row().get(..own).unwrap_or_default().to_vec();
         let start = C::of(&arm)?.state(&start);
         let (arm, said) = self_filter::filtered(arm, &mut problem, &start, said, &files.interrupt())?;
-        Self::with_ends_of(problem, arm, said, &files.interrupt())
+        Self::with_ends_of(problem, arm, [said, of_ends], held, &files.interrupt())
     }
 
-    /// The scene of a problem, none of whose ends is given by a name any more, and of its arm.
+    /// The scene of a problem, none of whose ends is given by a name any more, and of its arm, with what is said of the arm and of its ends, and
+    /// where joints are held.
     fn with_ends_of(
         problem: RobotProblem,
         arm: Arm,
-        said: Vec<String>,
+        [said, mut of_ends]: [Vec<String>; 2],
+        held: Values,
         interrupt: &Interrupt,
     ) -> Result<Self, Error> {
         let Ends { start, goals: parts, entries, said: of_goals } = Self::ends(&problem, &arm, interrupt)?;
+        of_ends.extend(of_goals);
         let goals = rows(&parts);
         let first = vec![start.clone()];
         let given = goals.as_ref().unwrap_or(&first);
         let scene = Self::assembled(problem.name.clone(), arm, problem.obstacles.clone(), &start, given);
         let scene = scene.map_err(|e| e.context(what(&problem)))?;
-        let mut scene = Self { source: Some(Box::new(problem)), entries, said, of_goals, ..scene };
+        let mut scene = Self { source: Some(Box::new(problem)), entries, said, of_ends, held, ..scene };
         if goals.is_none() {
             scene.goals = examples(&scene, &parts);
             scene.goal_parts = Some(parts);
@@ -280,10 +287,10 @@ impl<C: LinkedSpace> LinkedScene<C> {
         Ok(scene)
     }
 
-    /// What decides which links may touch without being asked for, and what goals were made, in sentences: what of an SRDF was not taken, and pairs that are
-    /// left out for being close in every configuration.
+    /// What decides which links may touch without being asked for, and what was made of start and goals, in sentences: what of an SRDF was not taken, and
+    /// pairs that are left out for being close in every configuration.
     pub fn said(&self) -> Vec<String> {
-        [&self.said[..], &self.of_goals].concat()
+        [&self.said[..], &self.of_ends].concat()
     }
 
     /// The arm among its obstacles.

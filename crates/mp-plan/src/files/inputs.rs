@@ -2,9 +2,9 @@
 
 use crate::Scene;
 use crate::files::find::{SceneFiles, shipped_files};
-use mp_io::{Disk, Error, Files};
+use mp_io::{Content, DescribedRobot, Disk, Error, Files, ProblemFile};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Files, with a record of those that were read.
 #[derive(Debug)]
@@ -81,7 +81,43 @@ impl Files for Recording<'_> {
     }
 }
 
+/// The robots of scenes that were [read](Scene::read_files) before, and what reading their meshes asked for.
+#[derive(Debug, Default)]
+pub struct RobotsRead(Mutex<Vec<RobotRead>>);
+
+/// Robots of a scene, the files of their meshes, and the folders whose absolute names were asked for.
+type RobotRead = (Vec<DescribedRobot>, Arc<[Vec<PathBuf>; 2]>);
+
 impl Scene {
+    /// Reads all that the scene in `file` is made of, in the order in which loading it does, and makes no more of it than that needs. The
+    /// meshes of robots that are `known` are read, and nothing is made of them.
+    ///
+    /// # Errors
+    /// When a file cannot be read. What it says may be wrong nevertheless.
+    pub fn read_files(files: &dyn Files, file: &Path, known: &RobotsRead) -> Result<(), crate::Error> {
+        if Content::of(file).next() != Some(Content::Toml) {
+            return Self::load_from(files, file).map(|_| ());
+        }
+        let ProblemFile::Links(problem) = ProblemFile::load_from(files, file)? else { return Ok(()) };
+        let all = || known.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let before =
+            all().iter().find(|(robots, _)| *robots == problem.robots).map(|(_, read)| Arc::clone(read));
+        if let Some([meshes, folders]) = before.as_deref() {
+            folders.iter().for_each(|folder| drop(files.absolute(folder)));
+            return Ok(meshes
+                .iter()
+                .try_for_each(|mesh| files.read(mesh, mp_io::MAX_MESH_BYTES).map(drop))?);
+        }
+        let recording = Recording::new(files);
+        mp_kinds::read_robots(&recording, &problem)?;
+        let Recording { read, folders, .. } = recording;
+        let read = read.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let folders = folders.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let folders = folders.into_iter().map(|(folder, _)| folder).collect();
+        all().push((problem.robots, Arc::new([read, folders])));
+        Ok(())
+    }
+
     /// The files that the scene was read from: its own, meshes, maps, robot descriptions.
     #[must_use]
     pub fn inputs(&self) -> &[PathBuf] {

@@ -7,7 +7,7 @@ use super::verify::ReferenceArm;
 use super::wide::{Turns, WideIntervals};
 use super::{ArmError, ArmModel};
 use crate::CheckCounters;
-use crate::obstacles::{MAX_TRIANGLES, Obstacles, make_once, resolved_tolerance};
+use crate::obstacles::{MANY, MAX_TRIANGLES, Obstacles, make_once, resolved_tolerance};
 use mp_collide::reference::RefMesh;
 use mp_collide::{BodyId, CollisionMesh, Cover, PlacedCover, Query, Scene};
 use mp_cspace::{Coordinates, FloatingJoints, Interrupt, Interrupted, Joints};
@@ -172,11 +172,12 @@ impl SharedArm {
     fn obstacles(
         &self,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
+        known: Option<&Arc<Obstacles>>,
         interrupt: &Interrupt,
     ) -> Result<Arc<Obstacles>, ArmError> {
         let triangles = self.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
         let too_many = |count| ArmError::TooManyTriangles { count, max: MAX_TRIANGLES };
-        Obstacles::new(obstacles, triangles, too_many, None, interrupt)
+        Obstacles::new(obstacles, (triangles, MANY), too_many, known, interrupt)
     }
 
     /// The links that can collide with obstacles: those that move. The last ones move most, so they come first.
@@ -406,7 +407,7 @@ impl Arm {
         interrupt: &Interrupt,
     ) -> Result<Self, ArmError> {
         let robot = SharedArm::new(model, interrupt)?;
-        let obstacles = robot.obstacles(obstacles, interrupt)?;
+        let obstacles = robot.obstacles(obstacles, None, interrupt)?;
         Ok(Self {
             robot: Arc::new(robot),
             obstacles,
@@ -481,7 +482,7 @@ impl Arm {
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
         interrupt: &Interrupt,
     ) -> Result<Self, ArmError> {
-        let obstacles = self.robot.obstacles(obstacles, interrupt)?;
+        let obstacles = self.robot.obstacles(obstacles, Some(&self.obstacles), interrupt)?;
         let mut other =
             Self { obstacles, scratch: Scratch::default(), still: Arc::default(), ..self.clone() };
         other.take_counters();

@@ -228,7 +228,7 @@ where
     ) -> impl Iterator<Item = (&'a RefMesh, Isometry3<f64>)> {
         let world = if pair.other.is_none() { &*self.world } else { &[] };
         let link = pair.other.and_then(|other| self.mesh(other, placed));
-        link.into_iter().chain(world.iter().map(|(mesh, pose)| (mesh, *pose)))
+        link.into_iter().chain(world.iter().map(|(mesh, pose)| (&**mesh, *pose)))
     }
 
     /// Whether of any pair one is inside of the other, which is solid, where their surfaces are apart.

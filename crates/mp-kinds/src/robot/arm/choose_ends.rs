@@ -1,5 +1,6 @@
 //! Arms alone: the ends of a problem that has none are chosen here.
 
+use super::named::NamedValues;
 use super::read::{srdf_help, what};
 use super::self_filter::filtered;
 use super::{ArmScene, Configuration, slides, within};
@@ -23,7 +24,8 @@ impl ArmScene {
         files: &dyn Files,
         mut problem: RobotProblem,
     ) -> Result<(Self, Vec<String>), Error> {
-        let (arm, said) = Self::arm_of(files, &mut problem)?;
+        let named = NamedValues::of(&problem)?;
+        let (arm, said, of_ends) = Self::arm_of(files, &mut problem, &named)?;
         let space = arm.space()?;
         let wanted = Configuration::from(arm.kinematics().neutral());
         let none = |problem: &RobotProblem| {
@@ -97,7 +99,8 @@ impl ArmScene {
         if interrupt.raised().is_some() {
             return Err(Error::new("the search for free configurations was ended").context(what(&problem)));
         }
-        let scene = Self::with_ends_of(problem, arm, said, &interrupt)?;
+        let held = named.beside(&Self::names(&arm));
+        let scene = Self::with_ends_of(problem, arm, [said, of_ends], held, &interrupt)?;
         let notes = scene.said().into_iter().chain(chosen).collect();
         Ok((scene, notes))
     }

@@ -8,7 +8,7 @@ use mp_robot::{ArmModel, Kinematics, SrdfGroups};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The values of joints by name (rad or m).
-type Values = BTreeMap<String, f64>;
+pub(super) type Values = BTreeMap<String, f64>;
 
 /// What a problem calls by names: the groups and states of the SRDFs of its robots, and the joints that its start names.
 #[derive(Debug, Default)]
@@ -50,6 +50,12 @@ impl NamedValues {
     /// The value that the start has for a joint, if it names that.
     pub(super) fn value(&self, joint: &str) -> Option<f64> {
         self.start.get(joint).copied()
+    }
+
+    /// The values that the start has for others than the `names`: for joints that are held, and strays.
+    pub(super) fn beside(&self, names: &[String]) -> Values {
+        let others = self.start.iter().filter(|(joint, _)| !names.contains(joint));
+        others.map(|(joint, value)| (joint.clone(), *value)).collect()
     }
 
     /// The values of a state: of all robots and groups that have one of this name, where they differ those of the group that moves.

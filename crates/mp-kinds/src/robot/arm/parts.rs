@@ -41,10 +41,10 @@ impl ArmScene {
         let arm =
             Arm::new_until(&model, bodies, interrupt).map_err(|e| Error::from(e).context(what(problem)))?;
         let named = NamedValues::of(&next)?;
-        let resolved = resolve(&mut next, &named, arm.kinematics(), arm.model())?;
+        let of_ends = resolve(&mut next, &named, arm.kinematics(), arm.model())?;
         // Pairs are looked at again, and what is found is said again.
         let said = self.said.iter().filter(|note| model.notes.contains(note)).cloned();
-        let said = said.chain(arm.not_compared().iter().cloned()).chain(resolved).collect();
-        Self::with_ends_of(next, arm, said, interrupt).map(Some)
+        let said = said.chain(arm.not_compared().iter().cloned()).collect();
+        Self::with_ends_of(next, arm, [said, of_ends], self.held.clone(), interrupt).map(Some)
     }
 }

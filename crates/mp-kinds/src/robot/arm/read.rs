@@ -45,6 +45,14 @@ pub fn model_of(files: &dyn Files, problem: &RobotProblem) -> Result<ArmModel, E
     }
 }
 
+/// Reads the meshes of the robots of a problem, and makes no arm of them.
+///
+/// # Errors
+/// When a URDF or the limits of its robot are not valid, or a mesh cannot be read.
+pub fn read_robots(files: &dyn Files, problem: &RobotProblem) -> Result<(), Error> {
+    robots(problem).try_for_each(|robot| described(files, robot).map(|_| ()))
+}
+
 /// The model of the URDF of a robot, at its place and with its limits, and what a `joint_limits.yaml` has changed, in sentences.
 fn described(files: &dyn Files, robot: One<'_>) -> Result<(ArmModel, Vec<String>), Error> {
     let One { entry, described, .. } = robot;
@@ -231,22 +239,24 @@ fn wrong_model(problem: &RobotProblem, index: usize, prefix: &str, e: &ArmError)
 }
 
 impl<C: LinkedSpace> LinkedScene<C> {
-    /// The arm of a problem among its obstacles, and what decides which joints move and which links may touch. The start and the goals
-    /// of the problem that are given by names are numbers then.
-    pub(super) fn arm_of(files: &dyn Files, problem: &mut RobotProblem) -> Result<(Arm, Vec<String>), Error> {
-        let named = NamedValues::of(problem)?;
-        let (mut model, ignored) = together(files, problem, &named)?;
+    /// The arm of a problem among its obstacles; what decides which joints move and which links may touch; and what was made of ends that are
+    /// `named`, which are numbers then.
+    pub(super) fn arm_of(
+        files: &dyn Files,
+        problem: &mut RobotProblem,
+        named: &NamedValues,
+    ) -> Result<(Arm, Vec<String>, Vec<String>), Error> {
+        let (model, ignored) = together(files, problem, named)?;
         let kinematics = Kinematics::new(&model).map_err(|e| wrong_arm(problem, &e))?;
-        let resolved = resolve(problem, &named, &kinematics, &model)?;
-        model.notes.extend(resolved);
+        let of_ends = resolve(problem, named, &kinematics, &model)?;
         let model = with_start(model, &kinematics, problem).map_err(|e| wrong_arm(problem, &e))?;
         let bodies = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
         let arm = Arm::new_until(&model, bodies, &files.interrupt()).map_err(|e| wrong_arm(problem, &e))?;
-        for note in arm.notes() {
+        for note in arm.notes().chain(&of_ends) {
             tracing::info!("{}: {note}", problem.name);
         }
         let said = arm.notes().skip(ignored).cloned().collect();
-        Ok((arm, said))
+        Ok((arm, said, of_ends))
     }
 }
 
