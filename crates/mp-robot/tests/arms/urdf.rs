@@ -174,6 +174,12 @@ fn velocities_are_read_and_those_of_followers_count() {
     let model = read(&text.replace("multiplier=\"-1\"", "multiplier=\"-1.5\"")).unwrap();
     let rates = ["lift", "open", "turn", "close"].map(|joint| model.rates(joint));
     assert_eq!(rates, [1.0, 0.5, 2.5, 0.75].map(|velocity| [Some(velocity), None, None]));
+    // What follows a follower counts too: it turns 1.5 · 4 times as fast as `open`.
+    let more = "<link name=\"last\"/><joint name=\"last\" type=\"continuous\"><parent link=\"base\"/><child link=\"last\"/>\
+                <mimic joint=\"close\" multiplier=\"4\"/><limit effort=\"1\" velocity=\"1.5\"/></joint></robot>";
+    let deep =
+        read(&text.replace("multiplier=\"-1\"", "multiplier=\"-1.5\"").replace("</robot>", more)).unwrap();
+    assert_eq!(deep.rates("open"), [Some(0.25), None, None]);
     let slow = model
         .with_rate(None, Rate::Acceleration, 3.0)
         .unwrap()
