@@ -233,7 +233,7 @@ impl Default for ArmModel {
 }
 
 impl ArmModel {
-    /// The limits of velocity, acceleration and jerk of the joint of that name: its own, and those of the joints that mimic it. `None` where nothing
+    /// The limits of velocity, acceleration and jerk of the joint of that name: its own, and those of the joints that mimic it, also by way of others. `None` where nothing
     /// is known.
     #[must_use]
     pub fn rates(&self, joint: &str) -> [Option<f64>; 3] {

@@ -15,7 +15,7 @@ impl ArmModel {
     /// `disable_default_collisions` but those of `enable_collisions`. The latter must not touch even if a joint connects them,
     /// unless `disable_collisions` names them too.
     ///
-    /// Notes say which links are not of this robot, whose entries are skipped, how many `disable_collisions` name one link only, and which other elements are not read although
+    /// Notes say which links are not of this robot, whose entries are skipped, which joints of groups and states are not, how many `disable_collisions` name one link only, and which other elements are not read although
     /// they have a meaning: that the base moves by a virtual joint, unless it [floats](Self::floating), that joints are passive,
     /// and elements that are unknown.
     ///
