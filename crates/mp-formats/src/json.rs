@@ -1,6 +1,6 @@
 //! Paths in JSON, alone or in a result of planning.
 
-use crate::columns::Column;
+use crate::columns::{Column, bracketed, factor};
 use crate::error::{Error, ErrorKind};
 use crate::text::clipped;
 use serde::de::{DeserializeOwned, IgnoredAny};
@@ -59,6 +59,22 @@ pub(crate) fn names(file: &str, text: &str, wanted: &[Column]) -> Result<Option<
         return Err(error(key, format!("`{}` and `{key}` name other columns", lists[0].0))
             .expected("one list of names")
             .help("keep the list of the columns of `path`, and remove the other one"));
+    }
+    // What would be skipped, although it says what the numbers are.
+    let foreign = |(key, value): (&String, &Value)| {
+        let lower = key.to_lowercase();
+        let unit = value.as_str().filter(|_| lower.contains("unit"));
+        let converted = |unit: &str| ["m", "rad"].iter().find_map(|own| factor(Some(unit), own));
+        let other = unit.and_then(converted).is_some_and(|(times, over)| times != over);
+        (other || (lower.contains("degree") && *value == Value::Bool(true))).then(|| key.clone())
+    };
+    let with_units =
+        lists.iter().flat_map(|(_, list): &(_, Vec<String>)| list).any(|name| bracketed(name).is_some());
+    if let Some(key) = read.others.iter().find_map(foreign).filter(|_| !with_units) {
+        let message = format!("`{}` says that the numbers are not in radians and metres", clipped(&key));
+        return Err(error(&key, message)
+            .expected("\"columns\": [\"NAME [deg]\", …]")
+            .help("say the unit of each column by its name, or remove this member if it is not so"));
     }
     // A list of all columns in another order may say what the numbers are.
     let own: Vec<&str> = wanted.iter().map(|column| &*column.name).collect();

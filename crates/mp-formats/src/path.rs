@@ -431,6 +431,29 @@ mod tests {
             crate::error::check_error(&e);
             assert!(e.to_string().starts_with(words), "{e}");
         }
+        // Units that would be skipped.
+        for unit in [
+            r#""units": "deg""#,
+            r#""unit": "degrees""#,
+            r#""angle_units": "Degrees""#,
+            r#""degrees": true"#,
+            r#""units": "mm", "columns": ["elbow", "lift"]"#,
+        ] {
+            let e = read(&format!("{{{unit}, \"path\": [[1, 2]]}}")).unwrap_err();
+            crate::error::check_error(&e);
+            assert!(e.to_string().contains("not in radians and metres"), "{e}");
+        }
+        for own in [
+            r#""units": "rad""#,
+            r#""unit": "m""#,
+            r#""units": "px""#,
+            r#""degrees": false"#,
+            r#""units": ["m", "rad"]"#,
+            r#""units": "deg", "columns": ["lift [m]", "elbow [rad]"]"#,
+        ] {
+            let read = read(&format!("{{{own}, \"path\": [[1, 2]]}}")).unwrap();
+            assert_eq!(read.configurations, [[1.0, 2.0]], "{own}");
+        }
         let plain = r#"{"joints": ["lift", "elbow"], "tags": ["a", "b"], "name": "n", "path": [[1, 2]]}"#;
         assert_eq!(read(plain).unwrap().configurations, [[1.0, 2.0]]);
         // Numbers name nothing.

@@ -4,7 +4,7 @@ mod las;
 mod npy;
 mod pcd;
 
-use crate::columns::{Column, factor, find};
+use crate::columns::{Column, bracketed, factor, find};
 use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
 use crate::files::{Files, MAX_MESH_BYTES};
@@ -86,14 +86,30 @@ fn text(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Result<Vec<Point
     let counted = block.is_some();
     let mut axes = [0, 1, 2].map(|at| (at, 1.0, 1.0));
     if let (Some((line, named)), Some(first)) = (names, lines.peek()) {
-        let (given, there) = (cells(uncommented(line)).len(), cells(*first).len());
+        let words = cells(uncommented(line));
+        let (given, there) = (words.len(), cells(*first).len());
+        // A comment may have words before the names, and may be no line of names if the numbers are x y z.
+        let before = given.saturating_sub(there);
+        let first_three = |from: usize| named.map(|(at, ..)| at) == [from, from + 1, from + 2];
+        let after_colon = before.checked_sub(1).is_some_and(|last| words[last].text.ends_with(':'));
+        let apart = |word: &Token<'_>| {
+            let unit = bracketed(word.text).filter(|(name, _)| name.is_empty()).map(|(_, unit)| unit);
+            unit.and_then(|unit| factor(Some(unit), "m")).is_some_and(|(times, over)| times != over)
+        };
         if given == there {
             axes = named;
-        } else if !comment(&line) {
+        } else if !comment(&line) || words.iter().any(apart) {
             let message = format!("this line has {given} names, and the next one {there} numbers");
             return Err(text
                 .error(line, message)
-                .expected("a name for each column, such as x,y,z,intensity"));
+                .expected("a name for each column, such as x,y,z,intensity, with its unit: x[mm]"));
+        } else if after_colon && named.iter().all(|(at, ..)| *at >= before) {
+            axes = named.map(|(at, times, over)| (at - before, times, over));
+        } else if there > 3 && !first_three(0) && !first_three(before) {
+            let message = format!(
+                "this comment names x, y and z among {given} words, and the next line has {there} numbers"
+            );
+            return Err(text.error(line, message).expected("as many names as numbers, or none"));
         }
     }
     let point = |line: Token<'_>| {
@@ -239,6 +255,10 @@ mod tests {
             ("a.xyz", "// by a tool\n//R X Y Z\n9 1 2 3\n9 4.5 -1 0\n"),
             ("a.xyz", "# x y z of a scan\n1 2 3\n4.5 -1 0\n"),
             ("a.xyz", "# i x y z\n\n# done\n1 1 2 3\n2 4.5 -1 0\n"),
+            ("a.xyz", "# columns: i x y z\n1 1 2 3\n2 4.5 -1 0\n"),
+            ("a.xyz", "# Format: z y x[cm]\n3 2 100\n0 -1 450\n"),
+            ("a.xyz", "# x y z intensity (0 to 255)\n1 2 3 9\n4.5 -1 0 9\n"),
+            ("a.xyz", "# scan of x y z intensity\n1 2 3 9\n4.5 -1 0 9\n"),
             ("a.csv", "z;y;x\n3;2;1\n0;-1;4.5\n"),
             ("a.pts", "2\n1 2 3 10 0 0 0\n4.5 -1 0 1 1 1 1\n"),
             ("a.pts", " 1 \n1 2 3\n# next scan\n1\n4.5 -1 0\n0\n"),
@@ -262,6 +282,9 @@ mod tests {
             ("x y z\n1 2 3 4\n", Some(1)),
             ("x,y,x,z\n1,2,3,4\n", Some(1)),
             ("x,y,z [s]\n1,2,3\n", Some(1)),
+            ("# r g b x y z (metres)\n9 9 9 1 2 3\n", Some(1)),
+            ("# y x z\n1 2 3 4\n", Some(1)),
+            ("# x [mm] y [mm] z [mm]\n1 2 3\n", Some(1)),
             ("1 2 3\nx y z\n", Some(2)),
             ("3\n1 2 3\n", Some(1)),
             ("1\n1 2 3\n1 2 3\n", Some(1)),

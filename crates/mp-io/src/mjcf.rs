@@ -27,6 +27,8 @@ pub(crate) struct Mjcf {
     pub(crate) srdf: String,
     /// Where the lines of the URDF come from.
     pub(crate) origin: Origin,
+    /// The bodies that stay where they are when the base of the robot moves.
+    pub(crate) scenery: Vec<String>,
     /// Meshes that no file has, by the names that the URDF has for them.
     pub(crate) made: BTreeMap<String, TriMesh>,
 }
@@ -82,7 +84,7 @@ pub(crate) fn read(files: &dyn Files, file: &Path, text: String) -> Result<Mjcf,
         files.note(file, &note);
     }
     let (urdf, lines) = write::urdf(&reader);
-    let made = reader.made;
+    let (scenery, made) = (reader.scenery(), reader.made);
     drop(documents);
-    Ok(Mjcf { urdf, srdf, origin: Origin { files: sources, lines }, made })
+    Ok(Mjcf { urdf, srdf, origin: Origin { files: sources, lines }, scenery, made })
 }

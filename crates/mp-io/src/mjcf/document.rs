@@ -188,17 +188,23 @@ pub(super) struct Classes<'m> {
 
 impl<'m> Classes<'m> {
     pub(super) fn of(model: &Model<'m>) -> Result<Self, Error> {
-        // The class of the whole model is the one around itself.
-        let mut classes = Self { around: vec![0], ..Self::default() };
+        // The class of the whole model is that of its last section, which is inside of that of the section before: what a class takes over is
+        // what was said before it. The outermost is the one around itself.
+        let sections = model.sections("default");
+        let mut classes =
+            Self { around: (0..=sections.len()).map(|i| i.max(1) - 1).collect(), ..Self::default() };
+        classes.around[0] = sections.len();
+        classes.around[sections.len().min(1)] = sections.len().min(1);
         classes.names.insert("main", 0);
-        let mut pending: Vec<_> = model.sections("default").into_iter().map(|node| (node, 0, 1)).collect();
+        let mut pending: Vec<_> =
+            sections.into_iter().enumerate().map(|(i, node)| (node, i + 1, 1)).collect();
         pending.reverse();
         while let Some((node, class, depth)) = pending.pop() {
             if depth > MAX_DEPTH {
                 return Err(too_deep(model, node));
             }
             if let Some(name) = node.attribute("class") {
-                classes.names.insert(name, class);
+                classes.names.insert(name, if depth == 1 { 0 } else { class });
             }
             for inner in model.children(node) {
                 if inner.has_tag_name("default") {
@@ -227,14 +233,11 @@ impl<'m> Classes<'m> {
         })
     }
 
-    fn value(&self, mut class: usize, element: &'m str, key: &'m str) -> Option<&'m str> {
-        loop {
-            match self.values.get(&(class, element, key)) {
-                Some(value) => return Some(value),
-                None if class == 0 => return None,
-                None => class = self.around[class],
-            }
-        }
+    /// What the class and those around it say, from the inside out.
+    fn values(&self, class: usize, element: &'m str, key: &'m str) -> impl Iterator<Item = &'m str> {
+        let outer = |class: &usize| Some(self.around[*class]).filter(|around| around != class);
+        let classes = std::iter::successors(Some(class), outer);
+        classes.filter_map(move |class| self.values.get(&(class, element, key)).copied())
     }
 }
 
@@ -250,6 +253,8 @@ pub(super) struct Said<'a, 'm> {
     pub(super) node: Element<'m>,
     classes: &'a Classes<'m>,
     class: usize,
+    /// What classes call such elements.
+    kind: &'m str,
 }
 
 impl<'a, 'm> Said<'a, 'm> {
@@ -264,21 +269,42 @@ impl<'a, 'm> Said<'a, 'm> {
             Some(name) => classes.number(model, node, name)?,
             None => class,
         };
-        Ok(Self { model, node, classes, class })
+        let kind = match node.parent_element().is_some_and(|parent| parent.has_tag_name("equality")) {
+            true => "equality",
+            false => node.tag_name().name(),
+        };
+        Ok(Self { model, node, classes, class, kind })
+    }
+
+    /// What the element says, and then the classes, from the inside out.
+    fn texts(&self, key: &'m str) -> impl Iterator<Item = &'m str> {
+        self.node.attribute(key).into_iter().chain(self.classes.values(self.class, self.kind, key))
     }
 
     pub(super) fn text(&self, key: &'m str) -> Option<&'m str> {
-        self.node.attribute(key).or_else(|| self.classes.value(self.class, self.node.tag_name().name(), key))
+        self.texts(key).next()
     }
 
     /// The numbers of an attribute.
     pub(super) fn row(&self, key: &'m str) -> Result<Option<Vec<f64>>, Error> {
-        let Some(value) = self.text(key) else { return Ok(None) };
+        self.text(key).map(|value| self.numbers_in(key, value)).transpose()
+    }
+
+    /// The numbers of an attribute that may have fewer than its class, which has the others then.
+    pub(super) fn joined_row(&self, key: &'m str) -> Result<Vec<f64>, Error> {
+        let mut row = Vec::new();
+        for value in self.texts(key) {
+            row.extend(self.numbers_in(key, value)?.into_iter().skip(row.len()));
+        }
+        Ok(row)
+    }
+
+    fn numbers_in(&self, key: &str, value: &str) -> Result<Vec<f64>, Error> {
         let numbers: Option<Vec<f64>> = value
             .split_ascii_whitespace()
             .map(|word| word.parse::<f64>().ok().filter(|x| x.is_finite()))
             .collect();
-        numbers.map(Some).ok_or_else(|| self.wrong(key, "numbers, with blanks between them"))
+        numbers.ok_or_else(|| self.wrong(key, "numbers, with blanks between them"))
     }
 
     /// An attribute of `N` numbers.

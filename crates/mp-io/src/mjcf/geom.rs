@@ -164,7 +164,7 @@ impl<'m> Reader<'_, 'm> {
             _ => {}
         }
         let mut size = [0.0; 3];
-        let given = said.row("size")?.unwrap_or_default();
+        let given = said.joined_row("size")?;
         size.iter_mut().zip(&given).for_each(|(size, given)| *size = *given);
         let long = matches!(kind, Some("capsule" | "cylinder" | "box" | "ellipsoid"));
         if let Some([a, b, c, d, e, f]) = said.numbers::<6>("fromto")?.filter(|_| long) {

@@ -93,8 +93,10 @@ impl<'m> Couplings<'m> {
                 continue;
             }
             let kind = node.tag_name().name();
-            let row =
-                if kind == "joint" { said.row("polycoef")?.unwrap_or(vec![0.0, 1.0]) } else { Vec::new() };
+            let mut row =
+                if kind == "joint" { said.row("polycoef")?.unwrap_or_default() } else { Vec::new() };
+            // What is not said is as in y = x.
+            row.extend([0.0, 1.0].iter().skip(row.len()));
             match (node.attribute("joint1"), node.attribute("joint2"), row.as_slice()) {
                 (Some(one), Some(two), [constant, factor, rest @ ..])
                     if one != two && rest.iter().all(|x| *x == 0.0) =>
@@ -136,6 +138,10 @@ impl<'m> Reader<'_, 'm> {
             excluded.insert(ordered(link("body1")?, link("body2")?));
         }
         let paired = self.paired.links();
+        // The last one counts, as for all that is said twice.
+        let flags = self.model.inside("option").into_iter().filter(|node| node.has_tag_name("flag"));
+        let filter = flags.filter_map(|flag| flag.attribute("filterparent")).next_back();
+        let joined_touch = filter == Some("disable");
         let solid: Vec<usize> = (0..self.links.len()).filter(|i| !self.links[*i].shapes.is_empty()).collect();
         let (mut may_touch, mut kept_apart) = (Vec::new(), Vec::new());
         for (k, &j) in solid.iter().enumerate() {
@@ -146,11 +152,12 @@ impl<'m> Reader<'_, 'm> {
                 }
                 let touch = a.bits.touch(b.bits);
                 // MuJoCo compares what stands still with all that moves.
-                let joined = (a.weld != 0 && b.above == a.weld) || (b.weld != 0 && a.above == b.weld);
+                let linked = (a.weld != 0 && b.above == a.weld) || (b.weld != 0 && a.above == b.weld);
+                let joined = linked && !joined_touch;
                 let must_not = paired.contains(&(i, j));
                 if !must_not && (!touch || joined || excluded.contains(&(i, j))) {
                     may_touch.push((i, j));
-                } else if must_not || (i == 0 && b.above == 0) {
+                } else if must_not || linked || (i == 0 && b.above == 0) {
                     kept_apart.push((i, j));
                 }
             }

@@ -30,12 +30,13 @@ impl<'m> Compiler<'m> {
             strips: false,
             auto_limits: true,
         };
-        let mut assets = "";
         for node in model.sections("compiler") {
             let wrong = |key: &str, expected: &str| {
                 let message = format!("{key} of <compiler> is not known");
                 Err(model.error(node, message).expected(expected).help(format!("correct {key}=\"…\"")))
             };
+            // Of one element the folder of meshes counts, of several what was said last.
+            read.meshes = node.attribute("assetdir").unwrap_or(read.meshes);
             for attribute in node.attributes() {
                 match (attribute.name(), attribute.value()) {
                     ("angle", "degree") => read.angle = 1f64.to_radians(),
@@ -55,14 +56,12 @@ impl<'m> Compiler<'m> {
                         _ => return wrong("eulerseq", "three letters of xyzXYZ"),
                     },
                     ("meshdir", folder) => read.meshes = folder,
-                    ("assetdir", folder) => assets = folder,
                     ("strippath", value) => read.strips = value == "true",
                     ("autolimits", value) => read.auto_limits = value == "true",
                     _ => {}
                 }
             }
         }
-        read.meshes = if read.meshes.is_empty() { assets } else { read.meshes };
         Ok(read)
     }
 

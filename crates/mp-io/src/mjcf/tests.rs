@@ -150,6 +150,67 @@ fn turns_mean_the_same_however_they_are_given() {
     assert!(off < 1e-14, "{rpy}, {roll} {pitch} {yaw}");
 }
 
+/// As MuJoCo 4.0.0 has it: a class takes over what is said before it; a later section changes the class of the whole model, and those that come after.
+#[test]
+fn classes_take_over_what_was_said_before() {
+    let body =
+        "<worldbody><body name='b'><joint/><geom class='a'/><geom class='c'/><geom/></body></worldbody>";
+    let text = format!(
+        "<mujoco><default><geom size='1'/><default class='a'><geom type='sphere'/></default></default>\
+         <default><geom size='2'/><default class='c'/></default><default><geom size='3'/></default>{body}</mujoco>"
+    );
+    let urdf = of(&text).urdf;
+    let radii: Vec<_> = urdf.split("radius=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    assert_eq!(radii, ["1", "2", "3"]);
+    // An include between them may say that nothing of the whole model collides; what has a class does.
+    let text = text.replace("<geom size='3'/>", "<geom contype='0' conaffinity='0'/>");
+    assert_eq!(of(&text).urdf.matches("<collision>").count(), 2);
+}
+
+/// As MuJoCo 4.0.0 has it.
+#[test]
+fn what_is_not_said_is_that_of_the_class() {
+    let size = |classes: &str, geom: &str| {
+        let text = format!(
+            "<mujoco><default>{classes}</default><worldbody><body><joint/><geom {geom}/></body></worldbody></mujoco>"
+        );
+        let urdf = of(&text).urdf;
+        urdf.split("<geometry>").nth(1).unwrap().split("/>").next().unwrap().to_owned()
+    };
+    let outer = "<geom size='.5 .25 .125'/><default class='i'><geom size='1 2'/></default>";
+    assert_eq!(size(outer, "type='box' size='4'"), "<box size=\"8 0.5 0.25\"");
+    assert_eq!(size(outer, "class='i' type='box' size='4'"), "<box size=\"8 4 0.25\"");
+    assert_eq!(size(outer, "type='capsule' size='1'"), "<capsule radius=\"1\" length=\"0.5\"");
+    // Equalities of joints have the class of all equalities, and not that of joints.
+    let follows = |said: &str, equality: &str| {
+        let text = format!(
+            "<mujoco><default>{said}</default><worldbody><body><joint name='a' range='-9 9'/><geom size='1'/><body><joint name='b' range='-9 9'/>\
+             <geom size='1'/></body></body></worldbody><equality>{equality}</equality></mujoco>"
+        );
+        let urdf = of(&text).urdf;
+        urdf.split("<mimic joint=\"a\" ").nth(1).map(|rest| rest.split("/>").next().unwrap().to_owned())
+    };
+    let plain = "<joint joint1='b' joint2='a'/>";
+    let one = |offset: &str| Some(format!("multiplier=\"1\" offset=\"{offset}\""));
+    assert_eq!(follows("", plain), one("0"));
+    assert_eq!(follows("<equality active='false'/>", plain), None);
+    assert_eq!(
+        follows("<equality active='false'/>", "<joint joint1='b' joint2='a' active='true'/>"),
+        one("0")
+    );
+    assert_eq!(follows("", "<joint joint1='b' joint2='a' polycoef='0.5'/>"), one("0.5"));
+    // Folders of meshes: of one element that of meshes counts, of several what was said last.
+    let folder = |compiler: &str| {
+        let text = format!(
+            "<mujoco>{compiler}<asset><mesh file='m.stl'/></asset><worldbody><body><joint/><geom type='mesh' mesh='m'/></body></worldbody></mujoco>"
+        );
+        of(&text).urdf.split("filename=\"").nth(1).unwrap().split('"').next().unwrap().to_owned()
+    };
+    assert_eq!(folder("<compiler meshdir='m' assetdir='a'/>"), "m/m.stl");
+    assert_eq!(folder("<compiler meshdir='m'/><compiler assetdir='a'/>"), "a/m.stl");
+    assert_eq!(folder("<compiler assetdir='a'/><compiler meshdir='m'/>"), "m/m.stl");
+}
+
 #[test]
 fn bits_and_bodies_say_what_may_touch() {
     let text = "<mujoco><worldbody><geom name='w' size='1'/><body name='a'><geom size='1'/>\
@@ -176,6 +237,10 @@ fn bits_and_bodies_say_what_may_touch() {
         pairs("<pair geom1='w' geom2='d'/><exclude body1='world' body2='c'/>"),
         ["worldc", "bc", "ad", "bd", "cd", "worldb", "worldd"]
     );
+    // Where parents are not left out: b and c are kept apart.
+    let strict = text.replace("<worldbody>", "<option><flag filterparent='disable'/></option><worldbody>");
+    let srdf = of(&strict.replace("PAIR", "")).srdf;
+    assert!(srdf.contains("<enable_collisions link1=\"b\" link2=\"c\""), "{srdf}");
 }
 
 #[test]

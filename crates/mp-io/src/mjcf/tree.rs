@@ -8,7 +8,7 @@ use mp_formats::error::Error;
 use mp_formats::files::Files;
 use mp_geom::TriMesh;
 use mp_stop::Interrupt;
-use nalgebra::{Isometry3, Translation3, Unit, Vector3};
+use nalgebra::{Isometry3, Point3, Translation3, Unit, Vector3};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// The most bodies and joints.
@@ -26,6 +26,8 @@ pub(super) struct MjLink<'m> {
     /// The first link of the rigid body that it is of, and that of the rigid body that the joints of its body are on.
     pub(super) weld: usize,
     pub(super) above: usize,
+    /// Whether it moves freely in MuJoCo.
+    free: bool,
 }
 
 /// How a joint moves.
@@ -166,6 +168,23 @@ impl<'a, 'm> Reader<'a, 'm> {
         Said::of(self.model, self.classes, at.node, at.class)
     }
 
+    /// The bodies with shapes that stay where they are when the base of the robot moves: the world, and if bodies with joints move freely, all that does
+    /// not hang on one of these.
+    pub(super) fn scenery(&self) -> Vec<String> {
+        let mut above = vec![None; self.links.len()];
+        self.joints.iter().for_each(|joint| above[joint.child] = Some(joint.parent));
+        let upward = |link: usize| std::iter::successors(Some(link), |link| above[*link]);
+        let moving = self.joints.iter().filter(|joint| joint.moves != Moves::Fixed);
+        let bases: BTreeSet<usize> =
+            moving.flat_map(|joint| upward(joint.child)).filter(|link| self.links[*link].free).collect();
+        let stays = |link: &usize| match bases.is_empty() {
+            true => *link == 0,
+            false => !upward(*link).any(|link| bases.contains(&link)),
+        };
+        let seen = (0..self.links.len()).filter(|link| !self.links[*link].shapes.is_empty());
+        seen.filter(stays).map(|link| self.links[link].name.clone()).collect()
+    }
+
     /// Notes that something is not read.
     pub(super) fn left_out(&mut self, what: &'static str, name: &str) {
         self.left_out.entry(what).or_default().insert(name.to_owned());
@@ -222,7 +241,7 @@ impl<'a, 'm> Reader<'a, 'm> {
         let (weld, above) =
             above.map_or((number, number), |above| (self.links[above].weld, self.links[above].above));
         let (name, shapes, bits) = (name.to_owned(), Vec::new(), Bits::default());
-        self.links.push(MjLink { name, node, shapes, bits, weld, above });
+        self.links.push(MjLink { name, node, shapes, bits, weld, above, free: false });
         Ok(number)
     }
 
@@ -294,7 +313,8 @@ impl<'a, 'm> Reader<'a, 'm> {
             };
             let name =
                 inner.node.attribute("name").map_or_else(|| format!("{body}/joint{}", i + 1), str::to_owned);
-            let place = Translation3::from(Vector3::from(said.numbers::<3>("pos")?.unwrap_or_default()));
+            let place = inner.pose * Point3::from(said.numbers::<3>("pos")?.unwrap_or_default());
+            let place = Translation3::from(place.coords);
             let turns = kind != "slide";
             let (axis, reference, range) = match kind {
                 "free" => {
@@ -315,6 +335,7 @@ impl<'a, 'm> Reader<'a, 'm> {
                     let axis = Vector3::from(said.numbers::<3>("axis")?.unwrap_or([0.0, 0.0, 1.0]));
                     let axis = Unit::try_new(axis, 1e-10)
                         .ok_or_else(|| said.wrong("axis", "a vector that has a direction"))?;
+                    let axis = inner.pose.rotation * axis;
                     let unit = if turns { self.compiler.angle } else { 1.0 };
                     (Some(axis), unit * said.number("ref", 0.0)?, self.range(&said, turns)?)
                 }
@@ -369,6 +390,7 @@ impl<'a, 'm> Reader<'a, 'm> {
             }
         }
         let child = self.add_link(node, body, Some(from))?;
+        self.links[child].free = matches!(self.numbers.last(), Some(Numbers::Free)) && !all.is_empty();
         let (name, axis) = (format!("{body}/fixed"), Vector3::z());
         let joint = MjJoint {
             name,

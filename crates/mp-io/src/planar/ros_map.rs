@@ -138,8 +138,9 @@ impl RosMap {
         interrupt: &mp_stop::Interrupt,
     ) -> Result<Option<Polygon>, mp_geom::planar::PolygonError> {
         let occupied = |brightness: f32| {
-            let v = f64::from(brightness) / 255.0;
-            let probability = if self.negate { v } else { 1.0 - v };
+            // In one division: a pixel may be at a threshold.
+            let probability =
+                if self.negate { f64::from(brightness) } else { 255.0 - f64::from(brightness) } / 255.0;
             if unknown_is_free {
                 probability > self.occupied_thresh
             } else {

@@ -18,6 +18,25 @@ fn folder(problem: &str) -> (tempfile::TempDir, std::path::PathBuf) {
     (dir, path)
 }
 
+/// 51 of 255 are a fifth, which is not below a fifth: 1 - 204/255 would be, by a rounding.
+#[test]
+fn a_pixel_at_the_threshold_is_not_free() {
+    let map = |threshold: &str, negate: u8| {
+        let yaml = format!(
+            "image: m.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: {negate}\nfree_thresh: {threshold}\n"
+        );
+        RosMap::parse("m.yaml", yaml.as_bytes()).unwrap()
+    };
+    for (value, threshold, negate) in
+        [(204, "0.2", 0), (153, "0.4", 0), (102, "0.6", 0), (51, "0.2", 1), (102, "0.4", 1)]
+    {
+        let grid =
+            mp_formats::grid::GridMap::parse("m.pgm", &[b"P5 1 1 255\n", &[value][..]].concat()).unwrap();
+        let obstacle = map(threshold, negate).outline(&grid, false, &mp_stop::Interrupt::never()).unwrap();
+        assert!(obstacle.is_some(), "{value} {threshold}");
+    }
+}
+
 #[test]
 fn a_world_of_polygons() {
     let (_dir, path) = folder(GOOD);

@@ -119,6 +119,18 @@ fn described(files: &dyn Files, folder: &Path, file: &RobotFile, i: usize) -> Re
     let mut mjcf = None;
     if mjcf::is_mjcf(&urdf) {
         let read = mjcf::read(files, &urdf_file, urdf)?;
+        if let (Some(first), true) =
+            (read.scenery.first(), entry.floating.is_some() || entry.planar.is_some())
+        {
+            let others = read.scenery.len() - 1;
+            let more = if others == 0 { String::new() } else { format!(" and {others} more") };
+            let first = mp_formats::text::clipped(first);
+            let message = format!(
+                "bodies of the model that stand around the robot would move with the base: \"{first}\"{more}"
+            );
+            let help = "name a model of the robot alone, and make obstacles of what stands around it";
+            return Err(file.fault(RobotFilePart::Robot(i, RobotPart::Base), &message, help));
+        }
         urdf = read.urdf.clone();
         mjcf = Some(read);
     }

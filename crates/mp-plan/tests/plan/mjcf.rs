@@ -67,6 +67,40 @@ fn bodies_are_where_mujoco_has_them() {
     }
 }
 
+/// Frames around joints turn and move their axes. The pose is that of MuJoCo 4.0.0.
+#[test]
+fn joints_in_frames_are_where_mujoco_has_them() {
+    let model = r#"<mujoco>
+  <worldbody>
+    <body name="arm" pos="0.1 0 0.5">
+      <frame pos="0.1 0.2 0" euler="0 30 90">
+        <joint name="swing" axis="0 1 1" pos="0 0 .1" ref="30"/>
+        <frame axisangle="1 0 0 40"><joint name="slide" type="slide" axis="1 0 0" range="-.5 .5"/></frame>
+      </frame>
+      <geom size=".05"/>
+    </body>
+  </worldbody>
+  <keyframe><key name="home" qpos="0.7 -0.2"/></keyframe>
+</mujoco>"#;
+    let robot = &problem(model).robots[0];
+    let mesh = |name: &str| -> Result<TriMesh, String> { robot.mesh_from(&Disk, name) };
+    let kinematics = Kinematics::new(&ArmModel::from_urdf(&robot.urdf, mesh).unwrap()).unwrap();
+    let poses = kinematics.link_poses(&[0.7, -0.2]).unwrap();
+    let pose = poses[kinematics.links().position(|name| name == "arm").unwrap()];
+    let place = [0.170_311_086_684_892_64, -0.223_152_322_410_576_06, 0.518_839_798_896_171_6];
+    let rows = [
+        [0.985_521_142_864_872_6, -0.169_508_187_663_838_63, -0.003_879_598_076_683_035_5],
+        [0.169_508_187_663_838_63, 0.984_481_607_693_268, 0.045_419_581_994_988_766],
+        [-0.003_879_598_076_683_035_5, -0.045_419_581_994_988_766, 0.998_960_464_828_395_5],
+    ];
+    let turn = pose.rotation.to_rotation_matrix();
+    for k in 0..3 {
+        let off = (0..3).map(|i| (turn[(k, i)] - rows[k][i]).abs()).fold(0.0, f64::max);
+        // A few roundings of numbers about 1.
+        assert!(off < 2e-15 && (pose.translation.vector[k] - place[k]).abs() < 2e-15, "{pose}");
+    }
+}
+
 #[test]
 fn a_model_is_planned_for_from_its_keyframe() {
     let folder = tempfile::tempdir().unwrap();
@@ -85,6 +119,49 @@ fn a_model_is_planned_for_from_its_keyframe() {
     std::fs::write(folder.path().join("two.srdf"), pairs.srdf(false)).unwrap();
     let notes = Scene::load(&file).unwrap().notes().join("\n");
     assert!(notes.contains("two.srdf was found"), "{notes}");
+}
+
+/// A base that moves takes the robot along, and not the walls of its model, which would be free of themselves.
+#[test]
+fn what_stands_in_the_world_does_not_move_with_the_base() {
+    let load = |base: &str, world: &str, free: &str| {
+        let model = format!(
+            "<mujoco><worldbody>{world}<body name='trunk' pos='0 0 1'>{free}<geom size='.1'/><body name='leg'><joint axis='0 1 0'/>\
+             <geom type='capsule' size='.02' fromto='0 0 0 0 0 .5'/></body></body></worldbody></mujoco>"
+        );
+        let bounds = if base == "planar" { "[[-1, -1], [1, 1]]" } else { "[[-1, -1, -1], [1, 1, 1]]" };
+        let problem = format!(
+            "[robot]\nmjcf = \"m.xml\"\nbase = \"{base}\"\nbounds = {bounds}\n[motion]\nstart = []\ngoal = []\n"
+        );
+        let at = move |name: &str| match name {
+            "p.toml" => Some(problem.clone()),
+            _ => (name == "m.xml").then(|| model.clone()),
+        };
+        RobotProblem::load_from(&InMemory(at), Path::new("p.toml"))
+    };
+    let (wall, table) =
+        ("<geom type='box' size='1 .1 1'/>", "<body name='table'><geom type='box' size='1 1 .1'/></body>");
+    let ball = "<body name='ball' pos='0 1 0'><freejoint/><geom size='.1'/></body>";
+    for base in ["planar", "floating"] {
+        for (world, free, named) in [
+            ("", "", None),
+            ("", "<freejoint/>", None),
+            ("<geom type='plane' size='1 1 1'/>", "<freejoint/>", None),
+            (wall, "", Some("\"world\"")),
+            (wall, "<freejoint/>", Some("\"world\"")),
+            // Without a body that moves freely it may be what the robot stands on.
+            (table, "", None),
+            (table, "<freejoint/>", Some("\"table\"")),
+            (ball, "<freejoint/>", Some("\"ball\"")),
+        ] {
+            let read = load(base, world, free);
+            assert_eq!(read.is_err(), named.is_some(), "{world} {free}");
+            if let (Err(e), Some(named)) = (read, named) {
+                let help = e.remedy().is_some_and(|help| help.contains("obstacles"));
+                assert!(e.line() == Some(3) && help && e.to_string().contains(named), "{e}");
+            }
+        }
+    }
 }
 
 /// What is found wrong later is said of the model, and so is what to do about links that touch.

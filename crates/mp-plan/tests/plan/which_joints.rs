@@ -179,6 +179,32 @@ fn states_of_several_groups_are_one() {
     );
 }
 
+/// A start that could be either of two is none.
+#[test]
+fn states_that_differ_are_an_error_unless_the_group_says_which_counts() {
+    let other = "<group_state name=\"home\" group=\"both\"><joint name=\"shoulder\" value=\"1.5\"/><joint name=\"finger\" value=\"0.05\"/></group_state></robot>";
+    let srdf = SRDF.replace("</robot>", other);
+    let load = |robot: &str, start: &str, goal: &str| {
+        let problem = format!(
+            "[robot]\nurdf = \"r.urdf\"\nsrdf = \"r.srdf\"\n{robot}\n[motion]\nstart = {start}\ngoal = {goal}\n"
+        );
+        let at = |name: &str| match name {
+            "p.toml" => Some(problem.clone()),
+            "r.urdf" => Some(URDF.to_owned()),
+            _ => (name == "r.srdf").then(|| srdf.clone()),
+        };
+        Scene::load_from(&InMemory(at), Path::new("p.toml"))
+    };
+    let error = load("", "\"home\"", "[0.2, 0, 0, 0]").unwrap_err().report();
+    for words in ["p.toml:6:", "`shoulder`", "0.8", "\"arm\"", "1.5", "\"both\"", "group = "] {
+        assert!(error.contains(words), "{error}");
+    }
+    let error = load("", "[0.2, 0, 0, 0]", "\"home\"").unwrap_err().report();
+    assert!(error.contains("p.toml:7:"), "{error}");
+    assert_eq!(load("group = \"arm\"", "\"home\"", "[0, 0]").unwrap().start(), [0.8, 0.2]);
+    assert_eq!(load("group = \"both\"", "\"home\"", "[0, 0, 0]").unwrap().start(), [1.5, 0.2, 0.05]);
+}
+
 #[test]
 fn a_base_in_the_plane_drives_around_what_is_in_the_way() {
     let robot = "base = \"planar\"\nbounds = [[-3, -3], [3, 3]]\ngroup = \"arm\"";
@@ -233,6 +259,16 @@ fn what_cannot_be_is_an_error_at_its_place() {
             "hold = { raise = 0.2 }",
             "start = [0, 0, 0]\ngoal = { raise = 0.3, elbow = 1 }",
             ["p.toml:7:", "`raise`", "held at 0.2"],
+        ),
+        (
+            "hold = { raise = 0.2 }",
+            "start = { raise = 0.3, elbow = 1 }\ngoal = [0, 0, 0]",
+            ["p.toml:6:", "`raise` at 0.3", "held at 0.2"],
+        ),
+        (
+            "limits = { raise = [0.2, 0.2] }",
+            "start = { numbers = [0, 0, 0], held = { raise = 0.3 } }\ngoal = [0, 0, 0]",
+            ["p.toml:6:", "`raise` at 0.3", "held at 0.2"],
         ),
         ("", "start = 5\ngoal = [0.2, 0, 0, 0]", ["p.toml:6:", "a start is", "\"home\""]),
         ("base = \"planar\"", motion, ["p.toml:4:", "without bounds", "[[x, y], [x, y]]"]),

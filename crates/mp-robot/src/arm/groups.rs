@@ -1,7 +1,7 @@
 //! Groups of joints, and states with names, from SRDF text.
 
 use super::xml::{Text, some};
-use super::{ArmModel, JointKind, UrdfError};
+use super::{ArmModel, Joint, JointKind, UrdfError};
 use roxmltree::Node;
 use std::collections::BTreeSet;
 
@@ -69,11 +69,20 @@ impl SrdfGroups {
                     let mut values = Vec::new();
                     for joint in node.children().filter(|child| child.has_tag_name("joint")) {
                         let (name, value) = (named(&joint, "name")?, named(&joint, "value")?);
-                        // Joints with several numbers have several values here.
-                        let mut numbers = value.split_ascii_whitespace().map(str::parse::<f64>);
-                        match (numbers.next(), numbers.next()) {
-                            (Some(Ok(number)), None) if number.is_finite() => values.push((name, number)),
-                            (Some(Ok(_)), Some(_)) => {}
+                        let numbers = value.split_ascii_whitespace().map(str::parse::<f64>);
+                        match numbers
+                            .collect::<Result<Vec<_>, _>>()
+                            .ok()
+                            .filter(|all| all.iter().all(|x| x.is_finite()))
+                            .as_deref()
+                        {
+                            Some(&[number]) => values.push((name, number)),
+                            // A joint that is planar.
+                            Some(&[x, y, theta]) => {
+                                values.extend(planar_parts(&name).into_iter().zip([x, y, theta]));
+                            }
+                            // Joints that float move the whole robot.
+                            Some([_, _, ..]) => {}
                             _ => return Err(text.error(&joint, format!("\"{value}\" is no finite number"))),
                         }
                     }
@@ -121,11 +130,12 @@ impl SrdfGroups {
             for member in members {
                 match member {
                     Member::Group(inner) => left.push(inner),
-                    Member::Joint(joint) => match model.joints.iter().position(|j| j.name == *joint) {
-                        Some(i) => drop(joints.insert(i)),
-                        // The joint between the robot and the world is not in a URDF.
-                        None => continue,
-                    },
+                    // The joint between the robot and the world is not in a URDF.
+                    Member::Joint(joint) => {
+                        let parts = planar_parts(joint);
+                        let own = |(_, j): &(usize, &Joint)| j.name == *joint || parts.contains(&j.name);
+                        joints.extend(model.joints.iter().enumerate().filter(own).map(|(i, _)| i));
+                    }
                     Member::Link(link) => joints.extend(above(model, link, name)?),
                     Member::Chain { base, tip } => joints.extend(chain(model, base, tip, name)?),
                 }
@@ -141,6 +151,11 @@ impl SrdfGroups {
             false => Ok(found),
         }
     }
+}
+
+/// The joints that are read in place of a planar one.
+pub(super) fn planar_parts(joint: &str) -> [String; 3] {
+    ["x", "y", "theta"].map(|part| format!("{joint}/{part}"))
 }
 
 /// The joint above a link, if it has one.
@@ -187,7 +202,7 @@ fn all_above(model: &ArmModel, link: &str, group: &str) -> Result<Vec<usize>, St
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Joint, Link};
+    use crate::Link;
 
     /// base -lift- torso, on which hang -left- l and -elbow- inner -right- r.
     #[test]

@@ -233,16 +233,22 @@ impl Default for ArmModel {
 }
 
 impl ArmModel {
-    /// The limits of velocity, acceleration and jerk of the joint of that name: its own, and those of the joints that mimic it. `None` where nothing
+    /// The limits of velocity, acceleration and jerk of the joint of that name: its own, and those of the joints that mimic it, also by way of others. `None` where nothing
     /// is known.
     #[must_use]
     pub fn rates(&self, joint: &str) -> [Option<f64>; 3] {
-        let own = self.joints.iter().filter(|j| j.name == joint).map(|j| (j, 1.0));
-        let followers = self.joints.iter().filter_map(|j| {
-            let mimic = j.mimic.as_ref().filter(|mimic| mimic.joint == joint && mimic.multiplier != 0.0)?;
-            Some((j, mimic.multiplier.abs()))
-        });
-        own.chain(followers).fold([None; 3], |least, (joint, factor)| {
+        let mut moved: Vec<_> = self.joints.iter().filter(|j| j.name == joint).map(|j| (j, 1.0)).collect();
+        let mut next = 0;
+        // Those that follow it, and those that follow these; where they follow each other, which is no robot, each as often as there are joints.
+        while let Some(&(leader, factor)) = moved.get(next).filter(|_| next <= self.joints.len()) {
+            moved.extend(self.joints.iter().filter_map(|j| {
+                let mimic = j.mimic.as_ref()?;
+                (mimic.joint == leader.name && mimic.multiplier != 0.0)
+                    .then_some((j, factor * mimic.multiplier.abs()))
+            }));
+            next += 1;
+        }
+        moved.into_iter().fold([None; 3], |least, (joint, factor)| {
             let all = [joint.max_velocity, joint.max_acceleration, joint.max_jerk]
                 .map(|limit| limit.map(|limit| limit / factor));
             std::array::from_fn(|i| match (least[i], all[i]) {

@@ -20,9 +20,7 @@ const SAMPLES: usize = 100;
 
 /// The frame of the base of the robot, which may stand, float, or move in the plane by the first three joints.
 pub(super) fn base_frame(model: &ArmModel, kinematics: &Kinematics) -> usize {
-    let planar = model.joints.len() >= PLANAR_NUMBERS.len()
-        && model.joints.iter().zip(PLANAR_NUMBERS).all(|(joint, name)| joint.name == name);
-    let last = model.joints.get(PLANAR_NUMBERS.len() - 1).filter(|_| planar);
+    let last = model.joints.get(PLANAR_NUMBERS.len() - 1).filter(|_| model.has_planar_base());
     let body = last.and_then(|joint| kinematics.attached.iter().find(|link| link.name == joint.child));
     body.map_or(0, |link| link.frame)
 }

@@ -34,6 +34,12 @@ impl ArmModel {
         Ok(self)
     }
 
+    /// Whether the first joints are those of a [base in the plane](Self::with_planar_base).
+    pub(super) fn has_planar_base(&self) -> bool {
+        self.joints.len() >= PLANAR_NUMBERS.len()
+            && self.joints.iter().zip(PLANAR_NUMBERS).all(|(joint, name)| joint.name == name)
+    }
+
     /// A name that no link has: `name`, with lines after it where it is taken.
     fn unused(&self, name: &str) -> String {
         let mut name = name.to_owned();

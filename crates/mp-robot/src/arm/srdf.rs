@@ -1,5 +1,6 @@
 //! Pairs of links that may touch, from SRDF text.
 
+use super::groups::planar_parts;
 use super::xml::{Text, some};
 use super::{ArmModel, UrdfError};
 use roxmltree::Node;
@@ -14,7 +15,7 @@ impl ArmModel {
     /// `disable_default_collisions` but those of `enable_collisions`. The latter must not touch even if a joint connects them,
     /// unless `disable_collisions` names them too.
     ///
-    /// Notes say which links are not of this robot, whose entries are skipped, how many `disable_collisions` name one link only, and which other elements are not read although
+    /// Notes say which links are not of this robot, whose entries are skipped, which joints of groups and states are not, how many `disable_collisions` name one link only, and which other elements are not read although
     /// they have a meaning: that the base moves by a virtual joint, unless it [floats](Self::floating), that joints are passive,
     /// and elements that are unknown.
     ///
@@ -73,6 +74,21 @@ impl ArmModel {
             let absent: Vec<_> = absent.into_iter().collect();
             self.notes.push(format!("the SRDF names links that this robot does not have: {}", some(&absent)));
         }
+        let of_world: BTreeSet<_> = elements("virtual_joint").filter_map(|n| n.attribute("name")).collect();
+        let has = |name: &str| {
+            let parts = planar_parts(name);
+            of_world.contains(name) || self.joints.iter().any(|j| j.name == name || parts.contains(&j.name))
+        };
+        let members = elements("group").chain(elements("group_state")).flat_map(|node| node.children());
+        let members = members.filter(|node| node.has_tag_name("joint")).filter_map(|n| n.attribute("name"));
+        let absent: BTreeSet<_> = members.map(str::trim).filter(|name| !has(name)).collect();
+        if !absent.is_empty() {
+            let absent: Vec<_> = absent.into_iter().map(str::to_owned).collect();
+            self.notes.push(format!(
+                "groups or states of the SRDF name joints that this robot does not have: {}",
+                some(&absent)
+            ));
+        }
         let passive =
             elements("passive_joint").map(|node| named(&node, "name")).collect::<Result<Vec<_>, _>>()?;
         if !passive.is_empty() {
@@ -87,7 +103,8 @@ impl ArmModel {
             self.notes.push(format!("elements of the SRDF that are not read: {}", some(&unknown)));
         }
         let free = |n: &Node<'_, '_>| matches!(n.attribute("type"), Some("floating" | "planar"));
-        if self.floating.is_none() && elements("virtual_joint").any(|n| free(&n)) {
+        let stands = self.floating.is_none() && !self.has_planar_base();
+        if stands && elements("virtual_joint").any(|n| free(&n)) {
             self.notes.push(
                 "the SRDF has a virtual joint by which the base moves, but the base stands still: write `base = \"floating\"` \
                  and `bounds` in the robot problem if it shall move freely"

@@ -3,6 +3,7 @@
 mod read;
 
 use super::compile::MAX_LENGTH;
+use super::groups::planar_parts;
 use super::xml::{Text, some};
 use super::{ArmModel, Joint, JointKind, Link, UrdfError};
 use mp_cspace::Interrupt;
@@ -199,8 +200,7 @@ impl ArmModel {
     /// Adds three joints in place of one that is planar, called as MoveIt calls them: `NAME/x` and `NAME/y`, which slide in the plane of
     /// its frame, and `NAME/theta`, which turns about z. A URDF has no limits for them: see [`PLANAR_ROOM`].
     fn add_planar(&mut self, name: &str, [parent, child]: [&str; 2], origin: Isometry3<f64>) {
-        let part = |axis: &str| format!("{name}/{axis}");
-        let (x, y, turn) = (part("x"), part("y"), part("theta"));
+        let [x, y, turn] = planar_parts(name);
         let slide = JointKind::Prismatic { low: -PLANAR_ROOM, high: PLANAR_ROOM };
         self.links.extend([Link::new(&x), Link::new(&y)]);
         self.joints.extend([

@@ -3,7 +3,7 @@
 use crate::common::cases_of;
 use mp_cspace::{Configuration, JointRange};
 use mp_geom::{TriMesh, primitives::cuboid};
-use mp_robot::{Arm, ArmModel, JointKind, Kinematics, Rate, UrdfError};
+use mp_robot::{Arm, ArmModel, JointKind, Kinematics, Rate, SrdfGroups, UrdfError};
 use nalgebra::{Point3, Vector3};
 
 const GRIPPER: &str = r#"<?xml version="1.0"?>
@@ -174,6 +174,12 @@ fn velocities_are_read_and_those_of_followers_count() {
     let model = read(&text.replace("multiplier=\"-1\"", "multiplier=\"-1.5\"")).unwrap();
     let rates = ["lift", "open", "turn", "close"].map(|joint| model.rates(joint));
     assert_eq!(rates, [1.0, 0.5, 2.5, 0.75].map(|velocity| [Some(velocity), None, None]));
+    // What follows a follower counts too: it turns 1.5 · 4 times as fast as `open`.
+    let more = "<link name=\"last\"/><joint name=\"last\" type=\"continuous\"><parent link=\"base\"/><child link=\"last\"/>\
+                <mimic joint=\"close\" multiplier=\"4\"/><limit effort=\"1\" velocity=\"1.5\"/></joint></robot>";
+    let deep =
+        read(&text.replace("multiplier=\"-1\"", "multiplier=\"-1.5\"").replace("</robot>", more)).unwrap();
+    assert_eq!(deep.rates("open"), [Some(0.25), None, None]);
     let slow = model
         .with_rate(None, Rate::Acceleration, 3.0)
         .unwrap()
@@ -358,6 +364,34 @@ fn planar_joints_slide_and_turn() {
     let [x, y] = [Vector3::new(-2.0, 1.0, 0.5), Vector3::new(-1.0, 0.0, 0.0)];
     assert!((poses[at].translation.vector - x).norm() < 1e-12, "{}", poses[at]);
     assert!((poses[at].rotation * Vector3::x() - y).norm() < 1e-12, "{}", poses[at]);
+}
+
+/// An SRDF knows a planar joint by its own name: in groups, and with three numbers in states. Joints that are not there are said.
+#[test]
+fn planar_joints_in_an_srdf() {
+    let model = read(
+        "<robot name='r'><link name='world'/><link name='base'/><link name='arm'/><joint name='drive' type='planar'><parent link='world'/>\
+         <child link='base'/></joint><joint name='turn' type='continuous'><parent link='base'/><child link='arm'/></joint></robot>",
+    )
+    .unwrap();
+    let srdf = "<robot name='r'><virtual_joint name='odom' type='fixed' parent_frame='map' child_link='world'/>\
+                <group name='all'><joint name='odom'/><joint name='drive'/><joint name='turn'/><joint name='lost'/></group>\
+                <group_state name='home' group='all'><joint name='drive' value='1 2 0.5'/><joint name='turn' value='3'/><joint name='gone' value='4'/>\
+                </group_state></robot>";
+    let groups = SrdfGroups::from_srdf(srdf).unwrap();
+    assert_eq!(groups.joints(&model, "all").unwrap(), ["drive/x", "drive/y", "drive/theta", "turn"]);
+    let values: Vec<_> =
+        groups.states()[0].values.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+    let drive = [("drive/x", 1.0), ("drive/y", 2.0), ("drive/theta", 0.5)];
+    assert_eq!(values, [&drive[..], &[("turn", 3.0), ("gone", 4.0)]].concat());
+    let notes = model.clone().with_srdf(srdf).unwrap().notes;
+    assert!(notes.iter().any(|note| note.ends_with("does not have: \"gone\", \"lost\"")), "{notes:?}");
+    // A virtual joint is said where the base stands still.
+    let moves = srdf.replace("type='fixed'", "type='planar'");
+    let said = |model: ArmModel| {
+        model.with_srdf(&moves).unwrap().notes.iter().any(|note| note.contains("the base stands still"))
+    };
+    assert!(said(model.clone()) && !said(model.with_planar_base([-1.0; 2], [1.0; 2]).unwrap()));
 }
 
 /// Humanoids and drones hang on the world by a joint that floats.

@@ -1,6 +1,7 @@
 //! Ends of a problem that are given by names: of joints, or of states of the SRDF.
 
 use super::{LinkedSpace, read};
+use crate::robot::HAIR;
 use crate::{Error, count};
 use mp_cspace::FloatingJoints;
 use mp_io::{GoalEntry, GoalPart, MovingJoints, NamedStart, RobotFilePart, RobotProblem, StartEntry};
@@ -70,8 +71,24 @@ impl NamedValues {
                 |state| matches!(moving, Some(MovingJoints::Group(group)) if *group == state.group),
             );
             found |= !states.is_empty();
-            let all = states.into_iter().flat_map(|state| &state.values);
-            values.extend(all.map(|(joint, value)| (format!("{prefix}{joint}"), *value)));
+            let mut of: BTreeMap<&str, (&str, f64)> = BTreeMap::new();
+            for state in states {
+                let own = state.group.as_str();
+                let counts = matches!(moving, Some(MovingJoints::Group(group)) if *group == own);
+                for (joint, value) in &state.values {
+                    match of.insert(joint, (own, *value)) {
+                        Some((other, before)) if !counts && other != own && before != *value => {
+                            let message = format!(
+                                "the state \"{name}\" has {before} for `{joint}` in the group \"{other}\", and {value} in the group \"{own}\""
+                            );
+                            let help = "say which joints move by `group = \"…\"` in [robot], whose state counts then, or give numbers";
+                            return Err(problem.file.fault(part, &message, help).into());
+                        }
+                        _ => {}
+                    }
+                }
+            }
+            values.extend(of.into_iter().map(|(joint, (_, value))| (format!("{prefix}{joint}"), value)));
         }
         if found {
             return Ok(values);
@@ -118,12 +135,24 @@ pub(super) fn resolve(
         }
     };
     if let Some(NamedStart::Joints(values)) = problem.file.start.by_name() {
-        let held =
-            |name: &str| model.joints.iter().any(|joint| joint.name == name && joint.kind.held().is_some());
-        if let Some(stray) = values.keys().find(|joint| !names.contains(&joint.as_str()) && !held(joint)) {
+        let held = |name: &str| {
+            model.joints.iter().find(|joint| joint.name == name).and_then(|joint| joint.kind.held())
+        };
+        if let Some(stray) =
+            values.keys().find(|joint| !names.contains(&joint.as_str()) && held(joint).is_none())
+        {
             let message = format!("the start names `{stray}`, which the robot does not have");
             let help = format!("in order: {}", names.join(", "));
             return Err(problem.file.fault(RobotFilePart::Start, &message, &help).into());
+        }
+        let elsewhere = |(joint, value): (&String, &f64)| {
+            let at = held(joint).filter(|at| (value - at).abs() > HAIR)?;
+            Some((joint.clone(), *value, at))
+        };
+        if let Some((joint, value, at)) = values.iter().find_map(elsewhere) {
+            let message = format!("the start has `{joint}` at {value}, and it is held at {at}");
+            let help = "leave it out of the start, or hold it there: by `hold` or equal `limits` in [robot]";
+            return Err(problem.file.fault(RobotFilePart::Start, &message, help).into());
         }
     }
     problem.file.start = StartEntry::All(match &problem.file.start {
