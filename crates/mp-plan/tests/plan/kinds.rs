@@ -120,6 +120,21 @@ fn ends_can_be_moved() {
     assert_eq!((rows[0][..2].to_vec(), rows[rows.len() - 1][..2].to_vec()), (vec![3.0, 1.0], vec![9.0, 9.0]));
 }
 
+/// The lines of a file say nothing about other ends than its own.
+#[test]
+fn ends_that_were_moved_have_no_place_in_the_file() {
+    for (name, goal) in [("rrs-corridor", vec![-99.0, 0.0, 0.0]), ("crossing", vec![3.0, 99.0, 0.0])] {
+        let scene = Scene::find(name).unwrap();
+        let width = scene.start().len();
+        let error =
+            scene.with_ends(&scene.start(), &[goal[..width].to_vec()]).unwrap().check_ends().unwrap_err();
+        assert!(
+            error.to_string().contains("the goal is") && !error.to_string().contains(".toml:"),
+            "{error}"
+        );
+    }
+}
+
 /// Each goal of a set is reached when it is the only one that can be.
 #[test]
 fn any_goal_of_a_set_will_do() {
