@@ -21,7 +21,7 @@ class Progress:
     iterations, nodes, motions, rejected : int
         Counts of the search.
     length : float or None
-        The length of the best path found, in the metric.
+        The length of the best path found, in the metric of the space.
     """
 
     stage: str

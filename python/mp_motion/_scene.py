@@ -820,14 +820,15 @@ class Scene:
         progress: bool | Callable[[Progress], object] = False,
         cancel: Cancel | None = None,
     ) -> list[Report]:
-        """Plan several routes, each of which is somewhere far from the others, the shortest first.
+        """Plan several routes, each of which is found somewhere far from the others, the shortest as found first.
 
         Parameters
         ----------
         count : int
             How many, at most.
         apart : float or str
-            How far apart, in the metric, or as a share of the extent of the space.
+            How far apart, in the metric, or as a share of the extent of the space. Shortened they may be nearer: one that
+            would come within half of that of another stays as it was found.
         options : Options, optional
             How to plan; the planner must be ``cyclic-rrt``, which is taken unless another is named, or build roadmaps
             with cycles.

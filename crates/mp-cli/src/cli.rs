@@ -89,11 +89,11 @@ pub(crate) struct Plan {
     #[arg(value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
     /// Which planner. With `or-` before its name, independent runs of it race on all threads; with `restart-`, it
-    /// starts again when it takes too long [default: auto, a portfolio that begins with rrt-connect; rrt among obstacles that
-    /// move; rsrt for robots that move by inputs].
+    /// starts again when it takes too long [default: auto, which takes turns and begins with rrt-connect; rrt among obstacles that
+    /// move; rsrt for robots that move by inputs; rrt-connect where --portfolio would have many of auto; cyclic-rrt with --routes].
     #[arg(long, value_name = "NAME", value_parser = PlannerName)]
     pub(crate) planner: Option<String>,
-    /// How far apart two configurations are (`default`: ‖Δp‖ + 0.5·angle, in metres and radians).
+    /// How far apart two configurations are (`default`, of a body: ‖Δp‖ + 0.5·angle, in metres and radians).
     #[arg(long, value_name = "NAME", default_value = "default",
           value_parser = PossibleValuesParser::new(metrics()).map(|name| metric(&name)))]
     pub(crate) metric: MetricName,
@@ -134,8 +134,8 @@ pub(crate) struct Plan {
     /// cycles, such as prm-star.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
     pub(crate) routes: Option<u16>,
-    /// How far apart routes are: each is somewhere farther from all routes before it. A distance of the metric, or a
-    /// percentage of the extent of the space.
+    /// How far apart routes are found: each is somewhere farther from all routes before it. Shortened they may be nearer. A distance of the
+    /// metric, or a percentage of the extent of the space.
     #[arg(long, value_name = "DISTANCE", default_value = "10%", requires = "routes", value_parser = parsed::<Length>)]
     pub(crate) apart: Length,
     /// Race this many runs with random numbers of their own: the one with the fewest iterations wins, whichever is ready first. For
@@ -168,12 +168,14 @@ pub(crate) struct Plan {
     /// Set a parameter of the planner.
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// A request in JSON, as a file or `-`: planner, settings, budgets and everything else. Other options are
-    /// ignored, except --out, --picture, --certificate, --json, --runs and --threads.
-    #[arg(long, value_name = "FILE")]
+    /// A request in JSON, as a file or `-`: planner, settings, seed, budgets and what else it may say, in place of the options for
+    /// these, which cannot stand beside it.
+    #[arg(long, value_name = "FILE",
+          conflicts_with_all = ["planner", "metric", "seed", "time", "iterations", "step", "motion", "clearance", "objective",
+                                "set", "roadmap", "report", "no_shorten", "hybridize", "relax"])]
     pub(crate) request: Option<PathBuf>,
     /// The file of a roadmap: it is loaded when it exists, and the grown roadmap is saved there. For planners that
-    /// build roadmaps; scene, robot, metric and clearance must stay the same.
+    /// build roadmaps, and rigid bodies; scene, robot, metric and clearance must stay the same.
     #[arg(long, value_name = "FILE")]
     pub(crate) roadmap: Option<PathBuf>,
     /// The file for the path, in the format of its ending: `.txt`, `.json` or `.csv`; `-` for text on standard

@@ -13,8 +13,8 @@ use crate::{interrupt, memory};
 use mp_batch::{Portfolio, PortfolioOptions};
 use mp_io::ProblemChanges;
 use mp_plan::{
-    Cancel, Control, Error, FilmKind, Finish, Interrupt, PathFileKind, PathRows, RelaxField, Report, Request,
-    Runs, Scene, StopReason, StoppedBy, in_parallel, make_folder,
+    Cancel, Control, Error, FilmKind, Finish, Interrupt, Pace, PathFileKind, PathRows, RelaxField, Report,
+    Request, Runs, Scene, StopReason, StoppedBy, in_parallel, make_folder,
 };
 use mp_view::GrownTrees;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     if let Some(memory) = args.memory {
         memory::limit(&cancel, memory)?;
     }
-    let request = request(args)?;
+    let (request, names_planner) = request(args)?;
     let named = match args.scenes.as_slice() {
         [] => vec![PathBuf::from(SAMPLE)],
         given => given.to_vec(),
@@ -48,8 +48,8 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     refuse_several(args, &named)?;
     let changes = args.changes.of_problem();
     let (scenes, not_loaded) = load(&named, &changes, &request, &cancel)?;
-    let requests =
-        scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
+    let requests = scenes.iter().map(|scene| request_for(scene, args, &request, names_planner));
+    let requests = requests.collect::<Result<Vec<_>, _>>()?;
     let jobs: Vec<(usize, u64)> =
         (0..scenes.len()).flat_map(|i| (request.seed..=last).map(move |seed| (i, seed))).collect();
     let to_standard = args.out.as_deref().is_some_and(is_standard);
@@ -121,6 +121,11 @@ fn refuse_several(args: &Plan, named: &[PathBuf]) -> Result<(), Error> {
     }
     if !args.changes.of_problem().is_empty() && named.len() > 1 {
         return Err(Error::new("--from, --to and --obstacle are for one scene").help("name one scene"));
+    }
+    if args.trajectory.is_none() && args.pace.pace() != Pace::default() {
+        let message =
+            "--velocity-scale, --acceleration-scale, --jerk-scale and --deviation are of a trajectory";
+        return Err(Error::new(message).help("name its file by --trajectory, or leave them out"));
     }
     if args.routes.is_some() && args.out.as_deref().is_some_and(is_standard) {
         return Err(Error::new("--out -: there is a file for each route").help("name a file"));

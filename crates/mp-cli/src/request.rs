@@ -4,10 +4,15 @@ use crate::cli::Plan;
 use crate::input::{is_standard, standard_input};
 use mp_plan::{Budget, Error, Finish, Request, Scene};
 
-/// The request for a scene: with the planner that suits it, if the command line names none.
-pub(crate) fn request_for(scene: &Scene, args: &Plan, request: &Request) -> Result<Request, Error> {
+/// The request for a scene: with the planner that suits it, unless `names_planner`.
+pub(crate) fn request_for(
+    scene: &Scene,
+    args: &Plan,
+    request: &Request,
+    names_planner: bool,
+) -> Result<Request, Error> {
     let mut request = request.clone();
-    if args.planner.is_none() && args.request.is_none() {
+    if !names_planner {
         let planner = if args.routes.is_some() {
             "cyclic-rrt"
         } else if args.portfolio.is_some() {
@@ -21,19 +26,33 @@ pub(crate) fn request_for(scene: &Scene, args: &Plan, request: &Request) -> Resu
     Ok(request)
 }
 
-/// The request that the command line makes.
-pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
+/// The request that the command line makes, and whether it names a planner. If it does not, each scene has its own, with which it is
+/// checked then.
+pub(crate) fn request(args: &Plan) -> Result<(Request, bool), Error> {
     let single = args.scenes.len() <= 1 && args.runs == 1;
     let threads = if single { usize::from(args.threads) } else { 1 };
-    if let Some(file) = &args.request {
-        let text = match is_standard(file) {
-            true => standard_input()?.into_bytes(),
-            false => mp_io::read_text(file)?.1,
-        };
-        let request = Request { threads, ..Request::parse(file, &text)? };
-        request.check()?;
-        return Ok(request);
+    let (request, names_planner) = match &args.request {
+        Some(file) => {
+            let text = match is_standard(file) {
+                true => standard_input()?.into_bytes(),
+                false => mp_io::read_text(file)?.1,
+            };
+            let request = Request { threads, ..Request::parse(file, &text)? };
+            let members = serde_json::from_slice::<serde_json::Value>(&text).unwrap_or_default();
+            (request, members.get("planner").is_some())
+        }
+        None => (of_options(args, threads)?, args.planner.is_some()),
+    };
+    if request.roadmap.is_some() && !single {
+        return Err(Error::new("--roadmap needs a single run").help("name one scene, without --runs"));
     }
+    if names_planner {
+        request.check()?;
+    }
+    Ok((request, names_planner))
+}
+
+fn of_options(args: &Plan, threads: usize) -> Result<Request, Error> {
     let mut request = Request {
         planner: args.planner.clone().unwrap_or(Request::default().planner),
         metric: args.metric,
@@ -58,13 +77,5 @@ pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
     if let Some(step) = args.step {
         request = request.set("step", step);
     }
-    request = request.set_each(&args.set)?;
-    if request.roadmap.is_some() && !single {
-        return Err(Error::new("--roadmap needs a single run").help("name one scene, without --runs"));
-    }
-    // Without a planner, each scene has its own, which is checked then.
-    if args.planner.is_some() {
-        request.check()?;
-    }
-    Ok(request)
+    request.set_each(&args.set)
 }

@@ -63,7 +63,11 @@ pub(crate) fn summary(report: &Report) -> String {
     if let Some(clearance) = report.clearance {
         let text = match clearance.is_finite() {
             true if report.clearance_kept > 0.0 => {
-                format!("at least {} m, {} m asked for", at_least(clearance), brief(report.clearance_kept))
+                format!(
+                    "at least {} m, {} m from obstacles asked for",
+                    at_least(clearance),
+                    brief(report.clearance_kept)
+                )
             }
             true => format!("at least {} m", at_least(clearance)),
             false => "there is nothing to hit".to_owned(),
@@ -153,10 +157,11 @@ pub(crate) fn table(reports: &[Report]) -> String {
     const HEAD: [&str; 9] =
         ["scene", "seed", "", "time", "iterations", "nodes", "checks", "length", "clearance"];
     let cell = |v: Option<f64>| v.map_or_else(|| "–".to_owned(), brief);
+    let bound = |v: Option<f64>| v.map_or_else(|| "–".to_owned(), at_least);
     let count = |v: Option<f64>| v.map_or_else(|| "–".to_owned(), |v| grouped(v.round() as u64));
     let mut rows = vec![HEAD.map(str::to_owned)];
     for m in medians(reports) {
-        for r in reports.iter().filter(|r| r.scene == m.scene) {
+        for r in reports.iter().filter(|r| (&r.scene, &r.scene_file) == (&m.scene, &m.scene_file)) {
             rows.push([
                 r.scene.clone(),
                 r.seed.to_string(),
@@ -166,7 +171,7 @@ pub(crate) fn table(reports: &[Report]) -> String {
                 grouped(r.nodes as u64),
                 grouped(r.collision_checks),
                 cell(r.path_length),
-                cell(r.clearance),
+                bound(r.clearance),
             ]);
         }
         rows.push([
@@ -178,7 +183,7 @@ pub(crate) fn table(reports: &[Report]) -> String {
             count(m.nodes),
             count(m.collision_checks),
             cell(m.path_length),
-            cell(m.clearance),
+            bound(m.clearance),
         ]);
     }
     let width = |k: usize| rows.iter().map(|r| r[k].chars().count()).max().unwrap_or(0);
@@ -264,6 +269,20 @@ mod tests {
             not.starts_with("easy: not solved in 60.0 s by rrt-connect, seed 2: the time is up"),
             "{not}"
         );
+    }
+
+    #[test]
+    fn scenes_of_one_name_are_apart() {
+        let other = Report { scene_file: Some("other/easy.env".into()), ..report("easy", 1, Some(0.3)) };
+        let table = super::table(&[report("easy", 1, Some(0.1)), other]);
+        let times = ["0.10 s", "0.10 s", "0.30 s", "0.30 s"];
+        assert!(table.lines().skip(1).zip(times).all(|(line, time)| line.contains(time)), "{table}");
+    }
+
+    #[test]
+    fn clearances_in_tables_are_not_rounded_up() {
+        let run = Report { clearance: Some(0.0096), ..report("easy", 1, Some(0.1)) };
+        assert_eq!(super::table(&[run]).matches("0.009\n").count(), 1);
     }
 
     #[test]

@@ -80,6 +80,14 @@ pub enum Demand {
     OneWay,
     /// To move by the inputs of a system only.
     Inputs,
+    /// To plan without [hints](crate::ObstacleKnowledge::hints) of obstacles.
+    NoHints,
+    /// To plan without a [clearance gradient](crate::ObstacleKnowledge::gradient).
+    NoGradient,
+    /// To plan with neither a clearance gradient nor an [`Objective`](crate::Objective).
+    NoCost,
+    /// To plan without the [geometry](crate::ObstacleKnowledge::geometry) of obstacles.
+    NoGeometry,
 }
 
 /// Values of parameters by name.

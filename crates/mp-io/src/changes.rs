@@ -195,7 +195,8 @@ pub(crate) fn help_of(option: &str) -> &'static str {
             "write a shape and its place, such as \"box = [0.4, 0.4, 0.02], at = [0.5, 0, 0.3]\": docs/formats/shapes.md"
         }
         _ => {
-            "write numbers, the name of a state, or a goal, such as \"link = 'hand', position = [0.4, 0, 0.3]\""
+            "write numbers, or of a goal what stands in its table, such as \"x = 1.5, y = [-1, 1]\"; for robots made of links also the \
+             name of a state, or \"link = 'hand', position = [0.4, 0, 0.3]\""
         }
     }
 }

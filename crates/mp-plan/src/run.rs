@@ -25,7 +25,6 @@ use crate::run::roadmaps::{Due, GrowingFile, RoadmapPlanner};
 use crate::run::search::Search;
 use crate::watch::Events;
 use crate::{Control, Error, Report, Request, Robot, Stage, StoppedBy};
-use mp_cspace::erased::AnySpace;
 use mp_cspace::{Configuration, Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
 use mp_tree::improve;
 use std::fmt;
@@ -193,7 +192,7 @@ pub(crate) const PLANNING_PART: f64 = 0.9;
 struct Found {
     /// The last path.
     best: Option<Path<Configuration>>,
-    /// The first path of an anytime planner: when it was found, and its length in the metric.
+    /// The first path of an anytime planner: when it was found, and its length in the metric of the space.
     first: Option<(Duration, f64, Path<Configuration>)>,
     /// Whether the run is over, and why it stopped; no reason when it has a path that it does not improve.
     over: Option<Option<StopReason>>,
@@ -282,7 +281,7 @@ impl<'p, 'k> RobotRun<'p, 'k> {
             prepared.watched(control, |stop, events| {
                 let mut stop = Pausing { stop, pause, paused: false, whole: Progress::default() };
                 let time = || spent + clock.now().saturating_sub(began);
-                search_on(made.planner(), found, first_only, &prepared.space, rng, &mut stop, events, &time);
+                search_on(made.planner(), found, first_only, prepared.kind, rng, &mut stop, events, &time);
                 *whole = stop.cut_short().map(|_| stop.whole);
                 if stop.paused && whole.is_none() {
                     found.over = None;
@@ -420,7 +419,7 @@ fn search_on(
     planner: &mut dyn Planner<Configuration, Edge = ()>,
     found: &mut Found,
     first_only: bool,
-    space: &AnySpace<'_, Configuration>,
+    kind: &dyn Robot,
     rng: &mut Rng,
     stop: &mut dyn Stop,
     events: &mut Events<'_, '_, '_>,
@@ -428,7 +427,8 @@ fn search_on(
 ) {
     let (adapter, rows, tells) = (events.adapter, events.rows, found.tells);
     let report = |path: &Path<Configuration>| {
-        let length = path.length(space);
+        // In the metric of the space, as other lengths of the report, whatever the search measures by.
+        let length = path.length(&kind.any_space());
         if let (true, Some(watch)) = (tells, &mut *adapter.watch.borrow_mut()) {
             watch.found(length, &|| rows(path));
         }

@@ -6,6 +6,7 @@ use crate::finish::check::check;
 use crate::finish::finish_given;
 use crate::path::{state, states};
 use crate::run::plan::plan;
+use crate::run::planners::{demands, reason_against};
 use crate::run::prepare;
 #[cfg(feature = "roadmaps")]
 use crate::run::{regions::RegionalWork, scene_roadmap::SceneRoadmap};
@@ -15,7 +16,7 @@ use crate::{
     ObjectiveName, PathFileKind, PathFormat, PathRows, PreparedRun, RelaxField, Report, Request, Robot,
     SceneFiles, Sweep, Track, Verdict,
 };
-use mp_cspace::registry::{PlannerInfo, Settings};
+use mp_cspace::registry::Settings;
 use mp_cspace::{Configuration, Interrupt, Interrupted, Rng, Space, Validity};
 use mp_geom::{Aabb, TriMesh, short_six_from_pose};
 use mp_io::{DocumentShape, SceneDocument};
@@ -395,12 +396,12 @@ impl Scene {
         self.robot.default_planner()
     }
 
-    /// The names of the planners that cannot plan for the robot, each with the reason.
+    /// The names of the planners that cannot plan for the robot, each with the reason. An [objective](Request::objective) may help one of them,
+    /// which its reason says.
     #[must_use]
     pub fn planners_that_cannot(&self) -> Vec<(&'static str, &'static str)> {
-        let demands = self.robot.demands();
-        let against = |info: &PlannerInfo| demands.iter().find_map(|demand| info.reason_against(*demand));
-        crate::planners().filter_map(|info| Some((info.name, against(info)?))).collect()
+        let demands = demands(&*self.robot, false);
+        crate::planners().filter_map(|info| Some((info.name, reason_against(info, &demands)?))).collect()
     }
 
     /// How many of the bodies without a pose, the last of them, are obstacles that move.

@@ -25,7 +25,7 @@ pub trait Watch {
     fn stage(&mut self, _stage: Stage) {}
     /// The counts so far; at most ten times a second.
     fn progress(&mut self, _progress: &Progress) {}
-    /// A path of this length in the metric was found. An anytime planner finds several. `rows` makes its configurations as they would
+    /// A path of this length in the metric of the space was found. An anytime planner finds several. `rows` makes its configurations as they would
     /// be written: verified, but not finished where the planner has verified them. A path that is proved only after the search is
     /// reported when it is finished.
     fn found(&mut self, _length: f64, _rows: &dyn Fn() -> Vec<Vec<f64>>) {}

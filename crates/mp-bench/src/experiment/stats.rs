@@ -143,14 +143,15 @@ pub(crate) fn seconds(v: f64) -> String {
 /// How many of `n` sorted values to leave out on either side, so that those left hold the median with
 /// 95%: the largest k with P(Bin(n, ½) < k) ≤ 2.5%, zero if there is none.
 fn outside(n: usize) -> usize {
-    let (mut term, mut sum, mut k) = (mp_math::powi(0.5, n as i32), 0.0, 0);
+    // By logarithms: of more than a thousand values the first terms are less than any number.
+    let (mut term, mut sum, mut k) = (-mp_math::ln(2.0) * n as f64, 0.0, 0);
     while k < n / 2 {
-        sum += term;
+        sum += mp_math::exp(term);
         if sum > 0.025 {
             break;
         }
         k += 1;
-        term *= (n - k + 1) as f64 / k as f64;
+        term += mp_math::ln((n - k + 1) as f64 / k as f64);
     }
     // Fewer than k values are below the median with a probability of at most 2.5%: the k-th from each end,
     // counted from 1, is the limit.
@@ -177,6 +178,8 @@ mod tests {
         let values: Vec<f64> = (1..=10).map(f64::from).collect();
         assert_eq!(Median::of(values), Some(Median { median: 5.5, low: 2.0, high: 9.0 }));
         assert_eq!([5, 6, 8, 9, 12, 20].map(outside), [0, 0, 0, 1, 2, 5]);
+        // By the exact integers.
+        assert_eq!([100, 1000, 1075, 2000].map(outside), [39, 468, 504, 955]);
         assert_eq!(Median::of([]), None);
     }
 

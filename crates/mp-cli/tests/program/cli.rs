@@ -226,6 +226,12 @@ fn planners_that_improve_use_the_budget_and_say_what_it_gave() {
         let number = |field: &str| report[field].as_f64().unwrap();
         assert!(number("path_length") < number("first_length"), "{report}");
         assert!(number("first_s") < number("time_s"), "{report}");
+        // Whatever the search measures by, all lengths are in the metric of the space.
+        let other = mp(&dir, &[&args[..], &["--metric", "manhattan"]].concat()).json();
+        dir.write("first.json", format!("{{\"path\": {}}}", other["first_path"]));
+        let first = mp(&dir, &["check", "plane.env", "first.json", "--json"]).json();
+        let [said, is] = [&other["first_length"], &first["path_length"]].map(|x| x.as_f64().unwrap());
+        assert!((said - is).abs() < 1e-9 * is, "{other}");
         let short = mp(&dir, &[&args[..], &["--set", "near=0"]].concat());
         assert!(short.code == 2 && short.stderr.contains("near is 0"), "{short:?}");
     }

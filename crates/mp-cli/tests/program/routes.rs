@@ -74,6 +74,7 @@ fn what_cannot_be_is_said() {
         (&["--runs", "2"], "--routes needs a single run"),
         (&["--out", "-"], "a file for each route"),
         (&["--apart", "0"], "above zero"),
+        (&["--relax"], "not relaxed"),
     ] {
         let run = mp(&dir, &[&["plan", "block.toml", "--routes", "2"], args].concat());
         assert!(run.code == 2 && run.stderr.contains(words), "{words}: {run:?}");

@@ -95,6 +95,18 @@ fn a_request_is_plain_data() {
         ["plan", "window.env", "--planner", "rrt", "--seed", "3", "--step", "10%", "--no-shorten", "--json"];
     assert_eq!(mp(&dir, &args).json()["fingerprint"], report["fingerprint"]);
     assert_eq!(fed(&dir, &["plan", "window.env", "--request", "-", "--json"], text).code, 0);
+    // What a request says, options cannot.
+    for option in [["--clearance", "0.1"], ["--seed", "4"], ["--time", "9"], ["--report", "clearance"]] {
+        let both = mp(&dir, &[&["plan", "window.env", "--request", "r.json"][..], &option].concat());
+        assert!(both.code == 2 && both.stderr.contains(option[0]), "{both:?}");
+    }
+    // Without a planner, the scene has its own.
+    dir.write("car.json", r#"{"settings": {"inputs": "5"}, "budget": {"iterations": 9}}"#);
+    let car = mp(&dir, &["plan", "parking", "--request", "car.json", "--json"]);
+    assert_eq!((car.code, &car.json()["planner"]), (1, &"rsrt".into()), "{car:?}");
+    dir.write("map.json", r#"{"planner": "prm", "roadmap": "map"}"#);
+    let several = mp(&dir, &["plan", "window.env", "--request", "map.json", "--runs", "2"]);
+    assert!(several.code == 2 && several.stderr.contains("needs a single run"), "{several:?}");
     let bad = fed(&dir, &["plan", "window.env", "--request", "-"], r#"{"planer": "rrt"}"#);
     assert!(bad.code == 2 && bad.stderr.contains("planer"), "{bad:?}");
 }

@@ -62,6 +62,8 @@ fn a_trajectory_is_planned_timed_and_checked_in_every_format() {
     );
     let all = rows(&slow.stdout);
     assert!((all[all.len() - 1][0] - 3.0).abs() < 0.02, "{all:?}");
+    let without = mp(&dir, &["plan", "crane.toml", "--velocity-scale", "0.5"]);
+    assert!(without.code == 2 && without.stderr.contains("by --trajectory"), "{without:?}");
     let sampled = mp(&dir, &["time", "crane.toml", "p.csv", "--rate", "100"]);
     assert_eq!(sampled.code, 0, "{sampled:?}");
     let all = rows(&sampled.stdout);

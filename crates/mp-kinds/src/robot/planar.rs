@@ -273,6 +273,8 @@ pub struct PlanarScene<B: PlanarBody> {
     goals: Vec<Configuration>,
     /// What the goals ask of each number, if they are not configurations.
     goal_parts: Option<Vec<Vec<GoalPart>>>,
+    /// Whether start and goals are others than those of the file, about which its lines say nothing.
+    moved: bool,
 }
 
 impl<B: PlanarBody> PlanarScene<B> {
@@ -305,7 +307,7 @@ impl<B: PlanarBody> PlanarScene<B> {
             Some(rows) => goals = rows.iter().map(|row| at::<B>(row, bounds)).collect(),
             None => goal_parts = Some(parts),
         }
-        let mut scene = Self { problem, robot, space, start, goals, goal_parts };
+        let mut scene = Self { problem, robot, space, start, goals, goal_parts, moved: false };
         if let Some(parts) = &scene.goal_parts {
             scene.goals = examples(&scene, parts);
         }
@@ -412,7 +414,7 @@ impl<B: PlanarBody> TypedMotion for PlanarScene<B> {
         scene.problem.file.start = start.to_vec();
         let exactly = |q: &Configuration| q.iter().copied().map(GoalPart::Exactly).collect();
         scene.problem.file.goals = goals.iter().map(exactly).collect();
-        (scene.start, scene.goals, scene.goal_parts) = (start, goals, None);
+        (scene.start, scene.goals, scene.goal_parts, scene.moved) = (start, goals, None, true);
         Ok(scene)
     }
     fn checker(&self) -> &Self::Checker {
@@ -544,8 +546,11 @@ impl<B: PlanarBody> Description for PlanarScene<B> {
             End::Start => PlanarPart::Start,
             End::Goal(i) => PlanarPart::Goal(i),
         };
-        Error::from(self.problem.file.fault(part, &message, &help))
-            .context(format!("cannot plan in {}", self.problem.name))
+        let error = match self.moved {
+            true => Error::new(message).help(help),
+            false => self.problem.file.fault(part, &message, &help).into(),
+        };
+        error.context(format!("cannot plan in {}", self.problem.name))
     }
     fn motion_model(&self) -> Result<MotionModel, Error> {
         let yaw = (B::COLUMNS.len() > 2).then_some(2);

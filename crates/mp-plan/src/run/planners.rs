@@ -3,9 +3,11 @@
 use super::{auto, roadmaps};
 use crate::{Error, ErrorKind, RelaxField, Request, Robot};
 use mp_cspace::registry::{PlannerInfo, Settings};
-use mp_cspace::{BuildError, Demand};
+use mp_cspace::{BuildError, Demand, Interrupt};
+use mp_kinds::Counting;
 use mp_tree::algo::rrs::FIELD;
 use std::fmt;
+use std::sync::atomic::AtomicU64;
 
 /// All planners by name: `auto`, planners of trees, planners of roadmaps. The name of a planner of trees may have the prefix `or-` or `restart-`,
 /// and those of some also `shared-`: see [`meta_planners`].
@@ -23,6 +25,32 @@ pub fn roadmap_planners() -> &'static [PlannerInfo] {
 #[must_use]
 pub fn meta_planners() -> &'static [mp_tree::MetaPlanner] {
     mp_tree::meta_planners()
+}
+
+const BY_INPUTS: &str = "it moves robots by inputs, and the file says nothing of those of this robot";
+
+/// What planners must be able to do to plan for the robot: what its motions demand, and to do without what is not known of its obstacles.
+/// `costs` says whether its states cost something even so.
+pub(crate) fn demands(kind: &dyn Robot, costs: bool) -> Vec<Demand> {
+    let unused = AtomicU64::new(0);
+    let known = kind.any_obstacles(&Counting::new(&unused, Interrupt::never()));
+    let unknown = [
+        (known.hints.is_none(), Demand::NoHints),
+        (known.gradient.is_none(), Demand::NoGradient),
+        (known.gradient.is_none() && !costs, Demand::NoCost),
+        (known.geometry.is_none(), Demand::NoGeometry),
+    ];
+    let unknown = unknown.into_iter().filter_map(|(missing, demand)| missing.then_some(demand));
+    kind.demands().iter().copied().chain(unknown).collect()
+}
+
+/// Why the planner cannot plan for a robot with these demands; `None` if it can.
+pub(crate) fn reason_against(info: &PlannerInfo, demands: &[Demand]) -> Option<&'static str> {
+    let by_inputs = || {
+        let one_way = demands.contains(&Demand::OneWay) && !demands.contains(&Demand::Inputs);
+        (one_way && info.can(Demand::Inputs)).then_some(BY_INPUTS)
+    };
+    demands.iter().find_map(|demand| info.reason_against(*demand)).or_else(by_inputs)
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -79,33 +107,21 @@ impl PlannerKind {
     }
 
     /// Refuses a robot that demands what the planner cannot do.
-    pub(crate) fn meets(&self, kind: &dyn Robot) -> Result<(), Error> {
+    pub(crate) fn meets(&self, kind: &dyn Robot, demands: &[Demand]) -> Result<(), Error> {
         let info = match self {
             Self::Auto => &auto::INFO,
             Self::Tree(spec) => spec.planner,
             Self::Roadmap(info) => info,
         };
-        let demands = kind.demands();
-        let by_inputs = demands.contains(&Demand::Inputs);
-        let able = |info: &&PlannerInfo| {
-            demands.iter().all(|demand| info.can(*demand)) && (by_inputs || !info.can(Demand::Inputs))
+        let Some(reason) = reason_against(info, demands) else { return Ok(()) };
+        let able = planners().filter(|info| reason_against(info, demands).is_none());
+        let names = able.map(|info| info.name).collect::<Vec<_>>().join(", ");
+        let say = match reason == BY_INPUTS {
+            true => "say how the robot moves, such as `kind = \"velocities\"`, or ",
+            false => "",
         };
-        let names = || planners().filter(able).map(|info| info.name).collect::<Vec<_>>().join(", ");
-        let cannot = |why: &str| {
-            Error::new(format!("{self} cannot plan for {}: {why}", kind.name())).of_kind(ErrorKind::Planner)
-        };
-        let Some(reason) = demands.iter().find_map(|demand| info.reason_against(*demand)) else {
-            if demands.is_empty() || able(&info) {
-                return Ok(());
-            }
-            let why = "it moves robots by inputs, and the file says nothing of those of this robot";
-            let help = format!(
-                "say how the robot moves, such as `kind = \"velocities\"`, or take one of: {}",
-                names()
-            );
-            return Err(cannot(why).help(help));
-        };
-        Err(cannot(reason).help(format!("take one of: {}", names())))
+        let message = format!("{self} cannot plan for {}: {reason}", kind.name());
+        Err(Error::new(message).help(format!("{say}take one of: {names}")).of_kind(ErrorKind::Planner))
     }
 
     pub(crate) fn is_roadmap(&self) -> bool {

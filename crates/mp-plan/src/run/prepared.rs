@@ -1,7 +1,7 @@
 //! A request prepared for a robot: the space, an index, a verifier, and the problems, planners and stops made from them.
 
 use crate::run::auto;
-use crate::run::planners::PlannerKind;
+use crate::run::planners::{PlannerKind, demands};
 use crate::run::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
 use crate::watch::{Events, WatchAdapter};
 use crate::{Control, Error, Measured, MotionValidator, Request, Robot};
@@ -66,12 +66,14 @@ impl<'k> Prepared<'k> {
         let planner = PlannerKind::new(&request.planner)?;
         crate::finish::relax::check(kind, &request)?;
         request.objective.check(kind)?;
+        planner.meets(kind, &demands(kind, !request.objective.is_length()))?;
         let state = Arc::<RunState>::default();
         let mut prepared = Self::of(kind, request, &planner, &state)?;
         if planner == PlannerKind::Auto {
             let members = auto::requests(&prepared.request).into_iter();
             let members = members.map(|(member, share)| {
                 let planner = PlannerKind::new(&member.planner)?;
+                planner.meets(kind, kind.demands())?;
                 Ok::<_, Error>((Self::of(kind, Cow::Owned(member), &planner, &state)?, share))
             });
             // What the robot cannot do is left out.
@@ -86,7 +88,6 @@ impl<'k> Prepared<'k> {
         planner: &PlannerKind,
         state: &Arc<RunState>,
     ) -> Result<Self, Error> {
-        planner.meets(kind)?;
         let Measured { space, index } = kind.measured(request.metric)?;
         let field = match planner.field(&request)? {
             None => None,

@@ -7,7 +7,7 @@ use crate::run::planners::PlannerKind;
 use crate::run::prepared::Prepared;
 use crate::run::search::Search;
 use crate::run::{PLANNING_PART, Pausing};
-use crate::{Control, Error, Finish, Length, PathRows, Report, Request, Robot, Stage, planners};
+use crate::{Control, Error, ErrorKind, Finish, Length, PathRows, Report, Request, Robot, Stage, planners};
 use mp_cspace::{
     Configuration, Interrupt, Iterations, Outcome, Path, Planner, Progress, Rng, Space, Stop, StopReason,
     Workers,
@@ -40,6 +40,10 @@ pub(crate) fn routes(
 ) -> Result<Vec<Report>, Error> {
     let _span = tracing::info_span!("routes", scene = kind.name(), planner = %request.planner).entered();
     request.check_single("a list of routes")?;
+    if request.finish == Finish::Relax {
+        let error = Error::new("routes are shortened or left as they were found, not relaxed");
+        return Err(error.help("leave relaxing out, and relax one path").of_kind(ErrorKind::Request));
+    }
     let planner = PlannerKind::new(&request.planner)?;
     let spent = control.time_if_limited(request);
     let prepared = Prepared::new(kind, request)?;

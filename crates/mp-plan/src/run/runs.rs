@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Medians {
     /// The name of the scene that these runs are of.
     pub scene: String,
+    /// Its file: scenes of several folders may have one name.
+    pub scene_file: Option<String>,
     /// Runs made, solved or not.
     pub runs: usize,
     /// How many found a path.
@@ -48,6 +50,12 @@ impl Runs {
     }
 }
 
+impl Report {
+    fn is_of_scene_of(&self, other: &Self) -> bool {
+        (&self.scene, &self.scene_file) == (&other.scene, &other.scene_file)
+    }
+}
+
 /// The middle value, or the mean of the two middle values of an even number of values. `None` if there are no values.
 #[must_use]
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
@@ -64,18 +72,20 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
 /// The medians of each scene, in order of appearance.
 #[must_use]
 pub fn medians(reports: &[Report]) -> Vec<Medians> {
-    let mut scenes: Vec<&str> = Vec::new();
+    let mut scenes: Vec<&Report> = Vec::new();
     for r in reports {
-        if !scenes.contains(&r.scene.as_str()) {
-            scenes.push(&r.scene);
+        if !scenes.iter().any(|first| first.is_of_scene_of(r)) {
+            scenes.push(r);
         }
     }
-    let of = |scene: &str| {
-        let runs = reports.iter().filter(|r| r.scene == scene).count();
-        let solved: Vec<&Report> = reports.iter().filter(|r| r.scene == scene && r.solved).collect();
+    let of = |first: &Report| {
+        let all: Vec<&Report> = reports.iter().filter(|r| r.is_of_scene_of(first)).collect();
+        let (runs, scene, scene_file) = (all.len(), first.scene.clone(), first.scene_file.clone());
+        let solved: Vec<&Report> = all.into_iter().filter(|r| r.solved).collect();
         let over = |f: fn(&Report) -> Option<f64>| median(solved.iter().filter_map(|r| f(r)));
         Medians {
-            scene: scene.to_owned(),
+            scene,
+            scene_file,
             runs,
             solved: solved.len(),
             time_s: over(|r| Some(r.time_s)),

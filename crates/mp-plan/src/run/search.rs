@@ -28,7 +28,7 @@ pub struct Search {
     pub proved: bool,
     /// Whether a path was found that could not be verified by then.
     pub found_unverified: bool,
-    /// For an anytime planner: when it found its first path, the length of that path in the metric, and the path.
+    /// For an anytime planner: when it found its first path, the length of that path in the metric of the space, and the path.
     pub first: Option<(Duration, f64, Path<Configuration>)>,
     /// For a planner that builds a roadmap: the numbers of edges and of connected components.
     pub map: Option<[usize; 2]>,

@@ -120,6 +120,43 @@ fn ends_can_be_moved() {
     assert_eq!((rows[0][..2].to_vec(), rows[rows.len() - 1][..2].to_vec()), (vec![3.0, 1.0], vec![9.0, 9.0]));
 }
 
+/// The lines of a file say nothing about other ends than its own.
+#[test]
+fn ends_that_were_moved_have_no_place_in_the_file() {
+    for (name, goal) in [("rrs-corridor", vec![-99.0, 0.0, 0.0]), ("crossing", vec![3.0, 99.0, 0.0])] {
+        let scene = Scene::find(name).unwrap();
+        let width = scene.start().len();
+        let error =
+            scene.with_ends(&scene.start(), &[goal[..width].to_vec()]).unwrap().check_ends().unwrap_err();
+        assert!(
+            error.to_string().contains("the goal is") && !error.to_string().contains(".toml:"),
+            "{error}"
+        );
+    }
+}
+
+/// What is said of planners that cannot plan for a robot is true, and so is which others can.
+#[test]
+fn planners_that_cannot_plan_are_known_before() {
+    for name in ["easy", "rrs-corridor", "crossing", "parking", "arm", "wrench"] {
+        let scene = Scene::find(name).unwrap();
+        let cannot: Vec<_> = scene.planners_that_cannot().into_iter().map(|(name, _)| name).collect();
+        for planner in mp_plan::planners().map(|info| info.name) {
+            let report = scene.plan(&Request::new(planner).iterations(1));
+            assert_eq!(report.is_err(), cannot.contains(&planner), "{name}, {planner}: {report:?}");
+            let Err(error) = report else { continue };
+            let (_, others) =
+                error.remedy().and_then(|help| help.split_once("take one of: ")).expect(planner);
+            let others: Vec<_> = others.split(", ").collect();
+            assert!(!others.is_empty() && others.iter().all(|other| !cannot.contains(other)), "{others:?}");
+        }
+    }
+    // It prefers states of low cost, whatever these are.
+    let costs = Request::new("t-rrt").iterations(1).objective("clearance".parse().unwrap());
+    let scene = Scene::find("crossing").unwrap();
+    assert!(scene.plan(&costs).is_ok() && scene.plan(&Request::new("t-rrt").iterations(1)).is_err());
+}
+
 /// Each goal of a set is reached when it is the only one that can be.
 #[test]
 fn any_goal_of_a_set_will_do() {

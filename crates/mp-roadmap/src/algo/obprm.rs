@@ -227,7 +227,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
         ENDS_STEP,
     ],
     aliases: &["ob-prm"],
-    cannot: crate::engine::settings::UNDIRECTED,
+    cannot: crate::engine::settings::NEEDS_GEOMETRY,
 };
 
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {

@@ -7,8 +7,14 @@ use mp_cspace::{
 };
 
 /// [`PlannerInfo::cannot`](mp_cspace::registry::PlannerInfo::cannot) of roadmaps.
-pub const UNDIRECTED: &[(Demand, &str)] =
-    &[(Demand::OneWay, "its edges are used in both directions, so motions must run backward too")];
+pub const UNDIRECTED: &[(Demand, &str)] = &[ONE_WAY];
+/// That of roadmaps that place the robot at obstacles.
+pub(crate) const NEEDS_GEOMETRY: &[(Demand, &str)] = &[
+    ONE_WAY,
+    (Demand::NoGeometry, "it places the robot at obstacles by its mesh, and only rigid bodies have one"),
+];
+const ONE_WAY: (Demand, &str) =
+    (Demand::OneWay, "its edges are used in both directions, so motions must run backward too");
 
 /// [`Reachable::neighbours`].
 pub const NEIGHBOURS: Parameter = Parameter {

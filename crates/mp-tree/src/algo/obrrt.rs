@@ -106,7 +106,7 @@
 use crate::algo::walks::WALKS;
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
-use crate::engine::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::engine::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS_AND_HINTS, NEEDS_HINTS, PATIENCE, STEP};
 use crate::{
     AppendDistinct, BuildError, Connect, Extender, Growing, Grown, Inserter, NearestSelector, PlannerInfo,
     Samples, Selector, SingleTree, TreePlannerParts, Tuning, TwoTrees, Walks,
@@ -121,7 +121,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     citation: "Rodriguez, Tang, Lien and Amato 2006",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
     aliases: &["ob-rrt"],
-    cannot: &[],
+    cannot: &[NEEDS_HINTS],
 };
 
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
@@ -358,7 +358,7 @@ pub mod connect {
         citation: "Rodriguez, Tang, Lien and Amato 2006; Kuffner and LaValle 2000",
         parameters: &[STEP, WALKS, GOAL_BIAS, PATIENCE, BALANCE],
         aliases: &[],
-        cannot: NEEDS_BOTH_ENDS,
+        cannot: NEEDS_BOTH_ENDS_AND_HINTS,
     };
 
     pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {

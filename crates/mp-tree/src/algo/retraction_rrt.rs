@@ -60,7 +60,7 @@
 
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
-use crate::engine::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::engine::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS_AND_GRADIENT, PATIENCE, STEP};
 use crate::{
     AppendDistinct, BuildError, Connect, Extender, Growing, Grown, Inserter, NearestSelector, Parameter,
     PlannerInfo, Samples, Selector, TreePlannerParts, Tuning, TwoTrees,
@@ -83,7 +83,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     citation: "Zhang and Manocha 2008",
     parameters: &[STEP, SLIDES, GOAL_BIAS, PATIENCE, BALANCE],
     aliases: &["rrrt"],
-    cannot: NEEDS_BOTH_ENDS,
+    cannot: NEEDS_BOTH_ENDS_AND_GRADIENT,
 };
 
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {

@@ -114,7 +114,7 @@
 //! ```
 
 use crate::by_name::{BuildArgs, BuildResult, Types};
-use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS_AND_GRADIENT, NEEDS_GRADIENT, PATIENCE, STEP};
 use crate::{BuildError, Parameter, PlannerInfo, Problem, Rrt, RrtConnect, Settings, Verify};
 use mp_cspace::erased::{AnyEnergy, AnyGradient};
 use mp_cspace::{
@@ -162,7 +162,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     citation: "Baizid et al. 2014; Kass, Witkin and Terzopoulos 1988",
     parameters: &[STEP, GOAL_BIAS, PATIENCE, RANGE, BEND, FIELD, SNAKE_STEPS],
     aliases: &[],
-    cannot: &[],
+    cannot: &[NEEDS_GRADIENT],
 };
 
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
@@ -187,7 +187,7 @@ pub mod connect {
         citation: "Baizid et al. 2014; Kuffner and LaValle 2000",
         parameters: &[STEP, GOAL_BIAS, PATIENCE, RANGE, BEND, FIELD, SNAKE_STEPS],
         aliases: &[],
-        cannot: NEEDS_BOTH_ENDS,
+        cannot: NEEDS_BOTH_ENDS_AND_GRADIENT,
     };
 
     pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {

@@ -74,6 +74,7 @@ use crate::{
     Append, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, Parameter, PlannerInfo, Purpose,
     Samples, Selector, SingleTree, TreePlannerParts, Tuning,
 };
+use mp_cspace::registry::Demand;
 use mp_cspace::{
     Direction, Extension, LocalPlanner, NodeId, Reach, Rng, Space, Uniform, nearness,
     obstacles::ClearanceGradient,
@@ -123,7 +124,10 @@ pub const INFO: PlannerInfo = PlannerInfo {
     citation: "Jaillet, Cortés and Siméon 2010",
     parameters: &[STEP, GOAL_BIAS, PATIENCE, TEMPERATURE, ALPHA, FAILS, REFINE, RANGE],
     aliases: &["transition-rrt"],
-    cannot: &[],
+    cannot: &[(
+        Demand::NoCost,
+        "it prefers states far from obstacles, and how far they are is not known of this robot: give an objective in its place, if it can have one",
+    )],
 };
 
 /// A cost of states behind a pointer.

@@ -39,5 +39,8 @@ pub use single::SingleTree;
 pub use target::{Acceptable, Samples, TargetSampler};
 pub use tree::Tree;
 pub use tuning::{BALANCE, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP, Tuning};
+pub(crate) use tuning::{
+    NEEDS_BOTH_ENDS_AND_GRADIENT, NEEDS_BOTH_ENDS_AND_HINTS, NEEDS_GRADIENT, NEEDS_HINTS,
+};
 pub use two::TwoTrees;
 pub use untried::Untried;

@@ -5,11 +5,25 @@ use mp_cspace::{
     registry::{Demand, Parameter, PlannerInfo, Settings},
 };
 
+const REGION: (Demand, &str) =
+    (Demand::Region, "it also grows a tree from the goal, which needs a state to grow from");
+const ONE_WAY: (Demand, &str) =
+    (Demand::OneWay, "it also grows a tree from the goal, by motions that run backward");
+/// An entry of [`PlannerInfo::cannot`](crate::PlannerInfo::cannot) of planners that grow along obstacles.
+pub(crate) const NEEDS_HINTS: (Demand, &str) =
+    (Demand::NoHints, "it grows along obstacles, and no hints of them are known of this robot");
+/// An entry of [`PlannerInfo::cannot`](crate::PlannerInfo::cannot) of planners that are pushed by obstacles.
+pub(crate) const NEEDS_GRADIENT: (Demand, &str) = (
+    Demand::NoGradient,
+    "it is pushed by obstacles, and no gradient of the clearance is known of this robot",
+);
+
 /// [`PlannerInfo::cannot`](crate::PlannerInfo::cannot) of planners that grow a tree from the goal.
-pub const NEEDS_BOTH_ENDS: &[(Demand, &str)] = &[
-    (Demand::Region, "it also grows a tree from the goal, which needs a state to grow from"),
-    (Demand::OneWay, "it also grows a tree from the goal, by motions that run backward"),
-];
+pub const NEEDS_BOTH_ENDS: &[(Demand, &str)] = &[REGION, ONE_WAY];
+/// That of those that also grow along obstacles.
+pub(crate) const NEEDS_BOTH_ENDS_AND_HINTS: &[(Demand, &str)] = &[REGION, ONE_WAY, NEEDS_HINTS];
+/// That of those that are also pushed by obstacles.
+pub(crate) const NEEDS_BOTH_ENDS_AND_GRADIENT: &[(Demand, &str)] = &[REGION, ONE_WAY, NEEDS_GRADIENT];
 
 /// [`Tuning::step`](crate::Tuning::step).
 pub const STEP: Parameter = Parameter {
