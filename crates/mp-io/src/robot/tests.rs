@@ -246,6 +246,7 @@ fn packages_are_found_where_they_are_installed() {
         "../meshes/arm.off",
         "package://robot/meshes/arm.off",
         "package://parts/meshes/hand.off",
+        "model://parts/meshes/hand.off",
         // No package: relative to a folder above.
         "package:///meshes/arm.off",
         // A package that has another name here.
@@ -268,6 +269,7 @@ fn packages_are_found_where_they_are_installed() {
         &format!("package:///{meant}"),
         &format!("../{meant}"),
         &absolute,
+        &absolute.replace("file://", "file://localhost"),
     ] {
         assert!(problem.mesh(name).is_ok(), "{name}: {:?}", problem.mesh(name));
     }

@@ -15,7 +15,7 @@ impl DescribedRobot {
     /// `package://PACKAGE/NAME`. A package is searched in the folder of packages that the problem gives, or else in the
     /// folders above the URDF, as `PACKAGE/NAME` and `share/PACKAGE/NAME`, and as `NAME` where the folder is called
     /// PACKAGE, and then in the folders of `ROS_PACKAGE_PATH` and `AMENT_PREFIX_PATH`; last as NAME in the folder of the URDF and the three above it, with a remark, for packages that have
-    /// another name there. `package:///NAME` names no package: `NAME` is searched in the same folders. If there is no such file, `%20` and the like
+    /// another name there. `package:///NAME` names no package: `NAME` is searched in the same folders. `model://` means the same as `package://`. If there is no such file, `%20` and the like
     /// stand for the characters of a URI.
     ///
     /// It is a solid if the problem says so.
@@ -69,8 +69,10 @@ impl DescribedRobot {
 
     fn place_of_name(&self, files: &dyn Files, name: &str) -> Result<PathBuf, String> {
         let folder = self.urdf_file.parent().unwrap_or(Path::new(""));
-        let Some(inside) = name.strip_prefix("package://") else {
-            return Ok(folder.join(name.strip_prefix("file://").unwrap_or(name)));
+        // Gazebo's models are folders that are found as packages are.
+        let Some(inside) = name.strip_prefix("package://").or_else(|| name.strip_prefix("model://")) else {
+            let here = name.strip_prefix("file://localhost").filter(|file| file.starts_with('/'));
+            return Ok(folder.join(here.or_else(|| name.strip_prefix("file://")).unwrap_or(name)));
         };
         let (package, rest) = inside.split_once('/').unwrap_or((inside, ""));
         // With further slashes it would be an absolute name.
