@@ -85,7 +85,7 @@ impl Obstacles {
                 return Err(too_many(count));
             }
             asked.go_on()?;
-            let same = known.and_then(|known| known.find([Some(&i), alike.get(&look(&mesh))], &mesh));
+            let same = known.and_then(|known| known.find([Some(i), alike.get(&look(&mesh)).copied()], &mesh));
             let (tree, own_known) = match same {
                 Some((body, _, own_known)) => (body.mesh().clone(), Arc::clone(own_known)),
                 None => match trees.entry(memory(&mesh)) {
@@ -123,15 +123,15 @@ impl Obstacles {
         Ok(Arc::new(Self { scene, placed, own, bounds, solids, reference, references }))
     }
 
-    /// The first obstacle of each [look](look).
+    /// The first obstacle of each [`look`].
     fn alike(&self) -> HashMap<[u64; 4], usize> {
         self.own.iter().enumerate().rev().map(|(i, (mesh, _))| (look(mesh), i)).collect()
     }
 
     /// The first of some obstacles that has this mesh, the mesh in the world, and what is known of it.
-    fn find(&self, some: [Option<&usize>; 2], mesh: &TriMesh) -> Option<(&Body, &Arc<TriMesh>, &Arc<Known>)> {
-        let same = |j: &&usize| self.own.get(**j).is_some_and(|(own, _)| own == mesh);
-        let j = *some.into_iter().flatten().find(same)?;
+    fn find(&self, some: [Option<usize>; 2], mesh: &TriMesh) -> Option<(&Body, &Arc<TriMesh>, &Arc<Known>)> {
+        let same = |j: &usize| self.own.get(*j).is_some_and(|(own, _)| own == mesh);
+        let j = some.into_iter().flatten().find(same)?;
         let (id, in_world) = &self.placed[j];
         Some((self.scene.body(*id)?, in_world, &self.own[j].1))
     }
@@ -198,6 +198,7 @@ impl Obstacles {
             let reference = |mesh: TriMesh| RefMesh::new_until(&mesh, interrupt).map(Arc::new);
             self.merged().map(|mesh| reference(mesh).ok_or(Interrupted)).transpose()
         })
+        .map(drop)
     }
 
     /// The obstacles for verifiers, each in its own frame with its pose; one mesh of all where they are many.
@@ -218,18 +219,16 @@ impl Obstacles {
                 return self.merged().iter().map(|mesh| Ok((of(mesh)?, Isometry3::identity()))).collect();
             }
             let own = self.placed.iter().zip(&self.own);
-            own.map(|((id, in_world), (mesh, known))| {
-                let Some(body) = self.scene.body(*id) else {
-                    return Ok((of(in_world)?, Isometry3::identity()));
-                };
-                make_once(&known.reference, interrupt, || of(mesh))?;
-                Ok((
-                    known.reference.get().map_or_else(|| of(mesh), |made| Ok(Arc::clone(made)))?,
-                    *body.pose(),
-                ))
+            own.map(|((id, in_world), (mesh, known))| match self.scene.body(*id) {
+                Some(body) => {
+                    let tree = make_once(&known.reference, interrupt, || of(mesh))?;
+                    Ok((Arc::clone(tree), *body.pose()))
+                }
+                None => Ok((of(in_world)?, Isometry3::identity())),
             })
             .collect()
         })
+        .map(drop)
     }
 
     /// The largest coordinate of the obstacles by magnitude; zero when there are none.
@@ -245,7 +244,7 @@ fn memory(mesh: &TriMesh) -> [usize; 4] {
     [vertices, triangles, mesh.solids().as_ptr().addr(), mesh.balls().as_ptr().addr()]
 }
 
-/// What equal meshes have in common, found in no time: how many vertices and triangles they have, and the bits of the first vertex and of the last.
+/// Equal for equal meshes, and in constant time: the numbers of vertices and triangles, and the bits of the first vertex and of the last.
 fn look(mesh: &TriMesh) -> [u64; 4] {
     let vertices = mesh.vertices();
     let bits = |p: Option<&Point3<f64>>| {
@@ -254,21 +253,22 @@ fn look(mesh: &TriMesh) -> [u64; 4] {
     [vertices.len() as u64, mesh.triangles().len() as u64, bits(vertices.first()), bits(vertices.last())]
 }
 
-/// Makes what `cell` holds, if it holds nothing yet, unless `interrupt` says to end.
+/// What `cell` holds. It is made if there is nothing yet, unless `interrupt` says to end.
 ///
 /// # Errors
 /// When it was interrupted.
-pub(crate) fn make_once<T>(
-    cell: &OnceLock<T>,
+pub(crate) fn make_once<'c, T>(
+    cell: &'c OnceLock<T>,
     interrupt: &Interrupt,
     make: impl FnOnce() -> Result<T, Interrupted>,
-) -> Result<(), Interrupted> {
-    if cell.get().is_none() {
-        interrupt.clone().go_on()?;
-        // Another thread may have been first, with the same.
-        let _ = cell.set(make()?);
+) -> Result<&'c T, Interrupted> {
+    if let Some(made) = cell.get() {
+        return Ok(made);
     }
-    Ok(())
+    interrupt.clone().go_on()?;
+    let made = make()?;
+    // Another thread may have been first, with the same.
+    Ok(cell.get_or_init(|| made))
 }
 
 /// The tolerance `wanted`, or the least that coordinates as large as `farthest` can resolve, if that is more.

@@ -89,11 +89,11 @@ pub struct RobotsRead(Mutex<Vec<RobotRead>>);
 type RobotRead = (Vec<DescribedRobot>, Arc<[Vec<PathBuf>; 2]>);
 
 impl Scene {
-    /// Reads all that the scene in `file` is made of, in the order in which loading it does, and makes no more of it than that needs. The
-    /// meshes of robots that are `known` are read, and nothing is made of them.
+    /// Reads the files of the scene in `file`, in the order in which loading reads them. Of a problem in TOML no scene is made, and the meshes of
+    /// robots that are `known` are not even parsed; other scenes are loaded.
     ///
     /// # Errors
-    /// When a file cannot be read. What it says may be wrong nevertheless.
+    /// When a file cannot be read. Where there is none, the scene may be wrong nevertheless.
     pub fn read_files(files: &dyn Files, file: &Path, known: &RobotsRead) -> Result<(), crate::Error> {
         if Content::of(file).next() != Some(Content::Toml) {
             return Self::load_from(files, file).map(|_| ());

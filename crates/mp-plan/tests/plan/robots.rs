@@ -417,6 +417,16 @@ fn states_of_the_srdf_are_ends() {
     );
     let chosen = files("[]", "\"side\"").unwrap();
     assert_eq!((chosen.start(), chosen.goals()), (vec![0.0, 0.0], vec![vec![1.0, 0.0]]));
+    // A note is about the ends of its own scene, also where the robot is that of the scene before.
+    let about_a = |scene: &Scene| scene.notes().iter().any(|note| note.contains("leaves out"));
+    let text = Some(problem("srdf = \"r.srdf\"", "[0.1, 0.2]", "[1, 0.5]"));
+    let of = mp_plan::SceneFiles { file: "p.toml".into(), text, ..Default::default() };
+    let at = |name: &str| match name {
+        "r.urdf" => Some(two_bars([-1.0, 1.0])),
+        _ => (name == "r.srdf").then(|| srdf.to_owned()),
+    };
+    let next = Scene::load_again(&InMemory(at), of.into(), Some(&scene)).unwrap();
+    assert!(about_a(&scene) && !about_a(&next), "{:?}", next.notes());
     let error = files("\"up\"", "\"down\"").unwrap_err();
     assert_eq!(error.file().and_then(mp_io::Error::line), Some(6), "{error}");
     assert!(error.remedy().is_some_and(|help| help.contains("side, up")), "{error:?}");

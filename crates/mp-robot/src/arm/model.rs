@@ -233,13 +233,13 @@ impl Default for ArmModel {
 }
 
 impl ArmModel {
-    /// The limits of velocity, acceleration and jerk of the joint of that name: its own, and those of the joints that mimic it, also by way of others. `None` where nothing
-    /// is known.
+    /// The limits of velocity, acceleration and jerk of the joint of that name: its own, and those of the joints that mimic it, also by way of
+    /// others. `None` where nothing is known.
     #[must_use]
     pub fn rates(&self, joint: &str) -> [Option<f64>; 3] {
         let mut moved: Vec<_> = self.joints.iter().filter(|j| j.name == joint).map(|j| (j, 1.0)).collect();
         let mut next = 0;
-        // Those that follow it, and those that follow these; where they follow each other, which is no robot, each as often as there are joints.
+        // Those that follow it, and those that follow these. In a model that is not valid joints may follow each other: the walk ends even so.
         while let Some(&(leader, factor)) = moved.get(next).filter(|_| next <= self.joints.len()) {
             moved.extend(self.joints.iter().filter_map(|j| {
                 let mimic = j.mimic.as_ref()?;

@@ -53,7 +53,7 @@ impl NamedValues {
         self.start.get(joint).copied()
     }
 
-    /// The values that the start has for others than the `names`: for joints that are held, and strays.
+    /// The values that the start has for joints that are not among `names`: they are held, or not there.
     pub(super) fn beside(&self, names: &[String]) -> Values {
         let others = self.start.iter().filter(|(joint, _)| !names.contains(joint));
         others.map(|(joint, value)| (joint.clone(), *value)).collect()
