@@ -814,7 +814,7 @@ class Scene:
     def routes(
         self,
         count: int,
-        apart: float | str = "5%",
+        apart: float | str = "10%",
         options: Options | None = None,
         *,
         progress: bool | Callable[[Progress], object] = False,

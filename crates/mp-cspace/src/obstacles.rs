@@ -4,4 +4,4 @@ mod gradient;
 mod hints;
 
 pub use gradient::ClearanceGradient;
-pub use hints::{BodyFeatures, ObstacleGeometry, ObstacleHints, PointOf};
+pub use hints::{BodyFeatures, BodySphere, ObstacleGeometry, ObstacleHints, PointOf};

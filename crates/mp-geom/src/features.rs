@@ -11,7 +11,7 @@
 //! - where an obstacle "is built by smaller ones" each part has its own features: here parts are connected
 //!   components.
 
-use crate::{MassError, Sphere, TriMesh};
+use crate::{MassError, MassProperties, Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
 use std::f64::consts::PI;
 
@@ -62,17 +62,27 @@ impl TriMesh {
     #[must_use]
     pub fn features(&self) -> Features {
         let (obb, mass) = (self.obb(), self.mass_properties());
-        let longest = obb.half_extents.imax();
-        let center = match &mass {
+        let Sphere { center, radius } = self.sphere_about_center_of(mass.as_ref());
+        Features {
+            center,
+            radius,
+            axis: upward(obb.axes()[obb.half_extents.imax()]),
+            volume: mass.map_or_else(|_| obb.volume(), |mass| mass.volume),
+        }
+    }
+
+    /// The sphere of the [features](Self::features): around the body, about its centre of gravity. O(n), without the box.
+    #[must_use]
+    pub fn surrounding_sphere(&self) -> Sphere {
+        self.sphere_about_center_of(self.mass_properties().as_ref())
+    }
+
+    fn sphere_about_center_of(&self, mass: Result<&MassProperties, &MassError>) -> Sphere {
+        let center = match mass {
             Ok(mass) => mass.centroid,
             Err(MassError::NotSolid { .. } | MassError::NoVolume) => self.area_centroid(),
         };
-        Features {
-            center,
-            radius: self.radius_about(&center),
-            axis: upward(obb.axes()[longest]),
-            volume: mass.map_or_else(|_| obb.volume(), |mass| mass.volume),
-        }
+        Sphere { center, radius: self.radius_about(&center) }
     }
 
     /// The centre of gravity of the surface; of the corners, where it has no area.
@@ -104,7 +114,9 @@ mod tests {
         fn of_a_box_anywhere(x in 0.1..1.0_f64, y in 0.1..1.0_f64, z in 1.1..5.0_f64, six in prop::array::uniform6(-3.0..3.0_f64)) {
             let pose = pose_from_six(six);
             let mesh = cuboid(x, y, z).unwrap();
-            let found = mesh.transformed(&pose).features();
+            let mesh_there = mesh.transformed(&pose);
+            let found = mesh_there.features();
+            prop_assert_eq!(mesh_there.surrounding_sphere(), found.sphere());
             let radius = 0.5 * Vector3::new(x, y, z).norm();
             prop_assert!((found.center.coords - pose.translation.vector).norm() < 1e-9);
             prop_assert!((found.radius - radius).abs() < 1e-9 && (found.volume - x * y * z).abs() < 1e-9);
@@ -139,6 +151,7 @@ mod tests {
         let plate = cuboid(3.0, 1.0, 2.0).unwrap();
         let sheet = TriMesh::new(plate.vertices().to_vec(), plate.triangles()[2..].to_vec()).unwrap();
         let found = sheet.features();
+        assert_eq!(sheet.surrounding_sphere(), found.sphere());
         assert!((found.volume - 6.0).abs() < 1e-9 && along(found.axis, Vector3::x()));
         // One of six faces is missing: the centre leans away from it.
         assert!(found.center.coords.norm() > 0.05);

@@ -15,10 +15,12 @@
 //! 4. the winner is measured, and improved once more, on all points.
 
 mod calipers;
+mod points;
 
 use crate::{TriMesh, mass::sorted_eigen};
 use calipers::calipers;
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use points::{Points, extremes};
 use std::cmp::Ordering;
 
 /// An oriented box.
@@ -90,8 +92,8 @@ impl TriMesh {
     pub fn obb(&self) -> Obb {
         // Relative to the middle, for accuracy far from the origin.
         let middle = self.aabb().center();
-        let points: Vec<_> = self.vertices().iter().map(|p| p - middle).collect();
-        let scale = points.iter().map(|p| p.amax()).fold(0.0, f64::max);
+        let points: Points = self.vertices().iter().map(|p| p - middle).collect();
+        let scale = points.largest();
         // Thickness added to every side, so that flat boxes are compared by area and needles by length.
         let thickness = 1e-6 * scale;
         let few = thinned(&points);
@@ -107,7 +109,7 @@ impl TriMesh {
         let fit = refined(&points, Fit::new(&points, frame, thickness), thickness);
         let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(fit.frame));
         // Measured again along the axes of the quaternion, which differ from the matrix by rounding.
-        let (low, high) = extents(&points, &rotation.to_rotation_matrix().into_inner());
+        let (low, high) = points.extents(&rotation.to_rotation_matrix().into_inner());
         let center = middle + rotation * ((low + high) * 0.5);
         Obb {
             pose: Isometry3::from_parts(Translation3::from(center.coords), rotation),
@@ -207,8 +209,8 @@ struct Fit {
 }
 
 impl Fit {
-    fn new(points: &[Vector3<f64>], frame: Matrix3<f64>, thickness: f64) -> Self {
-        let (low, high) = extents(points, &frame);
+    fn new(points: &Points, frame: Matrix3<f64>, thickness: f64) -> Self {
+        let (low, high) = points.extents(&frame);
         Self { frame, size: (high - low).add_scalar(thickness).product() }
     }
     fn order(&self, other: &Self) -> Ordering {
@@ -216,38 +218,22 @@ impl Fit {
     }
 }
 
-fn extents(points: &[Vector3<f64>], frame: &Matrix3<f64>) -> (Vector3<f64>, Vector3<f64>) {
-    let to_frame = frame.transpose();
-    let inf = Vector3::repeat(f64::INFINITY);
-    points.iter().fold((inf, -inf), |(low, high), p| {
-        let q = to_frame * p;
-        (low.inf(&q), high.sup(&q))
-    })
-}
-
 /// The points that decide a box: all when few, else those extreme in some of many directions.
-fn thinned(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+fn thinned(points: &Points) -> Points {
     if points.len() <= 2 * THINNING_DIRECTIONS {
-        return points.to_vec();
+        return points.clone();
     }
+    let mut along = Vec::new();
     let mut kept: Vec<usize> = spread_directions(THINNING_DIRECTIONS)
         .flat_map(|d| {
-            let (mut low, mut high) = ((0, f64::INFINITY), (0, f64::NEG_INFINITY));
-            for (i, p) in points.iter().enumerate() {
-                let s = p.dot(&d);
-                if s < low.1 {
-                    low = (i, s);
-                }
-                if s > high.1 {
-                    high = (i, s);
-                }
-            }
-            [low.0, high.0]
+            along.clear();
+            along.extend(points.along(d));
+            extremes(&along)
         })
         .collect();
     kept.sort_unstable();
     kept.dedup();
-    kept.into_iter().map(|i| points[i]).collect()
+    kept.into_iter().map(|i| points.get(i)).collect()
 }
 
 /// `n` directions spread evenly over a half sphere, along a Fibonacci spiral.
@@ -262,7 +248,7 @@ fn spread_directions(n: usize) -> impl Iterator<Item = Vector3<f64>> {
 }
 
 /// Improves by calipers about each axis in turn.
-fn refined(points: &[Vector3<f64>], mut fit: Fit, thickness: f64) -> Fit {
+fn refined(points: &Points, mut fit: Fit, thickness: f64) -> Fit {
     for _ in 0..MAX_ROUNDS {
         let before = fit.size;
         for axis in 0..3 {
@@ -279,7 +265,7 @@ fn refined(points: &[Vector3<f64>], mut fit: Fit, thickness: f64) -> Fit {
 }
 
 /// Improves by tilting the first axis, with calipers about it, in smaller and smaller steps.
-fn tilted(points: &[Vector3<f64>], mut fit: Fit, thickness: f64) -> Fit {
+fn tilted(points: &Points, mut fit: Fit, thickness: f64) -> Fit {
     let [mut tilt, last] = TILTS;
     for _ in 0..MAX_TILTS {
         if tilt < last {
@@ -326,7 +312,7 @@ mod tests {
 
     /// Volumes of the boxes along the axes of many rotations.
     fn rotated_boxes(mesh: &TriMesh) -> f64 {
-        let points: Vec<_> = mesh.vertices().iter().map(|p| p.coords).collect();
+        let points: Points = mesh.vertices().iter().map(|p| p.coords).collect();
         let mut best = f64::INFINITY;
         for a in 0..16 {
             for b in 0..8 {

@@ -4,29 +4,33 @@ use crate::rigid::Shared;
 use crate::{Placement, RigidBody};
 use mp_cspace::{
     Interrupt, Rng,
-    obstacles::{BodyFeatures, ObstacleGeometry, PointOf},
+    obstacles::{BodyFeatures, BodySphere, ObstacleGeometry, PointOf},
 };
-use mp_geom::{Features, NO_COMPONENT, TriMesh};
+use mp_geom::{NO_COMPONENT, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
 use std::convert::Infallible;
+use std::sync::OnceLock;
 
 /// The features and surfaces of a robot and of the connected parts of its obstacles.
 #[derive(Debug)]
 pub(crate) struct SceneFeatures {
-    robot: (BodyFeatures, SurfaceSampler),
-    parts: Vec<BodyFeatures>,
-    /// The surface of each part, in the world.
-    surfaces: Vec<SurfaceSampler>,
+    robot: Surface,
+    /// Each part, in the world.
+    parts: Vec<Surface>,
+    spheres: Vec<BodySphere>,
     /// For each obstacle: the index of its first part, and the part of each of its triangles, counted from that index.
     of_triangle: Vec<(usize, Vec<u32>)>,
 }
 
 /// A mesh with the running sums of its triangle areas, to draw points from.
 #[derive(Debug)]
-struct SurfaceSampler {
+struct Surface {
     mesh: TriMesh,
     areas: Vec<f64>,
+    sphere: BodySphere,
+    /// Found when they are asked for: the tight box takes a thousand times as long as the sphere.
+    features: OnceLock<BodyFeatures>,
 }
 
 /// Balls up to this many have surfaces; of more the centres stand for them.
@@ -43,27 +47,27 @@ fn surface(mesh: &TriMesh) -> (TriMesh, usize) {
     (faceted, each)
 }
 
-fn body_features(features: &Features) -> BodyFeatures {
-    BodyFeatures {
-        center: features.center.coords,
-        radius: features.radius,
-        axis: features.axis.into_inner(),
-        volume_ratio: features.volume_ratio(),
-    }
-}
-
-impl SurfaceSampler {
+impl Surface {
     fn new(mesh: TriMesh) -> Self {
         let areas = (0..mesh.triangles().len()).scan(0.0, |sum, i| {
             *sum += mesh.triangle_area(i);
             Some(*sum)
         });
-        Self { areas: areas.collect(), mesh }
+        let sphere = mesh.surrounding_sphere();
+        let sphere = BodySphere { center: sphere.center.coords, radius: sphere.radius };
+        Self { areas: areas.collect(), sphere, features: OnceLock::new(), mesh }
     }
 
-    fn point(&self, center: Vector3<f64>, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
+    fn features(&self) -> BodyFeatures {
+        *self.features.get_or_init(|| {
+            let features = self.mesh.features();
+            BodyFeatures { axis: features.axis.into_inner(), volume_ratio: features.volume_ratio() }
+        })
+    }
+
+    fn point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
         match of {
-            PointOf::Center => center,
+            PointOf::Center => self.sphere.center,
             PointOf::Vertex => {
                 let t = self.mesh.triangles()[rng.random_range(0..self.areas.len())];
                 self.mesh.vertices()[t[rng.random_range(0..3_usize)] as usize].coords
@@ -92,9 +96,9 @@ impl SceneFeatures {
     fn new<E>(shared: &Shared, mut go_on: impl FnMut() -> Result<(), E>) -> Result<Self, E> {
         let (robot, _) = surface(&shared.robot_mesh);
         let mut features = Self {
-            robot: (body_features(&robot.features()), SurfaceSampler::new(robot)),
+            robot: Surface::new(robot),
             parts: Vec::new(),
-            surfaces: Vec::new(),
+            spheres: Vec::new(),
             of_triangle: Vec::new(),
         };
         for (_, mesh) in &shared.obstacles.placed {
@@ -105,8 +109,9 @@ impl SceneFeatures {
             features.of_triangle.push((first, component));
             for part in mesh.parts() {
                 go_on()?;
-                features.parts.push(body_features(&part.features()));
-                features.surfaces.push(SurfaceSampler::new(part));
+                let part = Surface::new(part);
+                features.spheres.push(part.sphere);
+                features.parts.push(part);
             }
         }
         Ok(features)
@@ -132,7 +137,8 @@ fn turn_to(from: &Vector3<f64>, to: &Vector3<f64>) -> UnitQuaternion<f64> {
 }
 
 /// From the meshes: each connected part of an obstacle's mesh is an obstacle here, and points are drawn from these parts.
-/// The features are computed at the first call, in O(n log n) of the triangles, and shared by clones.
+/// Spheres are computed at the first call, in O(n log n) of the triangles, features for each part when they are asked for. Clones
+/// share both.
 impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
     fn prepare(&self, interrupt: &Interrupt) -> bool {
         let known = &self.shared.features;
@@ -146,12 +152,20 @@ impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
         }
         known.get().is_some()
     }
-    fn obstacles(&self) -> &[BodyFeatures] {
-        &self.features().parts
+    fn obstacles(&self) -> &[BodySphere] {
+        &self.features().spheres
     }
 
-    fn robot(&self) -> BodyFeatures {
-        self.features().robot.0
+    fn robot(&self) -> BodySphere {
+        self.features().robot.sphere
+    }
+
+    fn obstacle_features(&self, obstacle: usize) -> Option<BodyFeatures> {
+        self.features().parts.get(obstacle).map(Surface::features)
+    }
+
+    fn robot_features(&self) -> BodyFeatures {
+        self.features().robot.features()
     }
 
     fn touched_obstacle(&mut self, q: &P::State) -> Option<usize> {
@@ -166,14 +180,11 @@ impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
     }
 
     fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
-        let features = self.features();
-        let center = features.parts.get(obstacle)?.center;
-        Some(features.surfaces[obstacle].point(center, of, rng))
+        Some(self.features().parts.get(obstacle)?.point(of, rng))
     }
 
     fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
-        let (features, surface) = &self.features().robot;
-        surface.point(features.center, of, rng)
+        self.features().robot.point(of, rng)
     }
 
     fn world_point(&self, q: &P::State, point: &Vector3<f64>) -> Vector3<f64> {
@@ -187,22 +198,47 @@ impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
     }
 
     fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> P::State {
-        let robot = self.features().robot.0;
+        let robot = &self.features().robot;
+        let axis = robot.features().axis;
         let unit = |v: Vector3<f64>| Unit::try_new(v, 1e-12);
         let rotation = match P::TURNS {
             [_, _, _] => match unit(*direction) {
-                Some(along) => UnitQuaternion::from_axis_angle(&along, angle) * turn_to(&robot.axis, &along),
+                Some(along) => UnitQuaternion::from_axis_angle(&along, angle) * turn_to(&axis, &along),
                 None => UnitQuaternion::identity(),
             },
             [2] => {
                 let yaw =
                     |v: &Vector3<f64>| if v.xy().norm() > 1e-12 { mp_math::atan2(v.y, v.x) } else { 0.0 };
-                let turn = yaw(direction) - yaw(&robot.axis) + angle;
+                let turn = yaw(direction) - yaw(&axis) + angle;
                 UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn)
             }
             _ => UnitQuaternion::identity(),
         };
-        let translation = Translation3::from(place - rotation * robot.center);
+        let translation = Translation3::from(place - rotation * robot.sphere.center);
         P::configuration(&Isometry3::from_parts(translation, rotation))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mp_geom::primitives::{cuboid, cylinder};
+
+    #[test]
+    fn tight_boxes_are_found_when_they_are_asked_for() {
+        let obstacle =
+            |x: f64, mesh: TriMesh| ("obstacle".to_owned(), mesh, Isometry3::translation(x, 0.0, 0.0));
+        let parts = vec![
+            obstacle(0.0, cylinder(0.1, 2.0, 12).unwrap()),
+            obstacle(3.0, cuboid(1.0, 3.0, 1.0).unwrap()),
+        ];
+        let body = crate::FreeFlyer::new(&cuboid(0.1, 0.1, 0.4).unwrap(), parts).unwrap();
+        assert!(body.prepare(&Interrupt::never()) && body.obstacles().len() == 2);
+        let found =
+            || body.features().parts.iter().map(|part| part.features.get().is_some()).collect::<Vec<_>>();
+        assert!(found() == [false, false] && body.features().robot.features.get().is_none());
+        let features = body.obstacle_features(1).unwrap();
+        assert!((features.axis - Vector3::y()).norm() < 1e-9);
+        assert_eq!(found(), [false, true]);
     }
 }

@@ -1,7 +1,7 @@
-//! Gradients of the clearance: of a rigid body from nearest points, of an arm from differences.
+//! The gradient of the clearance of a rigid body.
 
-use crate::{Arm, Placement, RigidBody};
-use mp_cspace::{Clearance, Coordinates, obstacles::ClearanceGradient};
+use crate::{Placement, RigidBody};
+use mp_cspace::obstacles::ClearanceGradient;
 use nalgebra::{Isometry3, Point3, Vector3};
 
 /// From the nearest points of robot and obstacles.
@@ -85,28 +85,4 @@ fn write_gradient<P: Placement>(
     let moves = P::MOVES.iter().map(|&axis| direction[axis]);
     let numbers = moves.chain(P::TURNS.iter().map(|&axis| turning[axis]));
     gradient.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number);
-}
-
-/// From differences of the clearance at `q` and beside it: one more clearance query than there are degrees of freedom. Zero
-/// in collision, because the depth of an arm is not known.
-impl<Q: Coordinates> ClearanceGradient<Q> for Arm {
-    fn clearance_gradient(&mut self, q: &Q, reach: f64, gradient: &mut [f64]) -> f64 {
-        gradient.fill(0.0);
-        let here = self.clearance(q, reach);
-        if here <= 0.0 || here >= reach {
-            return here;
-        }
-        for (k, slope) in gradient.iter_mut().enumerate().take(self.dof()) {
-            // The other direction where a joint is at its limit.
-            for step in [1e-5, -1e-5] {
-                let beside = self.kinematics().nudged(q, k, step);
-                let there = self.clearance(&beside, 2.0 * here + 1.0);
-                if there > 0.0 {
-                    *slope = (there - here) / step;
-                    break;
-                }
-            }
-        }
-        here
-    }
 }

@@ -164,9 +164,9 @@ fn pillar() -> Result<RigidProblem> {
 /// Draws the configurations that obstacle-geometry PRM and OBPRM propose around one obstacle.
 fn around<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     let robot = scene.checker();
-    let Some(block) = robot.obstacles().first().copied() else { return Err(Error::new("no obstacle")) };
+    let Some(block) = robot.obstacle_features(0) else { return Err(Error::new("no obstacle")) };
     let along = |q: &Configuration| {
-        let axis: Vector3<f64> = pose::<M>(q).rotation * robot.robot().axis;
+        let axis: Vector3<f64> = pose::<M>(q).rotation * robot.robot_features().axis;
         axis.dot(&block.axis).abs() > 0.9
     };
     let geometry =

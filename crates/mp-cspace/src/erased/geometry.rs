@@ -2,7 +2,7 @@
 
 use crate::{
     Interrupt, Rng,
-    obstacles::{BodyFeatures, ObstacleGeometry, ObstacleHints, PointOf},
+    obstacles::{BodyFeatures, BodySphere, ObstacleGeometry, ObstacleHints, PointOf},
 };
 use nalgebra::Vector3;
 use std::fmt;
@@ -56,11 +56,17 @@ impl<S> ObstacleGeometry<S> for AnyGeometry<'_, S> {
     fn prepare(&self, interrupt: &Interrupt) -> bool {
         self.0.prepare(interrupt)
     }
-    fn obstacles(&self) -> &[BodyFeatures] {
+    fn obstacles(&self) -> &[BodySphere] {
         self.0.obstacles()
     }
-    fn robot(&self) -> BodyFeatures {
+    fn robot(&self) -> BodySphere {
         self.0.robot()
+    }
+    fn obstacle_features(&self, obstacle: usize) -> Option<BodyFeatures> {
+        self.0.obstacle_features(obstacle)
+    }
+    fn robot_features(&self) -> BodyFeatures {
+        self.0.robot_features()
     }
     fn touched_obstacle(&mut self, q: &S) -> Option<usize> {
         self.0.touched_obstacle(q)

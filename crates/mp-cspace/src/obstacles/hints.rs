@@ -37,15 +37,18 @@ macro_rules! behind {
 }
 behind!(&mut H, Box<H>);
 
-/// A coarse description of a body: its place, size, longest axis and fullness. Metres; in the plane z is 0.
-///
-/// The last two are *straightness* and *volume* of Benitez and Vallejo 2004.
+/// The sphere around a body. Metres; in the plane z is 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodySphere {
+    /// Its centre.
+    pub center: Vector3<f64>,
+    /// Its radius: no point of the body is farther from the centre.
+    pub radius: f64,
+}
+
+/// A coarse description of a body: its longest axis and its fullness, *straightness* and *volume* of Benitez and Vallejo 2004.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyFeatures {
-    /// Centre of the surrounding sphere.
-    pub center: Vector3<f64>,
-    /// Radius of the surrounding sphere: no point of the body is farther from the centre.
-    pub radius: f64,
     /// Unit vector along the longest side.
     pub axis: Vector3<f64>,
     /// Volume of the body over that of its surrounding sphere, in \[0, 1\].
@@ -74,11 +77,18 @@ pub trait ObstacleGeometry<S>: ObstacleHints<S> {
         true
     }
 
-    /// The obstacles, in the world.
-    fn obstacles(&self) -> &[BodyFeatures];
+    /// The spheres around the obstacles, in the world.
+    fn obstacles(&self) -> &[BodySphere];
 
-    /// The robot, in its own frame.
-    fn robot(&self) -> BodyFeatures;
+    /// The sphere around the robot, in its own frame.
+    fn robot(&self) -> BodySphere;
+
+    /// The features of an obstacle, in the world: they may be found when they are first asked for. `None` when there is no such
+    /// obstacle.
+    fn obstacle_features(&self, obstacle: usize) -> Option<BodyFeatures>;
+
+    /// The features of the robot, in its own frame.
+    fn robot_features(&self) -> BodyFeatures;
 
     /// The index of an obstacle that the robot at `q` touches.
     fn touched_obstacle(&mut self, q: &S) -> Option<usize>;

@@ -1,7 +1,9 @@
 //! A space whose states are written as rows of numbers, and checks of such states.
 
 use super::{Factored, Space, TrueMetric};
-use crate::obstacles::{BodyFeatures, ClearanceGradient, ObstacleGeometry, ObstacleHints, PointOf};
+use crate::obstacles::{
+    BodyFeatures, BodySphere, ClearanceGradient, ObstacleGeometry, ObstacleHints, PointOf,
+};
 use crate::{
     Clearance, ClearanceSearch, Configuration, Interrupt, IntervalClearance, KnownFree, LeastClearance,
     MotionCheck, MotionClearance, MotionInterval, MotionValidity, Rng, StateVector, Validity, layout::Layout,
@@ -284,11 +286,17 @@ impl<A: ObstacleGeometry<S>, S: StateVector> ObstacleGeometry<Configuration> for
     fn prepare(&self, interrupt: &Interrupt) -> bool {
         self.check.prepare(interrupt)
     }
-    fn obstacles(&self) -> &[BodyFeatures] {
+    fn obstacles(&self) -> &[BodySphere] {
         self.check.obstacles()
     }
-    fn robot(&self) -> BodyFeatures {
+    fn robot(&self) -> BodySphere {
         self.check.robot()
+    }
+    fn obstacle_features(&self, obstacle: usize) -> Option<BodyFeatures> {
+        self.check.obstacle_features(obstacle)
+    }
+    fn robot_features(&self) -> BodyFeatures {
+        self.check.robot_features()
     }
     fn touched_obstacle(&mut self, q: &Configuration) -> Option<usize> {
         self.check.touched_obstacle(&q.to()?)

@@ -4,7 +4,7 @@ use crate::Queries;
 use mp_cspace::{
     Clearance, ClearanceSearch, Interrupt, IntervalClearance, LeastClearance, MotionClearance,
     MotionInterval, Progress, Rng, Stop, StopReason, Validity,
-    obstacles::{BodyFeatures, ClearanceGradient, ObstacleGeometry, ObstacleHints, PointOf},
+    obstacles::{BodyFeatures, BodySphere, ClearanceGradient, ObstacleGeometry, ObstacleHints, PointOf},
 };
 use nalgebra::Vector3;
 use std::cell::Cell;
@@ -189,11 +189,17 @@ impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R>
     fn prepare(&self, interrupt: &Interrupt) -> bool {
         self.checker.prepare(interrupt)
     }
-    fn obstacles(&self) -> &[BodyFeatures] {
+    fn obstacles(&self) -> &[BodySphere] {
         self.checker.obstacles()
     }
-    fn robot(&self) -> BodyFeatures {
+    fn robot(&self) -> BodySphere {
         self.checker.robot()
+    }
+    fn obstacle_features(&self, obstacle: usize) -> Option<BodyFeatures> {
+        self.checker.obstacle_features(obstacle)
+    }
+    fn robot_features(&self) -> BodyFeatures {
+        self.checker.robot_features()
     }
     fn touched_obstacle(&mut self, q: &S) -> Option<usize> {
         self.query(None, |checker| checker.touched_obstacle(q))

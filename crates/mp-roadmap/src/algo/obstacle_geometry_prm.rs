@@ -92,7 +92,7 @@ use crate::{
 };
 use mp_cspace::{
     BuildError, LocalPlanner, Reversible, Rng, Space,
-    obstacles::{BodyFeatures, ObstacleGeometry},
+    obstacles::{BodyFeatures, BodySphere, ObstacleGeometry},
     registry::{Parameter, PlannerInfo, Settings},
 };
 use nalgebra::Vector3;
@@ -221,9 +221,9 @@ pub struct AroundObstacles<H> {
 }
 
 /// MIN and MAX of the elastic band between robot and obstacle, metres.
-fn limits(robot: &BodyFeatures, obstacle: &BodyFeatures) -> [f64; 2] {
-    let equal = |body: &BodyFeatures| body.radius * mp_math::cbrt(body.volume_ratio);
-    [equal(robot) + equal(obstacle), robot.radius + obstacle.radius]
+fn limits(bodies: [&BodySphere; 2], features: [&BodyFeatures; 2]) -> [f64; 2] {
+    let equal = |k: usize| bodies[k].radius * mp_math::cbrt(features[k].volume_ratio);
+    [equal(0) + equal(1), bodies[0].radius + bodies[1].radius]
 }
 
 /// A unit vector in a random direction, perpendicular to `axis` if given.
@@ -265,13 +265,14 @@ impl<H> AroundObstacles<H> {
     {
         let robot = self.hints.robot();
         let Some(body) = self.hints.obstacles().get(obstacle).copied() else { return };
+        let Some(features) = self.hints.obstacle_features(obstacle) else { return };
         let away = (self.hints.world_point(q, &robot.center) - body.center).try_normalize(0.0);
         let away = away.unwrap_or_else(|| random_unit(None, rng));
-        let [mut min, max] = limits(&robot, &body);
+        let [mut min, max] = limits([&robot, &body], [&self.hints.robot_features(), &features]);
         if !self.with.volume {
             min = 0.0;
         }
-        let along = [body.axis, random_unit(Some(&body.axis), rng)];
+        let along = [features.axis, random_unit(Some(&features.axis), rng)];
         for direction in along {
             let first = TAU * rng.random::<f64>();
             let mut interrupt = checker.interrupt().clone();

@@ -5,7 +5,7 @@ use super::pairs::LinkPair;
 use super::robot::{LinkBody, Scratch, SharedArm, are_nested};
 use super::wide::{COARSE, LEAST, Part};
 use crate::kept::beyond;
-use mp_collide::{Contacts, Query, Scene};
+use mp_collide::{BodyId, Contacts, Query, Scene};
 use mp_cspace::{
     Clearance, ClearanceSearch, Coordinates, IntervalClearance, LeastClearance, MotionClearance,
     MotionInterval, Rng, Validity, obstacles::ObstacleHints,
@@ -131,11 +131,11 @@ impl<Q: Coordinates> Validity<Q> for Arm {
 impl<Q: Coordinates> Clearance<Q> for Arm {
     /// The least distance of links from obstacles, beyond what is kept, and from each other.
     fn clearance(&mut self, q: &Q, enough: f64) -> f64 {
-        self.least_clearance(q, enough, true)
+        self.least_clearance(q, enough, true).0
     }
 
     fn obstacle_clearance(&mut self, q: &Q, enough: f64) -> f64 {
-        self.least_clearance(q, enough, false)
+        self.least_clearance(q, enough, false).0
     }
 
     fn in_contact(&mut self, q: &Q) -> bool {
@@ -143,35 +143,62 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
     }
 }
 
+/// What is nearest to each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Nearest {
+    /// A link, by its number among the bodies, and an obstacle.
+    Obstacle(usize, BodyId),
+    /// Two links, by the number of their pair.
+    Pair(usize),
+}
+
 impl Arm {
-    fn least_clearance<Q: Coordinates>(&mut self, q: &Q, enough: f64, of_links: bool) -> f64 {
+    /// The least distance, and between what it is: of what moves, and only where it is less than `enough`. Leaves the frames at `q` in the
+    /// scratch memory.
+    pub(super) fn least_clearance<Q: Coordinates>(
+        &mut self,
+        q: &Q,
+        enough: f64,
+        of_links: bool,
+    ) -> (f64, Option<Nearest>) {
         self.counters.clearance_checks += 1;
         let mut least = if of_links { self.still_clearance() } else { f64::INFINITY };
+        let mut nearest = None;
         let Self { robot, obstacles, query, scratch, interrupt, kept, .. } = self;
         if interrupt.ask() || !robot.kinematics.is_configuration(q.as_slice()) {
-            return 0.0;
+            return (0.0, None);
         }
         let frames = &mut scratch.frames;
         robot.kinematics.frames_into(q.as_slice(), frames);
         let enough = if enough.is_nan() { f64::INFINITY } else { enough };
-        for body in robot.moving() {
-            let scene = &obstacles.scene;
-            let found = |limit| scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
-            least = least.min(beyond(*kept, enough.min(least), found));
+        for (i, body) in robot.numbered_moving() {
+            let (scene, limit, mut obstacle) = (&obstacles.scene, enough.min(least), None);
+            let found = beyond(*kept, limit, |limit| {
+                let (found, id) = scene.clearance(query, &body.tree, &frames[body.frame], limit);
+                obstacle = id;
+                found
+            });
+            if found < limit {
+                nearest = obstacle.map(|id| Nearest::Obstacle(i, id));
+            }
+            least = least.min(found);
             if least <= 0.0 {
-                return 0.0;
+                return (0.0, nearest);
             }
         }
-        for pair in robot.pairs.iter().filter(|_| of_links) {
+        for (p, pair) in robot.pairs.iter().enumerate().filter(|_| of_links) {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
             let limit = enough.min(least);
             let distance = query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], limit);
+            if distance < limit {
+                nearest = Some(Nearest::Pair(p));
+            }
             least = least.min(distance);
             if least <= 0.0 || are_nested(query, [a, b], frames) {
-                return 0.0;
+                return (0.0, Some(Nearest::Pair(p)));
             }
         }
-        least
+        (least, nearest)
     }
 }
 

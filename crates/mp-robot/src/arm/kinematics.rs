@@ -234,23 +234,6 @@ impl Kinematics {
         BaseTravel { slide: Vector3::new(x, y, z).norm(), turn: turn.norm(), axis: turn }
     }
 
-    /// `q` moved by `by` in the degree of freedom `k`: along and about world axes for a floating base, then the joints.
-    pub(crate) fn nudged<Q: Coordinates>(&self, q: &Q, k: usize, by: f64) -> Q {
-        let mut out = q.clone();
-        let base = if self.floats() { 6 } else { 0 };
-        if let Some(joint) = k.checked_sub(base) {
-            if let Some(x) = out.as_mut_slice().get_mut(self.first() + joint) {
-                *x += by;
-            }
-        } else if let (Some(space), Some((pose, _))) = (&self.floating, FloatingJoints::split(q.as_slice())) {
-            let velocity: [f64; 6] = std::array::from_fn(|i| if i == k { by } else { 0.0 });
-            if let Some(moved) = space.moved(&pose, &velocity, 1.0) {
-                put_pose(&moved, out.as_mut_slice());
-            }
-        }
-        out
-    }
-
     /// `q` moved by as much as from `from` to `to`: a floating base by its translation and its turn in the world, the joints
     /// by the shorter way.
     pub(crate) fn moved_by<Q: Coordinates>(&self, q: &Q, from: &Q, to: &Q) -> Q {

@@ -5,6 +5,7 @@ mod check;
 mod compile;
 mod error;
 mod explain;
+mod gradient;
 mod groups;
 mod held;
 mod ik;

@@ -512,4 +512,21 @@ fn static_and_dynamic_configurations_agree() {
 fn gradients_are_derivatives_of_the_clearance() {
     let (mut arm, space) = arm();
     mp_cspace::testkit::check_clearance_gradient(&space, &mut arm, 0.5, (200, 1e-5, 1e-3), 2);
+    // Joints that slide, and that follow others, with a clearance that is kept.
+    let (mut rng, mut checked) = (Rng::seed(3), 0);
+    for count in 4..16 {
+        let post = obstacle("post", cuboid(0.2, 0.3, 0.4).unwrap(), [1.0, 0.2, 0.3, 0.4, 0.0, 0.0]);
+        let Ok(arm) = Arm::new(&random_tree(&mut rng, count), vec![post]) else { continue };
+        let Ok(space) = arm.space::<Configuration>() else { continue };
+        let (mut arm, mut samples) = (arm.keeping(0.01), Rng::seed(2));
+        let mut is_near = || {
+            let clearance = arm.clearance(&space.sample_uniform(&mut samples), 5.0);
+            clearance > 0.0 && clearance < 5.0
+        };
+        if (0..100).filter(|_| is_near()).count() > 20 {
+            mp_cspace::testkit::check_clearance_gradient(&space, &mut arm, 5.0, (100, 1e-5, 1e-3), 2);
+            checked += 1;
+        }
+    }
+    assert!(checked > 3, "{checked}");
 }

@@ -182,17 +182,18 @@ fn the_robot_is_put_where_it_is_asked() {
         let there = body.moved_to(&q, &point, &place);
         assert!((body.world_point(&there, &point) - place).norm() < 1e-12 && there.rotation == q.rotation);
 
-        let (robot, direction) = (body.robot(), (q.rotation * Vector3::x()));
+        let (robot, axis) = (body.robot(), body.robot_features().axis);
+        let direction = q.rotation * Vector3::x();
         let [a, b] = [0.0, 0.7].map(|angle| body.aligned(&place, &(direction * 3.0), angle));
         for q in [&a, &b] {
             assert!((body.world_point(q, &robot.center) - place).norm() < 1e-12);
-            assert!((q.rotation * robot.axis - direction).norm() < 1e-9);
+            assert!((q.rotation * axis - direction).norm() < 1e-9);
         }
         assert!((rotation_angle(&a.rotation, &b.rotation) - 0.7).abs() < 1e-7);
 
         let turned = planar.aligned(&place, &direction, 0.0);
         assert!((planar.world_point(&turned, &robot.center) - place).xy().norm() < 1e-12);
-        let along = (turned.to_isometry3(0.0).rotation * robot.axis).xy().normalize();
+        let along = (turned.to_isometry3(0.0).rotation * axis).xy().normalize();
         assert!((along - direction.xy().normalize()).norm() < 1e-6);
 
         // On the box of the clutter, 1 by 0.5 by 2.
@@ -206,7 +207,8 @@ fn the_robot_is_put_where_it_is_asked() {
     }
     // By area: 1, 2 and 0.5.
     assert!(sides[1] > sides[0] && sides[0] > sides[2] && sides[2] > 5, "{sides:?}");
-    let long = body.obstacles()[0].axis;
+    let long = body.obstacle_features(0).unwrap().axis;
+    assert!(body.obstacle_features(99).is_none());
     assert!((clutter()[0].2.rotation * Vector3::z()).dot(&long).abs() > 1.0 - 1e-9);
     let point = PointRobot::new(parted()).unwrap();
     assert_eq!(point.aligned(&Vector3::new(1.0, 2.0, 3.0), &Vector3::x(), 1.0), Vector3::new(1.0, 2.0, 3.0));
