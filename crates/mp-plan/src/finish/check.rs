@@ -154,6 +154,11 @@ pub(crate) fn what_happens(kind: &dyn Robot, state: &Configuration, check: Motio
     match (check, touching.is_empty()) {
         _ if let Some(constraint) = &broken => format!("is against the constraint `{constraint}`"),
         _ if kind.sampled().is_some() => "collides".to_owned(),
+        (MotionCheck::Unproven { .. }, true)
+            if kind.closest(state).is_some_and(|(_, apart)| apart > kind.kept() + kind.tolerance()) =>
+        {
+            "cannot be proved free in one piece (add configurations)".to_owned()
+        }
         (_, true) if kind.kept() > 0.0 => {
             format!("comes nearer to an obstacle than {} m", brief(kind.kept()))
         }

@@ -45,6 +45,21 @@ fn paths_keep_what_is_asked_for() {
     }
 }
 
+/// It was said to come too near to contact, a thousand kilometres from it.
+#[test]
+fn a_motion_that_is_too_long_for_a_proof_is_said_to_be_so() {
+    let far = "[robot]\nbox = [1e-3, 1e-3, 1e-3]\n\n[motion]\nstart = [-1e6, 0, 0, 0, 0, 0]\ngoal = [1e6, 0, 0, 0, 0, 0]\n\n\
+        [[obstacle]]\nbox = [1, 1, 1]\npose = [0, 9, 0, 0, 0, 0]\n";
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("far.toml");
+    std::fs::write(&file, far).unwrap();
+    let scene = Scene::load(&file).unwrap();
+    let rows = [-1e6, 1e6].map(|x| vec![x, 0.0, 0.0, 0.0, 0.0, 0.0]).to_vec();
+    let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+    let faults = scene.check(&path).unwrap().faults;
+    assert!(faults[0].starts_with("cannot be proved free in one piece"), "{faults:?}");
+}
+
 #[test]
 fn more_than_a_path_keeps_is_refused() {
     for (name, clearance) in SCENES.into_iter().filter(|(name, _)| *name != "arm") {
