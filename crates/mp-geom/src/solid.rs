@@ -50,6 +50,9 @@ fn bounds_volume(mesh: &TriMesh) -> bool {
 /// touch.
 const AROUND: f64 = 0.1;
 
+/// Whether a component is a cavity is asked at corners of at most this many of its triangles: one that crosses others is none.
+const LOOKED_AT: usize = 16;
+
 impl TriMesh {
     /// The solids: the triangles of each, ascending. The triangles of a solid are a closed surface that faces
     /// outward; the solid is that surface and the points around which it winds. Solids may overlap. Triangles
@@ -83,11 +86,16 @@ impl TriMesh {
         }
         let mesh = if self.signed_volume() < 0.0 { self.reversed() } else { self };
         let parts: Vec<_> = mesh.parts().into_iter().map(|part| (part.aabb(), part)).collect();
-        let is_cavity = |i: usize| {
-            let corner = parts[i].1.triangle(0)[0];
+        let is_inside = |i: usize, corner: Point3<f64>| {
             let around =
                 parts.iter().enumerate().filter(|(j, (bounds, _))| *j != i && bounds.contains(&corner));
             around.map(|(_, (_, part))| part.winding_number(&corner)).sum::<f64>() > AROUND
+        };
+        let is_cavity = |i: usize| {
+            let part = &parts[i].1;
+            let count = part.triangles().len();
+            let mut some = (0..count).step_by(count.div_ceil(LOOKED_AT)).flat_map(|k| part.triangle(k));
+            some.all(|corner| is_inside(i, corner))
         };
         for (i, (_, part)) in parts.iter().enumerate() {
             // A flat part has no inside, wherever it is.
@@ -310,6 +318,10 @@ mod tests {
         assert_eq!(turned.into_solid(), Err(SolidError::NotOriented { edges: 3 }));
         let mixed = TriMesh::merged([&cube(3.0), &at(&inward, 9.0)]).unwrap();
         assert_eq!(mixed.into_solid(), Err(SolidError::Mixed));
+        for x in [-1.2, 1.2] {
+            let crossing = TriMesh::merged([&surface(&cube(3.0)), &at(&inward, x)]).unwrap();
+            assert_eq!(crossing.into_solid(), Err(SolidError::Mixed));
+        }
         let even = TriMesh::merged([&surface(&cube(1.0)), &at(&inward, 9.0)]).unwrap();
         assert_eq!(even.into_solid(), Err(SolidError::Mixed));
         // As SketchUp writes surfaces: all triangles once for each side.

@@ -9,7 +9,7 @@ pub use problem::PlanarProblem;
 pub use ros_map::RosMap;
 
 use crate::drive::{Drive, DriveTable, Driven};
-use crate::toml_problem::{GoalPart, MotionPlaces, MotionTable, Timing, TomlText, timed_rows};
+use crate::toml_problem::{Exactly, GoalPart, MotionPlaces, MotionTable, Timing, TomlText, timed_rows};
 use mp_formats::error::Error;
 use mp_formats::files::decode;
 use mp_geom::planar::Polygon;
@@ -137,7 +137,7 @@ struct File {
     moving: Vec<Spanned<MovingTable>>,
 }
 
-type Corners = Spanned<[[f64; 2]; 2]>;
+type Corners = Spanned<Exactly<Exactly<f64, 2>, 2>>;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -146,7 +146,7 @@ struct WorldTable {
     bounds: Option<Corners>,
     image: Option<Spanned<String>>,
     scale: Option<Spanned<f64>>,
-    origin: Option<Spanned<[f64; 2]>>,
+    origin: Option<Spanned<Exactly<f64, 2>>>,
     threshold: Option<Spanned<f64>>,
     map: Option<Spanned<String>>,
     unknown: Option<Spanned<String>>,
@@ -156,7 +156,7 @@ struct WorldTable {
 #[serde(deny_unknown_fields)]
 struct RobotTable {
     disc: Option<Spanned<f64>>,
-    polygon: Option<Spanned<Vec<[f64; 2]>>>,
+    polygon: Option<Spanned<Vec<Exactly<f64, 2>>>>,
     kind: Option<Spanned<String>>,
     duration: Option<Spanned<f64>>,
     speed: Option<Spanned<f64>>,
@@ -173,11 +173,11 @@ struct RobotTable {
 #[serde(deny_unknown_fields)]
 struct MovingTable {
     name: Option<String>,
-    polygon: Option<Spanned<Vec<[f64; 2]>>>,
+    polygon: Option<Spanned<Vec<Exactly<f64, 2>>>>,
     #[serde(default)]
-    holes: Vec<Spanned<Vec<[f64; 2]>>>,
+    holes: Vec<Spanned<Vec<Exactly<f64, 2>>>>,
     rectangle: Option<Corners>,
-    circle: Option<Spanned<[f64; 3]>>,
+    circle: Option<Spanned<Exactly<f64, 3>>>,
     path: Spanned<Vec<Vec<f64>>>,
 }
 
@@ -185,11 +185,11 @@ struct MovingTable {
 #[serde(deny_unknown_fields)]
 struct ObstacleTable {
     name: Option<String>,
-    polygon: Option<Spanned<Vec<[f64; 2]>>>,
+    polygon: Option<Spanned<Vec<Exactly<f64, 2>>>>,
     #[serde(default)]
-    holes: Vec<Spanned<Vec<[f64; 2]>>>,
+    holes: Vec<Spanned<Vec<Exactly<f64, 2>>>>,
     rectangle: Option<Corners>,
-    circle: Option<Spanned<[f64; 3]>>,
+    circle: Option<Spanned<Exactly<f64, 3>>>,
 }
 
 impl PlanarFile {
@@ -285,7 +285,7 @@ fn corners(
     given: Option<&Corners>,
 ) -> Result<Option<[[f64; 2]; 2]>, Error> {
     let Some(given) = given else { return Ok(None) };
-    let ([low, high], span) = (*given.get_ref(), given.span());
+    let (Exactly([Exactly(low), Exactly(high)]), span) = (*given.get_ref(), given.span());
     source.check(what, &[low, high].concat(), &span)?;
     if low[0] < high[0] && low[1] < high[1] {
         return Ok(Some([low, high]));
@@ -325,8 +325,8 @@ fn map_of(
             source.positive("the scale", &[*scale.get_ref()], &scale.span())?;
             let origin = match world.origin {
                 Some(origin) => {
-                    source.check("the origin", origin.get_ref(), &origin.span())?;
-                    origin.into_inner()
+                    source.check("the origin", &origin.get_ref().0, &origin.span())?;
+                    origin.into_inner().0
                 }
                 None => [0.0; 2],
             };
@@ -463,20 +463,25 @@ fn moving_entry(
 }
 
 /// The polygon of these rings; `what` is its name in errors.
-fn polygon(source: &TomlText<'_>, what: &str, rings: Vec<Spanned<Vec<[f64; 2]>>>) -> Result<Polygon, Error> {
+fn polygon(
+    source: &TomlText<'_>,
+    what: &str,
+    rings: Vec<Spanned<Vec<Exactly<f64, 2>>>>,
+) -> Result<Polygon, Error> {
     let mut points = Vec::new();
     let mut whole = 0..0;
     for (i, ring) in rings.into_iter().enumerate() {
         let span = ring.span();
-        source.check(what, &ring.get_ref().concat(), &span)?;
-        if ring.get_ref().len() < 3 {
-            let message = format!("{what} has a ring of {} points", ring.get_ref().len());
+        let ring: Vec<[f64; 2]> = ring.into_inner().into_iter().map(|point| point.0).collect();
+        source.check(what, &ring.concat(), &span)?;
+        if ring.len() < 3 {
+            let message = format!("{what} has a ring of {} points", ring.len());
             return Err(source.error(&span, message).expected("at least three points"));
         }
         if i == 0 {
             whole = span;
         }
-        points.push(ring.into_inner().into_iter().map(Point2::from).collect());
+        points.push(ring.into_iter().map(Point2::from).collect());
     }
     Polygon::new(points).map_err(|e| source.error(&whole, format!("{what}: {e}")).expected("a polygon"))
 }
@@ -516,7 +521,7 @@ fn shaped(
             }
         }
         (None, None, Some(circle)) => {
-            let [x, y, radius] = *circle.get_ref();
+            let Exactly([x, y, radius]) = *circle.get_ref();
             source.check("the circle", &[x, y, radius], &circle.span())?;
             made(&circle.span(), Polygon::around_circle([x, y], radius, CORNERS))?
         }

@@ -4,7 +4,7 @@ use crate::drive::{DriveTable, Driven};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind};
 use crate::robot::{ObstacleTable, entry};
 use crate::shape::{Meshes, Shaped};
-use crate::toml_problem::{GoalPart, MotionTable, Timing, TomlText, timed_rows};
+use crate::toml_problem::{Exactly, GoalPart, MotionTable, Timing, TomlText, timed_rows};
 use mp_formats::error::Error;
 use mp_formats::files::{Files, MAX_TEXT_BYTES, decode, stem};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
@@ -66,7 +66,7 @@ struct File {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RobotTable {
-    bounds: Option<Spanned<[[f64; 3]; 2]>>,
+    bounds: Option<Spanned<Exactly<Exactly<f64, 3>, 2>>>,
     planar: Option<bool>,
     kind: Option<Spanned<String>>,
     duration: Option<Spanned<f64>>,
@@ -204,7 +204,7 @@ impl RigidTask {
         let bounds = match &robot.bounds {
             None => None,
             Some(given) => {
-                let [low, high] = *given.get_ref();
+                let Exactly([Exactly(low), Exactly(high)]) = *given.get_ref();
                 source.check("the bounds", &[low, high].concat(), &given.span())?;
                 // In the plane only x and y count.
                 let axes = if planar { 2 } else { 3 };
@@ -307,6 +307,15 @@ mod tests {
             ("{ x = 2", "{ yaw = 2", 7, "`yaw`"),
             ("speed = 1\n", "", 6, "no speed"),
             ("[4, 0, 3, 0, 1, 0, 0]", "[4, 0, 3]", 17, "has 3 numbers"),
+            (
+                "[0, 1, 0, 0, 0, 0]",
+                "[0, 1, 0, 0, 0, 0, 1]",
+                12,
+                "invalid length 7, expected an array of length 6",
+            ),
+            ("pose = [0, 1, 0, 0, 0, 0]", "at = [0, 1, 0, 0]", 12, "length 4"),
+            ("[3, 3, 1]]", "[3, 3, 1, 0]]", 3, "length 4"),
+            ("[3, 3, 1]]", "[3, 3, 1], [0, 0, 0]]", 3, "length 3"),
             ("sphere = 0.3", "mesh = \"lost.off\"", 11, "no such file"),
             ("speed = 1", "tolerance = 1", 8, "only robots that move by inputs"),
         ] {

@@ -19,7 +19,7 @@ pub use problem::{DescribedRobot, RobotProblem, read_robot_text};
 pub use srdf_near::{FoundSrdf, robot_name};
 
 use crate::shape::{ShapeEntry, Shaped};
-use crate::toml_problem::{GoalEntry, MotionPlaces, MotionTable, StartEntry, TomlText};
+use crate::toml_problem::{Exactly, GoalEntry, MotionPlaces, MotionTable, StartEntry, TomlText};
 use mp_formats::error::Error;
 use mp_formats::files::decode;
 use serde::Deserialize;
@@ -116,8 +116,8 @@ struct File {
 #[serde(deny_unknown_fields)]
 pub(crate) struct ObstacleTable {
     name: Option<String>,
-    pose: Option<Spanned<[f64; 6]>>,
-    at: Option<Spanned<[f64; 3]>>,
+    pose: Option<Spanned<Exactly<f64, 6>>>,
+    at: Option<Spanned<Exactly<f64, 3>>>,
     self_filter: Option<Spanned<f64>>,
 }
 
@@ -126,7 +126,7 @@ pub(crate) struct ObstacleTable {
 struct AttachedTable {
     name: Option<String>,
     link: String,
-    pose: Option<Spanned<[f64; 6]>>,
+    pose: Option<Spanned<Exactly<f64, 6>>>,
     #[serde(default)]
     may_touch: Vec<String>,
 }
@@ -236,8 +236,8 @@ pub(crate) fn entry(
             return Err(source.error(&at.span(), message).expected("`pose` or `at`, not both"));
         }
         (None, Some(at)) => {
-            source.check("the position", at.get_ref(), &at.span())?;
-            let [x, y, z] = *at.get_ref();
+            let Exactly([x, y, z]) = *at.get_ref();
+            source.check("the position", &[x, y, z], &at.span())?;
             [x, y, z, 0.0, 0.0, 0.0]
         }
         (pose, None) => source.six("the pose", pose.clone())?,

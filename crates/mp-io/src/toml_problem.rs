@@ -5,8 +5,8 @@ use crate::pose_goal::PoseEntry;
 use mp_formats::error::{Error, ErrorKind};
 use mp_formats::mesh::MAX_COORDINATE;
 use mp_formats::text::clipped;
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, Error as _};
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -73,10 +73,23 @@ impl TomlText<'_> {
     }
 
     /// The six numbers of a pose; zeros when it is not given.
-    pub(crate) fn six(&self, what: &str, six: Option<Spanned<[f64; 6]>>) -> Result<[f64; 6], Error> {
+    pub(crate) fn six(&self, what: &str, six: Option<Spanned<Exactly<f64, 6>>>) -> Result<[f64; 6], Error> {
         let Some(six) = six else { return Ok([0.0; 6]) };
-        self.check(what, six.get_ref(), &six.span())?;
-        Ok(six.into_inner())
+        self.check(what, &six.get_ref().0, &six.span())?;
+        Ok(six.into_inner().0)
+    }
+}
+
+/// A list of `N`. For an array, the reader of TOML takes a longer list too, and drops the rest.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exactly<T, const N: usize>(pub(crate) [T; N]);
+
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Exactly<T, N> {
+    fn deserialize<D: Deserializer<'de>>(list: D) -> Result<Self, D::Error> {
+        let all = Vec::deserialize(list)?;
+        let length = all.len();
+        let expected = format!("an array of length {N}");
+        all.try_into().map(Self).map_err(|_| D::Error::invalid_length(length, &expected.as_str()))
     }
 }
 

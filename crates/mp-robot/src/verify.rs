@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// - free means a clearance of at least the tolerance all along, however thin the obstacles are;
 /// - a motion with a clearance of at least twice the tolerance all along is found free;
 /// - a motion with a tested state of less clearance is [`Unproven`](MotionCheck::Unproven), as are motions longer
-///   than 10⁹ tolerances and motions for which the sweep takes too long.
+///   than 10¹² tolerances and motions for which the sweep takes too long.
 ///
 /// Interpolation in the space must move the origin on a straight line and turn by at most half a turn about
 /// a fixed axis, both at constant speed, as `Se3`, `Se2` and `Rn` do. Motions that begin inside of a
@@ -44,7 +44,7 @@ pub struct Verifier<'c, C, P> {
 }
 
 /// Motions longer than this many tolerances are refused.
-const MAX_LENGTH: f64 = 1e9;
+const MAX_LENGTH: f64 = 1e12;
 
 impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
     /// A verifier for `robot` in `space` with a tenth of the robot's [tolerance](RigidBody::tolerance).

@@ -44,8 +44,8 @@ pub struct Certified<'c, C: Space, V> {
     states: [Option<C::State>; MOST_AT_ONCE - 1],
 }
 
-/// Motions longer than this many tolerances are refused: rounding would exceed the size of their parts.
-const MAX_TOLERANCES: f64 = 1e9;
+/// Motions longer than this many tolerances are refused: rounding would be a thousandth of a tolerance.
+const MAX_TOLERANCES: f64 = 1e12;
 
 /// Uncovered parts shorter than this fraction of the motion come from rounding.
 const ROUNDING: f64 = 1e-15;
@@ -573,6 +573,19 @@ mod tests {
                     assert!(!check.check_motion(&a, &b).is_free());
                 }
             }
+        }
+    }
+
+    /// As of a small body over a long way.
+    #[test]
+    fn long_motions_are_checked() {
+        let space = Rn::<2>::new([0.0, 0.0], [1e6, 1.0]).unwrap();
+        let discs = Discs { discs: vec![(Vector2::new(123_456.7, 0.5), 0.1)], ..Discs::default() };
+        let mut check = Certified::new(&space, discs, 1e-5).unwrap();
+        for (y, free) in [(0.1, true), (0.6002, true), (0.39998, true), (0.59999, false), (0.5, false)] {
+            let found = check.check_motion(&Vector2::new(0.0, y), &Vector2::new(1e6, y));
+            let off = found.failed_at().map(|at| (1e6 * at - 123_456.7).abs());
+            assert!(found.is_free() == free && off.is_none_or(|off| off < 0.1), "{y}: {found:?}");
         }
     }
 

@@ -27,7 +27,7 @@ struct Document {
     scenes: Vec<Scene>,
     nodes: Vec<Node>,
     meshes: Vec<Mesh>,
-    skins: Vec<serde::de::IgnoredAny>,
+    skins: Vec<Skin>,
     accessors: Vec<Accessor>,
     buffer_views: Vec<View>,
     buffers: Vec<Buffer>,
@@ -50,6 +50,18 @@ struct Node {
     scale: Option<[f64; 3]>,
     /// How much of each target is in its mesh, in place of what that says.
     weights: Option<Vec<f64>>,
+    skin: Option<usize>,
+    #[serde(default)]
+    extensions: HashMap<String, serde::de::IgnoredAny>,
+}
+
+/// The nodes that move the vertices of a mesh.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Skin {
+    joints: Vec<usize>,
+    /// From the mesh to each joint; without, all are where the mesh is.
+    inverse_bind_matrices: Option<usize>,
 }
 
 #[derive(Deserialize)]
@@ -146,9 +158,6 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
     for extension in document.extensions_used.iter().filter(changes) {
         (reading.remark)(&format!("the extension {} is not read", clipped(extension)));
     }
-    if !document.skins.is_empty() {
-        (reading.remark)("skins are not applied: meshes stay as they are stored");
-    }
     // Corners at seams of colour are there once for each side.
     TriMesh::new(scene.vertices, scene.triangles).map(|mesh| mesh.welded()).map_err(|e| mesh_error(file, &e))
 }
@@ -180,6 +189,9 @@ const NEUTRAL: [&str; 13] = [
     "FB_ngon_encoding",
 ];
 
+/// The extension by which a mesh is in several places of a node: they would be missing.
+const INSTANCES: &str = "EXT_mesh_gpu_instancing";
+
 /// The error of an extension without which a file says that it cannot be read.
 fn needed(file: &str, extension: &str) -> Error {
     let (message, help) = match COMPRESSED.contains(&extension) {
@@ -193,6 +205,12 @@ fn needed(file: &str, extension: &str) -> Error {
         ),
     };
     Error::new(ErrorKind::Unsupported, file, message).help(help)
+}
+
+/// A vertex, whose frame is at `place`.
+fn placed(place: &Matrix4<f64>, p: &[f64]) -> Point3<f64> {
+    let (turn, moved) = (place.fixed_view::<3, 3>(0, 0), place.fixed_view::<3, 1>(0, 3));
+    Point3::from(turn * Vector3::new(p[0], p[1], p[2]) + moved)
 }
 
 /// The JSON of a binary file, and the bytes after it.
@@ -267,31 +285,84 @@ impl Triangles<'_> {
             Some(scene) => scene.nodes.clone(),
             None => (0..nodes.len()).filter(|i| !children.contains(i)).collect(),
         };
-        let mut seen = vec![false; nodes.len()];
+        let mut places = vec![None; nodes.len()];
+        let mut order = Vec::new();
         let mut stack: Vec<_> = roots.iter().rev().map(|&node| (node, Matrix4::identity(), 1)).collect();
         while let Some((i, around, depth)) = stack.pop() {
             if reading.interrupt.ask() {
                 return Err(Error::interrupted(self.file));
             }
             let node = nodes.get(i).ok_or_else(|| self.wrong(format!("there is no node {i}")))?;
-            if std::mem::replace(&mut seen[i], true) || depth > MAX_DEPTH {
+            if places[i].is_some() || depth > MAX_DEPTH {
                 return Err(
                     self.wrong(format!("node {i} is in two places, or nested more than {MAX_DEPTH} deep"))
                 );
             }
             let place = around * self.matrix(i, node)?;
-            if let Some(mesh) = node.mesh {
-                let all = self.document.meshes.get(mesh);
-                let all = all
-                    .ok_or_else(|| self.wrong(format!("node {i} has the mesh {mesh}, which is not there")))?;
-                let weights = node.weights.as_ref().unwrap_or(&all.weights);
-                for (k, primitive) in all.primitives.iter().enumerate() {
-                    self.add(&format!("primitive {k} of mesh {mesh}"), primitive, weights, &place)?;
-                }
-            }
+            places[i] = Some(place);
+            order.push((i, node, place));
             stack.extend(node.children.iter().rev().map(|&child| (child, place, depth + 1)));
         }
+        for (i, node, place) in order {
+            if node.extensions.contains_key(INSTANCES) {
+                return Err(needed(self.file, INSTANCES));
+            }
+            let Some(mesh) = node.mesh else { continue };
+            let all = self.document.meshes.get(mesh);
+            let all =
+                all.ok_or_else(|| self.wrong(format!("node {i} has the mesh {mesh}, which is not there")))?;
+            let weights = node.weights.as_ref().unwrap_or(&all.weights);
+            let joints = node.skin.map(|skin| self.joints(skin, &places)).transpose()?;
+            for (k, primitive) in all.primitives.iter().enumerate() {
+                let what = format!("primitive {k} of mesh {mesh}");
+                self.add(&what, primitive, weights, &place, joints.as_deref())?;
+            }
+        }
         Ok(())
+    }
+
+    /// For each joint of a skin, from the mesh to where the joint takes it.
+    fn joints(&self, number: usize, places: &[Option<Matrix4<f64>>]) -> Result<Vec<Matrix4<f64>>, Error> {
+        let wrong = |what: &str| self.wrong(format!("skin {number} {what}"));
+        let skin = self.document.skins.get(number).ok_or_else(|| wrong("is not there"))?;
+        let bind = skin.inverse_bind_matrices.map(|bind| self.numbers(bind, "MAT4")).transpose()?;
+        let joint = |(k, &joint): (usize, &usize)| {
+            let place = places.get(joint).copied().flatten();
+            let place = place.ok_or_else(|| wrong("has a joint that is not in the scene"))?;
+            let Some(bind) = &bind else { return Ok(place) };
+            let bind = bind.get(16 * k..16 * k + 16);
+            Ok(place
+                * Matrix4::from_column_slice(bind.ok_or_else(|| wrong("has more joints than matrices"))?))
+        };
+        skin.joints.iter().enumerate().map(joint).collect()
+    }
+
+    /// Where joints take vertices: for each the mean of its places, by the weights of the joints.
+    fn skinned(
+        &self,
+        what: &str,
+        primitive: &Primitive,
+        joints: &[Matrix4<f64>],
+        positions: &[f64],
+    ) -> Result<Vec<Point3<f64>>, Error> {
+        let mut sums = vec![(0.0, Vector3::zeros()); positions.len() / 3];
+        let sets = (0..).map_while(|set| {
+            let accessor = |name| primitive.attributes.get(&format!("{name}_{set}")).copied();
+            accessor("JOINTS").zip(accessor("WEIGHTS"))
+        });
+        for (numbers, weights) in sets {
+            let (numbers, weights) = (self.numbers(numbers, "VEC4")?, self.numbers(weights, "VEC4")?);
+            for (k, (joint, weight)) in numbers.iter().zip(weights).enumerate().take(4 * sums.len()) {
+                let joint = joints.get(*joint as usize).filter(|_| weight >= 0.0);
+                let joint =
+                    joint.ok_or_else(|| self.wrong(format!("{what} has a joint that its skin has not")))?;
+                sums[k / 4].0 += weight;
+                sums[k / 4].1 += placed(joint, &positions[3 * (k / 4)..]).coords * weight;
+            }
+        }
+        let mean = |(weight, sum): (f64, Vector3<f64>)| (weight > 0.0).then(|| Point3::from(sum / weight));
+        let means = sums.into_iter().map(mean).collect::<Option<_>>();
+        means.ok_or_else(|| self.wrong(format!("{what} has vertices that no joint of its skin moves")))
     }
 
     fn matrix(&self, i: usize, node: &Node) -> Result<Matrix4<f64>, Error> {
@@ -317,13 +388,14 @@ impl Triangles<'_> {
         }
     }
 
-    /// Adds a primitive, whose frame is at `place`, with so much of each of its targets.
+    /// Adds a primitive, whose frame is at `place`, with so much of each of its targets. Where there are joints, they alone say where it is.
     fn add(
         &mut self,
         what: &str,
         primitive: &Primitive,
         weights: &[f64],
         place: &Matrix4<f64>,
+        joints: Option<&[Matrix4<f64>]>,
     ) -> Result<(), Error> {
         let mode = primitive.mode.unwrap_or(4);
         if !(4..=6).contains(&mode) {
@@ -356,18 +428,23 @@ impl Triangles<'_> {
             let message = format!("the scene has more than {MAX_INSTANCED} triangles or vertices");
             return Err(Error::new(ErrorKind::TooLarge, self.file, message).help("simplify the meshes"));
         }
-        let (turn, moved) =
-            (place.fixed_view::<3, 3>(0, 0).into_owned(), place.fixed_view::<3, 1>(0, 3).into_owned());
         let base = self.vertices.len() as u32; // at most MAX_INSTANCED
-        let point = |p: &[f64]| Point3::from(turn * Vector3::new(p[0], p[1], p[2]) + moved);
-        self.vertices.extend(positions.chunks_exact(3).map(point));
+        match joints {
+            Some(joints) => {
+                let points = self.skinned(what, primitive, joints, &positions)?;
+                self.vertices.extend(points);
+            }
+            None => self.vertices.extend(positions.chunks_exact(3).map(|p| placed(place, p))),
+        }
         let triangles: Vec<[u32; 3]> = match mode {
             4 => corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
             5 => corners.windows(3).enumerate().map(|(i, t)| [t[0], t[1 + i % 2], t[2 - i % 2]]).collect(),
             _ => corners.windows(2).skip(1).map(|t| [corners[0], t[0], t[1]]).collect(),
         };
         // A mirror turns triangles over.
-        let order = if turn.determinant() < 0.0 { [0, 2, 1] } else { [0, 1, 2] };
+        let first = joints.and_then(<[_]>::first).unwrap_or(place);
+        let mirrored = first.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
+        let order = if mirrored { [0, 2, 1] } else { [0, 1, 2] };
         self.triangles.extend(triangles.into_iter().map(|t| order.map(|k| t[k] + base)));
         Ok(())
     }
@@ -378,6 +455,10 @@ impl Triangles<'_> {
         let accessor = self.document.accessors.get(number).ok_or_else(|| wrong("is not there"))?;
         let (width, columns) = match (kind, accessor.component_type) {
             ("VEC3", 5126) => (4, 3),
+            ("VEC4", 5126) => (4, 4),
+            ("VEC4", 5121) => (1, 4),
+            ("VEC4", 5123) => (2, 4),
+            ("MAT4", 5126) => (4, 16),
             ("SCALAR", 5121) => (1, 1),
             ("SCALAR", 5123) => (2, 1),
             ("SCALAR", 5125) => (4, 1),
@@ -423,6 +504,7 @@ mod tests {
     use crate::files::Disk;
     use crate::mesh::parse_mesh;
     use crate::mesh::read_mesh_with;
+    use mp_stop::Interrupt;
 
     const CORPUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/gltf/good-");
 
@@ -454,6 +536,11 @@ mod tests {
             crate::error::check_error(&e);
             assert!(parse_mesh("m.gltf", with("extensionsUsed", name).as_bytes()).is_ok());
         }
+        // All but one of the places of a mesh would be missing.
+        let instances =
+            text.replacen("\"mesh\":", "\"extensions\":{\"EXT_mesh_gpu_instancing\":{}},\"mesh\":", 1);
+        let e = parse_mesh("m.gltf", instances.as_bytes()).unwrap_err();
+        assert!(e.kind() == ErrorKind::Unsupported && e.message().contains(INSTANCES), "{e}");
     }
 
     #[test]
@@ -486,6 +573,63 @@ mod tests {
         json["meshes"][0]["primitives"][0]["targets"] = serde_json::json!([{"POSITION": indices}]);
         json["meshes"][0]["weights"] = serde_json::json!([1]);
         assert!(parse_mesh("m.gltf", json.to_string().as_bytes()).is_err());
+    }
+
+    /// They alone say where a skinned mesh is, not its node and those above.
+    #[test]
+    fn skins_are_where_their_joints_are() {
+        let text = std::fs::read_to_string(format!("{CORPUS}2")).unwrap();
+        let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        // All four vertices half by a joint that stands at 6 and whose place in the mesh is 2, half by one that stands still.
+        let mut bytes = [[0, 1, 0, 0].repeat(4), [128, 128, 0, 0].repeat(4)].concat();
+        for moved in [-2.0_f32, 0.0] {
+            let bind = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, moved, 0.0, 0.0, 1.0_f32];
+            bytes.extend(bind.iter().flat_map(|v| v.to_le_bytes()));
+        }
+        let mut push = |pointer: &str, value| {
+            json.pointer_mut(pointer).unwrap().as_array_mut().unwrap().push(value);
+        };
+        push("/buffers", serde_json::json!({"uri": "skin.bin", "byteLength": bytes.len()}));
+        push("/bufferViews", serde_json::json!({"buffer": 1, "byteLength": bytes.len()}));
+        for (offset, component, count, kind) in
+            [(0, 5121, 4, "VEC4"), (16, 5121, 4, "VEC4"), (32, 5126, 2, "MAT4")]
+        {
+            let numbers = serde_json::json!({"bufferView": 2, "byteOffset": offset, "componentType": component,
+                "count": count, "type": kind, "normalized": offset == 16});
+            push("/accessors", numbers);
+        }
+        push("/nodes", serde_json::json!({"translation": [6, 0, 0]}));
+        push("/nodes", serde_json::json!({}));
+        push("/scenes/0/nodes", 2.into());
+        push("/scenes/0/nodes", 3.into());
+        let attributes = &mut json["meshes"][0]["primitives"][0]["attributes"];
+        attributes["JOINTS_0"] = 2.into();
+        attributes["WEIGHTS_0"] = 3.into();
+        json["nodes"][1]["skin"] = 0.into();
+        json["skins"] = serde_json::json!([{"joints": [2, 3], "inverseBindMatrices": 4}]);
+        let read = |json: &serde_json::Value| {
+            let (text, interrupt) = (json.to_string(), Interrupt::never());
+            let beside = &|_: &str| Ok(bytes.clone());
+            super::read(
+                "m.gltf",
+                text.as_bytes(),
+                &mut Reading { axes: Axes::OfFile, interrupt, remark: &mut |_| (), beside },
+            )
+        };
+        let mesh = read(&json).unwrap();
+        assert_eq!((mesh.aabb().min, mesh.aabb().max), ([2.0, 0.0, 0.0].into(), [3.0, 1.0, 1.0].into()));
+        for (pointer, bad) in [
+            ("/nodes/1/skin", 1),
+            ("/skins/0/joints/1", 99),
+            ("/accessors/2/count", 3),
+            ("/accessors/4/count", 1),
+        ] {
+            let mut json = json.clone();
+            *json.pointer_mut(pointer).unwrap() = bad.into();
+            crate::error::check_error(&read(&json).unwrap_err());
+        }
+        json["skins"][0]["joints"].as_array_mut().unwrap().pop();
+        assert!(read(&json).is_err());
     }
 
     #[test]

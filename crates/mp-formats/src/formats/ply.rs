@@ -211,6 +211,12 @@ impl<'a> Header<'a> {
                 }
             }
         }
+        if with_faces && elements.iter().any(|element| element.name == "tristrips" && element.count > 0) {
+            let message = "the file has strips of triangles, which would be missing from the mesh";
+            return Err(Error::new(ErrorKind::Unsupported, text.file, message)
+                .expected("the element `face` alone")
+                .help("export the mesh as polygons"));
+        }
         let count = |name: &str, roles: &[Role]| {
             let element = elements.iter().find(|element| element.name == name)?;
             let has = |role: &Role| element.properties.iter().any(|property| property.role == *role);
@@ -471,6 +477,18 @@ mod tests {
         bytes.extend([10, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9]);
         bytes.extend((0..10_u8).flat_map(|i| [i, i * i, 0]));
         assert_eq!(parse_mesh("t.ply", &bytes).unwrap().triangles().len(), 8);
+    }
+
+    /// Faces beside them would be read alone.
+    #[test]
+    fn strips_of_triangles_are_refused() {
+        let strips = "element tristrips 1\nproperty list int int vertex_indices\nend_header";
+        let text = TEXT.replace("end_header", strips) + "4 0 1 2 3\n";
+        let e = parse_mesh("t.ply", text.as_bytes()).unwrap_err();
+        assert!(e.message().contains("strips of triangles"), "{e}");
+        crate::error::check_error(&e);
+        let none = TEXT.replace("end_header", &strips.replace("tristrips 1", "tristrips 0"));
+        assert_eq!(parse_mesh("t.ply", none.as_bytes()).unwrap().triangles().len(), 2);
     }
 
     #[test]

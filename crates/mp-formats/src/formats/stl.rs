@@ -80,9 +80,13 @@ fn binary(
             ))
             .help("the file may be cut short, or be of another format: export it again"));
     }
-    let (records, rest) = bytes[HEAD..].split_at(size as usize - HEAD);
+    let (records, mut rest) = bytes[HEAD..].split_at(size as usize - HEAD);
+    let mut records: Vec<_> = records.chunks_exact(TRIANGLE).collect();
+    if let Some(spread) = with_attributes(bytes, records.len()).filter(|_| !rest.is_empty()) {
+        (records, rest) = (spread, &[]);
+    }
     let more = rest.len() / TRIANGLE;
-    if rest.len() % TRIANGLE == 0 && rest.chunks_exact(TRIANGLE).any(|record| is_triangle(&corners(record))) {
+    if rest.chunks_exact(TRIANGLE).any(|record| is_triangle(&corners(record))) {
         return Err(bad(format!(
             "the header announces {triangles} triangles, but {more} more seem to follow them"
         ))
@@ -92,8 +96,8 @@ fn binary(
     if !rest.is_empty() {
         remark(&format!("{} bytes after the last triangle of binary STL are passed over", rest.len()));
     }
-    let mut soup = Vec::with_capacity(records.len() / TRIANGLE);
-    for (i, record) in records.chunks_exact(TRIANGLE).enumerate() {
+    let mut soup = Vec::with_capacity(records.len());
+    for (i, record) in records.into_iter().enumerate() {
         if i % 1024 == 0 && interrupt.ask() {
             return Err(Error::interrupted(file));
         }
@@ -110,7 +114,18 @@ fn binary(
     Ok(soup)
 }
 
-/// The corners of a triangle of a binary file: 12 bytes of normal, then nine numbers, then two bytes that mean nothing.
+/// So many triangles, where each is followed by as many bytes as its last two say, to the end of the file. Mostly these two mean nothing.
+fn with_attributes(bytes: &[u8], count: usize) -> Option<Vec<&[u8]>> {
+    let (mut records, mut at) = (Vec::with_capacity(count), HEAD);
+    for _ in 0..count {
+        let record = bytes.get(at..at + TRIANGLE)?;
+        at += TRIANGLE + usize::from(u16::from_le_bytes([record[TRIANGLE - 2], record[TRIANGLE - 1]]));
+        records.push(record);
+    }
+    (at == bytes.len()).then_some(records)
+}
+
+/// The corners of a triangle of a binary file: 12 bytes of normal, then nine numbers.
 fn corners(record: &[u8]) -> [Point3<f64>; 3] {
     let number = |i: usize| {
         let at = 12 + 4 * i;
@@ -325,7 +340,24 @@ mod tests {
             short[80..84].copy_from_slice(&announced.to_le_bytes());
             let e = remarks(&short).0.unwrap_err();
             assert!(e.contains(&format!("announces {announced} triangles, but {more} more")), "{e}");
+            // Also with a line break after them.
+            short.extend(b"\r\n");
+            assert_eq!(remarks(&short).0.unwrap_err(), e);
         }
+    }
+
+    #[test]
+    fn bytes_may_follow_each_triangle() {
+        let plain = as_binary(&tetrahedron());
+        let mut spread = plain[..HEAD].to_vec();
+        spread[0] = b'-';
+        for (record, count) in plain[HEAD..].chunks_exact(TRIANGLE).zip([0_u8, 3, 50, 1]) {
+            spread.extend(&record[..TRIANGLE - 2]);
+            spread.extend([count, 0]);
+            spread.extend(vec![0x40; count.into()]);
+        }
+        assert_eq!(parse_mesh("t.stl", &spread).unwrap(), parse_mesh("t.stl", &plain).unwrap());
+        assert_eq!(remarks(&spread), (Ok(4), Vec::new()));
     }
 
     #[test]

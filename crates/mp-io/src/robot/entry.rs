@@ -1,7 +1,7 @@
 //! The tables `robot` of robot problems: each a robot.
 
 use crate::drive::{DriveTable, Driven};
-use crate::toml_problem::TomlText;
+use crate::toml_problem::{Exactly, TomlText};
 use mp_formats::error::Error;
 use mp_geom::pose_from_six;
 use nalgebra::Isometry3;
@@ -129,7 +129,7 @@ pub(super) struct RobotTable {
     base: Option<Spanned<BaseEntry>>,
     bounds: Option<Spanned<Corners>>,
     #[serde(default)]
-    limits: BTreeMap<String, Spanned<[f64; 2]>>,
+    limits: BTreeMap<String, Spanned<Exactly<f64, 2>>>,
     #[serde(default)]
     hold: BTreeMap<String, Spanned<f64>>,
     group: Option<Spanned<String>>,
@@ -188,7 +188,7 @@ fn rates_of(
 }
 
 /// The lower and the upper corner of a box, or of a rectangle.
-type Corners = [Vec<f64>; 2];
+type Corners = Exactly<Vec<f64>, 2>;
 
 /// Where the base stands, or how it moves.
 #[derive(Deserialize)]
@@ -298,7 +298,7 @@ fn corners<const N: usize>(
     bounds: &Spanned<Corners>,
     expected: &str,
 ) -> Result<[[f64; N]; 2], Error> {
-    let (given, span) = (bounds.get_ref(), bounds.span());
+    let (Exactly(given), span) = (bounds.get_ref(), bounds.span());
     source.check("the bounds of the base", &given.concat(), &span)?;
     let expected = format!("the lower corner, then the upper: {expected}");
     let [Ok(low), Ok(high)] = given.each_ref().map(|corner| <[f64; N]>::try_from(corner.as_slice())) else {
@@ -400,7 +400,7 @@ fn robot_of(source: &TomlText<'_>, robot: RobotTable, robot_span: Range<usize>) 
     let (mut limits, mut places_of_limits) = (Vec::new(), Vec::new());
     for (joint, range) in robot.limits {
         let (what, span) = (format!("the limits of {}", mp_formats::text::clipped(&joint)), range.span());
-        let [low, high] = *range.get_ref();
+        let Exactly([low, high]) = *range.get_ref();
         source.check(&what, &[low, high], &span)?;
         if low > high {
             let message = format!("{what} are {low} to {high}");

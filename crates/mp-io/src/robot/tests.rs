@@ -156,6 +156,9 @@ fn faults_have_their_place() {
         ("sphere = 0.25", "height_field = { cell = [1, 1], heights = [[0, 1], [0]] }", 15, "equally long"),
         ("sphere = 0.25", "height_field = { cell = [1, 1], heights = [[0, nan]] }", 15, "NaN"),
         ("0.5, 0, 0, 0]", "0.5]", 3, ""),
+        ("[-1, 1.5]", "[-1, 1.5, 2]", 4, "length 3"),
+        ("[1, 0, 0, 0, 0, 0]", "[1, 0, 0, 0, 0, 0, 1]", 16, "length 7"),
+        ("0.25\npose = [1, 0, 0, 0, 0, 0]", "0.25\nat = [1, 0, 0, 0]", 16, "length 4"),
         ("wall.off", "wal.off", 19, "wal.off"),
         ("arm.urdf", "leg.urdf", 2, "leg.urdf"),
     ] {
@@ -197,6 +200,7 @@ fn a_base_floats_within_bounds() {
         ("bounds = [[0, 0, 0], [1, 1, 1]]", 3, "stands still"),
         ("base = [0, 0, 0, 0, 0, 0]\nbounds = [[0, 0, 0], [1, 1, 1]]", 4, "stands still"),
         ("base = \"floating\"\nbounds = [[0, 0, 0], [1, 0, 1]]", 4, "enclose nothing"),
+        ("base = \"floating\"\nbounds = [[0, 0, 0], [1, 1, 1], [2, 2, 2]]", 4, "length 3"),
         ("base = \"floating\"\nbounds = [[0, 0, 0], [1, inf, 1]]", 4, "bounds of the base"),
     ] {
         let error = at(text).unwrap_err();

@@ -4,11 +4,14 @@ use crate::explain::{enclosures, list};
 use crate::finish::trajectory::TrajectoryVerdict;
 use crate::path::states;
 use crate::{Error, PathRows, Robot};
+use mp_cspace::angle::rotation_angle;
 use mp_cspace::{Configuration, Interrupt, MotionCheck, Path, Space, path::PathFault};
+use mp_geom::pose_from_six;
 use mp_kinds::goals::next_to;
 use mp_kinds::numbers::{at_least, brief, plain};
 use mp_kinds::proof::{clearance, verified};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// The result of checking a path. `mp check --json` prints its JSON form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,7 +36,7 @@ pub struct Verdict {
     /// What is known of a trajectory besides; left out for paths without times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub trajectory: Option<TrajectoryVerdict>,
-    /// What is inside of closed surfaces, which have no inside unless they are made solid.
+    /// What is odd about a path that is free: what is inside of closed surfaces, which have no inside unless they are made solid, and half turns.
     #[serde(default)]
     pub warnings: Vec<String>,
 }
@@ -110,7 +113,7 @@ pub(crate) fn check(kind: &dyn Robot, path: &PathRows, interrupt: &Interrupt) ->
     };
     // What is inside at one end of a free path is so all along.
     let warnings = if faults.is_empty() {
-        enclosures(kind, &states.states[0]).into_iter().collect()
+        enclosures(kind, &states.states[0]).into_iter().chain(half_turn(kind, &states.states)).collect()
     } else {
         Vec::new()
     };
@@ -126,6 +129,24 @@ pub(crate) fn check(kind: &dyn Robot, path: &PathRows, interrupt: &Interrupt) ->
         faults,
         trajectory: None,
     })
+}
+
+/// Where a body in space first turns half way round in one piece: rows of angles do not say which way.
+fn half_turn(kind: &dyn Robot, states: &[Configuration]) -> Option<String> {
+    let first = kind.columns().iter().position(|column| column.name == "alpha")?;
+    let turned = |q: &Configuration| {
+        let row = kind.row(q);
+        let [alpha, beta, gamma] = *row.get(first..)?.first_chunk()?;
+        Some(pose_from_six([0.0, 0.0, 0.0, alpha, beta, gamma]).rotation)
+    };
+    let turns: Vec<_> = states.iter().map(turned).collect::<Option<_>>()?;
+    let edge = turns.windows(2).position(|pair| rotation_angle(&pair[0], &pair[1]) > PI - 1e-7)?;
+    Some(format!(
+        "between configurations {} and {} it turns half way round, and the path does not say which way: another program may turn the \
+        other way, which was not checked; put a configuration between",
+        edge + 1,
+        edge + 2
+    ))
 }
 
 /// A fault as text, with the configuration at which it occurs and what touches there.
@@ -154,6 +175,11 @@ pub(crate) fn what_happens(kind: &dyn Robot, state: &Configuration, check: Motio
     match (check, touching.is_empty()) {
         _ if let Some(constraint) = &broken => format!("is against the constraint `{constraint}`"),
         _ if kind.sampled().is_some() => "collides".to_owned(),
+        (MotionCheck::Unproven { .. }, true)
+            if kind.closest(state).is_some_and(|(_, apart)| apart > kind.kept() + kind.tolerance()) =>
+        {
+            "cannot be proved free in one piece (add configurations)".to_owned()
+        }
         (_, true) if kind.kept() > 0.0 => {
             format!("comes nearer to an obstacle than {} m", brief(kind.kept()))
         }

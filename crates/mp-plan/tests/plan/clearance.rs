@@ -45,6 +45,41 @@ fn paths_keep_what_is_asked_for() {
     }
 }
 
+/// It is free one way alone.
+#[test]
+fn half_a_turn_of_a_body_is_said() {
+    let body = "[robot]\nbox = [2, 0.1, 0.1]\n\n[motion]\nstart = [0, 0, 0, 0, 0, 0]\ngoal = [0, 0, 0, 3.141592653589793, 0, 0]\n\n\
+        [[obstacle]]\nbox = [0.1, 0.1, 0.1]\npose = [9, 0, 0, 0, 0, 0]\n";
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("half.toml");
+    std::fs::write(&file, body).unwrap();
+    let scene = Scene::load(&file).unwrap();
+    for (middle, odd) in [(None, true), (Some(1.5), false)] {
+        let angles = [Some(0.0), middle, Some(std::f64::consts::PI)];
+        let rows = angles.into_iter().flatten().map(|a| vec![0.0, 0.0, 0.0, a, 0.0, 0.0]).collect();
+        let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+        let verdict = scene.check(&path).unwrap();
+        let said =
+            verdict.warnings.concat().contains("between configurations 1 and 2 it turns half way round");
+        assert!(verdict.free && said == odd, "{verdict:?}");
+    }
+}
+
+/// It was said to come too near to contact, a thousand kilometres from it.
+#[test]
+fn a_motion_that_is_too_long_for_a_proof_is_said_to_be_so() {
+    let far = "[robot]\nbox = [1e-3, 1e-3, 1e-3]\n\n[motion]\nstart = [-1e6, 0, 0, 0, 0, 0]\ngoal = [1e6, 0, 0, 0, 0, 0]\n\n\
+        [[obstacle]]\nbox = [1, 1, 1]\npose = [0, 9, 0, 0, 0, 0]\n";
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("far.toml");
+    std::fs::write(&file, far).unwrap();
+    let scene = Scene::load(&file).unwrap();
+    let rows = [-1e6, 1e6].map(|x| vec![x, 0.0, 0.0, 0.0, 0.0, 0.0]).to_vec();
+    let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+    let faults = scene.check(&path).unwrap().faults;
+    assert!(faults[0].starts_with("cannot be proved free in one piece"), "{faults:?}");
+}
+
 #[test]
 fn more_than_a_path_keeps_is_refused() {
     for (name, clearance) in SCENES.into_iter().filter(|(name, _)| *name != "arm") {

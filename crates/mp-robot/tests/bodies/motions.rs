@@ -70,6 +70,25 @@ fn checks_agree_in_space() {
     agree(&se3(), &FreeFlyer::new(&robot(), clutter()).unwrap(), 900);
 }
 
+/// A body of a centimetre goes two kilometres, over a plate of a millimetre and through it.
+#[test]
+fn long_ways_of_small_bodies_are_checked() {
+    let small = primitives::cuboid(0.01, 0.01, 0.01).unwrap();
+    let plate = primitives::cuboid(0.001, 0.5, 0.5).unwrap();
+    let plate = obstacle("plate", plate, [123.4567, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let flyer = FreeFlyer::new(&small, vec![plate]).unwrap();
+    let space = Se3::new([-1e3; 3], [1e3; 3]).unwrap();
+    let mut certified = Certified::new(&space, flyer.clone(), flyer.tolerance()).unwrap();
+    let mut verifier = Verifier::new(&space, &flyer).unwrap();
+    for (y, free) in [(0.2, false), (-0.2549, false), (0.2551, true), (9.0, true)] {
+        let [a, b] = [-1e3, 1e3].map(|x| Isometry3::translation(x, y, 0.1));
+        for found in [certified.check_motion(&a, &b), verifier.check_motion(&a, &b)] {
+            let off = found.failed_at().map(|at| (2e3 * at - 1123.4567).abs());
+            assert!(found.is_free() == free && off.is_none_or(|off| off < 0.01), "{y}: {found:?}");
+        }
+    }
+}
+
 /// Clouds beside meshes, one of them turned.
 #[test]
 fn checks_agree_among_points() {

@@ -90,8 +90,9 @@ impl Geometry {
         for primitive in mesh.children().filter(Node::is_element) {
             // Sources, vertices and extras are not primitives.
             let Some(kind) = PrimitiveKind::of(primitive) else { continue };
-            // Writers leave empty groups of lines behind, some without inputs.
-            if kind.is_lines() && document.count(primitive, "count")?.unwrap_or(0) == 0 {
+            // Writers leave empty groups behind, some without inputs.
+            let empty = kind.is_lines() || child(primitive, "p").is_none();
+            if empty && document.count(primitive, "count")?.unwrap_or(0) == 0 {
                 continue;
             }
             Reader::new(&mut sources, primitive, &mut geometry)?.read(kind)?;

@@ -236,7 +236,8 @@ impl<'a> Walk<'_, 'a> {
         let up = up.try_normalize(0.0).ok_or_else(bad)?;
         let right = forward.cross(&up).try_normalize(0.0).ok_or_else(bad)?;
         let mut m = Matrix4::identity();
-        for (column, value) in [right, up, -forward, eye].iter().enumerate() {
+        // As of `gluLookAt`: the direction that is up need not be square to that of the look.
+        for (column, value) in [right, right.cross(&forward), -forward, eye].iter().enumerate() {
             m.fixed_view_mut::<3, 1>(0, column).copy_from(value);
         }
         Ok(m)

@@ -181,6 +181,8 @@ fn look_at_and_controllers() {
         "<library_controllers><controller id=\"c\"><skin source=\"#g\"/></controller></library_controllers><library_visual_scenes>",
     );
     assert_eq!(parse(&text).triangle(0)[1], Point3::new(6.0, 0.0, 0.0));
+    // What is up may be slanted: the frame stays square.
+    assert_eq!(parse(&text.replace("0 1 0<", "0 1 -1<")), parse(&text));
     // A skin is where its matrix places it, in the frame of the node; also that of a morph.
     let bind = "<bind_shape_matrix>0.5 0 0 7  0 0.5 0 0  0 0 0.5 0  0 0 0 1</bind_shape_matrix>";
     let bound = text.replace("<skin source=\"#g\"/>", &format!("<skin source=\"#g\">{bind}</skin>"));
@@ -348,6 +350,8 @@ fn strips_of_lines_and_empty_lines() {
     for nothing in [
         "<lines count=\"0\"/>",
         "<lines count=\"0\"><p>4 5</p></lines>",
+        "<polylist count=\"0\"/>",
+        "<triangles/>",
         "<points count=\"1\"><p>4</p></points>",
     ] {
         assert!((with(nothing) - Vector3::new(2.0, 1.0, 0.0) / 3.0).norm() < 1e-6, "{nothing}");
