@@ -1,6 +1,7 @@
 //! Scenes and paths from files and from standard input.
 
 use crate::cli::Curve;
+use crate::interrupt::within;
 use crate::output::note;
 use mp_io::ProblemChanges;
 pub(crate) use mp_plan::is_standard;
@@ -8,6 +9,7 @@ use mp_plan::{
     Error, Interrupt, PathFileKind, PathRows, Scene, StopReason, Trajectory, TrajectoryKind, Verdict,
 };
 use std::path::Path;
+use std::time::Duration;
 
 /// The whole standard input, which must be text of at most 64 MiB.
 pub(crate) fn standard_input() -> Result<String, Error> {
@@ -33,6 +35,9 @@ pub(crate) fn scene(given: &Path, changes: &ProblemChanges) -> Result<Scene, Err
     Ok(scene)
 }
 
+/// How long loading may go on after it was told to end.
+const PATIENCE: Duration = Duration::from_millis(200);
+
 /// As [`scene`], ready to plan in.
 ///
 /// # Errors
@@ -42,15 +47,20 @@ pub(crate) fn scene_until(
     changes: &ProblemChanges,
     interrupt: &Interrupt,
 ) -> Result<Result<Scene, StopReason>, Error> {
-    let scene = read(given, changes, interrupt);
-    if let Ok(scene) = &scene {
-        // Whether it was interrupted is asked below.
-        let _ = scene.make_ready(interrupt);
-    }
+    let (own, changes, until) = (given.to_owned(), changes.clone(), interrupt.clone());
+    let load = move || {
+        let scene = read(&own, &changes, &until);
+        if let Ok(scene) = &scene {
+            // Whether it was interrupted is asked below.
+            let _ = scene.make_ready(&until);
+        }
+        scene
+    };
+    let scene = within(interrupt, PATIENCE, load)?;
     if let Some(reason) = interrupt.raised() {
         return Ok(Err(reason));
     }
-    let scene = scene?;
+    let scene = scene.ok_or_else(|| Error::new(format!("{} was not loaded", given.display())))??;
     scene.notes().iter().for_each(|line| note(&format!("note: {line}")));
     Ok(Ok(scene))
 }

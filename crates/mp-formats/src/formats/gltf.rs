@@ -4,6 +4,7 @@ use crate::error::{Error, ErrorKind};
 use crate::mesh::{Axes, LEFT_OUT, Reading, mesh_error};
 use crate::text::clipped;
 use mp_geom::TriMesh;
+use mp_stop::Interrupt;
 use nalgebra::{Matrix3, Matrix4, Point3, Quaternion, UnitQuaternion, Vector3};
 use serde::Deserialize;
 use std::collections::HashMap;
@@ -150,7 +151,10 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
         (reading.remark)("skins are not applied: meshes stay as they are stored");
     }
     // Corners at seams of colour are there once for each side.
-    TriMesh::new(scene.vertices, scene.triangles).map(|mesh| mesh.welded()).map_err(|e| mesh_error(file, &e))
+    let mesh = TriMesh::new(scene.vertices, scene.triangles).map_err(|e| mesh_error(file, &e))?;
+    let soup: Vec<_> = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect();
+    let mesh = TriMesh::from_soup_until(&soup, &reading.interrupt).map_err(|_| Error::interrupted(file))?;
+    mesh.map_err(|e| mesh_error(file, &e))
 }
 
 const HELP: &str = "export the mesh again, as glTF 2.0";
@@ -286,7 +290,7 @@ impl Triangles<'_> {
                     .ok_or_else(|| self.wrong(format!("node {i} has the mesh {mesh}, which is not there")))?;
                 let weights = node.weights.as_ref().unwrap_or(&all.weights);
                 for (k, primitive) in all.primitives.iter().enumerate() {
-                    self.add(&format!("primitive {k} of mesh {mesh}"), primitive, weights, &place)?;
+                    self.add(&format!("primitive {k} of mesh {mesh}"), primitive, weights, &place, reading)?;
                 }
             }
             stack.extend(node.children.iter().rev().map(|&child| (child, place, depth + 1)));
@@ -324,7 +328,9 @@ impl Triangles<'_> {
         primitive: &Primitive,
         weights: &[f64],
         place: &Matrix4<f64>,
+        reading: &mut Reading<'_>,
     ) -> Result<(), Error> {
+        let interrupt = &mut reading.interrupt;
         let mode = primitive.mode.unwrap_or(4);
         if !(4..=6).contains(&mode) {
             self.left_out = true;
@@ -332,11 +338,11 @@ impl Triangles<'_> {
         }
         let positions = primitive.attributes.get("POSITION");
         let &positions = positions.ok_or_else(|| self.wrong(format!("{what} has no POSITION")))?;
-        let mut positions = self.numbers(positions, "VEC3")?;
+        let mut positions = self.numbers(positions, "VEC3", interrupt)?;
         let count = positions.len() / 3;
         for (target, &weight) in primitive.targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
             let Some(&moved) = target.get("POSITION") else { continue };
-            let moved = self.numbers(moved, "VEC3")?;
+            let moved = self.numbers(moved, "VEC3", interrupt)?;
             if moved.len() != positions.len() {
                 return Err(
                     self.wrong(format!("{what} has a target of {} vertices, and {count}", moved.len() / 3))
@@ -345,7 +351,9 @@ impl Triangles<'_> {
             positions.iter_mut().zip(&moved).for_each(|(x, moved)| *x += weight * moved);
         }
         let corners: Vec<u32> = match primitive.indices {
-            Some(accessor) => self.numbers(accessor, "SCALAR")?.into_iter().map(|i| i as u32).collect(),
+            Some(accessor) => {
+                self.numbers(accessor, "SCALAR", interrupt)?.into_iter().map(|i| i as u32).collect()
+            }
             None => (0..count as u32).collect(),
         };
         if let Some(corner) = corners.iter().find(|corner| **corner as usize >= count) {
@@ -373,7 +381,7 @@ impl Triangles<'_> {
     }
 
     /// The numbers of an accessor of this kind: coordinates, or indices of vertices.
-    fn numbers(&self, number: usize, kind: &str) -> Result<Vec<f64>, Error> {
+    fn numbers(&self, number: usize, kind: &str, interrupt: &mut Interrupt) -> Result<Vec<f64>, Error> {
         let wrong = |what: &str| self.wrong(format!("accessor {number} {what}"));
         let accessor = self.document.accessors.get(number).ok_or_else(|| wrong("is not there"))?;
         let (width, columns) = match (kind, accessor.component_type) {
@@ -412,8 +420,14 @@ impl Triangles<'_> {
             5123 => f64::from(u16::from_le_bytes([b[0], b[1]])),
             _ => f64::from(u32::from_le_bytes(four(b))),
         };
-        let rows = (0..accessor.count).map(|i| &bytes[i * stride..][..size]);
-        Ok(rows.flat_map(|row| row.chunks_exact(width).map(read)).collect())
+        let mut numbers = Vec::with_capacity(accessor.count * columns);
+        for i in 0..accessor.count {
+            if i % 1024 == 0 && interrupt.ask() {
+                return Err(Error::interrupted(self.file));
+            }
+            numbers.extend(bytes[i * stride..][..size].chunks_exact(width).map(read));
+        }
+        Ok(numbers)
     }
 }
 
