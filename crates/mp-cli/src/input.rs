@@ -1,7 +1,7 @@
 //! Scenes and paths from files and from standard input.
 
 use crate::cli::Curve;
-use crate::interrupt::within;
+use crate::interrupt::{PATIENCE, within};
 use crate::output::note;
 use mp_io::ProblemChanges;
 pub(crate) use mp_plan::is_standard;
@@ -9,7 +9,6 @@ use mp_plan::{
     Error, Interrupt, PathFileKind, PathRows, Scene, StopReason, Trajectory, TrajectoryKind, Verdict,
 };
 use std::path::Path;
-use std::time::Duration;
 
 /// The whole standard input, which must be text of at most 64 MiB.
 pub(crate) fn standard_input() -> Result<String, Error> {
@@ -34,9 +33,6 @@ pub(crate) fn scene(given: &Path, changes: &ProblemChanges) -> Result<Scene, Err
     scene.notes().iter().for_each(|line| note(&format!("note: {line}")));
     Ok(scene)
 }
-
-/// How long loading may go on after it was told to end.
-const PATIENCE: Duration = Duration::from_millis(200);
 
 /// As [`scene`], ready to plan in.
 ///

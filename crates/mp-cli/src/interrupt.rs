@@ -7,6 +7,8 @@ use std::time::Duration;
 
 /// How often work is asked whether it is done.
 const MOMENT: Duration = Duration::from_millis(20);
+/// How long loading may go on after it was told to end.
+pub(crate) const PATIENCE: Duration = Duration::from_millis(200);
 /// The stack of a thread that works, bytes: as the first thread of a program has it.
 const STACK: usize = 8 << 20;
 
