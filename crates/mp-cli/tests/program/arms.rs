@@ -431,7 +431,7 @@ fn an_srdf_that_is_interrupted_is_not_made() {
             i + 1
         )
     });
-    dir.write("long.urdf", &format!("<robot name=\"long\">{links}<link name=\"l400\"/>{joints}</robot>"));
+    dir.write("long.urdf", format!("<robot name=\"long\">{links}<link name=\"l400\"/>{joints}</robot>"));
     let child = start_with(&dir, &["srdf", "long.urdf", "--out", "long.srdf"], &[]);
     std::thread::sleep(std::time::Duration::from_millis(1000));
     let id = child.id().to_string();
