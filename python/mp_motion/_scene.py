@@ -257,7 +257,7 @@ class Scene:
         robot : Shape
             The body, about its origin.
         start : array_like, shape (6,) or (4, 4)
-            ``x y z α β γ`` (m, rad), or a matrix. With `planar`, the same: ``z β γ`` are zero.
+            ``x y z α β γ`` (m, rad), or a matrix. With `planar`, the same, where ``z β γ`` are zero.
         goal : array_like or mapping
             Such a pose; or a mapping of some of ``x``, ``y``, ``z``, ``alpha``, ``beta``, ``gamma`` to a number or an interval:
             the others are free.
@@ -268,7 +268,7 @@ class Scene:
         bounds : array_like, shape (2, 3), optional
             The lowest and the highest corner of where the origin of the robot may be, metres. By default around everything.
         planar : bool
-            Whether the body moves in the plane z = 0: configurations then are x, y and the angle.
+            Whether the body moves in the plane z = 0, and turns in it. Configurations have six numbers all the same.
         name : str
             What reports call the scene.
 
@@ -285,9 +285,10 @@ class Scene:
             members["bounds"] = numbers(bounds)
         if planar:
             members["planar"] = True
+        pose = _planar_pose if planar else pose_numbers
         document = {
             "robot": members,
-            "motion": {"start": pose_numbers(start)} | _ends(goal, goals, pose_numbers),
+            "motion": {"start": pose(start)} | _ends(goal, goals, pose),
             "obstacle": [body_members(body, files) for body in obstacles],
         }
         return cls.from_dict(document, files=files, name=name)
@@ -549,7 +550,7 @@ class Scene:
         >>> scene.keeping(0.1).check(scene.plan()).free
         False
         """
-        return self._from(self._native.keeping(float(clearance)), self._robot)
+        return self._from(self._native.keeping(number("clearance", clearance, least=0)), self._robot)
 
     @property
     def parts_left(self) -> int:
@@ -657,7 +658,7 @@ class Scene:
         samples : int
             How many configurations are tried. The same number gives the same result.
         """
-        return self._native.free_share(samples)
+        return self._native.free_share(whole("samples", samples, 1, 2**32 - 1))
 
     def poses(self, configuration: ArrayLike) -> Array:
         """Return the poses of the bodies of the robot at a configuration, shape (bodies, 4, 4)."""
@@ -1193,6 +1194,14 @@ def _ordered(configuration: ArrayLike) -> Array:
     if names is not None and names != [str(i) for i in range(len(names))]:
         raise Error(f"the numbers are named: {', '.join(names)}", remedy="give them without names, in the order of the robot")
     return numbers(given)
+
+
+def _planar_pose(given: ArrayLike) -> list[float]:
+    """Return x, y and the angle of a pose in the plane z = 0."""
+    x, y, z, alpha, beta, gamma = pose_numbers(given)
+    if any(abs(left) > 1e-9 for left in (z, beta, gamma)):
+        raise Error(f"the pose {x:g} {y:g} {z:g} {alpha:g} {beta:g} {gamma:g} leaves the plane", remedy="give z, β and γ as 0")
+    return [x, y, alpha]
 
 
 def _ends(

@@ -258,6 +258,23 @@ def test_arms_from_text_and_from_files(folder: Path) -> None:
     assert floating.plan(seed=1).solved
 
 
+def test_bodies_in_the_plane() -> None:
+    post = mp.Body(mp.Box(0.1, 1, 1))
+    box, bounds = mp.Box(0.2, 0.2, 0.2), [[-2, -2, -1], [2, 2, 1]]
+    flat = mp.Scene.rigid(
+        box, [-1, 0, 0, 0.5, 0, 0], mp.matrix_from_pose([1, 0, 0, 0, 0, 0]), [post], planar=True, bounds=bounds
+    )
+    report = flat.plan(seed=1)
+    assert report.path is not None and np.allclose(report.path[[0, -1]], [[-1.0, 0, 0, 0.5, 0, 0], [1.0, 0, 0, 0, 0, 0]])
+    assert flat.is_free([-1, 0, 0, 0, 0, 0]) and not flat.is_free([-1, 0, 0.1, 0, 0, 0])
+    free = mp.Scene.rigid(box, [-1, 0, 0, 0, 0, 0], goals=[{"x": 1}], planar=True, bounds=bounds)
+    assert free.plan(seed=1).solved
+    with pytest.raises(mp.Error, match="leaves the plane"):
+        mp.Scene.rigid(box, [-1, 0, 0.1, 0, 0, 0], [1, 0, 0, 0, 0, 0], planar=True)
+    with pytest.raises(mp.Error, match="leaves the plane"):
+        flat.with_ends([-1, 0, 0, 0, 0.1, 0])
+
+
 SRDF = """<robot name="two"><group name="first"><joint name="a"/></group>
   <group_state name="up" group="first"><joint name="a" value="0.1"/></group_state></robot>"""
 

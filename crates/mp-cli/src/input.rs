@@ -1,6 +1,7 @@
 //! Scenes and paths from files and from standard input.
 
 use crate::cli::Curve;
+use crate::interrupt::{PATIENCE, within};
 use crate::output::note;
 use mp_io::ProblemChanges;
 pub(crate) use mp_plan::is_standard;
@@ -42,15 +43,20 @@ pub(crate) fn scene_until(
     changes: &ProblemChanges,
     interrupt: &Interrupt,
 ) -> Result<Result<Scene, StopReason>, Error> {
-    let scene = read(given, changes, interrupt);
-    if let Ok(scene) = &scene {
-        // Whether it was interrupted is asked below.
-        let _ = scene.make_ready(interrupt);
-    }
+    let (own, changes, until) = (given.to_owned(), changes.clone(), interrupt.clone());
+    let load = move || {
+        let scene = read(&own, &changes, &until);
+        if let Ok(scene) = &scene {
+            // Whether it was interrupted is asked below.
+            let _ = scene.make_ready(&until);
+        }
+        scene
+    };
+    let scene = within(interrupt, PATIENCE, load)?;
     if let Some(reason) = interrupt.raised() {
         return Ok(Err(reason));
     }
-    let scene = scene?;
+    let scene = scene.ok_or_else(|| Error::new(format!("{} was not loaded", given.display())))??;
     scene.notes().iter().for_each(|line| note(&format!("note: {line}")));
     Ok(Ok(scene))
 }

@@ -2,11 +2,11 @@
 
 use crate::cli::{Many, Merge};
 use crate::input::is_standard;
-use crate::interrupt;
+use crate::interrupt::{self, PATIENCE, within};
 use crate::output::{Claims, note, print};
 use crate::progress::Line;
 use mp_batch::{ListedProblems, ManyOptions, ManyOutcome, Shard, Tally, merge_results};
-use mp_plan::Error;
+use mp_plan::{Error, Interrupt};
 use std::path::Path;
 
 /// Plans the problems of a list. True when all are planned, solved or not.
@@ -14,7 +14,16 @@ pub(crate) fn run(args: &Many) -> Result<bool, Error> {
     not_standard("the list", &args.list)?;
     not_standard("--out", &args.out)?;
     let cancel = interrupt::flag();
-    let problems = ListedProblems::load(&args.list, &cancel)?;
+    let (list, until) = (args.list.clone(), cancel.clone());
+    let load = move || ListedProblems::load(&list, &until);
+    let loaded = within(&Interrupt::new(cancel.clone()), PATIENCE, load)?;
+    let problems = match loaded.filter(|loaded| loaded.is_ok() || !cancel.is_raised()) {
+        Some(loaded) => loaded?,
+        None => {
+            note("interrupted while the scenes of the list were read");
+            return Ok(false);
+        }
+    };
     let mut claims = Claims::default();
     problems.inputs().iter().for_each(|file| claims.input(file));
     claims.output("--out", &args.out)?;

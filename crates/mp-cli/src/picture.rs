@@ -1,15 +1,17 @@
 //! What goes into the file of a picture, by the ending of its name.
 
 use crate::cli::{Animation, Drawing};
+use crate::interrupt::within;
 use crate::page_planner::PagePlanner;
 use crate::progress::Line;
 use mp_io::Content;
 use mp_plan::{
-    Cancel, Error, Film, FilmKind, GrownRoadmap, Look, PICTURE_SIZE, PathRows, PictureKind, Progress, Report,
-    Scene, SearchEvent, Stage, Verdict, Watch,
+    Cancel, Error, Film, FilmKind, GrownRoadmap, Interrupt, Look, PICTURE_SIZE, PathRows, PictureKind,
+    Progress, Report, Scene, SearchEvent, Stage, Verdict, Watch,
 };
 use mp_view::{GrownTrees, SceneFile};
 use std::path::Path;
+use std::time::Duration;
 
 /// What goes into the file of a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +68,9 @@ impl Watch for Watched<'_> {
         }
     }
 }
+
+/// How long a picture may be drawn after an interruption.
+const PATIENCE: Duration = Duration::from_millis(500);
 
 /// How long a film takes, seconds.
 const SECONDS: f64 = 8.0;
@@ -175,7 +180,12 @@ impl Picture {
     ) -> Result<Option<Vec<u8>>, Error> {
         let Shown { scene, path, verdict, report, caption } = *shown;
         match self {
-            Self::Drawn(kind, look) => return scene.picture(path, caption, *kind, look).map(Some),
+            Self::Drawn(kind, look) => {
+                let (scene, path, caption) = (scene.clone(), path.cloned(), caption.to_owned());
+                let (kind, look) = (*kind, look.clone());
+                let draw = move || scene.picture(path.as_ref(), &caption, kind, &look);
+                return within(&Interrupt::new(cancel.clone()), PATIENCE, draw)?.transpose();
+            }
             Self::Film(film) => {
                 let frames = film.frames();
                 let mut say = |done: usize| line.say(&format!("drawing the film, {done} of {frames} frames"));

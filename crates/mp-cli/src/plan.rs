@@ -26,11 +26,12 @@ const SAMPLE: &str = "cubicles";
 /// Plans on every scene with every seed. True when all runs are solved.
 pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let began = mp_plan::Clock::default().now();
+    // Read before signals are heard: standard input may say nothing.
+    let (request, names_planner) = request(args)?;
     let cancel = interrupt::flag();
     if let Some(memory) = args.memory {
         memory::limit(&cancel, memory)?;
     }
-    let (request, names_planner) = request(args)?;
     let named = match args.scenes.as_slice() {
         [] => vec![PathBuf::from(SAMPLE)],
         given => given.to_vec(),
@@ -157,7 +158,8 @@ fn load(
         match scene_until(given, changes, &time_limit(request, cancel, began))? {
             Ok(scene) => scenes.push(scene.for_request(request)?),
             Err(reason) => {
-                let name = given.file_stem().unwrap_or(given.as_os_str()).to_string_lossy();
+                let name = if is_standard(given) { Path::new("stdin") } else { given };
+                let name = name.file_stem().unwrap_or(name.as_os_str()).to_string_lossy();
                 let report = Report::not_loaded(&name, request, reason, clock.now().saturating_sub(began));
                 not_loaded.push(Report { scene_file: Some(given.display().to_string()), ..report });
             }

@@ -5,13 +5,20 @@ use crate::output::{Claims, note, print, write};
 use crate::{cli, interrupt};
 use mp_plan::{Error, Interrupt, RobotPairs, TouchReason, count};
 
-/// Makes the SRDF. Always true, as bad files are errors.
+/// Makes the SRDF. False when it was interrupted; bad files are errors.
 pub(crate) fn run(args: &cli::Srdf) -> Result<bool, Error> {
     if let Some(out) = args.out.as_ref().filter(|out| out.exists() && !is_standard(out) && !args.replace) {
         return Err(Error::new(format!("{} is there already", out.display()))
             .help("name another file by --out, or replace it by --replace"));
     }
-    let made = RobotPairs::sampled(&args.robot, &Interrupt::new(interrupt::flag()))?;
+    let interrupt = Interrupt::new(interrupt::flag());
+    let made = match RobotPairs::sampled(&args.robot, &interrupt) {
+        Err(_) if interrupt.raised().is_some() => {
+            note("interrupted: nothing was written");
+            return Ok(false);
+        }
+        made => made?,
+    };
     if let Some(out) = args.out.as_ref().filter(|out| !is_standard(out)) {
         let mut claims = Claims::default();
         made.inputs.iter().for_each(|file| claims.input(file));

@@ -35,8 +35,8 @@ pub fn parse_points(path: &Path, bytes: &[u8], mut interrupt: Interrupt) -> Resu
     let points = match Content::of(path).next() {
         Some(Content::Ply) => ply::read_points(&file, bytes, interrupt)?,
         Some(Content::Pcd) => pcd::read(&file, bytes, &mut interrupt)?,
-        Some(Content::NumpyArray) => npy::read(&file, bytes)?,
-        Some(Content::Las) => las::read(&file, bytes)?,
+        Some(Content::NumpyArray) => npy::read(&file, bytes, &mut interrupt)?,
+        Some(Content::Las) => las::read(&file, bytes, &mut interrupt)?,
         _ => text(&file, bytes, &mut interrupt)?,
     };
     match points.is_empty() {
@@ -232,6 +232,16 @@ fn rows<'b>(
         )
     })?;
     Ok(all.chunks_exact(row))
+}
+
+/// All of these points, unless `interrupt` says to end.
+fn all(
+    file: &str,
+    points: impl Iterator<Item = Result<Point3<f64>, Error>>,
+    interrupt: &mut Interrupt,
+) -> Result<Vec<Point3<f64>>, Error> {
+    let asked = |point| interrupt.go_on().map_err(|_| Error::interrupted(file)).and(point);
+    points.map(asked).collect()
 }
 
 #[cfg(test)]

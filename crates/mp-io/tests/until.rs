@@ -32,7 +32,7 @@ fn ends<T>(what: &str, rows: u64, read: impl Fn(Interrupt) -> Result<T, mp_io::E
 }
 
 #[test]
-fn meshes_and_maps() {
+fn meshes_points_and_maps() {
     let side = 120;
     let corner = |i: usize, j: usize| format!("{i} {j} {}", (i * j) % 7);
     let vertices: Vec<String> = (0..side).flat_map(|i| (0..side).map(move |j| corner(i, j))).collect();
@@ -83,7 +83,30 @@ fn meshes_and_maps() {
         vertices.join(" "),
         faces(0, "")
     );
+    let places: Vec<f32> =
+        vertices.iter().flat_map(|v| v.split(' ')).map(|number| number.parse().unwrap()).collect();
+    let corners: Vec<u32> = squares.iter().flatten().map(|&k| k as u32).collect();
+    let soup: String = squares.iter().map(|t| t.map(|k| vertices[k].as_str()).join(" ") + "\n").collect();
+    let gempa = format!("{rows}\n{soup}");
+    let (at, of) = (4 * places.len(), 4 * corners.len());
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{
+        "attributes":{{"POSITION":0}},"indices":1}}]}}],"buffers":[{{"byteLength":{}}}],
+        "bufferViews":[{{"buffer":0,"byteLength":{at}}},{{"buffer":0,"byteOffset":{at},"byteLength":{of}}}],"accessors":[
+        {{"bufferView":0,"componentType":5126,"count":{},"type":"VEC3"}},{{"bufferView":1,"componentType":5125,"count":{},"type":"SCALAR"}}]}}"#,
+        at + of,
+        vertices.len(),
+        corners.len()
+    );
+    let json = format!("{json:w$}", w = json.len().next_multiple_of(4));
+    let word = |n: usize| (n as u32).to_le_bytes();
+    let mut glb = [b"glTF".as_slice(), &word(2), &word(28 + json.len() + at + of)].concat();
+    glb.extend([&word(json.len()), b"JSON".as_slice(), json.as_bytes(), &word(at + of), b"BIN\0"].concat());
+    places.iter().for_each(|x| glb.extend(x.to_le_bytes()));
+    corners.iter().for_each(|k| glb.extend(k.to_le_bytes()));
     for (name, bytes) in [
+        ("a.glb", glb),
+        ("a.txt", gempa.into_bytes()),
         ("a.dae", collada.into_bytes()),
         ("a.obj", obj.into_bytes()),
         ("a.off", off.into_bytes()),
@@ -93,6 +116,29 @@ fn meshes_and_maps() {
     ] {
         let files = InMemory(|path: &str| (path == name).then_some(&bytes));
         ends(name, rows, |interrupt| read_mesh_of(&Until { files: &files, interrupt }, Path::new(name)));
+    }
+
+    let points: Vec<u8> = places.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let count = vertices.len();
+    let pcd = format!(
+        "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {count}\nHEIGHT 1\nPOINTS {count}\nDATA binary\n"
+    );
+    let head = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({count}, 3), }}\n");
+    let length = (head.len() as u16).to_le_bytes();
+    let mut las = vec![0; 375];
+    let mut put = |at: usize, with: &[u8]| las[at..at + with.len()].copy_from_slice(with);
+    put(0, b"LASF");
+    put(96, &word(375));
+    put(105, &12_u16.to_le_bytes());
+    put(107, &word(count));
+    for (name, bytes) in [
+        ("a.pcd", [pcd.as_bytes(), &points].concat()),
+        ("a.npy", [b"\x93NUMPY\x01\0", &length[..], head.as_bytes(), &points].concat()),
+        ("a.las", [&las, &points[..]].concat()),
+        ("a.xyz", vertices.join("\n").into_bytes()),
+    ] {
+        let read = |interrupt| mp_formats::points::parse_points(Path::new(name), &bytes, interrupt);
+        ends(name, count as u64, read);
     }
 
     let pixels: Vec<u8> = (0..200 * 300_usize).map(|i| if i * i % 11 < 5 { 0 } else { 255 }).collect();

@@ -311,8 +311,13 @@ impl Scene {
         if goals.is_empty() {
             return Err(Error::new("there is no goal").help("give at least one configuration as a goal"));
         }
-        let goals = goals.iter().map(|goal| self.state(goal)).collect::<Result<_, _>>()?;
-        Ok(Self { robot: self.robot.any_with_ends(self.state(start)?, goals, start)?, ..self.clone() })
+        let said = |which: &str, row: &[f64]| match self.left(row) {
+            Some(odd) => Err(Error::new(format!("{which} {odd}")).help("give these numbers as 0")),
+            None => self.state(row),
+        };
+        let given = said("the start", start)?;
+        let goals = goals.iter().map(|goal| said("the goal", goal)).collect::<Result<_, _>>()?;
+        Ok(Self { robot: self.robot.any_with_ends(given, goals, start)?, ..self.clone() })
     }
 
     /// The same scene, in which paths keep the clearance `clearance` (m) from obstacles, in place of the one kept before. All methods mind
@@ -633,7 +638,24 @@ impl Scene {
     /// # Errors
     /// When the row does not have as many numbers as the robot's configurations.
     pub fn explain(&self, row: &[f64]) -> Result<Explanation, Error> {
-        Ok(explain(&*self.robot, &self.state(row)?))
+        let q = self.state(row)?;
+        let found = explain(&*self.robot, &q);
+        let Some(odd) = self.left(row) else { return Ok(found) };
+        Ok(Explanation {
+            free: false,
+            in_bounds: false,
+            clearance: 0.0,
+            touching: Vec::new(),
+            warnings: Vec::new(),
+            fault: Some(format!("out of bounds: it {odd}")),
+            nearest_free: if found.free { Some(self.robot.row(&q)) } else { found.nearest_free },
+        })
+    }
+
+    /// What the numbers of a configuration say that the configuration cannot have, such as a height in the plane, to follow the words "the start".
+    fn left(&self, row: &[f64]) -> Option<String> {
+        let odd = self.state(row).ok().and_then(|_| self.robot.row_error(&[row.to_vec()]))?;
+        Some(odd.trim_start_matches("configuration 1 ").to_owned())
     }
 
     /// Checks that start and goals are free. Returns what is odd about them.

@@ -100,7 +100,7 @@ pub struct Timing {
     pub deviations: Vec<f64>,
 }
 
-/// About how many intervals a path is cut into. What lines have of them is by their lengths.
+/// About how many intervals a section between two stops is cut into. What lines have of them is by their lengths.
 const INTERVALS: f64 = 100.0;
 /// The least number of intervals of a line, and the number of each parabola.
 const OF_A_LINE: f64 = 4.0;
@@ -150,14 +150,12 @@ fn timed_once(path: &BlendedPath, limits: &Limits, joints: &[(&str, &str)]) -> R
     if expected != found {
         return Err(TimeError::Count { what: "numbers of a point", expected, found });
     }
-    let total: f64 = parts.iter().map(|part| part.length).sum();
     let (mut knots, mut interpolation) = (Knots::default(), Interpolation::Cubic);
     let mut corners = vec![0.0; path.corners()];
     let mut deviations: Vec<_> = (0..path.corners()).map(|corner| path.deviation(corner)).collect();
     let mut begins = 0.0;
     for parts in parts.split_inclusive(|part| part.stops) {
-        let section = Section { parts, total };
-        let made = section.smooth(limits, joints)?;
+        let made = Section(parts).smooth(limits, joints)?;
         interpolation = made.trajectory.interpolation();
         for (corner, time) in made.corners {
             let (near, off) = made.trajectory.nearest(path.corner(corner), time, made.window);
@@ -175,11 +173,8 @@ fn timed_once(path: &BlendedPath, limits: &Limits, joints: &[(&str, &str)]) -> R
     })
 }
 
-/// The parts of a path between two stops, and the length of the whole path.
-struct Section<'p> {
-    parts: &'p [Part],
-    total: f64,
-}
+/// The parts of a path between two stops.
+struct Section<'p>(&'p [Part]);
 
 /// A section with times, which count from its beginning.
 struct TimedSection {
@@ -238,12 +233,14 @@ impl Section<'_> {
 
     /// As fast as limits of velocity and acceleration allow.
     fn fast(&self, limits: &Limits, joints: &[(&str, &str)]) -> Result<TimedSection, TimeError> {
+        let Self(parts) = self;
+        let total: f64 = parts.iter().map(|part| part.length).sum();
         let intervals = |part: &Part| match part.rounds {
             true => OF_A_BLEND,
-            false => (INTERVALS * part.length / self.total).ceil().max(OF_A_LINE) as usize,
+            false => (INTERVALS * part.length / total).ceil().max(OF_A_LINE) as usize,
         };
         let mut grid = Grid::new(&limits.acceleration);
-        for part in self.parts {
+        for part in *parts {
             let count = intervals(part);
             let step = part.length / count as f64;
             for i in 0..count {
@@ -264,7 +261,7 @@ impl Section<'_> {
         let pace = |i: usize| (x[i + 1] - x[i]) / (2.0 * grid.steps()[i]);
         let (mut time, mut at) = (0.0, 0);
         let (mut knots, mut corners) = (Knots::default(), Vec::new());
-        for part in self.parts {
+        for part in *parts {
             let first = at;
             let middle = if part.rounds { OF_A_BLEND / 2 } else { usize::MAX };
             for i in 0..intervals(part) {
@@ -286,7 +283,7 @@ impl Section<'_> {
                 }
             }
         }
-        let last = &self.parts[self.parts.len() - 1];
+        let last = &parts[parts.len() - 1];
         knots.push(time, last, last.length, 0.0);
         let trajectory = Trajectory::new(joints.iter().copied(), knots, Interpolation::Cubic)?;
         // Cubic polynomials go a little beyond along parabolas.

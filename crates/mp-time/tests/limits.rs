@@ -240,3 +240,16 @@ fn a_straight_motion_takes_what_the_formula_says() {
     assert!(errors.iter().all(|(v, a)| Limits::new(vec![*v], vec![*a]).is_err()));
     assert!(Limits::new(vec![f64::INFINITY], vec![1.0]).is_ok());
 }
+
+/// Where it stops at each of many corners, each line takes what the formula says.
+#[test]
+fn lines_between_many_stops_take_what_the_formula_says() {
+    let mut rng = Rng::seed(45);
+    let points: Vec<Vec<f64>> = (0..60).map(|_| vec![rng.random_range(-2.0..2.0)]).collect();
+    let path = BlendedPath::new(&points, 0.0).unwrap();
+    let timing = timed(&path, &Limits::new(vec![1.0], vec![2.0]).unwrap(), [("a", "rad")]).unwrap();
+    let line = |w: &[Vec<f64>]| least_seconds((w[1][0] - w[0][0]).abs(), 1.0, 2.0, f64::INFINITY);
+    let (duration, least) = (timing.trajectory.duration(), points.windows(2).map(line).sum::<f64>());
+    // Points that go on in a line are no stops.
+    assert!(duration <= 1.002 * least, "{duration} {least}");
+}

@@ -413,6 +413,34 @@ fn clumsy() -> Dir {
     dir
 }
 
+/// Ctrl-C while pairs of links are looked at is no bad input.
+#[cfg(unix)]
+#[test]
+fn an_srdf_that_is_interrupted_is_not_made() {
+    let dir = Dir::empty();
+    let of = |f: &dyn Fn(usize) -> String| (0..400).map(f).collect::<String>();
+    let links = of(&|i| {
+        format!(
+            "<link name=\"l{i}\"><collision><geometry><box size=\".1 .1 .1\"/></geometry></collision></link>"
+        )
+    });
+    let joints = of(&|i| {
+        format!(
+            "<joint name=\"j{i}\" type=\"revolute\"><parent link=\"l{i}\"/><child link=\"l{}\"/><origin xyz=\"0 0 .3\"/><axis xyz=\"0 1 0\"/>\
+             <limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>",
+            i + 1
+        )
+    });
+    dir.write("long.urdf", format!("<robot name=\"long\">{links}<link name=\"l400\"/>{joints}</robot>"));
+    let child = start_with(&dir, &["srdf", "long.urdf", "--out", "long.srdf"], &[]);
+    std::thread::sleep(std::time::Duration::from_millis(1000));
+    let id = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    let run = finish(child);
+    assert_eq!((run.code, run.stderr.trim()), (1, "interrupted: nothing was written"), "{run:?}");
+    assert!(!dir.exists("long.srdf"));
+}
+
 #[test]
 fn an_srdf_is_made_and_found() {
     let dir = clumsy();

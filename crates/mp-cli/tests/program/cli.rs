@@ -372,7 +372,14 @@ fn ctrl_c_stops_at_once_and_says_so() {
 /// As `timeout` ends a program: it sends the signal to it and to its group.
 #[cfg(unix)]
 #[test]
-fn sigterm_keeps_what_was_found() {
+fn a_signal_that_comes_twice_keeps_what_was_found() {
+    for signal in ["-TERM", "-INT"] {
+        keeps_what_was_found(signal);
+    }
+}
+
+#[cfg(unix)]
+fn keeps_what_was_found(signal: &str) {
     let dir = Dir::new();
     let child = crate::common::start(
         &dir,
@@ -390,9 +397,9 @@ fn sigterm_keeps_what_was_found() {
     );
     std::thread::sleep(std::time::Duration::from_millis(1500));
     let id = child.id().to_string();
-    let kill = || std::process::Command::new("kill").args(["-TERM", &id]).status().unwrap();
-    assert!(kill().success());
-    kill();
+    // Signals that come together are one.
+    let twice = format!("kill {signal} {id}; sleep 0.005; kill {signal} {id}");
+    assert!(std::process::Command::new("sh").args(["-c", &twice]).status().unwrap().success());
     let run = crate::common::finish(child);
     assert_eq!(run.code, 0, "{run:?}");
     let planning =

@@ -187,3 +187,26 @@ fn ctrl_c_keeps_what_was_done() {
     assert!(run.code == 0 && run.stderr.contains("going on after"), "{run:?}");
     assert!(dir.bytes("r.jsonl") == all);
 }
+
+/// Ctrl-C while scenes are read is no bad input, and parsers of others do not delay it.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_while_scenes_are_read() {
+    let dir = Dir::new();
+    let box_at =
+        |i: usize| format!("[[obstacle]]\nbox = [0.01, 0.01, 0.01]\npose = [{i}, 2, 3, 0.1, 0.2, 0.3]\n");
+    let head = "[robot]\nsphere = 0.1\n[motion]\nstart = [0, 0, 0, 0, 0, 0]\ngoal = [1, 0, 0, 0, 0, 0]\n";
+    dir.write("many.toml", &(head.to_owned() + &(0..200_000).map(box_at).collect::<String>()));
+    dir.write("l.jsonl", "{\"scene\": \"many.toml\"}\n");
+    let child = start(&dir, &["many", "l.jsonl", "--out", "o.jsonl"]);
+    std::thread::sleep(Duration::from_millis(500));
+    let id = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    let run = finish(child);
+    assert_eq!(
+        (run.code, run.stderr.trim()),
+        (1, "interrupted while the scenes of the list were read"),
+        "{run:?}"
+    );
+    assert!(!dir.exists("o.jsonl"));
+}

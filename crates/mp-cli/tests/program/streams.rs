@@ -1,6 +1,6 @@
 //! Standard input and output, formats by ending, requests, shipped scenes, completions and the manual.
 
-use crate::common::{Dir, fed, mp};
+use crate::common::{Dir, fed, finish, mp, start_silent};
 
 #[test]
 fn a_scene_comes_in_and_a_path_goes_out() {
@@ -16,6 +16,15 @@ fn a_scene_comes_in_and_a_path_goes_out() {
     assert!(both.code == 2 && both.stderr.contains("standard input"), "{both:?}");
     let taken = mp(&dir, &["plan", "window.env", "--out", "-", "--json"]);
     assert!(taken.code == 2 && taken.stderr.contains("standard output has other content"), "{taken:?}");
+}
+
+/// Standard input that says nothing is not waited for longer than there is time.
+#[test]
+fn a_silent_standard_input_takes_no_more_than_the_time() {
+    let dir = Dir::new();
+    let (run, _silent) = start_silent(&dir, &["plan", "-", "--time", "0.3", "--json"]);
+    let run = finish(run);
+    assert_eq!((run.code, &run.json()["stopped_by"]), (1, &serde_json::json!("time")), "{run:?}");
 }
 
 /// The names that Unix has for standard output are standard output.

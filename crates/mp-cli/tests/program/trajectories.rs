@@ -64,6 +64,14 @@ fn a_trajectory_is_planned_timed_and_checked_in_every_format() {
     assert!((all[all.len() - 1][0] - 3.0).abs() < 0.02, "{all:?}");
     let without = mp(&dir, &["plan", "crane.toml", "--velocity-scale", "0.5"]);
     assert!(without.code == 2 && without.stderr.contains("by --trajectory"), "{without:?}");
+    // More than the limits is no part of them.
+    for over in ["--velocity-scale", "--acceleration-scale", "--jerk-scale"] {
+        let over = mp(&dir, &["time", "crane.toml", "p.csv", over, "1.5"]);
+        assert!(
+            over.code == 2 && over.stderr.contains("is 1.5") && over.stderr.contains("at most 1"),
+            "{over:?}"
+        );
+    }
     let sampled = mp(&dir, &["time", "crane.toml", "p.csv", "--rate", "100"]);
     assert_eq!(sampled.code, 0, "{sampled:?}");
     let all = rows(&sampled.stdout);

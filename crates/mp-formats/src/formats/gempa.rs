@@ -16,7 +16,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`Error`] when it is not such a mesh, with the line and column.
-pub(crate) fn read(file: &str, bytes: &[u8], _: &mut Reading<'_>) -> Result<TriMesh, Error> {
+pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Result<TriMesh, Error> {
     let text = Text::new(file, bytes, "gempa-mesh.md")?;
     let mut lexer = Lexer::new(&text);
     let what = "the number of triangles";
@@ -28,6 +28,7 @@ pub(crate) fn read(file: &str, bytes: &[u8], _: &mut Reading<'_>) -> Result<TriM
     }
     let mut soup = Vec::new();
     for i in 0..n {
+        reading.interrupt.go_on().map_err(|_| Error::interrupted(file))?;
         let mut corners = [Point3::origin(); 3];
         for (c, corner) in corners.iter_mut().enumerate() {
             for (k, axis) in ["x", "y", "z"].iter().enumerate() {
@@ -47,7 +48,8 @@ pub(crate) fn read(file: &str, bytes: &[u8], _: &mut Reading<'_>) -> Result<TriM
             .expected(format!("the end of the file after {n} triangles of nine numbers"))
             .help("correct the count on the first line, or remove what follows"));
     }
-    TriMesh::from_soup(&soup).map_err(|e| mesh_error(file, &e))
+    let mesh = TriMesh::from_soup_until(&soup, &reading.interrupt).map_err(|_| Error::interrupted(file))?;
+    mesh.map_err(|e| mesh_error(file, &e))
 }
 
 /// The text of `mesh` as a GEMPA `.txt` mesh. Numbers have the fewest digits that read back to the same

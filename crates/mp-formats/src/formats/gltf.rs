@@ -4,6 +4,7 @@ use crate::error::{Error, ErrorKind};
 use crate::mesh::{Axes, LEFT_OUT, Reading, mesh_error};
 use crate::text::clipped;
 use mp_geom::TriMesh;
+use mp_stop::Interrupt;
 use nalgebra::{Matrix3, Matrix4, Point3, Quaternion, UnitQuaternion, Vector3};
 use serde::Deserialize;
 use std::collections::HashMap;
@@ -159,7 +160,10 @@ pub(crate) fn read(file: &str, bytes: &[u8], reading: &mut Reading<'_>) -> Resul
         (reading.remark)(&format!("the extension {} is not read", clipped(extension)));
     }
     // Corners at seams of colour are there once for each side.
-    TriMesh::new(scene.vertices, scene.triangles).map(|mesh| mesh.welded()).map_err(|e| mesh_error(file, &e))
+    let mesh = TriMesh::new(scene.vertices, scene.triangles).map_err(|e| mesh_error(file, &e))?;
+    let soup: Vec<_> = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect();
+    let mesh = TriMesh::from_soup_until(&soup, &reading.interrupt).map_err(|_| Error::interrupted(file))?;
+    mesh.map_err(|e| mesh_error(file, &e))
 }
 
 const HELP: &str = "export the mesh again, as glTF 2.0";
@@ -312,20 +316,27 @@ impl Triangles<'_> {
             let all =
                 all.ok_or_else(|| self.wrong(format!("node {i} has the mesh {mesh}, which is not there")))?;
             let weights = node.weights.as_ref().unwrap_or(&all.weights);
-            let joints = node.skin.map(|skin| self.joints(skin, &places)).transpose()?;
+            let interrupt = &mut reading.interrupt;
+            let joints = node.skin.map(|skin| self.joints(skin, &places, interrupt)).transpose()?;
             for (k, primitive) in all.primitives.iter().enumerate() {
                 let what = format!("primitive {k} of mesh {mesh}");
-                self.add(&what, primitive, weights, &place, joints.as_deref())?;
+                self.add(&what, primitive, weights, &place, joints.as_deref(), interrupt)?;
             }
         }
         Ok(())
     }
 
     /// For each joint of a skin, from the mesh to where the joint takes it.
-    fn joints(&self, number: usize, places: &[Option<Matrix4<f64>>]) -> Result<Vec<Matrix4<f64>>, Error> {
+    fn joints(
+        &self,
+        number: usize,
+        places: &[Option<Matrix4<f64>>],
+        interrupt: &mut Interrupt,
+    ) -> Result<Vec<Matrix4<f64>>, Error> {
         let wrong = |what: &str| self.wrong(format!("skin {number} {what}"));
         let skin = self.document.skins.get(number).ok_or_else(|| wrong("is not there"))?;
-        let bind = skin.inverse_bind_matrices.map(|bind| self.numbers(bind, "MAT4")).transpose()?;
+        let bind =
+            skin.inverse_bind_matrices.map(|bind| self.numbers(bind, "MAT4", interrupt)).transpose()?;
         let joint = |(k, &joint): (usize, &usize)| {
             let place = places.get(joint).copied().flatten();
             let place = place.ok_or_else(|| wrong("has a joint that is not in the scene"))?;
@@ -344,6 +355,7 @@ impl Triangles<'_> {
         primitive: &Primitive,
         joints: &[Matrix4<f64>],
         positions: &[f64],
+        interrupt: &mut Interrupt,
     ) -> Result<Vec<Point3<f64>>, Error> {
         let mut sums = vec![(0.0, Vector3::zeros()); positions.len() / 3];
         let sets = (0..).map_while(|set| {
@@ -351,7 +363,8 @@ impl Triangles<'_> {
             accessor("JOINTS").zip(accessor("WEIGHTS"))
         });
         for (numbers, weights) in sets {
-            let (numbers, weights) = (self.numbers(numbers, "VEC4")?, self.numbers(weights, "VEC4")?);
+            let (numbers, weights) =
+                (self.numbers(numbers, "VEC4", interrupt)?, self.numbers(weights, "VEC4", interrupt)?);
             for (k, (joint, weight)) in numbers.iter().zip(weights).enumerate().take(4 * sums.len()) {
                 let joint = joints.get(*joint as usize).filter(|_| weight >= 0.0);
                 let joint =
@@ -396,6 +409,7 @@ impl Triangles<'_> {
         weights: &[f64],
         place: &Matrix4<f64>,
         joints: Option<&[Matrix4<f64>]>,
+        interrupt: &mut Interrupt,
     ) -> Result<(), Error> {
         let mode = primitive.mode.unwrap_or(4);
         if !(4..=6).contains(&mode) {
@@ -404,11 +418,11 @@ impl Triangles<'_> {
         }
         let positions = primitive.attributes.get("POSITION");
         let &positions = positions.ok_or_else(|| self.wrong(format!("{what} has no POSITION")))?;
-        let mut positions = self.numbers(positions, "VEC3")?;
+        let mut positions = self.numbers(positions, "VEC3", interrupt)?;
         let count = positions.len() / 3;
         for (target, &weight) in primitive.targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
             let Some(&moved) = target.get("POSITION") else { continue };
-            let moved = self.numbers(moved, "VEC3")?;
+            let moved = self.numbers(moved, "VEC3", interrupt)?;
             if moved.len() != positions.len() {
                 return Err(
                     self.wrong(format!("{what} has a target of {} vertices, and {count}", moved.len() / 3))
@@ -417,7 +431,9 @@ impl Triangles<'_> {
             positions.iter_mut().zip(&moved).for_each(|(x, moved)| *x += weight * moved);
         }
         let corners: Vec<u32> = match primitive.indices {
-            Some(accessor) => self.numbers(accessor, "SCALAR")?.into_iter().map(|i| i as u32).collect(),
+            Some(accessor) => {
+                self.numbers(accessor, "SCALAR", interrupt)?.into_iter().map(|i| i as u32).collect()
+            }
             None => (0..count as u32).collect(),
         };
         if let Some(corner) = corners.iter().find(|corner| **corner as usize >= count) {
@@ -431,7 +447,7 @@ impl Triangles<'_> {
         let base = self.vertices.len() as u32; // at most MAX_INSTANCED
         match joints {
             Some(joints) => {
-                let points = self.skinned(what, primitive, joints, &positions)?;
+                let points = self.skinned(what, primitive, joints, &positions, interrupt)?;
                 self.vertices.extend(points);
             }
             None => self.vertices.extend(positions.chunks_exact(3).map(|p| placed(place, p))),
@@ -450,7 +466,7 @@ impl Triangles<'_> {
     }
 
     /// The numbers of an accessor of this kind: coordinates, or indices of vertices.
-    fn numbers(&self, number: usize, kind: &str) -> Result<Vec<f64>, Error> {
+    fn numbers(&self, number: usize, kind: &str, interrupt: &mut Interrupt) -> Result<Vec<f64>, Error> {
         let wrong = |what: &str| self.wrong(format!("accessor {number} {what}"));
         let accessor = self.document.accessors.get(number).ok_or_else(|| wrong("is not there"))?;
         let (width, columns) = match (kind, accessor.component_type) {
@@ -493,8 +509,14 @@ impl Triangles<'_> {
             5123 => f64::from(u16::from_le_bytes([b[0], b[1]])),
             _ => f64::from(u32::from_le_bytes(four(b))),
         };
-        let rows = (0..accessor.count).map(|i| &bytes[i * stride..][..size]);
-        Ok(rows.flat_map(|row| row.chunks_exact(width).map(read)).collect())
+        let mut numbers = Vec::with_capacity(accessor.count * columns);
+        for i in 0..accessor.count {
+            if i % 1024 == 0 && interrupt.ask() {
+                return Err(Error::interrupted(self.file));
+            }
+            numbers.extend(bytes[i * stride..][..size].chunks_exact(width).map(read));
+        }
+        Ok(numbers)
     }
 }
 

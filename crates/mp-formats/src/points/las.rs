@@ -1,10 +1,11 @@
 //! LAS, the point clouds of surveys (ASPRS LAS 1.0 to 1.4): whole numbers with a scale and an offset. LAZ is not read.
 
-use super::{bytes_at, error, rows};
+use super::{all, bytes_at, error, rows};
 use crate::error::{Error, ErrorKind};
+use mp_stop::Interrupt;
 use nalgebra::Point3;
 
-pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Vec<Point3<f64>>, Error> {
+pub(super) fn read(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Result<Vec<Point3<f64>>, Error> {
     if !bytes.starts_with(b"LASF") {
         return Err(error(file, 0, "the file does not begin with LASF"));
     }
@@ -36,7 +37,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Vec<Point3<f64>>, Error> 
         }
         Ok(point)
     };
-    rows(file, bytes, start, count, row)?.map(point).collect()
+    all(file, rows(file, bytes, start, count, row)?.map(point), interrupt)
 }
 
 #[cfg(test)]

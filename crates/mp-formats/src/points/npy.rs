@@ -3,12 +3,13 @@
 use super::{bytes_at, error, rows};
 use crate::error::Error;
 use crate::text::clipped;
+use mp_stop::Interrupt;
 use nalgebra::Point3;
 
 /// Arrays of three or four rows with more columns than this are points by columns: no camera gives as many numbers for a point.
 const MOST_COLUMNS: usize = 32;
 
-pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Vec<Point3<f64>>, Error> {
+pub(super) fn read(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Result<Vec<Point3<f64>>, Error> {
     if !bytes.starts_with(b"\x93NUMPY") {
         return Err(error(file, 0, "the file does not begin as one of numpy"));
     }
@@ -70,7 +71,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Vec<Point3<f64>>, Error> 
         }
         Ok(point)
     };
-    rows.enumerate().map(point).collect()
+    super::all(file, rows.enumerate().map(point), interrupt)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! PCD, the point clouds of PCL: text, binary, and binary compressed by LZF.
 
-use super::{GUIDE, any_number, bytes_at, error, rows};
+use super::{GUIDE, all, any_number, bytes_at, error, rows};
 use crate::encoding::decode_mesh;
 use crate::error::{Error, ErrorKind};
 use crate::files::MAX_MESH_BYTES;
@@ -39,7 +39,7 @@ pub(super) fn read(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Resul
         Data::Text => text(file, bytes, &header, interrupt),
         Data::Binary => {
             let rows = rows(file, bytes, start, header.points, header.row)?;
-            rows.map(|row| header.point(file, |axis| row.get(axis.byte..))).collect()
+            all(file, rows.map(|row| header.point(file, |axis| row.get(axis.byte..))), interrupt)
         }
         Data::Compressed => {
             let [packed, size] = [0, 4].map(|at| bytes_at(file, bytes, start + at).map(u32::from_le_bytes));
@@ -53,11 +53,12 @@ pub(super) fn read(file: &str, bytes: &[u8], interrupt: &mut Interrupt) -> Resul
             }
             let packed = bytes[start + 8..].get(..packed);
             let packed = packed.ok_or_else(|| error(file, bytes.len(), "the file ends too early"))?;
-            let all = unpacked(packed, size)
+            let bytes = unpacked(packed, size)
                 .ok_or_else(|| error(file, start + 8, "the compressed points are damaged"))?;
             // All values of a field, then all of the next.
             let n = header.points;
-            (0..n).map(|i| header.point(file, |axis| all.get(n * axis.byte + i * axis.size..))).collect()
+            let point = |i| header.point(file, |axis| bytes.get(n * axis.byte + i * axis.size..));
+            all(file, (0..n).map(point), interrupt)
         }
     }
 }

@@ -238,11 +238,11 @@ fn limits(kind: &dyn Robot, pace: &Pace) -> Result<(Limits, Vec<String>), Error>
     let acceleration = limit(1, "acceleration", "max_acceleration", "s²");
     let wrong = |what: &str, part: f64| {
         Error::new(format!("the part of the limits of {what} is {part}"))
-            .help("give a number above 0, such as 0.5")
+            .help("give a number above 0, at most 1; limits of a robot are set in [robot] of its problem: `max_velocity`, `max_acceleration`, `max_jerk`")
     };
     let parts = [pace.velocity, pace.acceleration, pace.jerk];
     for (what, part) in RATES.into_iter().zip(parts) {
-        if !(part > 0.0 && part.is_finite()) {
+        if !(part > 0.0 && part <= 1.0) {
             return Err(wrong(what, part));
         }
     }

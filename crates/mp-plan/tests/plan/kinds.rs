@@ -240,3 +240,26 @@ fn meshes_in_the_plane_stay_there_among_obstacles_that_move() {
     assert!(verdict(0.0).free, "{:?}", verdict(0.0));
     assert!(verdict(0.5).faults.concat().contains("leaves the plane"), "{:?}", verdict(0.5));
 }
+
+/// A configuration beside the plane is not the one below it: it is out of bounds, and no end.
+#[test]
+fn configurations_of_a_body_in_the_plane_are_in_it() {
+    let text = "[robot]\nbox = [0.5, 0.5, 0.5]\nplanar = true\nbounds = [[-5, -5, -1], [5, 5, 1]]\n[motion]\nstart = [-4, 0, 0]\n\
+                goal = [4, 0, 0]\n[[obstacle]]\nbox = [1, 1, 1]\n";
+    let scene = Scene::parse("flat", text, std::path::Path::new("")).unwrap();
+    assert!(scene.explain(&[3.0, 0.0, 0.0, 1.0, 0.0, 0.0]).unwrap().free);
+    for beside in
+        [[3.0, 0.0, 0.5, 1.0, 0.0, 0.0], [3.0, 0.0, 0.0, 1.0, 0.1, 0.0], [3.0, 0.0, 0.0, 1.0, 0.0, 0.1]]
+    {
+        let told = scene.explain(&beside).unwrap();
+        assert!(
+            !told.free && !told.in_bounds && told.fault.unwrap().contains("leaves the plane"),
+            "{beside:?}"
+        );
+        assert!(told.nearest_free.is_some_and(|near| scene.explain(&near).unwrap().free), "{beside:?}");
+        let refused = scene.with_ends(&beside, &scene.goals()).unwrap_err().to_string();
+        assert!(refused.contains("the start leaves the plane"), "{refused}");
+        let refused = scene.with_ends(&scene.start(), &[beside.to_vec()]).unwrap_err().to_string();
+        assert!(refused.contains("the goal leaves the plane"), "{refused}");
+    }
+}

@@ -49,6 +49,12 @@ pub(crate) fn start_with(dir: &Dir, args: &[&str], variables: &[(&str, &str)]) -
     command(dir, args).envs(variables.iter().copied()).spawn().unwrap()
 }
 
+/// The same with a standard input that says nothing until it is dropped.
+pub(crate) fn start_silent(dir: &Dir, args: &[&str]) -> (Child, std::io::PipeWriter) {
+    let (reader, writer) = std::io::pipe().unwrap();
+    (command(dir, args).stdin(reader).spawn().unwrap(), writer)
+}
+
 /// The same with a standard output that nobody reads.
 pub(crate) fn start_unread(dir: &Dir, args: &[&str]) -> Child {
     let (reader, writer) = std::io::pipe().unwrap();
