@@ -5,8 +5,6 @@ use mp_stop::signals;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// Nobody presses Ctrl-C twice in this time: `timeout -s INT` sends it to a process and to its group.
-const BY_HAND: Duration = Duration::from_millis(100);
 /// How often work is asked whether it is done.
 const MOMENT: Duration = Duration::from_millis(20);
 /// How long loading may go on after it was told to end.
@@ -16,7 +14,7 @@ const STACK: usize = 8 << 20;
 
 /// Does this at the first signal. The next one ends the program at once.
 pub(crate) fn on_first(action: impl Fn() + Send + 'static) {
-    if let Err(e) = signals::on_first(BY_HAND, action) {
+    if let Err(e) = signals::on_first(signals::BY_HAND, action) {
         tracing::warn!("Ctrl-C will end the program at once: {e}");
     }
 }

@@ -6,6 +6,7 @@ use mp_soak::soak::{Options, read_tally, run, write_problem};
 use mp_soak::tally::{Tally, grouped};
 use mp_soak::trial::{Problem, Wanted};
 use mp_soak::worlds::{KINDS, Kind};
+use mp_stop::signals;
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -89,7 +90,7 @@ fn soak(arguments: &Arguments) -> Result<bool, String> {
     }
     let stop = Cancel::new();
     let raised = stop.clone();
-    mp_stop::signals::on_first(Duration::ZERO, move || raised.cancel()).map_err(|e| e.to_string())?;
+    signals::on_first(signals::BY_HAND, move || raised.cancel()).map_err(|e| e.to_string())?;
     let live = std::io::stderr().is_terminal();
     let mut told = Instant::now();
     let mut progress = |tally: &Tally| {

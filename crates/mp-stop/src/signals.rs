@@ -3,11 +3,14 @@
 use std::io;
 use std::time::Duration;
 
+/// How long after the first Ctrl-C another one counts as the same, where nothing but `timeout` repeats it: nobody presses it twice in this time.
+pub const BY_HAND: Duration = Duration::from_millis(100);
+
 /// Does `action` at the first Ctrl-C, in a thread of its own. On Unix also at the first SIGTERM, which schedulers, containers and `timeout`
 /// send before they kill. The next signal ends the program at once, with 128 and the number of the signal as exit code.
 ///
-/// One signal may arrive several times: `timeout` sends SIGTERM to a process and to its group, `mpirun` repeats what it gets. So another
-/// SIGTERM counts from one second after the first signal on, and another Ctrl-C from `in_a_row` on.
+/// One signal may arrive several times: `timeout` sends its signal to a process and to its group, `mpirun` repeats what it gets. So another
+/// SIGTERM counts from one second after the first signal on, and another Ctrl-C from `in_a_row` on, such as [`BY_HAND`].
 ///
 /// Call it once in a program.
 ///

@@ -142,9 +142,10 @@ fn the_dearest_come_first() {
     let mut ahead: Vec<u64> = done(&ahead_of(&dir, "r.jsonl").unwrap(), 1);
     ahead.sort_unstable();
     // One of each kind, to know what they take; at most one more of the cheap ones, which was handed out
-    // before that was known.
+    // before that was known. The one at work when the rank was told to end may be done.
     assert!((1..=2).contains(&written.len()), "{written:?}");
-    assert!(ahead.len() + written.len() == 20 && ahead.iter().all(|item| *item >= 30), "{ahead:?}");
+    assert!((20..=21).contains(&(ahead.len() + written.len())), "{ahead:?}");
+    assert!(ahead.iter().all(|item| *item >= 30), "{ahead:?}");
     Job::new(&dir, "r.jsonl").on(3).unwrap();
     dir.run("all.jsonl", &whole()).unwrap();
     assert!(dir.read("r.jsonl") == dir.read("all.jsonl"));

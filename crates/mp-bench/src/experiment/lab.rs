@@ -321,9 +321,6 @@ pub(crate) fn interrupted() -> bool {
     interrupt().is_raised()
 }
 
-/// Nobody presses Ctrl-C twice in this time: `timeout -s INT` sends it to a process and to its group.
-const BY_HAND: Duration = Duration::from_millis(100);
-
 /// A flag that is set by the first Ctrl-C or SIGTERM. The next one ends the program at once. Among other ranks, that
 /// of who began the measurement.
 fn interrupt() -> Cancel {
@@ -334,7 +331,7 @@ fn interrupt() -> Cancel {
     let raised = RAISED.get_or_init(|| {
         let raised = Cancel::new();
         let shared = raised.clone();
-        if let Err(e) = signals::on_first(BY_HAND, move || shared.cancel()) {
+        if let Err(e) = signals::on_first(signals::BY_HAND, move || shared.cancel()) {
             tracing::warn!("Ctrl-C will end the program at once: {e}");
         }
         raised

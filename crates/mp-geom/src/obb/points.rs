@@ -59,9 +59,9 @@ impl Points {
     }
 }
 
-/// The least and the largest of some numbers; \\[∞, −∞\\] of none.
+/// The least and the largest of some numbers; [`NOTHING`] of none.
 fn range(values: &[f64]) -> [f64; 2] {
-    let [mut low, mut high] = [[f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]];
+    let [mut low, mut high] = NOTHING.map(|v| [v; LANES]);
     let (whole, rest) = values.as_chunks::<LANES>();
     for v in whole {
         for k in 0..LANES {
