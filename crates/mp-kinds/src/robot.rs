@@ -454,9 +454,16 @@ pub trait Description: Motion {
             .help("implement `Robot::motion_model` for it"))
     }
 
-    /// What is wrong with rows from a file apart from their length, such as leaving the plane.
-    fn row_error(&self, _rows: &[Vec<f64>]) -> Option<String> {
+    /// What a row says that no configuration has, such as a height in the plane; words to follow "the start". None by default.
+    fn row_fault(&self, _row: &[f64]) -> Option<&'static str> {
         None
+    }
+
+    /// What is wrong with rows from a file apart from their length, such as leaving the plane.
+    fn row_error(&self, rows: &[Vec<f64>]) -> Option<String> {
+        let fault =
+            |(i, row): (usize, &Vec<f64>)| Some(format!("configuration {} {}", i + 1, self.row_fault(row)?));
+        rows.iter().enumerate().find_map(fault)
     }
 
     /// How far a configuration is from the one that it should be, and how far it may be. Files often have only four digits.

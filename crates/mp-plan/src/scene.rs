@@ -311,12 +311,15 @@ impl Scene {
         if goals.is_empty() {
             return Err(Error::new("there is no goal").help("give at least one configuration as a goal"));
         }
-        let said = |which: &str, row: &[f64]| match self.left(row) {
-            Some(odd) => Err(Error::new(format!("{which} {odd}")).help("give these numbers as 0")),
-            None => self.state(row),
+        let end = |which: &str, row: &[f64]| {
+            let q = self.state(row)?;
+            match self.robot.row_fault(row) {
+                Some(fault) => Err(Error::new(format!("{which} {fault}")).help("give these numbers as 0")),
+                None => Ok(q),
+            }
         };
-        let given = said("the start", start)?;
-        let goals = goals.iter().map(|goal| said("the goal", goal)).collect::<Result<_, _>>()?;
+        let given = end("the start", start)?;
+        let goals = goals.iter().map(|goal| end("the goal", goal)).collect::<Result<_, _>>()?;
         Ok(Self { robot: self.robot.any_with_ends(given, goals, start)?, ..self.clone() })
     }
 
@@ -640,22 +643,16 @@ impl Scene {
     pub fn explain(&self, row: &[f64]) -> Result<Explanation, Error> {
         let q = self.state(row)?;
         let found = explain(&*self.robot, &q);
-        let Some(odd) = self.left(row) else { return Ok(found) };
+        let Some(beside) = self.robot.row_fault(row) else { return Ok(found) };
         Ok(Explanation {
             free: false,
             in_bounds: false,
             clearance: 0.0,
             touching: Vec::new(),
             warnings: Vec::new(),
-            fault: Some(format!("out of bounds: it {odd}")),
+            fault: Some(format!("out of bounds: it {beside}")),
             nearest_free: if found.free { Some(self.robot.row(&q)) } else { found.nearest_free },
         })
-    }
-
-    /// What the numbers of a configuration say that the configuration cannot have, such as a height in the plane, to follow the words "the start".
-    fn left(&self, row: &[f64]) -> Option<String> {
-        let odd = self.state(row).ok().and_then(|_| self.robot.row_error(&[row.to_vec()]))?;
-        Some(odd.trim_start_matches("configuration 1 ").to_owned())
     }
 
     /// Checks that start and goals are free. Returns what is odd about them.

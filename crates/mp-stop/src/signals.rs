@@ -3,7 +3,7 @@
 use std::io;
 use std::time::Duration;
 
-/// How long after the first Ctrl-C another one counts as the same, where nothing but `timeout` repeats it: nobody presses it twice in this time.
+/// How long after the first Ctrl-C another one is the same, sent again by `timeout`: nobody presses it twice in this time.
 pub const BY_HAND: Duration = Duration::from_millis(100);
 
 /// Does `action` at the first Ctrl-C, in a thread of its own. On Unix also at the first SIGTERM, which schedulers, containers and `timeout`

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// How many numbers are compared at a time.
 pub(super) const LANES: usize = 8;
-/// Fewer points than these are sorted as soon as looked through in lanes.
+/// Fewer points than these are worked on one by one: lanes would not be faster.
 pub(super) const FEW: usize = 100;
 /// The least and the largest of no numbers.
 const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];

@@ -308,6 +308,7 @@ impl Description for Constrained {
         fn rows(&self, path: &mp_cspace::Path<Configuration>) -> Vec<Vec<f64>>;
         fn given_start(&self) -> Vec<f64>;
         fn export(&self, folder: &Path) -> Result<PathBuf, Error>;
+        fn row_fault(&self, row: &[f64]) -> Option<&'static str>;
         fn row_error(&self, rows: &[Vec<f64>]) -> Option<String>;
         fn deviation(&self, q: &Configuration, wanted: &Configuration) -> Deviation;
         fn reaches_place(&self, q: &Configuration) -> bool;

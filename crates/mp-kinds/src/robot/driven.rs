@@ -381,6 +381,9 @@ impl Description for DrivenScene {
         row.iter_mut().zip(self.robot.given_start()).for_each(|(x, given)| *x = given);
         row
     }
+    fn row_fault(&self, row: &[f64]) -> Option<&'static str> {
+        self.robot.row_fault(&row[..self.robot.columns().len()])
+    }
     fn row_error(&self, rows: &[Vec<f64>]) -> Option<String> {
         let system = &self.space.system;
         let states: Vec<_> = rows.iter().map(|row| self.parts(&self.state(row))).collect();

@@ -364,6 +364,9 @@ impl<K: WithMoving> Description for MovingScene<K> {
         row.iter_mut().zip(self.still.given_start()).for_each(|(x, given)| *x = given);
         row
     }
+    fn row_fault(&self, row: &[f64]) -> Option<&'static str> {
+        self.still.row_fault(&row[..row.len() - 1])
+    }
     fn row_error(&self, rows: &[Vec<f64>]) -> Option<String> {
         let positions: Vec<_> = rows.iter().map(|row| row[..row.len().saturating_sub(1)].to_vec()).collect();
         if let Some(odd) = self.still.row_error(&positions) {

@@ -553,13 +553,9 @@ impl<M: RigidSpace> Description for RigidScene<M> {
         model.add_obstacles(obstacles, [0]);
         Ok(model)
     }
-    fn row_error(&self, rows: &[Vec<f64>]) -> Option<String> {
-        if self.problem.space != SpaceKind::Se2 {
-            return None;
-        }
-        let off = |row: &Vec<f64>| [row[2], row[4], row[5]].iter().any(|v| v.abs() > PLANE_TOLERANCE);
-        let i = rows.iter().position(off)?;
-        Some(format!("configuration {} leaves the plane: z, β and γ must be 0", i + 1))
+    fn row_fault(&self, row: &[f64]) -> Option<&'static str> {
+        let off = || [row[2], row[4], row[5]].iter().any(|v| v.abs() > PLANE_TOLERANCE);
+        (self.problem.space == SpaceKind::Se2 && off()).then_some("leaves the plane: z, β and γ must be 0")
     }
     fn deviation(&self, q: &Configuration, wanted: &Configuration) -> Deviation {
         let off = displacement_bound(&pose::<M>(q), &pose::<M>(wanted), self.radius);

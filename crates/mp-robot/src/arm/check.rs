@@ -153,8 +153,8 @@ pub(super) enum Nearest {
 }
 
 impl Arm {
-    /// The least distance, and between what it is: of what moves, and only where it is less than `enough`. Leaves the frames at `q` in the
-    /// scratch memory.
+    /// The least distance (m), and what is that near: `None` where the distance is at least `enough`, or where what is nearest never moves.
+    /// Leaves the frames at `q` in the scratch memory.
     pub(super) fn least_clearance<Q: Coordinates>(
         &mut self,
         q: &Q,
