@@ -78,8 +78,8 @@ pub trait Space: Sync {
     fn sample_uniform(&self, rng: &mut Rng) -> Self::State;
 
     /// A state drawn uniformly among those whose distances from `from` and to `to` add up to at most
-    /// `sum`. `None` where the space has no direct method (the default), or finds no such state within its
-    /// bounds in a hundred tries: then draw uniformly, and reject.
+    /// `sum`; where there is none, as `sum` is too small, a state between the two. `None` where the space has no direct method (the
+    /// default), or finds no such state within its bounds in a hundred tries: then draw uniformly, and reject.
     fn sample_between(
         &self,
         _from: &Self::State,

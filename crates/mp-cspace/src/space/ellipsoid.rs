@@ -16,9 +16,10 @@ pub(super) fn sample(from: &[f64], to: &[f64], sum: f64, rng: &mut Rng, out: &mu
         norm += *x * *x;
     }
     let radius = mp_math::powf(rng.random::<f64>(), 1.0 / n as f64) / norm.sqrt().max(f64::MIN_POSITIVE);
+    let sum = sum.max(between);
     let across = 0.5 * (sum * sum - between * between).max(0.0).sqrt();
     for (i, x) in out.iter_mut().enumerate() {
-        *x *= radius * if i == 0 { 0.5 * sum.max(between) } else { across };
+        *x *= radius * if i == 0 { 0.5 * sum } else { across };
     }
     // A reflection takes the first axis to the direction from `from` to `to`. It serves as well as a
     // rotation, as a ball stretched along one axis is its own mirror image.
@@ -79,5 +80,6 @@ mod tests {
         }
         let same = space.sample_between(&a, &a, 0.2, &mut rng).unwrap();
         assert!((same - a).norm() <= 0.1 + 1e-12);
+        assert_eq!(space.sample_between(&a, &a, -0.2, &mut rng), Some(a));
     }
 }

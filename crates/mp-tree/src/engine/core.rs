@@ -83,9 +83,11 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         Some(tree.connect_directly(0, goal, &mut self.checker, rng, observer))
     }
 
-    /// A goal to aim at instead of exploring, with probability `goal_bias`.
+    /// A goal to aim at instead of exploring, with probability `goal_bias`; none where the sample is outside of the space.
     pub fn aim(&mut self, rng: &mut Rng) -> Option<C::State> {
-        if self.goal_bias > 0.0 && rng.random_bool(self.goal_bias) { self.goals.aim(rng) } else { None }
+        let aims = self.goal_bias > 0.0 && rng.random_bool(self.goal_bias);
+        let goal = if aims { self.goals.aim(rng) } else { None };
+        goal.filter(|goal| self.checker.space().contains(goal))
     }
 
     /// Adds a new sample of the goal as a root of the tree from the goal: with probability `goal_bias`, and

@@ -87,3 +87,30 @@ fn regions_alone() {
         }
     }
 }
+
+/// Three samples outside of the space for one inside, in turns.
+struct MostlyOutside(usize);
+
+impl Sampler<Configuration> for MostlyOutside {
+    fn sample(&mut self, _: &mut Rng) -> Configuration {
+        self.0 += 1;
+        let [x, y] = [[1.4, 0.3], [0.2, 1.4], [0.2, f64::NAN], [0.8, 0.3]][self.0 % 4];
+        Configuration::from([x, y, 2.0])
+    }
+}
+
+#[test]
+fn samples_of_a_goal_outside_the_space_are_ignored() {
+    let world = World::new();
+    let goals = || Goals::sampled(MostlyOutside(0));
+    for info in planners() {
+        let mut planner = world.planner(info.name, &goals).unwrap();
+        let mut nodes = OnEvent(|event: Event<'_, Configuration>| {
+            if let Event::Rooted { state, .. } | Event::Added { state, .. } = event {
+                assert!(world.space.contains(state), "{}: {state:?}", info.name);
+            }
+        });
+        let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(40_000), &mut nodes);
+        assert!(matches!(outcome, Outcome::Solved(_)), "{}", info.name);
+    }
+}
