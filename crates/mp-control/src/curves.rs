@@ -24,7 +24,7 @@ const S: f64 = 0.0;
 const R: f64 = -1.0;
 
 /// The shortest curve from one pose to another of a car that drives forward only and turns in circles of
-/// `radius` (m): at most three parts, none for equal poses.
+/// `radius` (m), positive and finite: at most three parts, none for equal poses.
 #[must_use]
 pub fn dubins(from: &Se2State, to: &Se2State, radius: f64) -> Vec<CurvePart> {
     let [x, y, phi] = seen_from(from, to, radius);
@@ -66,7 +66,7 @@ pub fn dubins(from: &Se2State, to: &Se2State, radius: f64) -> Vec<CurvePart> {
 }
 
 /// The shortest curve from one pose to another of a car that drives forward and backward and turns in circles
-/// of `radius` (m): at most five parts, none for equal poses.
+/// of `radius` (m), positive and finite: at most five parts, none for equal poses.
 #[must_use]
 pub fn reeds_shepp(from: &Se2State, to: &Se2State, radius: f64) -> Vec<CurvePart> {
     let [x, y, phi] = seen_from(from, to, radius);

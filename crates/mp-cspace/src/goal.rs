@@ -132,13 +132,9 @@ impl<'c, C: Factored> FixedFactors<'c, C> {
 
 impl<C: Factored> Goal<C::State> for FixedFactors<'_, C> {
     fn reached(&self, q: &C::State) -> bool {
-        let mut deviation = 0.0_f64;
-        self.space.each_factor(q, &self.state, &mut |i, d| {
-            if self.fixed[i] {
-                deviation = deviation.max(d);
-            }
-        });
-        deviation <= self.tolerance
+        let mut within = true;
+        self.space.each_factor(q, &self.state, &mut |i, d| within &= !self.fixed[i] || d <= self.tolerance);
+        within
     }
 }
 
@@ -188,6 +184,12 @@ mod tests {
         let goal = FixedFactors::new(&arm, Configuration::zeros(5), [1, 1, 4], 0.1).unwrap();
         assert!(goal.reached(&Configuration::from(vec![1.0, 0.1, 1.0, 1.0, -0.05])));
         assert!(!goal.reached(&Configuration::from(vec![0.0, 0.0, 0.0, 0.0, 0.11])));
+        // What is not a number is a mark of components that are free, and is reached by nothing in those that are fixed.
+        let only = Configuration::from(vec![f64::NAN, 0.1, f64::NAN, f64::NAN, f64::NAN]);
+        let reached = |fixed: usize| {
+            FixedFactors::new(&arm, only.clone(), [fixed], 0.1).unwrap().reached(&Configuration::zeros(5))
+        };
+        assert!(reached(1) && !reached(0));
         let refused = |factors: &[usize], tolerance| {
             let goal = FixedFactors::new(&arm, Configuration::zeros(5), factors.iter().copied(), tolerance);
             goal.unwrap_err().to_string()

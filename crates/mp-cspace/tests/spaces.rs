@@ -144,6 +144,11 @@ spaces! {
 #[test]
 fn displacement_is_attained_at_a_vertex() {
     let metric = MaxDisplacement::new(hull()).unwrap();
+    let nowhere = Isometry3::translation(f64::NAN, 0.0, 0.0);
+    assert!(
+        metric.distance(&se3(), &nowhere, &Isometry3::identity()).is_nan(),
+        "it would be near everything"
+    );
     let mut rng = mp_cspace::Rng::seed(3);
     let space = se3();
     for _ in 0..1000 {

@@ -52,6 +52,12 @@ fn max_radius(norms: impl Iterator<Item = f64>) -> Result<f64, SpaceError> {
     max.ok_or(SpaceError::Empty { what: "the set of points" })
 }
 
+/// The largest of the distances whose squares these are. Written so that NaN stays: all are, of a pose that is not finite.
+#[inline]
+fn farthest(squares: impl Iterator<Item = f64>) -> f64 {
+    squares.fold(0.0, |most, square| if square <= most { most } else { square }).sqrt()
+}
+
 impl Metric<Se3> for MaxDisplacement<Point3<f64>> {
     type Nn = MetricTree;
 
@@ -59,7 +65,7 @@ impl Metric<Se3> for MaxDisplacement<Point3<f64>> {
         let (ra, rb) = (from.rotation.to_rotation_matrix(), to.rotation.to_rotation_matrix());
         let turn = rb.matrix() - ra.matrix();
         let shift = to.translation.vector - from.translation.vector;
-        self.points.iter().map(|p| (turn * p.coords + shift).norm_squared()).fold(0.0, f64::max).sqrt()
+        farthest(self.points.iter().map(|p| (turn * p.coords + shift).norm_squared()))
     }
     /// The diagonal of the box, and twice the farthest point's distance from the body's origin.
     fn extent(&self, space: &Se3) -> f64 {
@@ -78,7 +84,7 @@ impl Metric<Se2> for MaxDisplacement<Point2<f64>> {
         let squared = |p: &Point2<f64>| {
             mp_math::powi(c * p.x - s * p.y + shift.x, 2) + mp_math::powi(s * p.x + c * p.y + shift.y, 2)
         };
-        self.points.iter().map(squared).fold(0.0, f64::max).sqrt()
+        farthest(self.points.iter().map(squared))
     }
     /// The diagonal of the box, and twice the farthest point's distance from the body's origin.
     fn extent(&self, space: &Se2) -> f64 {

@@ -168,9 +168,12 @@ impl PlanarWorld {
     }
 
     /// Whether `p` is in an obstacle, by exact predicates; on a boundary the answer may be either, and the
-    /// distance is zero.
+    /// distance is zero. So is a point with a coordinate that is not a number: nothing can be said of it.
     #[must_use]
     pub fn contains(&self, p: &Point2<f64>) -> bool {
+        if p.x.is_nan() || p.y.is_nan() {
+            return true;
+        }
         if self.walls.is_some_and(|[l, h]| p.x <= l.x || p.y <= l.y || p.x >= h.x || p.y >= h.y) {
             return true;
         }
@@ -232,9 +235,10 @@ impl PlanarWorld {
         if cell.kind == CellKind::Solid || cell.from_center + off < distance {
             return false;
         }
-        let near = |i: &u32| self.edges[*i as usize].squared(p).sqrt() <= distance;
+        // Written so that a distance that is not a number is never kept.
+        let beyond = |i: &u32| self.edges[*i as usize].squared(p).sqrt() > distance;
         let far = cell.from_center - off > distance;
-        (far || !candidates.iter().any(near)) && !self.contains(p)
+        (far || candidates.iter().all(beyond)) && !self.contains(p)
     }
 
     /// Where the segment from `a` to `b` and the boundary of an obstacle are nearest to each other, if that
@@ -401,6 +405,22 @@ mod tests {
                     Some(near) => prop_assert!((near.distance - expected).abs() < 1e-12),
                     None => prop_assert!(expected >= below - 1e-12),
                 }
+            }
+        }
+    }
+
+    /// Nothing can be said of a point or a distance that is not a number: it is not free.
+    #[test]
+    fn what_is_not_a_number_is_not_clear() {
+        let square = Polygon::rectangle([0.0, 0.0], [1.0, 1.0]).unwrap();
+        for walls in [None, Some([[-5.0, -5.0], [5.0, 5.0]])] {
+            let world = PlanarWorld::new(vec![square.clone()], walls).unwrap();
+            for p in [Point2::new(f64::NAN, 2.0), Point2::new(2.0, f64::NAN)] {
+                assert!(world.contains(&p) && world.signed_distance(&p) < 0.0);
+                assert!(!world.is_clear(&p, 0.1));
+            }
+            for p in [Point2::new(3.0, 3.0), Point2::new(0.5, 1.1), Point2::new(40.0, 3.0)] {
+                assert!(!world.is_clear(&p, f64::NAN), "{p}");
             }
         }
     }
