@@ -385,9 +385,15 @@ pub trait Description: Motion {
         "move it, or widen the bounds".to_owned()
     }
 
-    /// Why a configuration is out of bounds, to follow the words "the start is". By default it lists all of its numbers.
+    /// Why a configuration is out of bounds, to follow the words "the start is". By default it lists all of its numbers, and says what the first one
+    /// that is beyond its limits may be.
     fn out_of_bounds(&self, q: &Configuration) -> String {
-        format!("out of bounds: {}", self.in_words(q))
+        let numbers = self.columns().into_iter().zip(self.limits()).zip(self.row(q));
+        let mut beyond = numbers.filter_map(|((column, limits), x)| {
+            let [low, high] = limits.filter(|[low, high]| !(*low..=*high).contains(&x))?;
+            Some(format!("; {} may be from {} to {}", column.name, plain(low), plain(high)))
+        });
+        format!("out of bounds: {}{}", self.in_words(q), beyond.next().unwrap_or_default())
     }
 
     /// An error about one end of the problem. A scene from a file adds the line; the default does not.

@@ -493,6 +493,12 @@ impl<M: RigidSpace> Description for RigidScene<M> {
         });
         Some(format!("the start is {start}, the goal {goal}: there may be no way"))
     }
+    fn bounds_remedy(&self, _: &Configuration) -> String {
+        match self.problem.bounds {
+            Some(_) => "move it, or widen the bounds".to_owned(),
+            None => "move it, or give the problem bounds: without them it has those of a box around start, goals and obstacles".to_owned(),
+        }
+    }
     fn end_error(&self, _: End, message: String, help: String) -> Error {
         Error::new(message).help(help).context(format!("cannot plan in {}", self.problem.name))
     }

@@ -263,3 +263,30 @@ fn configurations_of_a_body_in_the_plane_are_in_it() {
         assert!(refused.contains("the goal leaves the plane"), "{refused}");
     }
 }
+
+/// What is out of bounds says in which number, and what that may be; a file without bounds, that they were taken.
+#[test]
+fn out_of_bounds_names_the_number_and_its_limits() {
+    let told = |text: &str, at: &[f64]| {
+        let scene = Scene::parse("box", text, std::path::Path::new("")).unwrap();
+        let mut roadmap = scene.roadmap(&Request::new("prm").nodes(1)).unwrap();
+        let error = roadmap.query(at, &scene.goals()[0]).unwrap_err();
+        [scene.explain(at).unwrap().fault.unwrap(), error.to_string(), error.remedy().unwrap().to_owned()]
+    };
+    let body = "[robot]\nbox = [0.5, 0.5, 0.5]\nbounds = [[-5, -5, -1], [5, 2.5, 1]]\n[motion]\nstart = [-4, 0, 0, 0, 0, 0]\n\
+                goal = [4, 0, 0, 0, 0, 0]\n[[obstacle]]\nbox = [1, 1, 1]\n";
+    let [fault, error, remedy] = told(body, &[0.0, 3.0, 4.0, 0.0, 0.0, 0.0]);
+    assert_eq!(fault, "out of bounds: 0 3 4 0 0 0; y may be from -5 to 2.5");
+    assert!(error.contains(&format!("the start is {fault}")), "{error}");
+    assert_eq!(remedy, "move it, or widen the bounds");
+    let open = body.replace("bounds = [[-5, -5, -1], [5, 2.5, 1]]\n", "");
+    let [fault, _, remedy] = told(&open, &[0.0, 30.0, 0.0, 0.0, 0.0, 0.0]);
+    assert!(
+        fault.contains("; y may be from -") && remedy.contains("give the problem bounds"),
+        "{fault} {remedy}"
+    );
+    let plane =
+        "[world]\nwalls = [[0, 0], [6, 4]]\n[robot]\ndisc = 0.3\n[motion]\nstart = [1, 1]\ngoal = [5, 3]\n";
+    let [fault, ..] = told(plane, &[2.0, 4.5]);
+    assert_eq!(fault, "out of bounds: [2, 4.5]; y may be from 0 to 4");
+}

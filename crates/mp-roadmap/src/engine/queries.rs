@@ -310,6 +310,9 @@ where
     fn answer(mut self) -> Result<PathOf<C, L>, Unanswered> {
         self.prepare()?;
         let [start, goal] = self.ends;
+        if start == goal {
+            return Ok(Path { states: vec![start.clone()], edges: Vec::new() });
+        }
         if let Some(motion) = self.verified(start, goal) {
             return Ok(Path { states: vec![start.clone(), goal.clone()], edges: vec![motion.edge] });
         }

@@ -70,6 +70,12 @@ fn a_roadmap_answers_many_queries() {
     }
     assert!(seen > 195, "{seen} of 200");
     assert_eq!(answers.map().len(), 500, "it does not grow");
+    let here = Point::new(0.1, 0.1);
+    assert_eq!(
+        answers.answer(&here, &here),
+        Ok(Path { states: vec![here], edges: vec![] }),
+        "as planners do"
+    );
 }
 
 #[test]
