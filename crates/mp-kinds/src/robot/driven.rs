@@ -10,6 +10,7 @@ use super::model::{self, DriveModel, MotionModel};
 use super::{Appearance, Body, Column, Contact, Description, End, Measured, Motion, no_metric};
 use crate::goals::{GoalPart, examples};
 use crate::robot::motion::TypedMotion;
+use crate::turns::{continued, turning};
 use crate::{Error, MetricName};
 use check::{DrivenChecker, DrivenVerifier};
 pub use drivable::Drivable;
@@ -22,6 +23,7 @@ use mp_geom::Aabb;
 use mp_io::{Drive, Driven};
 use nalgebra::{Isometry3, Point3};
 use space::DrivenSpace;
+use std::f64::consts::TAU;
 use std::fmt::Debug;
 use std::sync::Arc;
 use system::{Parts, System};
@@ -375,6 +377,24 @@ impl Description for DrivenScene {
         let [velocity, input] = [velocity, input].map(<[f64]>::to_vec);
         let duration = duration.first().copied().unwrap_or(0.0);
         system.vector(&Parts { q: self.robot.state(q), velocity, input, duration })
+    }
+    /// Angles without limits go on as far as inputs turn them, which may be more than half a turn.
+    fn rows(&self, path: &Path<Configuration>) -> Vec<Vec<f64>> {
+        let states: Vec<_> = path.states.iter().map(|q| self.parts(q)).collect();
+        let rows = path.states.iter().map(|q| self.row(q)).collect();
+        let turning = turning(self);
+        let mut rows = continued(&turning, &self.given_start(), rows);
+        // The angles of a body in space are not those that inputs turn it by.
+        let named =
+            self.columns.iter().zip(self.robot.degrees()).map(|(column, degree)| column.name == degree.name);
+        let turning: Vec<_> = turning.into_iter().zip(named).map(|(turns, named)| turns && named).collect();
+        for k in 1..rows.len() {
+            let moved = self.space.system.moved(&states[k - 1], &states[k]);
+            for (i, by) in moved.into_iter().enumerate().filter(|(i, _)| turning[*i]) {
+                rows[k][i] += ((rows[k - 1][i] + by - rows[k][i]) / TAU).round() * TAU;
+            }
+        }
+        rows
     }
     fn given_start(&self) -> Vec<f64> {
         let mut row = self.row(self.start());

@@ -2,7 +2,7 @@
 
 use mp_control::{Car, DoubleIntegrator, Flow};
 use mp_cspace::{Rn, Rng, Se2State};
-use mp_plan::{PathRows, Request, Scene};
+use mp_plan::{Finish, PathRows, Request, Scene};
 use nalgebra::Vector2;
 use rand::RngExt;
 use std::f64::consts::TAU;
@@ -289,4 +289,42 @@ fn out_of_bounds_names_the_number_and_its_limits() {
         "[world]\nwalls = [[0, 0], [6, 4]]\n[robot]\ndisc = 0.3\n[motion]\nstart = [1, 1]\ngoal = [5, 3]\n";
     let [fault, ..] = told(plane, &[2.0, 4.5]);
     assert_eq!(fault, "out of bounds: [2, 4.5]; y may be from 0 to 4");
+}
+
+/// An input may turn a robot by more than half a turn: headings go on as far as it does, not by the shorter way.
+#[test]
+fn headings_turn_as_far_as_inputs_do() {
+    let text = |drive: &str| {
+        format!(
+            "[world]\nwalls = [[0, 0], [8, 6]]\n[robot]\npolygon = [[-0.3, -0.1], [0.3, -0.1], [0.3, 0.1], [-0.3, 0.1]]\nduration = 3\n{drive}\n\
+             [motion]\nstart = [1, 3, -10]\ngoal = {{ x = 6, y = 3 }}\ntolerance = 0.4\n"
+        )
+    };
+    for drive in [
+        "kind = \"unicycle\"\nspeed = 1\nturning = 1.4",
+        "kind = \"car\"\nspeed = 1\nwheelbase = 0.3\nsteering = 0.4",
+        "kind = \"velocities\"\nspeeds = [1, 1, 1.4]",
+        "kind = \"accelerations\"\nspeeds = [1, 1, 2]\naccelerations = [0.3, 0.3, 0.6]",
+    ] {
+        let scene = Scene::parse("headings", &text(drive), std::path::Path::new("")).unwrap();
+        let mut most = 0.0_f64;
+        for seed in 1..9 {
+            let request = Request { finish: Finish::AsFound, ..Request::new("rsrt").seed(seed) };
+            let rows = scene.plan(&request).unwrap().path.unwrap();
+            assert_eq!(rows[0][2], -10.0);
+            for pair in rows.windows(2) {
+                let (inputs, held) = (&pair[1][3..], pair[1][pair[1].len() - 1]);
+                let by = match drive.split('"').nth(1) {
+                    Some("car") => inputs[0] * mp_math::tan(inputs[1]) / 0.3 * held,
+                    Some("unicycle") => inputs[1] * held,
+                    Some("velocities") => inputs[2] * held,
+                    _ => pair[0][5] * held + inputs[5] * held * held / 2.0,
+                };
+                assert!((pair[1][2] - pair[0][2] - by).abs() < 1e-9, "{drive}, seed {seed}: {pair:?}");
+                most = most.max(by.abs());
+            }
+            assert!(scene.check(&path(&scene, rows)).unwrap().free);
+        }
+        assert!(most > TAU / 2.0, "{drive}: {most}");
+    }
 }

@@ -455,6 +455,42 @@ fn limits_are_those_of_the_problem_of_moveit_and_of_the_urdf() {
     assert!(error.contains("\"d\"") && error.contains("\"a\", \"b\", \"c\""), "{error}");
 }
 
+/// A base in the plane has no limits in any file but the problem: a number for all joints counts for it, and it can be named.
+#[test]
+fn limits_of_the_problem_are_those_of_a_base_in_the_plane_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write(
+        "mobile.urdf",
+        "<robot name='mobile'><link name='base'/><link name='arm'/><joint name='a' type='continuous'><parent link='base'/>\
+         <child link='arm'/><axis xyz='0 0 1'/><limit effort='1' velocity='2'/></joint></robot>",
+    );
+    let load = |rates: &str| {
+        let robot = "[robot]\nurdf = \"mobile.urdf\"\nbase = \"planar\"\nbounds = [[-9, -9], [9, 9]]\n";
+        let ends = if rates.contains("hold") { "[0, 0, 0]" } else { "[0, 0, 0, 0]" };
+        write("mobile.toml", &format!("{robot}{rates}\n[motion]\nstart = {ends}\ngoal = {ends}\n"));
+        Scene::load(folder.path().join("mobile.toml"))
+    };
+    for (rates, column, velocity, acceleration) in [
+        ("max_velocity = 0.25\nmax_acceleration = 0.5", 0, 0.25, 0.5),
+        ("max_velocity = 0.25\nmax_acceleration = 0.5", 2, 0.25, 0.5),
+        ("max_velocity = { theta = 0.5, x = 0.25 }\nmax_acceleration = { x = 0.5 }", 0, 0.25, 0.5),
+        ("max_velocity = { theta = 0.5, x = 0.25 }\nmax_acceleration = { x = 0.5 }", 2, 0.5, 1.0),
+        ("max_velocity = 0.5\nmax_acceleration = 1\nhold = { a = 0.1 }", 1, 0.5, 1.0),
+        ("max_velocity = { a = 0.5, y = 0.25 }\nhold = { a = 0.1 }", 1, 0.25, 1.0),
+    ] {
+        let scene = load(rates).unwrap();
+        let mut path =
+            PathRows { format: scene.path_format(), columns: scene.columns(), rows: vec![scene.start(); 4] };
+        path.rows.iter_mut().zip(0..).for_each(|(row, i)| row[column] = f64::from(i) / 3.0);
+        let made = timed(&scene, &path, &Pace::default()).trajectory;
+        assert!((made.fastest(column).amount - velocity).abs() < 1e-3, "{rates}, {column}");
+        assert!((made.hardest(column).amount - acceleration).abs() < 1e-3, "{rates}, {column}");
+    }
+    let error = load("max_velocity = { thetta = 0.25 }").unwrap_err().to_string();
+    assert!(error.contains("\"thetta\"") && error.contains("\"x\", \"y\", \"theta\", \"a\""), "{error}");
+}
+
 #[test]
 fn robots_without_trajectories_say_so() {
     for name in ["easy", "gempa-2", "wrench", "velocities", "crossing"] {

@@ -6,7 +6,7 @@
 
 use super::kinematics::{JointFrame, Kinematics};
 use mp_cspace::{Configuration, Halton, JointRange, Joints, Rng, Sampler, Space};
-use nalgebra::{Isometry3, Matrix6, SMatrix, Unit, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{Isometry3, Matrix6, SMatrix, Unit, Vector3, Vector6};
 
 /// What may turn freely at the goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,10 +51,13 @@ impl PoseGoal {
             FreeTurn::All => Vector3::zeros(),
             FreeTurn::About(axis) => {
                 let [from, to] = [pose.rotation * axis, self.pose.rotation * axis];
-                match UnitQuaternion::rotation_between(&from, &to) {
-                    Some(turn) => turn.scaled_axis(),
-                    // Opposite: about any axis across.
-                    None => std::f64::consts::PI * across(&from),
+                let about = from.cross(&to);
+                // The cosine alone does not tell angles below 1e-8.
+                let angle = mp_math::atan2(about.norm(), from.dot(&to));
+                match about.try_normalize(0.0) {
+                    Some(about) => about * angle,
+                    // The same, or opposite: about any axis across.
+                    None => angle * across(&from),
                 }
             }
         };
@@ -210,6 +213,17 @@ impl<'a> InverseKinematics<'a> {
             *column += Vector6::new(moved.x, moved.y, moved.z, turned.x, turned.y, turned.z);
         }
         // What the goal leaves free does not count.
+        let axes = self.goal.pose.rotation.to_rotation_matrix();
+        let offset =
+            self.goal.pose.rotation.inverse() * (self.goal.pose.translation.vector - at.translation.vector);
+        for i in (0..3).filter(|i| self.goal.within[*i] > 0.0 && offset[*i].abs() <= self.goal.within[*i]) {
+            let axis = axes.matrix().column(i).into_owned();
+            for column in &mut self.columns {
+                let moved = Vector3::new(column[0], column[1], column[2]);
+                let left = moved - axis * axis.dot(&moved);
+                (column[0], column[1], column[2]) = (left.x, left.y, left.z);
+            }
+        }
         let about = match self.goal.free {
             FreeTurn::None => return,
             FreeTurn::All => None,

@@ -176,3 +176,47 @@ fn goals_may_leave_room() {
     assert!(InverseKinematics::new(&kinematics, PoseGoal::new("gone", far)).is_none());
     assert!(InverseKinematics::new(&kinematics, PoseGoal::new("link 0", far)).is_none());
 }
+
+#[test]
+fn an_axis_is_as_precise_as_a_whole_pose() {
+    for (name, rows) in ARMS {
+        let kinematics = kinematics(rows);
+        let space: Joints<Configuration> = kinematics.space().unwrap();
+        let mut rng = Rng::seed(11);
+        let axis = Vector3::z_axis();
+        for _ in 0..100 {
+            let q = space.sample_uniform(&mut rng);
+            let mut goal = PoseGoal::new("tool", Isometry3::identity());
+            goal.pose = InverseKinematics::new(&kinematics, goal.clone()).unwrap().pose_at(q.as_slice());
+            goal.free = FreeTurn::About(axis);
+            let wanted = goal.pose.rotation * axis;
+            let mut solver = InverseKinematics::new(&kinematics, goal).unwrap();
+            for q in solver.solutions(20, 4) {
+                // The sine of the angle: its cosine is 1 up to 1e-8 rad.
+                let off = (solver.pose_at(q.as_slice()).rotation * axis).cross(&wanted).norm();
+                assert!(off < 1.1 * IK_PRECISION, "{name}: {off}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_tolerance_leaves_room_to_arms_of_few_joints() {
+    for (name, rows) in ARMS {
+        for count in 1..=3 {
+            let kinematics = kinematics(&rows[..count]);
+            let space: Joints<Configuration> = kinematics.space().unwrap();
+            let mut rng = Rng::seed(13);
+            for case in 0..50 {
+                let q = space.sample_uniform(&mut rng);
+                let mut goal = PoseGoal::new("tool", Isometry3::identity());
+                goal.pose = InverseKinematics::new(&kinematics, goal.clone()).unwrap().pose_at(q.as_slice());
+                goal.within = [0.05; 3];
+                // Off by most of the tolerance, where no joint may lead with the orientation that is asked for.
+                goal.pose *= Translation3::new(0.04, -0.03, 0.045);
+                let found = InverseKinematics::new(&kinematics, goal).unwrap().solutions(100, 1);
+                assert!(!found.is_empty(), "{name}, {count} joints, case {case}: {q:?}");
+            }
+        }
+    }
+}

@@ -68,12 +68,6 @@ fn described(files: &dyn Files, robot: One<'_>) -> Result<(ArmModel, Vec<String>
         // Joints that mimic it go with it, as far as that is.
         model = model.with_room_for(joint, *low).with_room_for(joint, *high);
     }
-    for (i, (limits, rate)) in entry.max_rates.iter().zip(Rate::ALL).enumerate() {
-        for (joint, limit) in limits {
-            let limited = model.with_rate(joint.as_deref(), rate, *limit);
-            model = limited.map_err(|e| robot.fault(RobotPart::Rates(i), e, NAMES))?;
-        }
-    }
     Ok((model, said))
 }
 
@@ -203,6 +197,13 @@ fn together(
         if let Some([low, high]) = robot.entry.planar {
             let help = "give that joint of the URDF another name";
             model = model.with_planar_base(low, high).map_err(|e| robot.fault(RobotPart::Base, e, help))?;
+        }
+        // The joints of the base are there by now.
+        for (i, (limits, rate)) in robot.entry.max_rates.iter().zip(Rate::ALL).enumerate() {
+            for (joint, limit) in limits {
+                let limited = model.with_rate(joint.as_deref(), rate, *limit);
+                model = limited.map_err(|e| robot.fault(RobotPart::Rates(i), e, NAMES))?;
+            }
         }
         all.push((prefix, with_srdf(model, robot)?));
     }

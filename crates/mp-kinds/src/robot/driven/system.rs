@@ -165,6 +165,21 @@ impl System {
         }
     }
 
+    /// How far the input of `to` moves each degree of freedom on the way from `from`: a robot on wheels along its own axes.
+    pub(super) fn moved(&self, from: &Parts, to: &Parts) -> Vec<f64> {
+        let (input, time) = (&to.input, to.duration);
+        match &self.drive {
+            Drive::Car { wheelbase, .. } => {
+                vec![input[0] * time, 0.0, input[0] * mp_math::tan(input[1]) / wheelbase * time]
+            }
+            Drive::Unicycle { .. } => vec![input[0] * time, 0.0, input[1] * time],
+            Drive::Velocities { .. } => input.iter().map(|u| u * time).collect(),
+            Drive::Accelerations { .. } => {
+                from.velocity.iter().zip(input).map(|(v, a)| (v + 0.5 * time * a) * time).collect()
+            }
+        }
+    }
+
     /// The greatest velocity of each degree of freedom that is part of a state.
     pub(super) fn velocity_limits(&self) -> &[f64] {
         match &self.drive {
