@@ -246,6 +246,11 @@ pub trait Motion: AnyMotion {
         &[]
     }
 
+    /// Whether it is moved by joints: by this [`auto`](Self::default_planner) takes its searches.
+    fn has_joints(&self) -> bool {
+        false
+    }
+
     /// How the robot moves by inputs, if it can move in no other way.
     fn input_system(&self) -> Option<InputSystem<'_, Configuration>> {
         None

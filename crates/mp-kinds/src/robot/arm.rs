@@ -408,6 +408,9 @@ impl<C: LinkedSpace> Motion for LinkedScene<C> {
     fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
         self.goal_parts.as_deref()
     }
+    fn has_joints(&self) -> bool {
+        true
+    }
     /// Half of the default: the other half shortens paths by another 1% to 2%, and takes longer than planning and proof together.
     fn effort(&self) -> Effort {
         Effort { attempts: 100, patience: 30, least_gain: 2e-3, taut: 5, rounds: 2 }

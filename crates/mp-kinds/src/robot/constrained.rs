@@ -259,6 +259,7 @@ impl Motion for Constrained {
         fn demands(&self) -> &'static [Demand];
         fn input_system(&self) -> Option<InputSystem<'_, Configuration>>;
         fn default_planner(&self) -> &'static str;
+        fn has_joints(&self) -> bool;
         fn effort(&self) -> mp_cspace::shorten::Effort;
         fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted>;
         fn tolerance(&self) -> f64;

@@ -4,8 +4,10 @@
 //! work, until one has a path: C. Gomes and B. Selman, *Algorithm portfolios*, Artificial Intelligence 126, 2001. The first is
 //! RRT-Connect as the request says, with balanced trees: the larger one waits, so that work goes to the end that is boxed in. It has a turn
 //! that is long enough for what is easy, so that such problems cost nothing more. The others are for what is hard: shorter steps for
-//! narrow places, a metric in which turning counts as
-//! much as the robot's size says, trees that grow along surfaces, and also on as they came, roadmaps with samples between obstacles.
+//! narrow places, a metric in which turning counts as much as the robot's size says, trees that grow along surfaces, and also on as they came, roadmaps with samples between obstacles.
+//!
+//! Robots with joints have a portfolio of their own: what is hard for them is mostly an end that is boxed in, not a long passage. Its searches
+//! measure by how far joints move the robot, so that the shoulder counts for more than the wrist.
 //!
 //! A turn is measured in queries and iterations, never in time: the same request gives the same path on every machine. Each search
 //! draws from a stream of its own. What a robot cannot do (a metric, hints of obstacles) is left out.
@@ -23,7 +25,7 @@
 use crate::run::NamedPlanner;
 use crate::run::planners::PlannerKind;
 use crate::run::prepared::Prepared;
-use crate::{Error, MetricName, Request};
+use crate::{Error, MetricName, Request, Robot};
 use mp_cspace::registry::{Parameter, PlannerInfo, Settings};
 use mp_cspace::{BuildError, Configuration, Event, Observer, Path, Planner, Progress, Rng, Workers};
 use mp_tree::Tuning;
@@ -35,7 +37,7 @@ const TURN: Parameter = Parameter {
     name: "turn",
     range: "a whole number",
     default: "500000",
-    doc: "queries and iterations after which the other searches have turns too",
+    doc: "queries and iterations after which the other searches have turns too; of robots with joints by default 50000",
 };
 
 /// The balance of the trees of the first search.
@@ -63,8 +65,43 @@ struct MemberInfo {
 
 /// The first, with the settings of the request.
 const FIRST: &str = "rrt-connect";
-/// Its share of the turns after its first one: what it has not solved by then is rather for the others.
-const FIRST_SHARE: f64 = 0.5;
+
+/// The searches for a kind of robot.
+struct Portfolio {
+    /// The metric of the first, where the request leaves it open.
+    metric: MetricName,
+    /// The work of its first turn, where the request leaves it open.
+    turn: Option<u64>,
+    /// Its share of the turns after that.
+    first_share: f64,
+    /// The others begin with this part of the first turn.
+    beginners: f64,
+    /// The others, in the order of their turns.
+    others: &'static [MemberInfo],
+}
+
+/// Of robots without joints. What the first has not solved in its first turn is rather for the others.
+const BODIES: Portfolio = Portfolio {
+    metric: MetricName::Default,
+    turn: None,
+    first_share: 0.5,
+    beginners: 0.2,
+    others: OTHERS_OF_BODIES,
+};
+
+/// Of robots with joints.
+const JOINTS: Portfolio = Portfolio {
+    metric: MetricName::Scaled,
+    turn: Some(50_000),
+    first_share: 1.0,
+    beginners: 1.0,
+    others: OTHERS_OF_JOINTS,
+};
+
+/// That of a robot.
+fn portfolio(kind: &dyn Robot) -> &'static Portfolio {
+    if kind.has_joints() { &JOINTS } else { &BODIES }
+}
 
 /// The larger tree waits for the smaller one.
 const BALANCED: (&str, &str) = (BALANCE.name, BALANCE.default);
@@ -72,8 +109,7 @@ const BALANCED: (&str, &str) = (BALANCE.name, BALANCE.default);
 /// Half the steps go on as the tree came.
 const WALKING: (&str, &str) = ("walks", "0.5");
 
-/// The others, in the order of their turns.
-const OTHERS: &[MemberInfo] = &[
+const OTHERS_OF_BODIES: &[MemberInfo] = &[
     MemberInfo {
         planner: "obrrt-connect",
         settings: &[("step", "1%"), WALKING, BALANCED],
@@ -96,17 +132,34 @@ const OTHERS: &[MemberInfo] = &[
     MemberInfo { planner: "bridge-prm", settings: &[], metric: Some(MetricName::Scaled), share: 0.25 },
 ];
 
-/// The others begin with this part of the first turn.
-const BEGINNERS: f64 = 0.2;
-/// From then on the searches are brought to this times the work of the round before, all by turns.
+const OTHERS_OF_JOINTS: &[MemberInfo] = &[
+    MemberInfo {
+        planner: "obrrt-connect",
+        settings: &[BALANCED],
+        metric: Some(MetricName::Scaled),
+        share: 1.0,
+    },
+    MemberInfo {
+        planner: "obrrt-connect",
+        settings: &[("step", "1%"), WALKING, BALANCED],
+        metric: None,
+        share: 0.2,
+    },
+];
+
+/// After their first turns the searches are brought to this times the work of the round before, all by turns.
 const ROUND: f64 = 1.5;
 
 /// The requests of all searches with their shares of a turn, the first one first.
-pub(crate) fn requests(request: &Request) -> Vec<(Request, f64)> {
+pub(crate) fn requests(kind: &dyn Robot, request: &Request) -> Vec<(Request, f64)> {
+    let Portfolio { metric, first_share, others, .. } = portfolio(kind);
     let mut first = Request { planner: FIRST.to_owned(), ..request.clone() };
+    if first.metric == MetricName::Default {
+        first.metric = *metric;
+    }
     first.settings.remove(TURN.name);
     first.settings.entry(BALANCE.name.to_owned()).or_insert_with(|| BALANCE.default.to_owned());
-    let first = (first, FIRST_SHARE);
+    let first = (first, *first_share);
     let of = |info: &MemberInfo| Request {
         planner: info.planner.to_owned(),
         settings: info
@@ -117,7 +170,7 @@ pub(crate) fn requests(request: &Request) -> Vec<(Request, f64)> {
         metric: info.metric.unwrap_or(request.metric),
         ..request.clone()
     };
-    std::iter::once(first).chain(OTHERS.iter().map(|info| (of(info), info.share))).collect()
+    std::iter::once(first).chain(others.iter().map(|info| (of(info), info.share))).collect()
 }
 
 /// Refuses settings that the portfolio does not have, and values that cannot be read.
@@ -149,8 +202,9 @@ pub(crate) struct Auto<'p> {
     reach: u64,
     /// The work up to which each search is brought in this round.
     round: f64,
-    /// The work of the first turn.
+    /// The work of the first turn, and the part of it that the others begin with.
     first_turn: u64,
+    beginners: f64,
     won: Option<usize>,
 }
 
@@ -185,9 +239,13 @@ impl<'p> Auto<'p> {
         if let Some(first) = members.first_mut() {
             first.planner = Some(first.made()?);
         }
-        let first_turn = prepared.request.settings().count_of(&TURN)?.max(1);
+        let Portfolio { turn, beginners, .. } = *portfolio(prepared.kind);
+        let first_turn = match turn {
+            Some(turn) if !prepared.request.settings.contains_key(TURN.name) => turn,
+            _ => prepared.request.settings().count_of(&TURN)?.max(1),
+        };
         let (reach, round) = (first_turn, first_turn as f64);
-        Ok(Self { prepared, members, turn: 0, reach, round, first_turn, won: None })
+        Ok(Self { prepared, members, turn: 0, reach, round, first_turn, beginners, won: None })
     }
 
     /// Which search has found the path.
@@ -205,7 +263,7 @@ impl<'p> Auto<'p> {
                 self.round *= ROUND;
             }
             let begins = self.turn > 0 && self.round <= self.first_turn as f64;
-            let part = if begins { BEGINNERS } else { 1.0 };
+            let part = if begins { self.beginners } else { 1.0 };
             self.reach = (part * self.members[self.turn].share * self.round) as u64;
             if !self.members[self.turn].ended {
                 return;

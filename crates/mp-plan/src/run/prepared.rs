@@ -70,7 +70,7 @@ impl<'k> Prepared<'k> {
         let state = Arc::<RunState>::default();
         let mut prepared = Self::of(kind, request, &planner, &state)?;
         if planner == PlannerKind::Auto {
-            let members = auto::requests(&prepared.request).into_iter();
+            let members = auto::requests(kind, &prepared.request).into_iter();
             let members = members.map(|(member, share)| {
                 let planner = PlannerKind::new(&member.planner)?;
                 planner.meets(kind, kind.demands())?;

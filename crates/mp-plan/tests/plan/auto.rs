@@ -1,6 +1,6 @@
 //! `auto`: searches that take turns.
 
-use mp_plan::{PathRows, Report, Request, Scene};
+use mp_plan::{Finish, MetricName, PathRows, Report, Request, Scene};
 
 /// What comes of short turns.
 fn in_turns(scene: &Scene, seed: u64, turn: u64) -> Report {
@@ -9,13 +9,19 @@ fn in_turns(scene: &Scene, seed: u64, turn: u64) -> Report {
 
 #[test]
 fn what_is_found_in_the_first_turn_is_the_path_of_balanced_rrt_connect() {
-    for name in ["twisty", "docks", "arm"] {
+    let plain = (MetricName::Default, "rrt-connect balance=1");
+    let scaled = (MetricName::Scaled, "rrt-connect balance=1 metric=scaled");
+    for (name, (metric, won)) in [("twisty", plain), ("docks", plain), ("arm", scaled)] {
         let scene = Scene::find(name).unwrap();
         for step in ["5%", "3%"] {
-            let alone = Request::new("rrt-connect").set("step", step).set("balance", 1);
-            let alone = scene.plan(&alone).unwrap();
-            let auto = scene.plan(&Request::default().set("step", step)).unwrap();
-            assert_eq!(auto.won.as_deref(), Some("rrt-connect balance=1"));
+            // Shortening goes by the metric of the request.
+            let found = |request: Request| {
+                let request = Request { finish: Finish::AsFound, ..request.set("step", step) };
+                scene.plan(&request).unwrap()
+            };
+            let alone = found(Request::new("rrt-connect").metric(metric).set("balance", 1));
+            let auto = found(Request::default());
+            assert_eq!(auto.won.as_deref(), Some(won));
             assert_eq!(
                 (auto.fingerprint, auto.collision_checks),
                 (alone.fingerprint, alone.collision_checks)
@@ -50,6 +56,24 @@ fn robots_that_cannot_do_all_have_the_rest() {
         let report = in_turns(&scene, 3, 20);
         assert!(report.solved && report.won.is_some(), "{name}: {:?}", report.why);
     }
+}
+
+/// Its first search keeps a metric that is asked for.
+#[test]
+fn arms_have_searches_of_their_own() {
+    let scene = Scene::find("arm-7").unwrap();
+    let won = |metric| {
+        let won = (1..=8).map(|seed| {
+            let request = Request::new("auto").seed(seed).metric(metric).set("turn", 20);
+            scene.plan(&request).unwrap().won.unwrap()
+        });
+        won.collect::<std::collections::BTreeSet<_>>()
+    };
+    let (scaled, asked) = (won(MetricName::Default), won(MetricName::Manhattan));
+    assert!(scaled.contains("obrrt-connect balance=1 metric=scaled"), "{scaled:?}");
+    assert!(scaled.iter().all(|won| !won.contains("step=0.3%") && !won.contains("prm")), "{scaled:?}");
+    assert!(scaled.contains("rrt-connect balance=1 metric=scaled"), "{scaled:?}");
+    assert!(asked.contains("rrt-connect balance=1"), "{asked:?}");
 }
 
 #[test]
