@@ -246,13 +246,14 @@ fn written(
     Ok(true)
 }
 
-/// A row of the table: medians and 95% quantiles, each of all problems.
+/// A row of the table: medians, means and 95% quantiles, each of all problems.
 fn row(name: &str, runs: &[&Run]) -> Vec<String> {
     let cell = |value: fn(&Run) -> f64| {
         let mut sorted: Vec<f64> = runs.iter().map(|run| 1e3 * value(run)).collect();
         sorted.sort_by(f64::total_cmp);
         let at = |percent: usize| sorted[(sorted.len() - 1) * percent / 100];
-        format!("{:.1} / {:.1}", at(50), at(95))
+        let mean = sorted.iter().sum::<f64>() / sorted.len() as f64;
+        format!("{:.1} / {mean:.1} / {:.1}", at(50), at(95))
     };
     let solved: Vec<f64> = runs.iter().filter(|run| run.solved).map(|run| run.length).collect();
     let length = solved.iter().sum::<f64>() / solved.len().max(1) as f64;

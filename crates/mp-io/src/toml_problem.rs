@@ -66,9 +66,7 @@ impl TomlText<'_> {
         self.check(what, values, span)?;
         match values.iter().find(|v| **v <= 0.0) {
             None => Ok(()),
-            Some(v) => {
-                Err(self.error(span, format!("{what} is {v}")).expected("lengths above zero, in metres"))
-            }
+            Some(v) => Err(self.error(span, format!("{what} is {v}")).expected("numbers above zero")),
         }
     }
 

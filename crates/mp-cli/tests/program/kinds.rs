@@ -238,7 +238,7 @@ fn faults_of_files_have_their_line() {
             "a steering angle and a turning radius",
         ),
         (CAR, "steering = 0.5", "steering = 0.5\nspeeds = [1, 1]", 9, "has no `speeds`"),
-        (CAR, "duration = 0.5", "duration = 0", 9, "`duration` is 0"),
+        (CAR, "duration = 0.5", "duration = 0", 9, "`duration` is 0; expected numbers above zero"),
         (CAR, "{ x = [6, 7], y = [6, 7] }", "[6, 6, 0]", 12, "cannot reach these numbers exactly"),
         (CAR, "[2, 2, 0]", "[2, 2]", 11, "the start has 2"),
         (CAR, "[motion]\n", "[motion]\nspeed = 1\n", 11, "nothing else moves"),
