@@ -246,7 +246,7 @@ pub trait Motion: AnyMotion {
         &[]
     }
 
-    /// Whether it is moved by joints: by this [`auto`](Self::default_planner) takes its searches.
+    /// Whether joints move it. The planner `auto` has other searches then.
     fn has_joints(&self) -> bool {
         false
     }

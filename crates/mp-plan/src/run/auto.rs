@@ -4,7 +4,8 @@
 //! work, until one has a path: C. Gomes and B. Selman, *Algorithm portfolios*, Artificial Intelligence 126, 2001. The first is
 //! RRT-Connect as the request says, with balanced trees: the larger one waits, so that work goes to the end that is boxed in. It has a turn
 //! that is long enough for what is easy, so that such problems cost nothing more. The others are for what is hard: shorter steps for
-//! narrow places, a metric in which turning counts as much as the robot's size says, trees that grow along surfaces, and also on as they came, roadmaps with samples between obstacles.
+//! narrow places, a metric in which turning counts as much as the robot's size says, trees that grow along surfaces, and also on as they
+//! came, roadmaps with samples between obstacles.
 //!
 //! Robots with joints have a portfolio of their own: what is hard for them is mostly an end that is boxed in, not a long passage. Its searches
 //! measure by how far joints move the robot, so that the shoulder counts for more than the wrist.
@@ -109,6 +110,7 @@ const BALANCED: (&str, &str) = (BALANCE.name, BALANCE.default);
 /// Half the steps go on as the tree came.
 const WALKING: (&str, &str) = ("walks", "0.5");
 
+/// For long and narrow passages.
 const OTHERS_OF_BODIES: &[MemberInfo] = &[
     MemberInfo {
         planner: "obrrt-connect",
@@ -132,6 +134,7 @@ const OTHERS_OF_BODIES: &[MemberInfo] = &[
     MemberInfo { planner: "bridge-prm", settings: &[], metric: Some(MetricName::Scaled), share: 0.25 },
 ];
 
+/// For ends that are boxed in; the last one for what is long and narrow.
 const OTHERS_OF_JOINTS: &[MemberInfo] = &[
     MemberInfo {
         planner: "obrrt-connect",
