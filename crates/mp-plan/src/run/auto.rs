@@ -75,13 +75,13 @@ struct Portfolio {
     turn: Option<u64>,
     /// Its share of the turns after that.
     first_share: f64,
-    /// The others begin with this part of the first turn.
+    /// The part of the first turn that the others begin with.
     beginners: f64,
     /// The others, in the order of their turns.
     others: &'static [MemberInfo],
 }
 
-/// Of robots without joints. What the first has not solved in its first turn is rather for the others.
+/// For robots without joints. What the first search has not solved in its first turn is better left to the others, so it gets half a share.
 const BODIES: Portfolio = Portfolio {
     metric: MetricName::Default,
     turn: None,
@@ -90,7 +90,7 @@ const BODIES: Portfolio = Portfolio {
     others: OTHERS_OF_BODIES,
 };
 
-/// Of robots with joints.
+/// For robots with joints. The second search has as much work as the first, from its first turn on: either may be the one that solves it.
 const JOINTS: Portfolio = Portfolio {
     metric: MetricName::Scaled,
     turn: Some(50_000),
@@ -99,7 +99,7 @@ const JOINTS: Portfolio = Portfolio {
     others: OTHERS_OF_JOINTS,
 };
 
-/// That of a robot.
+/// The searches for this robot.
 fn portfolio(kind: &dyn Robot) -> &'static Portfolio {
     if kind.has_joints() { &JOINTS } else { &BODIES }
 }
