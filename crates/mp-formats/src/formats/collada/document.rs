@@ -14,7 +14,8 @@ pub(super) const MAX_NODES: u32 = 10_000_000;
 pub(super) struct Document<'a> {
     pub(super) text: Text<'a>,
     pub(super) root: Node<'a, 'a>,
-    ids: HashMap<&'a str, Node<'a, 'a>>,
+    /// The elements of each id: several where a writer gives an id anew in each geometry.
+    ids: HashMap<&'a str, Vec<Node<'a, 'a>>>,
     interrupt: RefCell<Interrupt>,
 }
 
@@ -61,10 +62,10 @@ impl<'a> Document<'a> {
         interrupt: Interrupt,
     ) -> Result<Self, Error> {
         let root = xml.root_element();
-        let mut ids = HashMap::new();
+        let mut ids: HashMap<_, Vec<_>> = HashMap::new();
         for node in xml.descendants() {
             if let Some(id) = node.attribute("id") {
-                ids.entry(id).or_insert(node);
+                ids.entry(id).or_default().push(node);
             }
         }
         let text = Text { file, text, guide: "meshes.md" };
@@ -88,7 +89,8 @@ impl<'a> Document<'a> {
         self.text.error(Token { text: &self.text.text[at..at + name + 1], at }, message)
     }
 
-    /// The element that the attribute `key` of `node` refers to, as in `url="#id"`.
+    /// The element that the attribute `key` of `node` refers to, as in `url="#id"`. Of several with that id, the one within the innermost element around
+    /// `node` that has any: programs number the data of each geometry anew.
     pub(super) fn target(&self, node: Node<'a, 'a>, key: &str) -> Result<Node<'a, 'a>, Error> {
         let tag = node.tag_name().name();
         let Some(url) = node.attribute(key) else {
@@ -101,9 +103,23 @@ impl<'a> Document<'a> {
                 .with_kind(ErrorKind::Unsupported)
                 .help("export everything into one file"));
         };
-        self.ids.get(id).copied().ok_or_else(|| {
+        let all = self.ids.get(id).ok_or_else(|| {
             self.error(node, format!("<{tag}> refers to `#{}`, which does not exist", clipped(id)))
-        })
+        })?;
+        let within = |around: Node<'a, 'a>| {
+            let mut near = all.iter().filter(move |n| around.range().contains(&n.range().start));
+            near.next().map(|first| (*first, near.any(|other| other.tag_name() == first.tag_name())))
+        };
+        match node.ancestors().find_map(within) {
+            Some((only, false)) => Ok(only),
+            _ => Err(self
+                .error(
+                    node,
+                    format!("<{tag}> refers to `#{}`, and several elements have this id", clipped(id)),
+                )
+                .expected("an id of one element")
+                .help("give each an id of its own, or export the mesh again")),
+        }
     }
 
     /// The words of the text of `node`, with their places.

@@ -86,6 +86,20 @@ fn offsets_of_other_inputs_are_passed_over() {
     assert_eq!(mesh.triangle(0), [Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(1.0, 1.0, 0.0)]);
 }
 
+/// FreeCAD numbers the sources of each geometry anew.
+#[test]
+fn an_id_means_the_element_of_its_own_geometry() {
+    let text = dae(ASSET, TRIANGLE, &PLAIN.repeat(2).replacen("#g", "#h", 1));
+    let geometry = &text[text.find("<geometry").unwrap()..text.find("</library_geometries>").unwrap()];
+    let second = geometry.replace("id=\"g\"", "id=\"h\"").replace("1 0 0  1 1 0", "5 0 0  5 1 0");
+    let mesh = parse(&text.replace(geometry, &format!("{geometry}{second}")));
+    assert_eq!((mesh.triangle(0)[1].x, mesh.triangle(1)[1].x), (5.0, 1.0));
+    // Which of two is meant nobody can tell.
+    let twice = dae(ASSET, TRIANGLE, PLAIN).replace(geometry, &geometry.repeat(2));
+    let error = parse_mesh("t.dae", twice.as_bytes());
+    assert!(error.unwrap_err().to_string().contains("several elements have this id"));
+}
+
 #[test]
 fn normals_may_be_no_numbers_but_positions_may_not() {
     let primitives = |word: &str| {
