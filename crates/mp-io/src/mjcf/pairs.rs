@@ -144,10 +144,11 @@ impl<'m> Reader<'_, 'm> {
         let joined_touch = filter == Some("disable");
         let solid: Vec<usize> = (0..self.links.len()).filter(|i| !self.links[*i].shapes.is_empty()).collect();
         let (mut may_touch, mut kept_apart) = (Vec::new(), Vec::new());
+        let stands = |weld: usize| weld == 0 || self.links[weld].free;
         for (k, &j) in solid.iter().enumerate() {
             for &i in &solid[..k] {
                 let (a, b) = (&self.links[i], &self.links[j]);
-                if a.weld == b.weld {
+                if a.weld == b.weld || (stands(a.weld) && stands(b.weld)) {
                     continue;
                 }
                 let touch = a.bits.touch(b.bits);
@@ -157,7 +158,7 @@ impl<'m> Reader<'_, 'm> {
                 let must_not = paired.contains(&(i, j));
                 if !must_not && (!touch || joined || excluded.contains(&(i, j))) {
                     may_touch.push((i, j));
-                } else if must_not || linked || (i == 0 && b.above == 0) {
+                } else if must_not || linked || (i == 0 && stands(b.above)) {
                     kept_apart.push((i, j));
                 }
             }

@@ -217,7 +217,7 @@ fn bits_and_bodies_say_what_may_touch() {
                 <body name='b'><joint/><joint axis='1 0 0'/><geom size='1'/>\
                 <body name='c'><joint/><geom size='1'/><body name='d'><joint/><geom name='d' size='1' conaffinity='0' contype='4'/></body></body></body></body>\
                 </worldbody><contact>PAIR</contact></mujoco>";
-    let pairs = |pair: &str| {
+    let pairs_of = |text: &str, pair: &str| {
         let srdf = of(&text.replace("PAIR", pair)).srdf;
         let pairs = srdf.lines().filter(|line| line.contains("collisions"));
         pairs
@@ -231,12 +231,16 @@ fn bits_and_bodies_say_what_may_touch() {
             })
             .collect::<Vec<_>>()
     };
+    let pairs = |pair: &str| pairs_of(text, pair);
     // b hangs on a by two joints, but a stands still, as the world does; d touches nothing by its bits.
     assert_eq!(pairs(""), ["bc", "worldd", "ad", "bd", "cd", "worldb"]);
     assert_eq!(
         pairs("<pair geom1='w' geom2='d'/><exclude body1='world' body2='c'/>"),
         ["worldc", "bc", "ad", "bd", "cd", "worldb", "worldd"]
     );
+    // Where a moves freely it is a parent like any other, although it stands here too.
+    let free = text.replace("<body name='a'>", "<body name='a'><freejoint/>");
+    assert_eq!(pairs_of(&free, ""), ["ab", "bc", "worldd", "ad", "bd", "cd", "worldb"]);
     // Where parents are not left out: b and c are kept apart.
     let strict = text.replace("<worldbody>", "<option><flag filterparent='disable'/></option><worldbody>");
     let srdf = of(&strict.replace("PAIR", "")).srdf;

@@ -26,8 +26,8 @@ pub(super) struct MjLink<'m> {
     /// The first link of the rigid body that it is of, and that of the rigid body that the joints of its body are on.
     pub(super) weld: usize,
     pub(super) above: usize,
-    /// Whether it moves freely in MuJoCo.
-    free: bool,
+    /// Whether it moves freely in MuJoCo. Here it stands.
+    pub(super) free: bool,
 }
 
 /// How a joint moves.
@@ -390,7 +390,11 @@ impl<'a, 'm> Reader<'a, 'm> {
             }
         }
         let child = self.add_link(node, body, Some(from))?;
-        self.links[child].free = matches!(self.numbers.last(), Some(Numbers::Free)) && !all.is_empty();
+        if !all.is_empty() && matches!(self.numbers.last(), Some(Numbers::Free)) {
+            let above = self.links[parent].weld;
+            let link = &mut self.links[child];
+            (link.weld, link.above, link.free) = (child, above, true);
+        }
         let (name, axis) = (format!("{body}/fixed"), Vector3::z());
         let joint = MjJoint {
             name,
