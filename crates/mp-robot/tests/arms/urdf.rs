@@ -543,6 +543,7 @@ fn what_no_planner_reads_may_be_anything() {
     notes(spin, &with("<visual><geometry><mesh/></geometry></visual>"), &["visual", "\"spin\""]);
     notes(spin, &with("<visual><geometry><mesh filename=\"lost.stl\"/></geometry></visual>"), &[]);
     notes(spin, &with("<visual><material><texture/></material></visual><visual/>"), &[]);
+    notes(spin, &with("<visual><xacro:grey/></visual>"), &["elements", "\"xacro\""]);
     notes(
         spin,
         &format!("{spin}<material/><gazebo><joint/><link/></gazebo><transmission><joint/></transmission>"),

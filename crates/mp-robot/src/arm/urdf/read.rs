@@ -257,7 +257,7 @@ impl LeftOut {
     /// Looks at an element of `<robot>`.
     ///
     /// # Errors
-    /// If it is a xacro macro, or a link or joint that has one.
+    /// If it is a xacro macro, or a link or joint that has one in what is read.
     pub(super) fn look_at(&mut self, node: &Node<'_, '_>, reader: &Reader<'_, '_>) -> Result<(), UrdfError> {
         if !is_own(node) {
             reader.refuse_macro(node)?;
@@ -265,7 +265,11 @@ impl LeftOut {
         } else if matches!(node.tag_name().name(), "link" | "joint") {
             for inner in node.descendants().filter(Node::is_element) {
                 if !is_own(&inner) {
-                    reader.refuse_macro(&inner)?;
+                    let unread =
+                        |n: Node<'_, '_>| is_own(&n) && matches!(n.tag_name().name(), "visual" | "inertial");
+                    if !inner.ancestors().any(unread) {
+                        reader.refuse_macro(&inner)?;
+                    }
                     self.elements.insert(space(&inner));
                 }
                 self.attributes.extend(inner.attributes().filter_map(|a| a.namespace().map(str::to_owned)));
