@@ -33,6 +33,15 @@ pub(super) fn instances<'a>(
         corners: 0,
     };
     walk.node(scene, root, 0)?;
+    let has_faces = |n: &Node<'_, '_>| {
+        n.tag_name().name() == "geometry" && n.descendants().any(|n| n.tag_name().name() == "p")
+    };
+    if walk.instances.is_empty() && document.root.descendants().any(|n| has_faces(&n)) {
+        return Err(document
+            .error(scene, "the scene shows no geometry, and the file has some")
+            .expected("nodes with <instance_geometry>")
+            .help("export the mesh again: what only physics uses is not read"));
+    }
     Ok((walk.instances, walk.morphs))
 }
 

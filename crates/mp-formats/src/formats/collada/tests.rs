@@ -100,6 +100,15 @@ fn an_id_means_the_element_of_its_own_geometry() {
     assert!(error.unwrap_err().to_string().contains("several elements have this id"));
 }
 
+/// PhysX writes hulls that physics alone uses: as a mesh without triangles a robot would lose the link.
+#[test]
+fn geometries_that_no_node_shows_are_an_error() {
+    let error = parse_mesh("t.dae", dae(ASSET, TRIANGLE, "<node/>").as_bytes()).unwrap_err().to_string();
+    assert!(error.contains("shows no geometry"), "{error}");
+    let error = parse_mesh("t.dae", dae(ASSET, "", "<node/>").as_bytes()).unwrap_err().to_string();
+    assert!(error.contains("no triangles"), "{error}");
+}
+
 #[test]
 fn normals_may_be_no_numbers_but_positions_may_not() {
     let primitives = |word: &str| {
