@@ -87,6 +87,9 @@ export class Editor {
       this.selection = null;
     }
     this.held = this.workbench.links ? this.viewer.scene.robot - 1 : 0;
+    // The planner may write the same pose in other angles.
+    const { document } = this.workbench;
+    if (document?.robot) this.moveEnds(/** @type {Environment} */ (document));
     this.refresh();
   }
   /** Shows what is selected again: in the handles and in the panel. */
