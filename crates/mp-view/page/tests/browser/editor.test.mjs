@@ -290,3 +290,26 @@ browserTest("numbers of an end that the planner writes otherwise are no step of 
   assert.deepEqual(await labels(), after);
   assert.deepEqual(await start(), given);
 }));
+
+browserTest("what is done while another scene opens changes neither of them", () => withPage("easy", async (driver) => {
+  const { name, obstacles } = await documentOf(driver);
+  await driver.choose("Selected", obstacles[0].name);
+  await driver.press("Gallery…");
+  await driver.control("button", "gempa-1");
+  // At once: before the program has answered.
+  await driver.page.evaluate(() => {
+    document.querySelector("dialog.gallery button[value=gempa-1]").click();
+    for (const key of ["d", "d"]) window.dispatchEvent(new KeyboardEvent("keydown", { key, ctrlKey: true, bubbles: true, cancelable: true }));
+  });
+  await driver.until(async (before) => (await window.mpView.planner).document?.name !== before, name);
+  await driver.until(() => document.querySelector("[aria-busy=true]") === null);
+  const opened = await documentOf(driver);
+  assert.equal(opened.name, "gempa-1");
+  const drawn = await driver.page.evaluate(async () => {
+    const { scene } = (await window.mpView.planner).viewer;
+    return scene.bodies.slice(scene.robot).map((body) => body.name);
+  });
+  assert.deepEqual(drawn, names(opened));
+  const undo = await driver.page.evaluate(() => [...document.querySelectorAll("button")].find((b) => /undo/i.test(b.title)).disabled);
+  assert.equal(undo, true);
+}));
