@@ -44,6 +44,8 @@ fn expanded(path: &Path, arguments: &[(&str, &str)]) -> Result<String, Error> {
             .help("give arguments by --arg NAME:=VALUE, or expand it by the program of ROS: `xacro FILE > robot.urdf`")
     })?;
     let mut definitions = otherwise::Definitions::default();
+    // An argument may be used where none is declared.
+    let mut unused: Vec<&str> = arguments.iter().map(|(name, _)| *name).collect();
     let refused = |file: &Path, what: &str| {
         Error::new(
             ErrorKind::Unsupported,
@@ -59,6 +61,13 @@ fn expanded(path: &Path, arguments: &[(&str, &str)]) -> Result<String, Error> {
         if let Some(what) = definitions.add(&text) {
             return Err(refused(file, &what));
         }
+        unused.retain(|name| !["$(arg ", "arg('"].iter().any(|used| text.contains(&format!("{used}{name}"))));
+    }
+    if let Some(name) = unused.iter().find(|name| !definitions.arguments.contains(**name)) {
+        let known: Vec<&str> = definitions.arguments.iter().map(String::as_str).collect();
+        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        let message = format!("{} has no argument `{}`", path.display(), mp_formats::text::clipped(name));
+        return Err(Error::new(ErrorKind::Content, "--arg", message).help(format!("there are: {known}")));
     }
     definitions.hidden().map_or(Ok(made), |what| Err(refused(path, &what)))
 }
@@ -99,6 +108,14 @@ mod tests {
             }
         }
         assert_eq!(expand_xacro(&file, &["side".to_owned()]).unwrap_err().file(), "--arg");
+        if cfg!(feature = "xacro") {
+            std::fs::write(&file, TEXT).unwrap();
+            let error = expand_xacro(&file, &["syde:=2".to_owned()]).unwrap_err();
+            assert!(
+                error.to_string().contains("no argument `syde`") && error.remedy() == Some("there are: side"),
+                "{error}"
+            );
+        }
     }
 
     /// What the program of ROS (xacro 2.1.1) computes otherwise than the crate: never a wrong number.

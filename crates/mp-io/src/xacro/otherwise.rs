@@ -19,6 +19,8 @@ pub(super) struct Definitions {
     macros: BTreeMap<String, Macro>,
     /// Properties outside of macros, with the names in their values.
     properties: BTreeMap<String, Names>,
+    /// The names of arguments.
+    pub(super) arguments: Names,
 }
 
 impl Definitions {
@@ -37,6 +39,9 @@ impl Definitions {
         }
         let name = node.attribute("name").unwrap_or_default();
         match directive(node)? {
+            "arg" => {
+                self.arguments.insert(name.to_owned());
+            }
             "property" => {
                 let lazy =
                     node.attribute("lazy_eval").is_none_or(|lazy| ["true", "True", "1"].contains(&lazy));
