@@ -1048,6 +1048,8 @@ class Scene:
             if path.path is None:
                 raise Error(f"there is no path: {path}", remedy="plan with a larger budget, or another seed")
             path = path.path
+        if isinstance(path, str | os.PathLike):
+            raise Error(f"{os.fspath(path)!r} is a name, no path", remedy="read the file with scene.read_path(…)")
         if isinstance(path, list | tuple):
             given = cast("Sequence[Any]", path)
             if any(_table(row)[0] is not None for row in given):

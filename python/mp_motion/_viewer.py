@@ -9,9 +9,11 @@ import threading
 import warnings
 import webbrowser
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from math import isfinite
 from typing import TYPE_CHECKING, Any, cast
 
 from ._arguments import text
+from ._errors import Error
 from ._view import in_notebook, refuse_own, rows_of, told
 
 if TYPE_CHECKING:
@@ -131,9 +133,12 @@ class Viewer:
         Raises
         ------
         Error
-            When it has not one number for each column.
+            When it has not one finite number for each column.
         """
-        self._send(CONFIGURATION, self._scene._path([self._scene._row(configuration)]))
+        row = self._scene._row(configuration)
+        if not all(map(isfinite, row)):
+            raise Error("the configuration has numbers that are not finite", remedy="leave it out")
+        self._send(CONFIGURATION, self._scene._path([row]))
 
     def _send(self, name: str, rows: Any) -> None:
         message = self._scene._native.path_for_page(name, rows)

@@ -8,6 +8,7 @@ import threading
 import time
 import urllib.request
 import warnings
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.error import HTTPError
 from urllib.parse import urlsplit
@@ -200,6 +201,12 @@ def test_what_was_shown_last_is_last(scene: mp.Scene, viewer: mp.Viewer) -> None
 def test_bad_input_is_refused(scene: mp.Scene, viewer: mp.Viewer) -> None:
     with pytest.raises(mp.Error, match="6"):
         viewer.move([0.0, 1.0])
+    for unknown in (float("nan"), float("inf")):
+        with pytest.raises(mp.Error, match="finite"):
+            viewer.move([unknown, *scene.start[1:]])
+    for file in ("path.txt", Path("path.txt")):
+        with pytest.raises(mp.Error, match="read_path"):
+            viewer.show(file)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="name"):
         viewer.show([scene.start], name=3)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="open"):

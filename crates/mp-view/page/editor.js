@@ -87,6 +87,9 @@ export class Editor {
       this.selection = null;
     }
     this.held = this.workbench.links ? this.viewer.scene.robot - 1 : 0;
+    // The planner may write the same pose in other angles.
+    const { document } = this.workbench;
+    if (document?.robot) this.moveEnds(/** @type {Environment} */ (document));
     this.refresh();
   }
   /** Shows what is selected again: in the handles and in the panel. */
@@ -147,9 +150,10 @@ export class Editor {
   /** Does a command, after those that are under way. @param {string} label @param {(document: Document) => Document} command
    * @param {string} [merge] commands with the same are one step of the history, one after the other */
   run(label, command, merge = "") {
+    const { history } = this;
     return this.later(async () => {
-      const { history } = this;
-      if (!history) return;
+      // Another scene may have been opened in the meantime.
+      if (!history || history !== this.history) return;
       const next = command(history.document);
       if (await this.apply(next)) history.commit(next, label, merge);
     });
@@ -162,7 +166,7 @@ export class Editor {
   later(task) {
     const busy = (/** @type {number} */ more) => this.viewer.canvas.parentElement?.setAttribute("aria-busy", String((this.waiting += more) > 0));
     busy(1);
-    this.queue = this.queue.then(() => this.workbench.attempt(task)).then(() => {
+    this.queue = this.queue.then(() => this.workbench.opening).then(() => this.workbench.attempt(task)).then(() => {
       busy(-1);
       this.restore();
     });
@@ -328,11 +332,8 @@ export class Editor {
   /** Asks about unsaved changes, and begins a new environment. */
   async create() {
     if (!(await mayDiscard())) return;
-    await this.workbench.attempt(async () => {
-      const document = doc.emptyDocument();
-      this.workbench.take({ document, ...(await this.workbench.session.request({ do: "edit", document })) }, "open");
-      setUnsaved(false);
-    });
+    const document = doc.emptyDocument();
+    await this.workbench.replace(async () => this.workbench.take({ document, ...(await this.workbench.session.request({ do: "edit", document })) }, "open"));
   }
   /** Adds a figure or a mesh, near to where the camera looks, and selects it. @param {string} name @param {DocumentShape} shape
    * @param {"obstacle" | "robot"} as @param {number} reach of the shape around its origin, metres */

@@ -31,6 +31,7 @@ export class Workbench {
     /** Called after the session's scene was left. @type {(() => void)[]} */ this.onleft = [];
     /** Called when the planner is gone. @type {((error: SessionError) => void)[]} */ this.onlost = [];
     /** Called with events of runs. @type {((event: Message) => void)[]} */ this.onevent = [];
+    /** Until the scene that was asked for is there, or is known not to be. @type {Promise<unknown>} */ this.opening = Promise.resolve();
     session.onevent = (event) => { for (const listener of this.onevent) listener(event); };
     session.onlost = (error) => this.lost(error);
     this.ends.onchange.push(() => viewer.changed());
@@ -39,10 +40,17 @@ export class Workbench {
    * @param {Source} source @returns {Promise<boolean>} */
   async openScene(source) {
     if (!(await mayDiscard())) return false;
-    return this.attempt(async () => {
-      this.take(await this.session.request({ do: "open", ...source }), "open");
+    return this.replace(async () => this.take(await this.session.request({ do: "open", ...source }), "open"));
+  }
+  /** Puts another scene in place of this one. Commands that are given before it is there change nothing.
+   * @param {() => Promise<void>} task @returns {Promise<boolean>} */
+  replace(task) {
+    const replaced = this.attempt(async () => {
+      await task();
       setUnsaved(false);
     });
+    this.opening = replaced;
+    return replaced;
   }
   /** Sends the changed document, and shows the scene that it gives; the camera stays. @param {Message} document @returns {Promise<boolean>} */
   edit(document) {
@@ -85,10 +93,7 @@ export class Workbench {
    * @param {number[]} row where this one ends @returns {Promise<boolean>} */
   async nextPart(row) {
     if (!(await mayDiscard())) return false;
-    return this.attempt(async () => {
-      this.take(await this.session.request({ do: "next", row }), "edit");
-      setUnsaved(false);
-    });
+    return this.replace(async () => this.take(await this.session.request({ do: "next", row }), "edit"));
   }
   /** The page shows something else than the scene of the session: there is nothing to edit or to plan. */
   leave() {

@@ -51,6 +51,8 @@ impl Constraint {
 
 /// How much closer the verifier looks than the check while planning.
 const FINER: f64 = 4.0;
+/// In how many parts a motion by inputs is measured: it is longer than its ends are apart.
+const MEASURED: u32 = 64;
 
 /// A robot under a [`Constraint`]. All but that it takes from the robot.
 #[derive(Clone, Debug)]
@@ -74,6 +76,21 @@ impl Constrained {
         (self.constraint.holds)(&self.robot.row(q))
     }
 
+    /// How long a motion is, in the metric of the space: where it is not at even speed, as if it were as fast as at its fastest.
+    fn length(&self, from: &Configuration, to: &Configuration) -> f64 {
+        let space = self.robot.any_space();
+        if self.robot.input_system().is_none() {
+            return space.distance(from, to);
+        }
+        let mut ends = [from.clone(), from.clone()];
+        let parts = (1..=MEASURED).map(|i| {
+            ends.swap(0, 1);
+            space.interpolate_into(from, to, f64::from(i) / f64::from(MEASURED), &mut ends[1]);
+            space.distance(&ends[0], &ends[1])
+        });
+        f64::from(MEASURED) * parts.fold(0.0, f64::max)
+    }
+
     /// The robot without the constraint.
     #[must_use]
     pub fn robot(&self) -> &Arc<dyn Robot> {
@@ -92,6 +109,21 @@ impl Constrained {
 struct Check {
     inner: AnyChecker,
     robot: Constrained,
+    /// The motion that was asked about last, and its length.
+    last: Option<([Configuration; 2], f64)>,
+}
+
+impl Check {
+    fn length(&mut self, from: &Configuration, to: &Configuration) -> f64 {
+        match &self.last {
+            Some(([a, b], length)) if a == from && b == to => *length,
+            _ => {
+                let length = self.robot.length(from, to);
+                self.last = Some(([from.clone(), to.clone()], length));
+                length
+            }
+        }
+    }
 }
 
 impl Queries for Check {
@@ -127,8 +159,7 @@ impl MotionClearance<Configuration> for Check {
         if !self.robot.holds(interval.middle) {
             return IntervalClearance::Collision { at: 0.0 };
         }
-        let length = self.robot.robot.any_space().distance(interval.from, interval.to);
-        let tested = 0.5 * self.robot.every / length;
+        let tested = 0.5 * self.robot.every / self.length(interval.from, interval.to);
         match self.inner.interval_clearance(interval) {
             IntervalClearance::FreeOver { part } => IntervalClearance::FreeOver { part: part.min(tested) },
             IntervalClearance::Free { clearance } => {
@@ -161,7 +192,7 @@ impl MotionValidity<Configuration> for Verifier<'_> {
             return checked;
         }
         let space = self.robot.robot.any_space();
-        let parts = (FINER * space.distance(from, to) / self.robot.every).ceil().max(1.0);
+        let parts = (FINER * self.robot.length(from, to) / self.robot.every).ceil().max(1.0);
         let mut q = from.clone();
         for i in 0..=parts as u64 {
             let at = i as f64 / parts;
@@ -217,7 +248,7 @@ impl AnyMotion for Constrained {
         self.robot.any_space()
     }
     fn any_checker(&self) -> AnyChecker {
-        AnyChecker::new(Check { inner: self.robot.any_checker(), robot: self.clone() })
+        AnyChecker::new(Check { inner: self.robot.any_checker(), robot: self.clone(), last: None })
     }
     fn any_measure(&self) -> AnyChecker {
         self.robot.any_measure()

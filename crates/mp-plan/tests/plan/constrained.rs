@@ -66,6 +66,23 @@ fn ends_against_a_constraint_are_refused() {
     assert!(!moved.explain(&scene.start()).unwrap().free);
 }
 
+/// A motion by inputs is tested all along, however near its ends are to each other.
+#[test]
+fn a_circle_is_not_short() {
+    let text = "[world]\nwalls = [[0, 0], [20, 10]]\n[robot]\nkind = \"unicycle\"\ndisc = 0.1\nspeed = 2\nturning = 3.15\nduration = 2\n\
+                [motion]\nstart = [9, 5, 0]\ngoal = [9, 5, 0]\ntolerance = 0.5\n";
+    let scene = Scene::parse("circle", text, std::path::Path::new("")).unwrap();
+    // A whole circle of radius 0.5 about (9, 5.5).
+    let turning = std::f64::consts::PI;
+    let rows = vec![scene.start(), vec![9.0, 5.0, 2.0 * turning, 0.5 * turning, turning, 2.0]];
+    let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+    for (most, free) in [(6.001, true), (5.99, false)] {
+        let low = Constraint::new("low", Length::Fraction(0.002), move |row: &[f64]| row[1] <= most);
+        let verdict = scene.under(low).unwrap().check(&path).unwrap();
+        assert_eq!(verdict.free, free, "{most}: {:?}", verdict.faults);
+    }
+}
+
 #[test]
 fn tested_states_must_be_apart() {
     let scene = Scene::find("easy").unwrap();

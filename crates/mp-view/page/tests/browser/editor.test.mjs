@@ -255,3 +255,61 @@ browserTest("unsaved changes are asked about; meshes and files of other kinds", 
     assert.equal((await documentOf(driver)).obstacles.length, count + 1, name);
   }
 }));
+
+browserTest("numbers of an end that the planner writes otherwise are no step of their own", () => withPage("easy", async (driver) => {
+  const count = (await documentOf(driver)).obstacles.length;
+  const labels = () => driver.page.evaluate(() => [/undo/i, /redo/i].map((word) => [...document.querySelectorAll("button")].find((b) => word.test(b.title)).title));
+  const start = async () => (await documentOf(driver)).start;
+  /** Waits until the planner has said something of the start as it is. */
+  const untilChecked = () => driver.until(async () => {
+    const { ends } = await window.mpView.planner;
+    return ends.verdicts.has("start") && ends.unchecked.size === 0 && !ends.asking;
+  });
+  const first = await start();
+  await driver.unfold("Start and goal");
+  // A pitch beyond a quarter turn, and a roll beyond half a turn: the planner gives other angles for the same pose.
+  await driver.fill("spinbutton", "beta rad", "-2");
+  await driver.fill("spinbutton", "gamma rad", "4");
+  const given = [...first.slice(0, 4), -2, 4];
+  await untilChecked();
+  await driver.press("Add");
+  await untilObstacles(driver, count + 1);
+  await untilChecked();
+  const after = await labels();
+  assert.deepEqual(await start(), given);
+  assert.match(after[0], /add/i);
+  await driver.press("Undo");
+  await untilObstacles(driver, count);
+  await untilChecked();
+  assert.match((await labels())[1], /add/i);
+  await driver.press("Undo");
+  await driver.press("Redo");
+  await driver.press("Redo");
+  await untilObstacles(driver, count + 1);
+  await untilChecked();
+  assert.deepEqual(await labels(), after);
+  assert.deepEqual(await start(), given);
+}));
+
+browserTest("what is done while another scene opens changes neither of them", () => withPage("easy", async (driver) => {
+  const { name, obstacles } = await documentOf(driver);
+  await driver.choose("Selected", obstacles[0].name);
+  await driver.press("Gallery…");
+  await driver.control("button", "gempa-1");
+  // At once: before the program has answered.
+  await driver.page.evaluate(() => {
+    document.querySelector("dialog.gallery button[value=gempa-1]").click();
+    for (const key of ["d", "d"]) window.dispatchEvent(new KeyboardEvent("keydown", { key, ctrlKey: true, bubbles: true, cancelable: true }));
+  });
+  await driver.until(async (before) => (await window.mpView.planner).document?.name !== before, name);
+  await driver.until(() => document.querySelector("[aria-busy=true]") === null);
+  const opened = await documentOf(driver);
+  assert.equal(opened.name, "gempa-1");
+  const drawn = await driver.page.evaluate(async () => {
+    const { scene } = (await window.mpView.planner).viewer;
+    return scene.bodies.slice(scene.robot).map((body) => body.name);
+  });
+  assert.deepEqual(drawn, names(opened));
+  const undo = await driver.page.evaluate(() => [...document.querySelectorAll("button")].find((b) => /undo/i.test(b.title)).disabled);
+  assert.equal(undo, true);
+}));
