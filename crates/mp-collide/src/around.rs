@@ -5,8 +5,7 @@ use crate::cover::ALL;
 use crate::mesh::CollisionMesh;
 use crate::pose::Relative;
 use mp_geom::Sphere;
-use mp_simd::Lanes;
-use mp_simd::wide::{Wide, Wide3};
+use mp_simd::wide::Doubles;
 use nalgebra::{Isometry3, Point3, Vector3};
 
 /// What is inside of a solid is of use where it reaches this near to what is around it, as a part of its least half extent.
@@ -192,24 +191,24 @@ impl Around {
 
     /// As [`gap`](Self::gap), for balls at eight places.
     #[inline(always)]
-    pub(crate) fn wide_gap(&self, center: &Wide3, radius: f64) -> Wide {
+    pub(crate) fn wide_gap<D: Doubles>(&self, center: &[D; 3], radius: f64) -> D {
         let (square, own) = self.wide_square(center);
         square.sqrt() - (own + radius)
     }
 
     /// The places, as bits, where a ball is not farther than `within` (m), which is not negative; also where that cannot be compared.
     #[inline(always)]
-    pub(crate) fn wide_near<L: Lanes>(&self, center: &Wide3, radius: f64, within: f64) -> u32 {
+    pub(crate) fn wide_near<D: Doubles>(&self, center: &[D; 3], radius: f64, within: f64) -> u32 {
         let (square, own) = self.wide_square(center);
         let far = within + (own + radius);
-        ALL & !Wide::splat(far * far).less::<L>(square)
+        ALL & !D::splat(far * far).less(square)
     }
 
     /// The squares of lower bounds on the distances (m) of eight points from the axis of the capsule, or else from box and cylinder; and how far (m) the
     /// capsule reaches from its axis, 0 for the others.
     #[inline(always)]
-    fn wide_square(&self, center: &Wide3) -> (Wide, f64) {
-        let (half, zero) = (&self.bounds.half, Wide::splat(0.0));
+    fn wide_square<D: Doubles>(&self, center: &[D; 3]) -> (D, f64) {
+        let (half, zero) = (&self.bounds.half, D::splat(0.0));
         let [x, y, z] = self.wide_place(center);
         if self.outline.form == Form::Capsule {
             let c = (z - self.outline.straight).max(zero);
@@ -224,7 +223,7 @@ impl Around {
     }
 
     #[inline(always)]
-    fn wide_place(&self, center: &Wide3) -> Wide3 {
+    fn wide_place<D: Doubles>(&self, center: &[D; 3]) -> [D; 3] {
         let o = &self.bounds.center;
         let d = [center[0] - o.x, center[1] - o.y, center[2] - o.z];
         let axes = &self.bounds.axes;
@@ -243,7 +242,7 @@ mod tests {
     use super::*;
     use crate::Query;
     use mp_geom::{Shape, TriMesh, primitives};
-    use mp_simd::wide::LANES;
+    use mp_simd::wide::{LANES, Wide};
 
     fn shape(name: &str, lengths: &[f64]) -> TriMesh {
         Shape::primitive(name, lengths).unwrap().mesh().unwrap()

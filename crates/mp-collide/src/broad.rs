@@ -4,7 +4,7 @@
 //! *Dynamic Bounding Volume Hierarchies*, GDC 2019.
 
 use mp_geom::Aabb;
-use mp_simd::wide::{LANES, Wide, Wide3};
+use mp_simd::wide::{Doubles, LANES, Wide, Wide3, load3};
 
 /// Of no more boxes than this a list is kept beside the tree.
 const FEW: usize = 64;
@@ -71,17 +71,18 @@ impl EightBoxes {
         self.size.0[i] = bounds.min.coords.amax().max(bounds.max.coords.amax());
     }
 
-    /// The distances of a box, 0 where it overlaps.
+    /// The squares of the distances of a box, 0 where it overlaps.
     #[inline(always)]
-    pub(crate) fn distance(&self, low: &[f64; 3], high: &[f64; 3]) -> Wide {
-        let mut square = Wide::splat(0.0);
+    pub(crate) fn square_distance<D: Doubles>(&self, low: &[f64; 3], high: &[f64; 3]) -> D {
+        let (own_low, own_high) = (load3::<D>(&self.low), load3::<D>(&self.high));
+        let mut square = D::splat(0.0);
         let mut k = 0;
         while k < 3 {
-            let gap = (self.low[k] - high[k]).max(Wide::splat(low[k]) - self.high[k]).max(Wide::splat(0.0));
+            let gap = (own_low[k] - high[k]).max(D::splat(low[k]) - own_high[k]).max(D::splat(0.0));
             square = square + gap * gap;
             k += 1;
         }
-        square.sqrt()
+        square
     }
 }
 
@@ -393,7 +394,7 @@ mod tests {
             // In the same order, each with its distance.
             let (low, high) = (probe.min.coords.into(), probe.max.coords.into());
             let listed = list.iter().flat_map(|eight| {
-                let far = eight.distance(&low, &high);
+                let far = eight.square_distance::<Wide>(&low, &high).sqrt();
                 let taken = move |i: &usize| eight.taken >> i & 1 == 1;
                 (0..LANES).filter(taken).map(move |i| (eight.items[i], far.0[i]))
             });

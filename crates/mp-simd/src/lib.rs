@@ -48,6 +48,7 @@ mod x86;
 pub mod wide;
 
 use std::ops::{BitAnd, BitOr};
+use wide::{Wide, WideKernel};
 
 /// The lanes that every CPU of this architecture has, with vectors where there are any.
 #[cfg(all(not(feature = "scalar"), target_arch = "aarch64"))]
@@ -184,16 +185,6 @@ pub trait Lanes: Copy {
     fn lt(self, b: Self) -> Self::Mask;
     /// The lanes of `a` where `mask` holds, those of `b` elsewhere.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
-    /// Of eight `f64`: bit `i` is set where `a[i]` < `b[i]`; not where they cannot be compared.
-    #[inline(always)]
-    fn less(a: &[f64; 8], b: &[f64; 8]) -> u32 {
-        let (mut bits, mut i) = (0, 0);
-        while i < 8 {
-            bits |= u32::from(a[i] < b[i]) << i;
-            i += 1;
-        }
-        bits
-    }
 }
 
 /// A computation generic over the lanes. Its `run` and all that this calls must be `#[inline(always)]`: only then is it compiled for the
@@ -228,21 +219,34 @@ pub fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
     kernel.run::<Scalar>()
 }
 
-/// Runs `kernel` on the widest this CPU has. Unlike [`run`], it is not compiled for plain arrays where there are vectors.
+/// Runs `kernel` on the widest this CPU has.
 #[inline]
-fn run_on_widest<K: Kernel>(kernel: K) -> K::Output {
+fn run_on_widest<K: WideKernel>(kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]
-    return match Isa::detect() {
+    match Isa::detect() {
         // SAFETY: `detect` has just said that the CPU has the features the function enables.
-        Isa::Avx512 => unsafe { x86::avx512(kernel) },
+        Isa::Avx512 => return unsafe { x86::doubles::avx512(kernel) },
         // SAFETY: as above.
-        Isa::Avx2 => unsafe { x86::avx2(kernel) },
-        _ => kernel.run::<x86::Sse2>(),
-    };
-    #[cfg(target_arch = "aarch64")]
-    return kernel.run::<arm::Neon>();
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-    kernel.run::<Scalar>()
+        Isa::Avx2 => return unsafe { x86::doubles::avx2(kernel) },
+        _ => {}
+    }
+    kernel.run::<Wide>()
+}
+
+/// Runs `kernel` on `isa`, or on what every CPU has.
+#[cfg(test)]
+fn run_wide<K: WideKernel>(isa: Isa, kernel: K) -> K::Output {
+    #[cfg(target_arch = "x86_64")]
+    match isa {
+        // SAFETY: `supported` has just said that the CPU has the features the function enables.
+        Isa::Avx512 if supported(isa) => return unsafe { x86::doubles::avx512(kernel) },
+        // SAFETY: as above.
+        Isa::Avx2 if supported(isa) => return unsafe { x86::doubles::avx2(kernel) },
+        _ => {}
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = isa;
+    kernel.run::<Wide>()
 }
 
 /// Whether this CPU has `isa` (the standard library caches the answer).

@@ -2,9 +2,11 @@
 //!
 //! Each lane is computed by additions, multiplications, divisions and square roots as IEEE 754 has them, never fused, so it has the same
 //! bits on every processor.
+//!
+//! A [`Wide`] is eight numbers in memory. A [`WideKernel`] loads them into registers, [`Doubles`], of which it does not name the kind.
 
-use crate::{Kernel, Lanes, run_on_widest};
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use crate::run_on_widest;
+use std::ops::{Add, Div, Mul, Sub};
 
 /// How many numbers a [`Wide`] has.
 pub const LANES: usize = 8;
@@ -14,30 +16,67 @@ pub const LANES: usize = 8;
 #[repr(align(64))]
 pub struct Wide(pub [f64; LANES]);
 
-/// A computation on [`Wide`] numbers. `run` and all it calls are to be `#[inline(always)]`, so that they are compiled for the processor's
-/// widest instructions.
+/// Eight numbers in registers, or in memory where a processor has none that are made use of.
+pub trait Doubles:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+{
+    /// Eight numbers from memory.
+    fn load(all: &Wide) -> Self;
+    /// Eight numbers for the memory.
+    fn store(self) -> Wide;
+    /// The same number eight times.
+    fn splat(x: f64) -> Self;
+    /// The lesser of each lane; `b` where they cannot be compared.
+    fn min(self, b: Self) -> Self;
+    /// The greater of each lane; `b` where they cannot be compared.
+    fn max(self, b: Self) -> Self;
+    /// Absolute values.
+    fn abs(self) -> Self;
+    /// Square roots.
+    fn sqrt(self) -> Self;
+    /// Bit `i` is set where lane `i` is less than that of `b`; not where they cannot be compared.
+    fn less(self, b: Self) -> u32;
+    /// In each lane `x` where this is less than `b`, else `y`.
+    fn where_less(self, b: Self, x: Self, y: Self) -> Self;
+    /// The least and the greatest; anything where one is no number.
+    fn range(self) -> [f64; 2];
+
+    /// The greatest absolute value; not a number if any is none.
+    #[inline(always)]
+    fn largest(self) -> f64 {
+        let all = self.abs();
+        let are_finite = all.less(Self::splat(f64::INFINITY)) == (1 << LANES) - 1;
+        if are_finite { all.range()[1] } else { largest_of_any(&all.store()) }
+    }
+}
+
+/// The greatest of absolute values, some of which are infinite or no number.
+#[cold]
+#[inline(never)]
+fn largest_of_any(all: &Wide) -> f64 {
+    all.0.iter().fold(0.0, |most: f64, x| if x.is_nan() || most.is_nan() { f64::NAN } else { most.max(*x) })
+}
+
+/// A computation on eight numbers. `run` and all it calls are to be `#[inline(always)]`, so that they are compiled for the processor's
+/// widest instructions. No [`Doubles`] are given to closures, as by `map` of an array: these are functions of their own.
 pub trait WideKernel {
     /// What it computes.
     type Output;
     /// Computes it.
-    fn run<L: Lanes>(self) -> Self::Output;
+    fn run<D: Doubles>(self) -> Self::Output;
 }
 
 /// Runs `kernel` with the widest instructions of the processor. The results are the same on all.
 #[inline]
 pub fn on_widest<K: WideKernel>(kernel: K) -> K::Output {
-    run_on_widest(AnyLanes(kernel))
-}
-
-/// A kernel that compares in lanes, and uses no `f32`.
-struct AnyLanes<K>(K);
-
-impl<K: WideKernel> Kernel for AnyLanes<K> {
-    type Output = K::Output;
-    #[inline(always)]
-    fn run<L: Lanes>(self) -> K::Output {
-        self.0.run::<L>()
-    }
+    run_on_widest(kernel)
 }
 
 macro_rules! lanes {
@@ -53,6 +92,8 @@ macro_rules! lanes {
 }
 
 mod sin_cos;
+
+pub use sin_cos::sin_cos;
 
 /// The first of two by this comparison, the second where they cannot be compared.
 macro_rules! first {
@@ -79,67 +120,53 @@ impl Wide {
     pub const fn splat(x: f64) -> Self {
         Self([x; LANES])
     }
+}
 
-    /// The lesser of each lane; `b` where they cannot be compared.
+impl Doubles for Wide {
     #[inline(always)]
-    #[must_use]
-    pub fn min(self, b: Self) -> Self {
+    fn load(all: &Self) -> Self {
+        *all
+    }
+    #[inline(always)]
+    fn store(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self([x; LANES])
+    }
+    #[inline(always)]
+    fn min(self, b: Self) -> Self {
         lanes!(i => if self.0[i] < b.0[i] { self.0[i] } else { b.0[i] })
     }
-
-    /// The greater of each lane; `b` where they cannot be compared.
     #[inline(always)]
-    #[must_use]
-    pub fn max(self, b: Self) -> Self {
+    fn max(self, b: Self) -> Self {
         lanes!(i => if self.0[i] > b.0[i] { self.0[i] } else { b.0[i] })
     }
-
-    /// Absolute values.
     #[inline(always)]
-    #[must_use]
-    pub fn abs(self) -> Self {
+    fn abs(self) -> Self {
         lanes!(i => self.0[i].abs())
     }
-
-    /// Square roots.
     #[inline(always)]
-    #[must_use]
-    pub fn sqrt(self) -> Self {
+    fn sqrt(self) -> Self {
         lanes!(i => self.0[i].sqrt())
     }
-
-    /// Bit `i` is set where lane `i` is less than that of `b`; not where they cannot be compared.
     #[inline(always)]
-    #[must_use]
-    pub fn less<L: Lanes>(self, b: Self) -> u32 {
-        L::less(&self.0, &b.0)
-    }
-
-    /// In each lane `x` where this is less than `b`, else `y`.
-    #[inline(always)]
-    #[must_use]
-    pub fn where_less(self, b: Self, x: Self, y: Self) -> Self {
-        lanes!(i => if self.0[i] < b.0[i] { x.0[i] } else { y.0[i] })
-    }
-
-    /// The least and the greatest; anything where one is no number.
-    #[inline(always)]
-    #[must_use]
-    pub fn range(self) -> [f64; 2] {
-        [halved!(self.0, <), halved!(self.0, >)]
-    }
-
-    /// The greatest absolute value; not a number if any is none.
-    #[inline(always)]
-    #[must_use]
-    pub fn largest(self) -> f64 {
-        // As integers they are in the same order, and what is no number is above all.
-        let (mut bits, mut i) = ([0; LANES], 0);
+    fn less(self, b: Self) -> u32 {
+        let (mut bits, mut i) = (0, 0);
         while i < LANES {
-            bits[i] = self.0[i].abs().to_bits();
+            bits |= u32::from(self.0[i] < b.0[i]) << i;
             i += 1;
         }
-        f64::from_bits(halved!(bits, >))
+        bits
+    }
+    #[inline(always)]
+    fn where_less(self, b: Self, x: Self, y: Self) -> Self {
+        lanes!(i => if self.0[i] < b.0[i] { x.0[i] } else { y.0[i] })
+    }
+    #[inline(always)]
+    fn range(self) -> [f64; 2] {
+        [halved!(self.0, <), halved!(self.0, >)]
     }
 }
 
@@ -199,59 +226,84 @@ impl Div for Wide {
     }
 }
 
-impl Neg for Wide {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        lanes!(i => -self.0[i])
-    }
-}
-
 /// Eight points or vectors.
 pub type Wide3 = [Wide; 3];
+
+/// Three times eight numbers from memory.
+#[inline(always)]
+#[must_use]
+pub fn load3<D: Doubles>(all: &Wide3) -> [D; 3] {
+    [D::load(&all[0]), D::load(&all[1]), D::load(&all[2])]
+}
+
+/// Three times eight numbers for the memory.
+#[inline(always)]
+#[must_use]
+pub fn store3<D: Doubles>([x, y, z]: [D; 3]) -> Wide3 {
+    [x.store(), y.store(), z.store()]
+}
 
 /// The scalar product.
 #[inline(always)]
 #[must_use]
-pub fn dot(a: &Wide3, b: &Wide3) -> Wide {
+pub fn dot<D: Doubles>(a: &[D; 3], b: &[D; 3]) -> D {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The vector product.
 #[inline(always)]
 #[must_use]
-pub fn cross(a: &Wide3, b: &Wide3) -> Wide3 {
+pub fn cross<D: Doubles>(a: &[D; 3], b: &[D; 3]) -> [D; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// `a − b`.
 #[inline(always)]
 #[must_use]
-pub fn sub(a: &Wide3, b: &Wide3) -> Wide3 {
+pub fn sub<D: Doubles>(a: &[D; 3], b: &[D; 3]) -> [D; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// `a + times · b`.
 #[inline(always)]
 #[must_use]
-pub fn add(a: &Wide3, b: &Wide3, times: f64) -> Wide3 {
+pub fn add<D: Doubles>(a: &[D; 3], b: &[D; 3], times: f64) -> [D; 3] {
     [a[0] + b[0] * times, a[1] + b[1] * times, a[2] + b[2] * times]
 }
 
 /// Eight poses: the rows of the rotation matrices, and the origins.
 #[derive(Clone, Copy, Debug)]
-pub struct WideFrame {
+pub struct Frames<D> {
     /// The rows of the rotation matrices.
-    pub turn: [Wide3; 3],
+    pub turn: [[D; 3]; 3],
     /// The origins of the frames.
-    pub origin: Wide3,
+    pub origin: [D; 3],
 }
 
-impl WideFrame {
+/// Eight poses in memory.
+pub type WideFrame = Frames<Wide>;
+
+impl<D: Doubles> Frames<D> {
+    /// Eight poses from memory.
+    #[inline(always)]
+    #[must_use]
+    pub fn load(all: &WideFrame) -> Self {
+        let [a, b, c] = &all.turn;
+        Self { turn: [load3(a), load3(b), load3(c)], origin: load3(&all.origin) }
+    }
+
+    /// Eight poses for the memory.
+    #[inline(always)]
+    #[must_use]
+    pub fn store(self) -> WideFrame {
+        let [a, b, c] = self.turn;
+        WideFrame { turn: [store3(a), store3(b), store3(c)], origin: store3(self.origin) }
+    }
+
     /// Where it carries the point `p`.
     #[inline(always)]
     #[must_use]
-    pub fn point(&self, p: &[f64; 3]) -> Wide3 {
+    pub fn point(&self, p: &[f64; 3]) -> [D; 3] {
         let [x, y, z] = self.vector(p);
         [x + self.origin[0], y + self.origin[1], z + self.origin[2]]
     }
@@ -259,7 +311,7 @@ impl WideFrame {
     /// Where it carries the vector `v`.
     #[inline(always)]
     #[must_use]
-    pub fn vector(&self, v: &[f64; 3]) -> Wide3 {
+    pub fn vector(&self, v: &[f64; 3]) -> [D; 3] {
         let t = &self.turn;
         [
             t[0][0] * v[0] + t[0][1] * v[1] + t[0][2] * v[2],
@@ -272,7 +324,7 @@ impl WideFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Isa, Scalar, run};
+    use crate::{Isa, run_wide};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
@@ -280,15 +332,20 @@ mod tests {
     struct All([Wide; 12]);
 
     impl WideKernel for All {
-        type Output = ([Wide3; 3], u32, f64);
+        type Output = ([Wide3; 3], [u32; 2], [f64; 3]);
         #[inline(always)]
-        fn run<L: Lanes>(self) -> Self::Output {
+        fn run<D: Doubles>(self) -> Self::Output {
             let [a, b, c, d, e, f, g, h, i, x, y, z] = self.0;
-            let frame = WideFrame { turn: [[a, b, c], [d, e, f], [g, h, i]], origin: [x, y, z] };
+            let stored = WideFrame { turn: [[a, b, c], [d, e, f], [g, h, i]], origin: [x, y, z] };
+            let frame = Frames::<D>::load(&stored);
             let p = frame.point(&[0.3, -1.7, 11.1]);
             let q = cross(&p, &frame.vector(&[3.7, 0.1, -0.9]));
-            let r = [dot(&p, &q).abs().sqrt(), (-q[1] * 1.1).min(p[0]).max(a + 0.7), p[2] - 0.3];
-            ([p, q, sub(&q, &r)], p[0].less::<L>(q[0]), r[0].largest())
+            let a = D::load(&a);
+            let r = [dot(&p, &q).abs().sqrt(), (q[1] * 1.1).min(p[0]).max(a + 0.7), p[2] - 0.3];
+            let s = p[1].where_less(q[1], r[0] / q[2], add(&p, &q, 0.1)[2]);
+            let [least, most] = s.range();
+            let vectors = [p, [q[0], s, q[2]], sub(&q, &r)].map(store3);
+            (vectors, [p[0].less(q[0]), s.less(D::splat(0.0))], [r[0].largest(), least, most])
         }
     }
 
@@ -302,43 +359,61 @@ mod tests {
                     rng.random_range(-1.0..1.0) * mp_math::powi(10.0, rng.random_range(-9..9))
                 }))
             });
-            let bits = |(vectors, less, largest): ([Wide3; 3], u32, f64)| {
-                (vectors.map(|v| v.map(|x| x.0.map(f64::to_bits))), less, largest.to_bits())
+            let bits = |(vectors, less, numbers): ([Wide3; 3], [u32; 2], [f64; 3])| {
+                (vectors.map(|v| v.map(|x| x.0.map(f64::to_bits))), less, numbers.map(f64::to_bits))
             };
-            let expected = bits(All(numbers).run::<Scalar>());
+            let expected = bits(All(numbers).run::<Wide>());
             for isa in Isa::available() {
-                assert_eq!(bits(run(isa, AnyLanes(All(numbers)))), expected, "{isa:?}");
+                assert_eq!(bits(run_wide(isa, All(numbers))), expected, "{isa:?}");
             }
-            let one = bits(All(numbers.map(|x| Wide::splat(x.0[5]))).run::<Scalar>());
+            let one = bits(All(numbers.map(|x| Wide::splat(x.0[5]))).run::<Wide>());
             for (all, one) in expected.0.iter().flatten().zip(one.0.iter().flatten()) {
                 assert_eq!(all[5], one[0]);
             }
         }
     }
 
-    struct Less(Wide, Wide);
+    /// Of two times eight numbers: those that are less, the lesser, the greater, those taken where less, the absolute values, the largest.
+    struct Compared(Wide, Wide);
 
-    impl WideKernel for Less {
-        type Output = u32;
+    impl WideKernel for Compared {
+        type Output = (u32, [Wide; 4], f64);
         #[inline(always)]
-        fn run<L: Lanes>(self) -> u32 {
-            self.0.less::<L>(self.1)
+        fn run<D: Doubles>(self) -> Self::Output {
+            let (a, b) = (D::load(&self.0), D::load(&self.1));
+            let all = [a.min(b), a.max(b), a.where_less(b, a, D::splat(7.0)), a.abs()];
+            (a.less(b), all.map(D::store), a.largest())
         }
     }
 
     #[test]
     fn what_cannot_be_compared_is_not_less() {
-        let nan = Wide::splat(f64::NAN);
+        let (nan, one) = (Wide::splat(f64::NAN), Wide::splat(1.0));
         for isa in Isa::available() {
-            assert_eq!(run(isa, AnyLanes(Less(nan, Wide::splat(1.0)))), 0);
-            assert_eq!(run(isa, AnyLanes(Less(Wide::splat(1.0), nan))), 0);
-        }
-        for k in 0..LANES {
-            let one = Wide(std::array::from_fn(|i| if i == k { f64::NAN } else { -3.0 }));
-            assert!(one.largest().is_nan());
+            for (a, b) in [(nan, one), (one, nan)] {
+                let (less, [min, max, taken, _], largest) = run_wide(isa, Compared(a, b));
+                assert_eq!((less, taken.0), (0, [7.0; LANES]), "{isa:?}");
+                for (found, b) in min.0.iter().chain(&max.0).zip(b.0.iter().cycle()) {
+                    assert_eq!(found.is_nan(), b.is_nan(), "{isa:?}");
+                }
+                assert_eq!(largest.is_nan(), a.0[0].is_nan(), "{isa:?}");
+            }
+            for k in 0..LANES {
+                let one = Wide(std::array::from_fn(|i| if i == k { f64::NAN } else { -3.0 }));
+                assert!(run_wide(isa, Compared(one, one)).2.is_nan(), "{isa:?}");
+            }
+            let all = Wide([1.0, -4.0, 3.0, 0.0, -0.0, 2.0, 0.0, -1.0]);
+            let (less, [min, max, taken, abs], largest) = run_wide(isa, Compared(all, Wide::splat(0.0)));
+            assert_eq!((less, largest), (0b1000_0010, 4.0), "{isa:?}");
+            assert_eq!(min.0, [0.0, -4.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0]);
+            assert_eq!(max.0, [1.0, 0.0, 3.0, 0.0, 0.0, 2.0, 0.0, 0.0]);
+            assert_eq!(taken.0, [7.0, -4.0, 7.0, 7.0, 7.0, 7.0, 7.0, -1.0]);
+            let bits = [1.0, 4.0, 3.0, 0.0, 0.0, 2.0, 0.0, 1.0].map(f64::to_bits);
+            assert_eq!(abs.0.map(f64::to_bits), bits);
+            let infinite = Wide([1.0, f64::NEG_INFINITY, 3.0, 0.0, 0.0, 2.0, 0.0, -1.0]);
+            assert_eq!(run_wide(isa, Compared(infinite, all)).2, f64::INFINITY);
         }
         let all = Wide([1.0, -4.0, 3.0, 0.0, 0.0, 2.0, 0.0, -1.0]);
         assert_eq!((all.largest(), all.range()), (4.0, [-4.0, 3.0]));
-        assert_eq!(nan.min(Wide::splat(1.0)).0, [1.0; LANES]);
     }
 }

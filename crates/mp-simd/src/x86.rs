@@ -1,5 +1,7 @@
 //! 256-bit registers, and 128-bit ones two at a time.
 
+pub(super) mod doubles;
+
 use super::{Kernel, Lanes, Mask};
 use std::arch::x86_64::*;
 use std::ops::{BitAnd, BitOr};
@@ -110,17 +112,6 @@ impl Lanes for Avx2 {
     fn select(mask: Avx2Mask, a: Self, b: Self) -> Self {
         // SAFETY: see `Avx2`.
         Self(unsafe { _mm256_blendv_ps(b.0, a.0, mask.0) })
-    }
-    #[inline(always)]
-    fn less(a: &[f64; 8], b: &[f64; 8]) -> u32 {
-        // SAFETY: see `Avx2`.
-        let (low, high) = unsafe {
-            let (a_low, a_high) = (_mm256_loadu_pd(a.as_ptr()), _mm256_loadu_pd(a.as_ptr().add(4)));
-            let (b_low, b_high) = (_mm256_loadu_pd(b.as_ptr()), _mm256_loadu_pd(b.as_ptr().add(4)));
-            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a_low, b_low));
-            (low, _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a_high, b_high)))
-        };
-        (low | high << 4).cast_unsigned()
     }
 }
 
@@ -250,20 +241,6 @@ impl Lanes for Sse2 {
             let either = |m, a, b| _mm_or_ps(_mm_and_ps(m, a), _mm_andnot_ps(m, b));
             Self(either(mask.0, a.0, b.0), either(mask.1, a.1, b.1))
         }
-    }
-    #[inline(always)]
-    fn less(a: &[f64; 8], b: &[f64; 8]) -> u32 {
-        let (mut bits, mut k) = (0, 0);
-        while k < 8 {
-            // SAFETY: see `Sse2`.
-            let pair = unsafe {
-                let (a, b) = (_mm_loadu_pd(a.as_ptr().add(k)), _mm_loadu_pd(b.as_ptr().add(k)));
-                _mm_movemask_pd(_mm_cmplt_pd(a, b))
-            };
-            bits |= pair.cast_unsigned() << k;
-            k += 2;
-        }
-        bits
     }
 }
 

@@ -3,8 +3,9 @@
 use super::{Cover, ROUNDING};
 use crate::around::Around;
 use mp_geom::Sphere;
-use mp_simd::Lanes;
-use mp_simd::wide::{LANES, Wide, Wide3, WideFrame, WideKernel, dot, on_widest, sub};
+use mp_simd::wide::{
+    Doubles, Frames, LANES, Wide, Wide3, WideFrame, WideKernel, dot, load3, on_widest, store3, sub,
+};
 
 /// Where coordinates are larger, products may overflow: nothing is decided then.
 pub(crate) const LARGEST: f64 = 1e100;
@@ -21,7 +22,7 @@ pub struct WideCover {
     balls: Vec<Wide3>,
     /// Bit i is set where the balls of group i are placed.
     are_placed: u32,
-    /// The largest coordinates and the radius.
+    /// The largest sum of the coordinates of a center, and the radius; not a number where one of them is none.
     pub(crate) size: f64,
     /// Bodies that are near: scratch memory.
     pub(crate) near: Vec<u32>,
@@ -53,28 +54,28 @@ fn array(ball: &Sphere) -> [f64; 3] {
 
 /// The distances of points; then of balls, less the radii.
 #[inline(always)]
-fn gap(a: &Wide3, b: &Wide3, radii: f64) -> Wide {
-    let d = sub(a, b);
+fn gap<D: Doubles>(a: &Wide3, b: &Wide3, radii: f64) -> D {
+    let d = sub::<D>(&load3(a), &load3(b));
     (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt() - radii
 }
 
 /// The places, as bits, where two points are not farther than `far` (m) from each other; also where that cannot be compared.
 #[inline(always)]
-fn within<L: Lanes>(a: &Wide3, b: &Wide3, far: f64) -> u32 {
-    let d = sub(a, b);
-    ALL & !Wide::splat(far * far).less::<L>(dot(&d, &d))
+fn within<D: Doubles>(a: &Wide3, b: &Wide3, far: f64) -> u32 {
+    let d = sub::<D>(&load3(a), &load3(b));
+    ALL & !D::splat(far * far).less(dot(&d, &d))
 }
 
 impl WideCover {
     /// Puts a mesh to eight places, where `around` is the ball around it in its own frame.
     #[inline(always)]
-    pub fn place(&mut self, around: &Sphere, frame: &WideFrame) {
-        self.center = frame.point(&array(around));
-        (self.radius, self.frame, self.are_placed) = (around.radius, *frame, 0);
+    pub fn place<D: Doubles>(&mut self, around: &Sphere, frame: &WideFrame) {
+        let frame = Frames::<D>::load(frame);
+        let center = frame.point(&array(around));
+        (self.radius, self.frame, self.are_placed) = (around.radius, frame.store(), 0);
         self.groups.clear();
-        let [x, y, z] = &self.center;
-        // A sum keeps what is not a number.
-        self.size = x.largest() + y.largest() + z.largest() + around.radius;
+        self.size = (center[0].abs() + center[1].abs() + center[2].abs()).largest() + around.radius;
+        self.center = store3(center);
     }
 
     /// The centres of the balls around the whole mesh.
@@ -90,20 +91,22 @@ impl WideCover {
     }
 
     #[inline(always)]
-    fn place_groups(&mut self, cover: &Cover) {
+    fn place_groups<D: Doubles>(&mut self, cover: &Cover) {
         if self.groups.is_empty() {
+            let frame = Frames::<D>::load(&self.frame);
             for group in &cover.groups {
-                self.groups.push(self.frame.point(&array(&group.around)));
+                self.groups.push(store3(frame.point(&array(&group.around))));
             }
             self.balls.resize(cover.balls.len(), NOWHERE);
         }
     }
 
     #[inline(always)]
-    fn place_balls(&mut self, cover: &Cover, group: usize) {
+    fn place_balls<D: Doubles>(&mut self, cover: &Cover, group: usize) {
         if self.are_placed >> group & 1 == 0 {
+            let frame = Frames::<D>::load(&self.frame);
             for i in cover.groups[group].balls.clone() {
-                self.balls[i] = self.frame.point(&array(&cover.balls[i]));
+                self.balls[i] = store3(frame.point(&array(&cover.balls[i])));
             }
             self.are_placed |= 1 << group;
         }
@@ -112,34 +115,28 @@ impl WideCover {
     /// Lower bounds on the distance from what `around` is around: by the ball around the mesh; where that is less than `enough`, by those
     /// around groups of balls; and where one of these is less, by its balls.
     #[inline(always)]
-    pub(crate) fn apart_from<L: Lanes>(
-        &mut self,
-        cover: &Cover,
-        around: &Around,
-        enough: Wide,
-        some: Wide,
-    ) -> Wide {
-        let whole = around.wide_gap(&self.center, self.radius);
-        let open = whole.less::<L>(enough);
+    pub(crate) fn apart_from<D: Doubles>(&mut self, cover: &Cover, around: &Around, enough: D, some: D) -> D {
+        let whole = around.wide_gap::<D>(&load3(&self.center), self.radius);
+        let open = whole.less(enough);
         if open == 0 || cover.groups.is_empty() {
             return whole;
         }
-        self.place_groups(cover);
-        let mut least = Wide::splat(f64::INFINITY);
+        self.place_groups::<D>(cover);
+        let mut least = D::splat(f64::INFINITY);
         for k in 0..cover.groups.len() {
-            let group = around.wide_gap(&self.groups[k], cover.groups[k].around.radius);
+            let group = around.wide_gap::<D>(&load3(&self.groups[k]), cover.groups[k].around.radius);
             let mut near = group;
-            if group.less::<L>(enough) & open != 0 {
-                self.place_balls(cover, k);
-                let mut balls = Wide::splat(f64::INFINITY);
+            if group.less(enough) & open != 0 {
+                self.place_balls::<D>(cover, k);
+                let mut balls = D::splat(f64::INFINITY);
                 for i in cover.groups[k].balls.clone() {
-                    balls = around.wide_gap(&self.balls[i], cover.balls[i].radius).min(balls);
+                    balls = around.wide_gap::<D>(&load3(&self.balls[i]), cover.balls[i].radius).min(balls);
                 }
                 near = balls.max(group);
             }
             least = near.min(least);
             // Too little in all lanes that are open: the groups left would say no more.
-            if least.less::<L>(some) & open == open {
+            if least.less(some) & open == open {
                 return whole;
             }
         }
@@ -171,7 +168,7 @@ impl Contacts {
 impl WideCover {
     /// Whether the mesh is within `kept` (m) of the body that `around` is around.
     #[inline(always)]
-    pub(crate) fn contact<L: Lanes>(
+    pub(crate) fn contact<D: Doubles>(
         &mut self,
         cover: &Cover,
         around: &Around,
@@ -180,21 +177,21 @@ impl WideCover {
     ) -> Contacts {
         let mut found = Contacts::default();
         let near = kept + rounding;
-        let mut open = around.wide_near::<L>(&self.center, self.radius, near);
+        let mut open = around.wide_near::<D>(&load3(&self.center), self.radius, near);
         if open == 0 || cover.groups.is_empty() {
             return Contacts { touching: 0, open };
         }
-        self.place_groups(cover);
+        self.place_groups::<D>(cover);
         for k in 0..cover.groups.len() {
             let mut group =
-                open & around.wide_near::<L>(&self.groups[k], cover.groups[k].around.radius, near);
+                open & around.wide_near::<D>(&load3(&self.groups[k]), cover.groups[k].around.radius, near);
             if group == 0 {
                 continue;
             }
-            self.place_balls(cover, k);
+            self.place_balls::<D>(cover, k);
             for i in cover.groups[k].balls.clone() {
                 let ball = &cover.balls[i];
-                let close = group & around.wide_near::<L>(&self.balls[i], ball.radius, near);
+                let close = group & around.wide_near::<D>(&load3(&self.balls[i]), ball.radius, near);
                 found.open |= close;
                 if close == 0 || !cover.is_exact || !around.is_tight() {
                     continue;
@@ -223,7 +220,7 @@ struct Within<'a> {
 impl WideKernel for Within<'_> {
     type Output = Contacts;
     #[inline(always)]
-    fn run<L: Lanes>(self) -> Contacts {
+    fn run<D: Doubles>(self) -> Contacts {
         let ((own, a), (others, b)) = (self.own, self.other);
         let size = a.size + b.size;
         let is_usual = size < LARGEST;
@@ -232,39 +229,40 @@ impl WideKernel for Within<'_> {
         }
         let rounding = ROUNDING * size;
         let (near, touching) = (self.distance + rounding, self.distance - rounding);
-        let mut open = within::<L>(&a.center, &b.center, near + a.radius + b.radius);
+        let mut open = within::<D>(&a.center, &b.center, near + a.radius + b.radius);
         if open == 0 || own.groups.is_empty() || others.groups.is_empty() {
             return Contacts { touching: 0, open };
         }
         let is_exact = own.is_exact && others.is_exact;
         let mut found = Contacts::default();
-        a.place_groups(own);
-        b.place_groups(others);
+        a.place_groups::<D>(own);
+        b.place_groups::<D>(others);
         for i in 0..own.groups.len() {
             let radius = own.groups[i].around.radius;
-            let one = open & within::<L>(&a.groups[i], &b.center, near + radius + b.radius);
+            let one = open & within::<D>(&a.groups[i], &b.center, near + radius + b.radius);
             for j in 0..others.groups.len() {
                 let radii = radius + others.groups[j].around.radius;
-                if one == 0 || one & within::<L>(&a.groups[i], &b.groups[j], near + radii) == 0 {
+                if one == 0 || one & within::<D>(&a.groups[i], &b.groups[j], near + radii) == 0 {
                     continue;
                 }
-                a.place_balls(own, i);
-                b.place_balls(others, j);
+                a.place_balls::<D>(own, i);
+                b.place_balls::<D>(others, j);
                 for k in own.groups[i].balls.clone() {
                     let radius = own.balls[k].radius;
                     let wide = radius + others.groups[j].around.radius;
-                    let some = one & within::<L>(&a.balls[k], &b.groups[j], near + wide);
+                    let some = one & within::<D>(&a.balls[k], &b.groups[j], near + wide);
                     if some == 0 {
                         continue;
                     }
                     for l in others.groups[j].balls.clone() {
                         let radii = radius + others.balls[l].radius;
-                        let close = some & within::<L>(&a.balls[k], &b.balls[l], near + radii);
+                        let close = some & within::<D>(&a.balls[k], &b.balls[l], near + radii);
                         found.open |= close;
                         if is_exact && close != 0 && touching + radii > 0.0 {
                             // Written so that NaN is open.
-                            let (d, reach) = (sub(&a.balls[k], &b.balls[l]), touching + radii);
-                            found.touching |= close & dot(&d, &d).less::<L>(Wide::splat(reach * reach));
+                            let d = sub::<D>(&load3(&a.balls[k]), &load3(&b.balls[l]));
+                            let reach = touching + radii;
+                            found.touching |= close & dot(&d, &d).less(D::splat(reach * reach));
                         }
                     }
                 }
@@ -288,12 +286,12 @@ pub fn wide_within(
 
 /// As [`wide_within`], for what is compiled for the widest instructions already.
 #[inline(always)]
-pub fn wide_within_here<L: Lanes>(
+pub fn wide_within_here<D: Doubles>(
     own: (&Cover, &mut WideCover),
     other: (&Cover, &mut WideCover),
     distance: f64,
 ) -> Contacts {
-    Within { own, other, distance }.run::<L>()
+    Within { own, other, distance }.run::<D>()
 }
 
 /// Of two covers.
@@ -307,54 +305,8 @@ struct FromEachOther<'a> {
 impl WideKernel for FromEachOther<'_> {
     type Output = Wide;
     #[inline(always)]
-    fn run<L: Lanes>(self) -> Wide {
-        let ((own, a), (others, b)) = (self.own, self.other);
-        let size = a.size + b.size;
-        let is_usual = size < LARGEST;
-        if !is_usual {
-            return Wide::splat(f64::NEG_INFINITY);
-        }
-        let rounding = ROUNDING * size;
-        let enough = self.enough + rounding;
-        let whole = gap(&a.center, &b.center, a.radius + b.radius);
-        let open = whole.less::<L>(enough);
-        if open == 0 || own.groups.is_empty() || others.groups.is_empty() {
-            return whole - rounding;
-        }
-        // What balls say is all there is to know then.
-        let is_exact = own.is_exact && others.is_exact;
-        a.place_groups(own);
-        b.place_groups(others);
-        let mut least = Wide::splat(f64::INFINITY);
-        for i in 0..own.groups.len() {
-            let radius = own.groups[i].around.radius;
-            let group = gap(&a.groups[i], &b.center, radius + b.radius);
-            if group.less::<L>(enough) & open == 0 {
-                least = group.min(least);
-                continue;
-            }
-            for j in 0..others.groups.len() {
-                let groups = gap(&a.groups[i], &b.groups[j], radius + others.groups[j].around.radius);
-                let mut near = groups;
-                if groups.less::<L>(enough) & open != 0 {
-                    a.place_balls(own, i);
-                    b.place_balls(others, j);
-                    let mut balls = Wide::splat(f64::INFINITY);
-                    for k in own.groups[i].balls.clone() {
-                        for l in others.groups[j].balls.clone() {
-                            let radii = own.balls[k].radius + others.balls[l].radius;
-                            balls = gap(&a.balls[k], &b.balls[l], radii).min(balls);
-                        }
-                    }
-                    near = balls.max(groups);
-                }
-                least = near.min(least);
-            }
-            if !is_exact && least.less::<L>(self.some) & open == open {
-                return whole - rounding;
-            }
-        }
-        least.max(whole) - rounding
+    fn run<D: Doubles>(self) -> Wide {
+        wide_apart_here(self.own, self.other, D::load(&self.enough), D::load(&self.some)).store()
     }
 }
 
@@ -372,11 +324,56 @@ pub fn wide_apart(
 
 /// As [`wide_apart`], for what is compiled for the widest instructions already.
 #[inline(always)]
-pub fn wide_apart_here<L: Lanes>(
-    own: (&Cover, &mut WideCover),
-    other: (&Cover, &mut WideCover),
-    enough: Wide,
-    some: Wide,
-) -> Wide {
-    FromEachOther { own, other, enough, some }.run::<L>()
+pub fn wide_apart_here<D: Doubles>(
+    (own, a): (&Cover, &mut WideCover),
+    (others, b): (&Cover, &mut WideCover),
+    enough: D,
+    some: D,
+) -> D {
+    let size = a.size + b.size;
+    let is_usual = size < LARGEST;
+    if !is_usual {
+        return D::splat(f64::NEG_INFINITY);
+    }
+    let rounding = ROUNDING * size;
+    let enough = enough + rounding;
+    let whole = gap::<D>(&a.center, &b.center, a.radius + b.radius);
+    let open = whole.less(enough);
+    if open == 0 || own.groups.is_empty() || others.groups.is_empty() {
+        return whole - rounding;
+    }
+    // What balls say is all there is to know then.
+    let is_exact = own.is_exact && others.is_exact;
+    a.place_groups::<D>(own);
+    b.place_groups::<D>(others);
+    let mut least = D::splat(f64::INFINITY);
+    for i in 0..own.groups.len() {
+        let radius = own.groups[i].around.radius;
+        let group = gap::<D>(&a.groups[i], &b.center, radius + b.radius);
+        if group.less(enough) & open == 0 {
+            least = group.min(least);
+            continue;
+        }
+        for j in 0..others.groups.len() {
+            let groups = gap::<D>(&a.groups[i], &b.groups[j], radius + others.groups[j].around.radius);
+            let mut near = groups;
+            if groups.less(enough) & open != 0 {
+                a.place_balls::<D>(own, i);
+                b.place_balls::<D>(others, j);
+                let mut balls = D::splat(f64::INFINITY);
+                for k in own.groups[i].balls.clone() {
+                    for l in others.groups[j].balls.clone() {
+                        let radii = own.balls[k].radius + others.balls[l].radius;
+                        balls = gap::<D>(&a.balls[k], &b.balls[l], radii).min(balls);
+                    }
+                }
+                near = balls.max(groups);
+            }
+            least = near.min(least);
+        }
+        if !is_exact && least.less(some) & open == open {
+            return whole - rounding;
+        }
+    }
+    least.max(whole) - rounding
 }

@@ -95,6 +95,8 @@ pub struct RefMesh {
     parts: Vec<(Point3<f64>, f64)>,
     /// If it is a box.
     cuboid: Option<Cuboid>,
+    /// Whether all triangles are single points, with balls around them.
+    is_balls: bool,
 }
 
 impl RefMesh {
@@ -141,6 +143,7 @@ impl RefMesh {
             around_solids: OnceLock::new(),
             parts: Vec::new(),
             cuboid: Cuboid::of(mesh),
+            is_balls: mesh.is_balls(),
         };
         let mut order = std::mem::take(&mut tree.order);
         tree.sort(&mut order, go_on)?;
@@ -420,8 +423,12 @@ impl Search<'_> {
             return distance;
         }
         let [k, l] = near;
-        let triangle_b = self.b.triangle(l, &mut None).map(|p| self.pose_ab * p);
-        let distance = triangle_distance(self.a.triangle(k, &mut None), &triangle_b);
+        let (mut made_a, mut made_b) = (None, None);
+        let (a, b) = (self.a.triangle(k, &mut made_a), self.b.triangle(l, &mut made_b));
+        let distance = match self.a.is_balls && self.b.is_balls {
+            true => (self.pose_ab * b[0] - a[0]).norm(),
+            false => triangle_distance(a, &b.map(|p| self.pose_ab * p)),
+        };
         distance - self.a.rounding(k) - self.b.rounding(l)
     }
 
@@ -434,14 +441,14 @@ impl Search<'_> {
         let (ball_a, ball_b) = (self.a.ball(i, &mut made_a), self.b.ball(j, &mut made_b));
         // From the second ball to the first.
         let way = self.pose_ab * ball_b.center - ball_a.center;
-        // For a ball against a single triangle, the triangle itself is the better bound.
+        // For a ball against a single triangle that is no point, the triangle itself is the better bound.
         let distance = match (ball_a.content, ball_b.content) {
-            (Content::Triangle(k), Content::Parts(_)) => {
+            (Content::Triangle(k), Content::Parts(_)) if !self.a.is_balls => {
                 let triangle = self.a.triangle(k, &mut made);
                 let distance = point_triangle(&(self.pose_ab * ball_b.center), triangle);
                 distance - ball_b.radius - self.a.rounding(k)
             }
-            (Content::Parts(_), Content::Triangle(l)) => {
+            (Content::Parts(_), Content::Triangle(l)) if !self.b.is_balls => {
                 let center = self.pose_ab.inverse_transform_point(&ball_a.center);
                 point_triangle(&center, self.b.triangle(l, &mut made)) - ball_a.radius - self.b.rounding(l)
             }

@@ -18,7 +18,7 @@ impl RefMesh {
     /// Whether it is nothing but [balls](mp_geom::TriMesh::balls).
     #[must_use]
     pub fn is_balls(&self) -> bool {
-        self.mesh.is_balls()
+        self.is_balls
     }
 
     /// A lower bound (m) on the distance of this mesh at `pose` from a ball: that of the box around it. At most 0 where the ball overlaps

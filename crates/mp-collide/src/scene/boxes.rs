@@ -4,8 +4,7 @@ use super::Scene;
 use crate::broad::{self, BroadPhase};
 use crate::cover::{ALL, Contacts, Cover, LARGEST, PlacedCover, ROUNDING, WideCover};
 use mp_geom::Aabb;
-use mp_simd::Lanes;
-use mp_simd::wide::{Wide, WideKernel, on_widest};
+use mp_simd::wide::{Doubles, Wide, WideKernel, load3, on_widest};
 use std::cell::Cell;
 
 impl Scene {
@@ -23,6 +22,7 @@ impl Scene {
             high: center,
             radius: ball.radius + ROUNDING * own,
             most: enough,
+            is_bounded: true,
             near: &mut near,
         });
         let mut bodies = near.iter().filter_map(|index| self.bodies[*index as usize].as_ref());
@@ -51,14 +51,33 @@ impl Scene {
 
     /// As [`wide_apart`](Self::wide_apart), for what is compiled for the widest instructions already.
     #[inline(always)]
-    pub fn wide_apart_here<L: Lanes>(
+    pub fn wide_apart_here<D: Doubles>(
         &self,
         cover: &Cover,
         placed: &mut WideCover,
-        enough: Wide,
-        some: Wide,
-    ) -> (Wide, bool) {
-        FromBodies { scene: self, cover, placed, enough, some }.run::<L>()
+        enough: D,
+        some: D,
+    ) -> (D, bool) {
+        let own = placed.size;
+        // Bodies are no larger. Written so that NaN is refused.
+        let is_usual = own < LARGEST;
+        if !is_usual {
+            return (D::splat(f64::NEG_INFINITY), false);
+        }
+        let (near, least) = self.near_places::<D>(placed, enough.largest() * (1.0 + 1e-9), true);
+        let mut around = near.iter().filter_map(|index| self.bodies[*index as usize].as_ref());
+        let is_tight = cover.is_exact() && around.all(|body| body.around.is_tight());
+        let some = if is_tight { D::splat(f64::NEG_INFINITY) } else { some };
+        let mut least = D::splat(least);
+        for index in &near {
+            let Some(body) = &self.bodies[*index as usize] else { continue };
+            let around = &body.around;
+            let rounding = ROUNDING * (own + around.size());
+            let apart = placed.apart_from(cover, around, enough + rounding, some) - rounding;
+            least = apart.min(least);
+        }
+        placed.near = near;
+        (least, is_tight)
     }
 
     /// Whether a mesh at eight places touches bodies, or is within `kept` (m) of them: at which places it does, and at which balls leave it
@@ -69,25 +88,55 @@ impl Scene {
 
     /// As [`wide_contact`](Self::wide_contact), for what is compiled for the widest instructions already.
     #[inline(always)]
-    pub fn wide_contact_here<L: Lanes>(&self, cover: &Cover, placed: &mut WideCover, kept: f64) -> Contacts {
-        ContactWithBodies { scene: self, cover, placed, kept }.run::<L>()
+    pub fn wide_contact_here<D: Doubles>(
+        &self,
+        cover: &Cover,
+        placed: &mut WideCover,
+        kept: f64,
+    ) -> Contacts {
+        let own = placed.size;
+        // Bodies are no larger. Written so that NaN is refused.
+        let is_usual = own < LARGEST;
+        if !is_usual {
+            return Contacts { touching: 0, open: ALL };
+        }
+        let (near, _) = self.near_places::<D>(placed, kept.max(f64::MIN_POSITIVE) * (1.0 + 1e-9), false);
+        let mut all = Contacts::default();
+        for index in &near {
+            let Some(body) = &self.bodies[*index as usize] else { continue };
+            let rounding = ROUNDING * (own + body.around.size());
+            all.add(placed.contact::<D>(cover, &body.around, kept, rounding));
+            if all.touching != 0 {
+                break;
+            }
+        }
+        placed.near = near;
+        all
     }
 
-    /// The bodies that may be nearer than `most` (m) to a mesh at one of eight places, and a lower bound on the distance of the others.
+    /// The bodies that may be nearer than `most` (m) to a mesh at one of eight places, and, if it `is_bounded`, a lower bound on the distance of
+    /// the others.
     #[inline(always)]
-    fn near_places<L: Lanes>(&self, placed: &mut WideCover, most: f64) -> (Vec<u32>, f64) {
+    fn near_places<D: Doubles>(
+        &self,
+        placed: &mut WideCover,
+        most: f64,
+        is_bounded: bool,
+    ) -> (Vec<u32>, f64) {
         let mut near = std::mem::take(&mut placed.near);
         near.clear();
-        let [x, y, z] = placed.center().map(|x| x.range());
+        let center = load3::<D>(placed.center());
+        let [x, y, z] = three!(k => center[k].range());
         let least = NearBodies {
             scene: self,
             low: [x[0], y[0], z[0]],
             high: [x[1], y[1], z[1]],
             radius: placed.radius() + ROUNDING * placed.size,
             most,
+            is_bounded,
             near: &mut near,
         };
-        let least = least.run::<L>();
+        let least = least.run::<D>();
         (near, least)
     }
 }
@@ -100,14 +149,16 @@ struct NearBodies<'a> {
     high: [f64; 3],
     radius: f64,
     most: f64,
+    /// Whether the bound is asked for.
+    is_bounded: bool,
     near: &'a mut Vec<u32>,
 }
 
 impl WideKernel for NearBodies<'_> {
     type Output = f64;
     #[inline(always)]
-    fn run<L: Lanes>(self) -> f64 {
-        let Self { scene, low, high, radius, most, near } = self;
+    fn run<D: Doubles>(self) -> f64 {
+        let Self { scene, low, high, radius, most, is_bounded, near } = self;
         let mut least = f64::INFINITY;
         for broad in [&scene.fixed, &scene.movable] {
             let Some(list) = broad.few() else {
@@ -116,16 +167,19 @@ impl WideKernel for NearBodies<'_> {
                 continue;
             };
             for eight in list {
-                let bound = eight.distance(&low, &high) - radius - eight.size * ROUNDING;
+                let square = eight.square_distance::<D>(&low, &high);
+                let more = D::load(&eight.size) * ROUNDING + radius;
+                let enough = more + most;
                 // Written so that NaN is near.
-                let far = Wide::splat(most).less::<L>(bound);
+                let far = (enough * enough).less(square);
                 let mut close = eight.taken & !far;
                 while close != 0 {
                     near.push(eight.items[close.trailing_zeros() as usize]);
                     close &= close - 1;
                 }
-                if far != 0 {
-                    let bound = Wide::splat(most).where_less(bound, bound, Wide::splat(f64::INFINITY));
+                if far != 0 && is_bounded {
+                    let bound = square.sqrt() - more;
+                    let bound = (enough * enough).where_less(square, bound, D::splat(f64::INFINITY));
                     least = least.min(bound.range()[0]);
                 }
             }
@@ -166,26 +220,8 @@ struct ContactWithBodies<'a> {
 impl WideKernel for ContactWithBodies<'_> {
     type Output = Contacts;
     #[inline(always)]
-    fn run<L: Lanes>(self) -> Contacts {
-        let Self { scene, cover, placed, kept } = self;
-        let own = placed.size;
-        // Bodies are no larger. Written so that NaN is refused.
-        let is_usual = own < LARGEST;
-        if !is_usual {
-            return Contacts { touching: 0, open: ALL };
-        }
-        let (near, _) = scene.near_places::<L>(placed, kept.max(f64::MIN_POSITIVE) * (1.0 + 1e-9));
-        let mut all = Contacts::default();
-        for index in &near {
-            let Some(body) = &scene.bodies[*index as usize] else { continue };
-            let rounding = ROUNDING * (own + body.around.size());
-            all.add(placed.contact::<L>(cover, &body.around, kept, rounding));
-            if all.touching != 0 {
-                break;
-            }
-        }
-        placed.near = near;
-        all
+    fn run<D: Doubles>(self) -> Contacts {
+        self.scene.wide_contact_here::<D>(self.cover, self.placed, self.kept)
     }
 }
 
@@ -201,28 +237,10 @@ struct FromBodies<'a> {
 impl WideKernel for FromBodies<'_> {
     type Output = (Wide, bool);
     #[inline(always)]
-    fn run<L: Lanes>(self) -> (Wide, bool) {
+    fn run<D: Doubles>(self) -> (Wide, bool) {
         let Self { scene, cover, placed, enough, some } = self;
-        let own = placed.size;
-        // Bodies are no larger. Written so that NaN is refused.
-        let is_usual = own < LARGEST;
-        if !is_usual {
-            return (Wide::splat(f64::NEG_INFINITY), false);
-        }
-        let (near, least) = scene.near_places::<L>(placed, enough.largest() * (1.0 + 1e-9));
-        let mut around = near.iter().filter_map(|index| scene.bodies[*index as usize].as_ref());
-        let is_tight = cover.is_exact() && around.all(|body| body.around.is_tight());
-        let some = if is_tight { Wide::splat(f64::NEG_INFINITY) } else { some };
-        let mut least = Wide::splat(least);
-        for index in &near {
-            let Some(body) = &scene.bodies[*index as usize] else { continue };
-            let around = &body.around;
-            let rounding = ROUNDING * (own + around.size());
-            let apart = placed.apart_from::<L>(cover, around, enough + rounding, some) - rounding;
-            least = apart.min(least);
-        }
-        placed.near = near;
-        (least, is_tight)
+        let (least, is_tight) = scene.wide_apart_here(cover, placed, D::load(&enough), D::load(&some));
+        (least.store(), is_tight)
     }
 }
 
@@ -318,7 +336,7 @@ mod tests {
                         Wide(std::array::from_fn(|lane| all[lane].translation.vector[r]))
                     }),
                 };
-                placed[body].place(&links[body].bounding_sphere(), &frame);
+                placed[body].place::<Wide>(&links[body].bounding_sphere(), &frame);
             }
             for kept in [0.0, 0.05] {
                 for body in 0..3 {

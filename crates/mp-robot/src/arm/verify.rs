@@ -144,18 +144,23 @@ where
         self.parts
     }
 
-    /// How far each coordinate and the base go between two configurations. Continuous joints turn by the shorter way.
-    fn travels(&self, a: &C::State, b: &C::State) -> Travels {
-        let (base_a, a) = a.as_slice().split_at(self.tree.pose);
-        let (base_b, b) = b.as_slice().split_at(self.tree.pose);
+    /// How far at most each coordinate and the base are from the configuration in the middle between these two. Continuous joints turn by the
+    /// shorter way.
+    fn travels(&self, middle: &C::State, ends: [&C::State; 2]) -> Travels {
+        let pose = self.tree.pose;
+        let (base, joints) = middle.as_slice().split_at(pose);
         let travel = |(i, endless): (usize, &bool)| {
-            let d = (b[i] - a[i]).abs();
-            if *endless && d > PI { (d % TAU).min(TAU - d % TAU) } else { d }
+            let [before, after] = ends.map(|end| {
+                let d = (end.as_slice()[pose + i] - joints[i]).abs();
+                if *endless && d > PI { (d % TAU).min(TAU - d % TAU) } else { d }
+            });
+            before.max(after)
         };
-        Travels {
-            joints: self.tree.coordinates.iter().enumerate().map(travel).collect(),
-            base: (self.tree.pose > 0).then(|| base_travel(base_a, base_b)),
-        }
+        let base = (pose > 0).then(|| {
+            let [[slide, turn], [s, t]] = ends.map(|end| base_travel(base, &end.as_slice()[..pose]));
+            [slide.max(s), turn.max(t)]
+        });
+        Travels { joints: self.tree.coordinates.iter().enumerate().map(travel).collect(), base }
     }
 
     /// The clearance (m) that the two of a pair keep.
@@ -268,8 +273,8 @@ where
                 return MotionCheck::Unproven { at };
             }
             let [qa, qm, qb] = [a, at, b].map(|t| self.space.interpolate(from, to, t));
-            let (before, after) = (self.travels(&qa, &qm), self.travels(&qm, &qb));
-            let near = match self.part(&qm, &before.max(&after), &pairs, &mut placed, &mut least) {
+            let travels = self.travels(&qm, [&qa, &qb]);
+            let near = match self.part(&qm, &travels, &pairs, &mut placed, &mut least) {
                 PartCheck::Apart => continue,
                 PartCheck::Near(near) => near,
                 PartCheck::Collision => return MotionCheck::Collision { at },

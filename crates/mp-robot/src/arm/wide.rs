@@ -8,10 +8,11 @@ use super::robot::{LinkBody, SharedArm};
 use super::travel::{Chain, ROUND_UP};
 use mp_collide::{Contacts, Scene, WideCover, wide_apart, wide_apart_here, wide_within_here};
 use mp_cspace::{Coordinates, MotionInterval};
-use mp_simd::Lanes;
-use mp_simd::wide::{LANES, Wide, Wide3, WideFrame, WideKernel, add, cross, dot, on_widest, sub};
+use mp_simd::wide::{
+    Doubles, Frames, LANES, Wide, Wide3, WideFrame, WideKernel, add, cross, dot, load3, on_widest, sin_cos,
+    store3, sub,
+};
 use nalgebra::{Isometry3, Matrix3};
-use std::ops::Add;
 
 /// A bound by covers that is at least this part of what is enough is used as it is: it proves a part of the interval, and the exact distance
 /// would take longer than the intervals that it saves.
@@ -172,8 +173,7 @@ impl WideIntervals {
         self.set_values(robot, count);
         self.open.clear();
         let Self { values, frames, covers, open, .. } = self;
-        let place = PlaceCovers { robot, values, frames, covers };
-        on_widest(Within { place, scene, kept, apart, open, asked: (1 << count) - 1 })
+        on_widest(Within { robot, values, frames, covers, scene, kept, apart, open, asked: (1 << count) - 1 })
     }
 
     /// The frame of the base, and the values of the joints, at the first `count` of `middles`, at least one.
@@ -210,7 +210,8 @@ impl WideIntervals {
     }
 
     fn near_pairs(&self, robot: &SharedArm, p: usize) -> Wide {
-        of_pair(robot, p, &self.near)
+        let [a, b] = of_pair(robot, p, &self.near);
+        *a + *b
     }
 
     /// How far to either side of its middle interval `k` is shown free by bounds that covers give alone, as a fraction of the motion; `None`
@@ -284,17 +285,17 @@ impl WideIntervals {
 
 /// What is enough, and what is of use at least, where bodies move as far as `near`.
 #[inline(always)]
-fn enough(near: Wide, margin: f64) -> [Wide; 2] {
-    let enough = near.max(Wide::splat(margin)) + margin;
-    [enough, (enough * COARSE).max(Wide::splat(LEAST * margin))]
+fn enough<D: Doubles>(near: D, margin: f64) -> [D; 2] {
+    let enough = near.max(D::splat(margin)) + margin;
+    [enough, (enough * COARSE).max(D::splat(LEAST * margin))]
 }
 
-/// The sum of what there is for the two bodies of a pair.
+/// What there is for the two bodies of a pair.
 #[inline(always)]
-fn of_pair<T: Copy + Add<Output = T>>(robot: &SharedArm, p: usize, all: &[T]) -> T {
+fn of_pair<'a, T>(robot: &SharedArm, p: usize, all: &'a [T]) -> [&'a T; 2] {
     let pair = &robot.pairs[p];
     let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
-    all[a.first + pair.steps[0]] + all[b.first + pair.steps[1]]
+    [&all[a.first + pair.steps[0]], &all[b.first + pair.steps[1]]]
 }
 
 /// The parts of eight intervals that covers show free: link by link and pair by pair, as `ProvenPart` of one interval.
@@ -322,20 +323,20 @@ impl ProvenParts {
     /// Adds lower bounds on the distance of one link or pair, which moves by at most `near` over half the intervals, and by at most `far` over
     /// the motion. A bound that is at least `least` margins is used however little it proves.
     #[inline(always)]
-    fn add<L: Lanes>(&mut self, near: Wide, far: f64, known: Wide, least: Option<f64>) {
-        let margin = self.margin;
+    fn add<D: Doubles>(&mut self, near: D, far: f64, known: D, least: Option<f64>) {
+        let (margin, halves, part) = (self.margin, D::load(&self.halves), D::load(&self.part));
         // No more than what earlier links and pairs allow.
-        let wanted = self.halves.min(self.part);
-        let near = near * (wanted / self.halves);
+        let wanted = halves.min(part);
+        let near = near * (wanted / halves);
         let [enough, some] = enough(near, margin);
-        let some = least.map_or(some, |least| Wide::splat(least * margin)).min(enough);
+        let some = least.map_or(some, |least| D::splat(least * margin)).min(enough);
         // Written so that NaN is open.
-        self.open |= !some.less::<L>(known);
+        self.open |= !some.less(known);
         // 0/0 where nothing moves: free all along.
         if far > 0.0 {
             let beyond = known - margin;
-            let (all, some) = (wanted.max(beyond / Wide::splat(far)), wanted * beyond / near);
-            self.part = self.part.min(known.where_less(near + margin, some, all));
+            let (all, some) = (wanted.max(beyond / D::splat(far)), wanted * beyond / near);
+            self.part = part.min(known.where_less(near + margin, some, all)).store();
         }
     }
 }
@@ -360,7 +361,7 @@ struct Proving<'a> {
 impl WideKernel for Proving<'_> {
     type Output = ();
     #[inline(always)]
-    fn run<L: Lanes>(self) {
+    fn run<D: Doubles>(self) {
         let Self { robot, scene, kept, covers, links, pairs, proven, near, far, by_base, base, lane } = self;
         let floats = robot.kinematics.floats();
         while proven.links < robot.bodies.len() && proven.open & lane == 0 {
@@ -370,35 +371,37 @@ impl WideKernel for Proving<'_> {
             if !floats && body.frame == 0 {
                 continue;
             }
-            let near = near[body.last()] + by_base[i];
+            let near = D::load(&near[body.last()]) + D::load(&by_base[i]);
             let far = far[body.last()] + base.far(body.chain.from_base);
-            let (known, is_tight) = match links[i] {
-                Some(known) => known,
+            let (known, is_tight) = match &links[i] {
+                Some((known, is_tight)) => (D::load(known), *is_tight),
                 None => {
                     let [enough, some] = enough(near, proven.margin).map(|distance| distance + kept);
-                    scene.wide_apart_here::<L>(&body.cover, &mut covers[i], enough, some)
+                    scene.wide_apart_here::<D>(&body.cover, &mut covers[i], enough, some)
                 }
             };
-            links[i] = Some((known, is_tight));
-            proven.add::<L>(near, far, known - kept, is_tight.then_some(LEAST));
+            links[i] = Some((known.store(), is_tight));
+            proven.add::<D>(near, far, known - kept, is_tight.then_some(LEAST));
         }
         while proven.pairs < robot.pairs.len() && proven.open & lane == 0 {
             let p = proven.pairs;
             proven.pairs += 1;
-            let near = of_pair(robot, p, near);
+            let [near_a, near_b] = of_pair(robot, p, near);
+            let near = D::load(near_a) + D::load(near_b);
             let bodies = robot.pairs[p].bodies;
             let [a, b] = bodies.map(|i| &robot.bodies[i].cover);
-            let known = match (pairs[p], covers.get_disjoint_mut(bodies)) {
-                (Some(known), _) => known,
+            let known = match (&pairs[p], covers.get_disjoint_mut(bodies)) {
+                (Some(known), _) => D::load(known),
                 (None, Ok([at_a, at_b])) => {
                     let [enough, some] = enough(near, proven.margin);
-                    wide_apart_here::<L>((a, at_a), (b, at_b), enough, some)
+                    wide_apart_here::<D>((a, at_a), (b, at_b), enough, some)
                 }
-                (None, Err(_)) => Wide::splat(f64::NEG_INFINITY),
+                (None, Err(_)) => D::splat(f64::NEG_INFINITY),
             };
-            pairs[p] = Some(known);
+            pairs[p] = Some(known.store());
             let is_known = a.is_exact() && b.is_exact();
-            proven.add::<L>(near, of_pair(robot, p, far), known, is_known.then_some(2.0));
+            let [far_a, far_b] = of_pair(robot, p, far);
+            proven.add::<D>(near, far_a + far_b, known, is_known.then_some(2.0));
         }
     }
 }
@@ -414,30 +417,12 @@ fn wide_frame(poses: &[Isometry3<f64>; LANES]) -> WideFrame {
     }
 }
 
-/// Places links.
-struct PlaceCovers<'a> {
+/// Places links, and finds where they are within a distance of obstacles or of each other.
+struct Within<'a> {
     robot: &'a SharedArm,
     values: &'a [Wide],
     frames: &'a mut Vec<WideFrame>,
     covers: &'a mut [WideCover],
-}
-
-impl PlaceCovers<'_> {
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let joints = self.robot.kinematics.frames.iter().zip(&self.robot.turns);
-        for ((joint, turns), value) in joints.zip(self.values) {
-            self.frames.push(moved::<L>(&self.frames[joint.parent], joint, turns, *value));
-        }
-        for (body, cover) in self.robot.bodies.iter().zip(self.covers) {
-            cover.place(&body.ball, &self.frames[body.frame]);
-        }
-    }
-}
-
-/// Places links, and finds where they are within a distance of obstacles or of each other.
-struct Within<'a> {
-    place: PlaceCovers<'a>,
     scene: &'a Scene,
     kept: f64,
     apart: f64,
@@ -448,10 +433,12 @@ struct Within<'a> {
 impl WideKernel for Within<'_> {
     type Output = Contacts;
     #[inline(always)]
-    fn run<L: Lanes>(self) -> Contacts {
-        let Self { place, scene, kept, apart, open, asked } = self;
-        let PlaceCovers { robot, values, frames, covers } = place;
-        PlaceCovers { robot, values, frames, covers: &mut *covers }.run::<L>();
+    fn run<D: Doubles>(self) -> Contacts {
+        let Self { robot, values, frames, covers, scene, kept, apart, open, asked } = self;
+        for ((joint, turns), value) in robot.kinematics.frames.iter().zip(&robot.turns).zip(values) {
+            let frame = moved::<D>(&frames[joint.parent], joint, turns, value);
+            frames.push(frame.store());
+        }
         let mut all = Contacts::default();
         let mut add = |part: Part, found: Contacts| {
             let found = Contacts { touching: found.touching & asked, open: found.open & asked };
@@ -461,15 +448,19 @@ impl WideKernel for Within<'_> {
             all.add(found);
             all.touching != 0
         };
-        for (i, body) in robot.numbered_moving() {
-            if add(Part::Link(i), scene.wide_contact_here::<L>(&body.cover, &mut covers[i], kept)) {
+        // In the order of `numbered_moving`. As a rule the first links touch where any do: the others are not placed before.
+        let floats = robot.kinematics.floats();
+        for (i, body) in robot.bodies.iter().enumerate().rev() {
+            covers[i].place::<D>(&body.ball, &frames[body.frame]);
+            let moves = floats || body.frame > 0;
+            if moves && add(Part::Link(i), scene.wide_contact_here::<D>(&body.cover, &mut covers[i], kept)) {
                 return all;
             }
         }
         for (p, pair) in robot.pairs.iter().enumerate() {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i].cover);
             let found = match covers.get_disjoint_mut(pair.bodies) {
-                Ok([at_a, at_b]) => wide_within_here::<L>((a, at_a), (b, at_b), apart),
+                Ok([at_a, at_b]) => wide_within_here::<D>((a, at_a), (b, at_b), apart),
                 Err(_) => Contacts { touching: 0, open: asked },
             };
             if add(Part::Pair(p), found) {
@@ -497,42 +488,37 @@ struct Place<'a> {
 impl WideKernel for Place<'_> {
     type Output = ();
     #[inline(always)]
-    fn run<L: Lanes>(mut self) {
+    fn run<D: Doubles>(mut self) {
         let joints = self.robot.kinematics.frames.iter().zip(&self.robot.turns);
         for ((joint, turns), value) in joints.zip(self.values) {
-            let parent = self.frames[joint.parent];
-            let frame = moved::<L>(&parent, joint, turns, *value);
+            let frame = moved::<D>(&self.frames[joint.parent], joint, turns, value);
             let axis = joint.axis.as_ref();
-            self.axes.push(frame.vector(&[axis.x, axis.y, axis.z]));
-            self.frames.push(frame);
+            self.axes.push(store3(frame.vector(&[axis.x, axis.y, axis.z])));
+            self.frames.push(frame.store());
         }
         for (i, body) in self.robot.bodies.iter().enumerate() {
-            self.covers[i].place(&body.ball, &self.frames[body.frame]);
-            let by_joints = self.near(&body.chain, i);
+            self.covers[i].place::<D>(&body.ball, &self.frames[body.frame]);
+            let by_joints = self.near::<D>(&body.chain, i);
             let cover = &self.covers[i];
             let base = &self.base;
             let by_base = match base.is_still() {
-                true => Wide::splat(0.0),
+                true => D::splat(0.0),
                 false => {
                     let from_axis = match base.turn > 0.0 {
                         true => {
-                            let axis: Wide3 = [
-                                Wide::splat(base.axis.x),
-                                Wide::splat(base.axis.y),
-                                Wide::splat(base.axis.z),
-                            ];
-                            let d = sub(cover.center(), &self.frames[0].origin);
+                            let axis = base.axis;
+                            let axis = [D::splat(axis.x), D::splat(axis.y), D::splat(axis.z)];
+                            let d = sub(&load3(cover.center()), &load3(&self.frames[0].origin));
                             let v = cross(&d, &axis);
                             dot(&v, &v).sqrt() * (1.0 / base.turn)
                         }
-                        false => Wide::splat(0.0),
+                        false => D::splat(0.0),
                     };
-                    let reach =
-                        (from_axis + by_joints + cover.radius()).min(Wide::splat(body.chain.from_base));
-                    self.halves * (reach * base.turn + base.slide) * ROUND_UP
+                    let reach = (from_axis + by_joints + cover.radius()).min(D::splat(body.chain.from_base));
+                    D::load(&self.halves) * (reach * base.turn + base.slide) * ROUND_UP
                 }
             };
-            self.by_base.push(by_base);
+            self.by_base.push(by_base.store());
         }
     }
 }
@@ -549,11 +535,11 @@ impl Place<'_> {
     /// that turns by `u` over the motion adds at most `2·u·s` (Coriolis) and `u²·r` (centripetal) to the acceleration of a point at most `r`
     /// from its axis, which the joints nearer to the body move at a speed of at most `s`.
     #[inline(always)]
-    fn near(&mut self, chain: &Chain, i: usize) -> Wide {
-        let (center, radius) = (*self.covers[i].center(), self.covers[i].radius());
-        let zero = Wide::splat(0.0);
+    fn near<D: Doubles>(&mut self, chain: &Chain, i: usize) -> D {
+        let (center, radius) = (load3::<D>(self.covers[i].center()), self.covers[i].radius());
+        let (halves, zero) = (D::load(&self.halves), D::splat(0.0));
         let mut sum = zero;
-        self.near.push(sum);
+        self.near.push(sum.store());
         // Of the ball, in the middle of the interval. The unit of time is the whole motion.
         let (mut velocity, mut angular) = ([zero; 3], [zero; 3]);
         // Bounds for every point, all over the interval.
@@ -562,15 +548,15 @@ impl Place<'_> {
             let rate =
                 self.displacements[step.coordinate] * self.robot.kinematics.frames[step.frame - 1].scale;
             if rate != 0.0 {
-                let (axis, by) = (self.axes[step.frame - 1], rate.abs());
+                let (axis, by) = (load3::<D>(&self.axes[step.frame - 1]), rate.abs());
                 let reach = if step.slides {
                     velocity = add(&velocity, &axis, rate);
-                    Wide::splat(1.0)
+                    D::splat(1.0)
                 } else {
-                    let across = cross(&axis, &sub(&center, &self.frames[step.frame].origin));
+                    let across = cross(&axis, &sub(&center, &load3(&self.frames[step.frame].origin)));
                     velocity = add(&velocity, &across, rate);
                     angular = add(&angular, &axis, rate);
-                    (dot(&across, &across).sqrt() + radius + sum).min(Wide::splat(step.reach))
+                    (dot(&across, &across).sqrt() + radius + sum).min(D::splat(step.reach))
                 };
                 let own = reach * by;
                 if !step.slides {
@@ -579,10 +565,10 @@ impl Place<'_> {
                 speed = speed + own;
                 let in_middle = dot(&velocity, &velocity).sqrt() + dot(&angular, &angular).sqrt() * radius;
                 // Velocities that cancel leave the rounding of their parts.
-                let curved = in_middle + self.halves * acceleration * 0.5 + speed * (ROUND_UP - 1.0);
-                sum = (sum + self.halves * own * ROUND_UP).min(self.halves * curved * ROUND_UP);
+                let curved = in_middle + halves * acceleration * 0.5 + speed * (ROUND_UP - 1.0);
+                sum = (sum + halves * own * ROUND_UP).min(halves * curved * ROUND_UP);
             }
-            self.near.push(sum);
+            self.near.push(sum.store());
         }
         sum
     }
@@ -615,7 +601,8 @@ impl Turns {
 
 /// The frame behind a joint.
 #[inline(always)]
-fn moved<L: Lanes>(parent: &WideFrame, joint: &JointFrame, turns: &Turns, value: Wide) -> WideFrame {
+fn moved<D: Doubles>(parent: &WideFrame, joint: &JointFrame, turns: &Turns, value: &Wide) -> Frames<D> {
+    let (parent, value) = (Frames::<D>::load(parent), D::load(value));
     let t = joint.origin.translation.vector;
     let (mut origin, mut turn) = (parent.point(&[t.x, t.y, t.z]), parent.turn);
     if joint.slides {
@@ -630,11 +617,11 @@ fn moved<L: Lanes>(parent: &WideFrame, joint: &JointFrame, turns: &Turns, value:
             let along = turn[r][0] * axis.x + turn[r][1] * axis.y + turn[r][2] * axis.z;
             origin[r] = origin[r] + along * value;
         }
-        return WideFrame { turn, origin };
+        return Frames { turn, origin };
     }
-    let [sin, cos] = value.sin_cos::<L>();
+    let [sin, cos] = sin_cos(value);
     for c in 0..3 {
-        let mut m = [Wide::splat(0.0); 3];
+        let mut m = [D::splat(0.0); 3];
         for r in 0..3 {
             m[r] = cos * turns.cos[(r, c)] + sin * turns.sin[(r, c)] + turns.still[(r, c)];
         }
@@ -643,7 +630,7 @@ fn moved<L: Lanes>(parent: &WideFrame, joint: &JointFrame, turns: &Turns, value:
             turn[r][c] = row[0] * m[0] + row[1] * m[1] + row[2] * m[2];
         }
     }
-    WideFrame { turn, origin }
+    Frames { turn, origin }
 }
 
 #[cfg(test)]

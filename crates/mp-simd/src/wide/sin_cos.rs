@@ -1,7 +1,6 @@
 //! Sines and cosines of eight angles, with the bits of [`mp_math::sin_cos`].
 
-use super::{LANES, Wide};
-use crate::Lanes;
+use super::{Doubles, LANES, Wide};
 use std::f64::consts::FRAC_2_PI;
 
 /// The polynomials of fdlibm for the sine and the cosine between −π/4 and π/4 (S. Moshier and K. C. Ng), each by falling powers.
@@ -21,7 +20,7 @@ const COS: [f64; 6] = [
     -0.001_388_888_888_887_411,
     0.041_666_666_666_666_6,
 ];
-/// Added and taken away again it rounds to an integer, the last bits of which are those of the sum.
+/// Added and taken away again it rounds to an integer.
 const TO_INTEGER: f64 = 6_755_399_441_055_744.0;
 /// π/2 in two parts: products of the first with small integers are exact.
 const QUARTER: [f64; 2] = [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11];
@@ -29,72 +28,69 @@ const QUARTER: [f64; 2] = [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11];
 const LARGEST: f64 = 50.0;
 const REST: [f64; 2] = [2e-3, 0.785];
 
-macro_rules! bits {
-    ($i:ident => $value:expr) => {{
-        let mut out = [0_u64; LANES];
-        let mut $i = 0;
-        while $i < LANES {
-            out[$i] = $value;
-            $i += 1;
-        }
-        out
-    }};
+/// The nearest integers.
+#[inline(always)]
+fn round<D: Doubles>(x: D) -> D {
+    (x + TO_INTEGER) - TO_INTEGER
 }
 
-impl Wide {
-    /// Sines and cosines of angles in radians, each with the bits of [`mp_math::sin_cos`].
-    #[inline(always)]
-    #[must_use]
-    pub fn sin_cos<L: Lanes>(self) -> [Self; 2] {
-        let shifted = self * FRAC_2_PI + TO_INTEGER;
-        let turns = shifted - TO_INTEGER;
-        // The rest of the angle, in two parts.
-        let (near, little) = (self - turns * QUARTER[0], turns * QUARTER[1]);
-        let x = near - little;
-        let y = (near - x) - little;
-        let z = x * x;
-        let w = z * z;
-        let [s6, s5, s4, s3, s2, s1] = SIN;
-        let (cube, r) = (z * x, (z * s4 + s3) * z + s2 + z * w * (z * s6 + s5));
-        let whole = x + cube * (z * r + s1);
-        let rest = x - ((z * (y * 0.5 - cube * r) - y) - cube * s1);
-        let [c6, c5, c4, c3, c2, c1] = COS;
-        let r = z * ((z * c3 + c2) * z + c1) + w * w * ((z * c6 + c5) * z + c4);
-        let half = z * 0.5;
-        let one = Self::splat(1.0);
-        let base = one - half;
-        let cos = base + (((one - base) - half) + (z * r - x * y));
-        let quarter = bits!(i => shifted.0[i].to_bits() & 3);
-        // Without a turn the second part is zero, and fdlibm leaves it out.
-        let sin = lanes!(i => if turns.0[i] == 0.0 { whole.0[i] } else { rest.0[i] });
-        let [sin, cos] = [
-            bits!(i => (if quarter[i] & 1 == 0 { sin.0[i] } else { cos.0[i] }).to_bits() ^ (quarter[i] & 2) << 62),
-            bits!(i => (if quarter[i] & 1 == 0 { cos.0[i] } else { sin.0[i] }).to_bits() ^ ((quarter[i] + 1) & 2) << 62),
-        ]
-        .map(|all| lanes!(i => f64::from_bits(all[i])));
-        let (least, most) = (Self::splat(REST[0]), Self::splat(REST[1]));
-        let (size, angle) = (x.abs(), self.abs());
-        // Written so that NaN is not in lanes.
-        let in_lanes = size.less::<L>(most) & least.less::<L>(size) & angle.less::<L>(Self::splat(LARGEST));
-        if in_lanes == (1 << LANES) - 1 { [sin, cos] } else { self.alone([sin, cos], in_lanes) }
+/// Sines and cosines of angles in radians, each with the bits of [`mp_math::sin_cos`].
+#[inline(always)]
+#[must_use]
+pub fn sin_cos<D: Doubles>(angles: D) -> [D; 2] {
+    let turns = round(angles * FRAC_2_PI);
+    // The rest of the angle, in two parts.
+    let (near, little) = (angles - turns * QUARTER[0], turns * QUARTER[1]);
+    let x = near - little;
+    let y = (near - x) - little;
+    let z = x * x;
+    let w = z * z;
+    let [s6, s5, s4, s3, s2, s1] = SIN;
+    let (cube, r) = (z * x, (z * s4 + s3) * z + s2 + z * w * (z * s6 + s5));
+    let whole = x + cube * (z * r + s1);
+    let rest = x - ((z * (y * 0.5 - cube * r) - y) - cube * s1);
+    let [c6, c5, c4, c3, c2, c1] = COS;
+    let r = z * ((z * c3 + c2) * z + c1) + w * w * ((z * c6 + c5) * z + c4);
+    let half = z * 0.5;
+    let (one, other) = (D::splat(1.0), D::splat(-1.0));
+    let base = one - half;
+    let cos = base + (((one - base) - half) + (z * r - x * y));
+    // Without a turn the second part is zero, and fdlibm leaves it out.
+    let middle = D::splat(0.5);
+    let sin = turns.abs().where_less(middle, whole, rest);
+    // Of the quarters of a turn what is left by whole and by half turns: -2 to 2, and -1 to 1.
+    let left = turns - round(turns * 0.25) * 4.0;
+    let odd = (turns - round(turns * 0.5) * 2.0).abs();
+    let [sin, cos] = [middle.where_less(odd, cos, sin), middle.where_less(odd, sin, cos)];
+    let below = left.where_less(D::splat(-0.5), other, D::splat(1.5).where_less(left, other, one));
+    let behind = left.where_less(D::splat(-1.5), other, middle.where_less(left, other, one));
+    let [sin, cos] = [sin * below, cos * behind];
+    let (least, most) = (D::splat(REST[0]), D::splat(REST[1]));
+    let (size, angle) = (x.abs(), angles.abs());
+    // Written so that NaN is not in lanes.
+    let in_lanes = size.less(most) & least.less(size) & angle.less(D::splat(LARGEST));
+    if in_lanes == (1 << LANES) - 1 {
+        return [sin, cos];
     }
+    let [sin, cos] = alone(&angles.store(), [sin.store(), cos.store()], in_lanes);
+    [D::load(&sin), D::load(&cos)]
+}
 
-    /// With what cannot be computed in lanes.
-    #[cold]
-    #[inline(never)]
-    fn alone(self, [mut sin, mut cos]: [Self; 2], in_lanes: u32) -> [Self; 2] {
-        for i in (0..LANES).filter(|i| in_lanes >> i & 1 == 0) {
-            (sin.0[i], cos.0[i]) = mp_math::sin_cos(self.0[i]);
-        }
-        [sin, cos]
+/// With what cannot be computed in lanes.
+#[cold]
+#[inline(never)]
+fn alone(angles: &Wide, [mut sin, mut cos]: [Wide; 2], in_lanes: u32) -> [Wide; 2] {
+    for i in (0..LANES).filter(|i| in_lanes >> i & 1 == 0) {
+        (sin.0[i], cos.0[i]) = mp_math::sin_cos(angles.0[i]);
     }
+    [sin, cos]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wide::{AnyLanes, WideKernel};
-    use crate::{Isa, run};
+    use crate::wide::WideKernel;
+    use crate::{Isa, run_wide};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
@@ -103,8 +99,8 @@ mod tests {
     impl WideKernel for SinCos {
         type Output = [Wide; 2];
         #[inline(always)]
-        fn run<L: Lanes>(self) -> [Wide; 2] {
-            self.0.sin_cos::<L>()
+        fn run<D: Doubles>(self) -> [Wide; 2] {
+            sin_cos(D::load(&self.0)).map(D::store)
         }
     }
 
@@ -126,7 +122,7 @@ mod tests {
             let angles = Wide(std::array::from_fn(&mut angle));
             let expected = angles.0.map(mp_math::sin_cos).map(|(sin, cos)| [sin, cos].map(f64::to_bits));
             for isa in Isa::available() {
-                let [sin, cos] = run(isa, AnyLanes(SinCos(angles)));
+                let [sin, cos] = run_wide(isa, SinCos(angles));
                 for (i, expected) in expected.iter().enumerate() {
                     let found = [sin.0[i], cos.0[i]];
                     let is_none = found.iter().chain(&expected.map(f64::from_bits)).all(|x| x.is_nan());

@@ -31,12 +31,12 @@ pub(super) struct ReferenceLink {
     depth: usize,
     origin: Matrix4<f64>,
     axis: Vector3<f64>,
+    /// What multiplies the sine of a turn about the axis, and one less its cosine.
+    turn: [Matrix3<f64>; 2],
     motion: JointMotion,
     /// The value of the joint: coordinate, factor, offset.
     value: (usize, f64, f64),
     pub(super) mesh: Option<RefMesh>,
-    /// The largest distance of a point of its mesh from its origin.
-    radius: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,6 +98,8 @@ impl ReferenceArm {
                     continue;
                 }
                 let mesh = TriMesh::merged(&link.shapes);
+                let axis = joint.map_or_else(Vector3::x, |j| j.axis.normalize());
+                let across = axis.cross_matrix();
                 let motion = match joint.map(|j| j.kind) {
                     None | Some(JointKind::Fixed) => JointMotion::Fixed,
                     Some(JointKind::Prismatic { .. }) => JointMotion::Slides,
@@ -109,14 +111,10 @@ impl ReferenceArm {
                     parent,
                     depth: parent.map_or(0, |p| tree.links[p].depth + 1),
                     origin: joint.map_or_else(Matrix4::identity, |j| j.origin.to_homogeneous()),
-                    axis: joint.map_or_else(Vector3::x, |j| j.axis.normalize()),
+                    axis,
+                    turn: [across, across * across],
                     motion,
                     value: joint.map_or((0, 0.0, 0.0), |j| value(&j.name)),
-                    radius: mesh
-                        .iter()
-                        .flat_map(|m| m.vertices())
-                        .map(|p| p.coords.norm())
-                        .fold(0.0, f64::max),
                     mesh: mesh.as_ref().map(&mut make).transpose()?,
                 });
             }
@@ -144,14 +142,14 @@ impl ReferenceArm {
 
     /// Places the links.
     pub(super) fn place(&self, q: &[f64], placed: &mut Placement) {
-        let Placement { matrices: out, frames } = placed;
+        let Placement { matrices: out, frames, axes, balls } = placed;
         out.clear();
         let (pose, q) = q.split_at(self.pose);
         let base = if self.pose == 0 { self.base } else { base_matrix(pose) };
         for link in &self.links {
             let above = link.parent.map_or(base, |p| out[p]);
             let value = q[link.value.0] * link.value.1 + link.value.2;
-            let still = above * link.origin;
+            let still = compose(&above, &link.origin);
             if link.motion == JointMotion::Fixed {
                 out.push(still);
                 continue;
@@ -160,27 +158,39 @@ impl ReferenceArm {
             if link.motion == JointMotion::Slides {
                 motion.fixed_view_mut::<3, 1>(0, 3).copy_from(&(link.axis * value));
             } else {
-                let across = link.axis.cross_matrix();
                 let (sin, cos) = mp_math::sin_cos(value);
-                let turn = Matrix3::identity() + across * sin + across * across * (1.0 - cos);
+                let turn = Matrix3::identity() + link.turn[0] * sin + link.turn[1] * (1.0 - cos);
                 motion.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
             }
-            out.push(still * motion);
+            out.push(compose(&still, &motion));
         }
+        let turned = |m: &Matrix4<f64>, v: &Vector3<f64>| m.fixed_view::<3, 3>(0, 0) * v;
+        axes.clear();
+        axes.extend(self.links.iter().zip(&*out).map(|(link, matrix)| turned(matrix, &link.axis)));
         frames.clear();
         // Only links with meshes are asked for.
         let frame = |(link, matrix): (&ReferenceLink, _)| {
             link.mesh.as_ref().map_or_else(Isometry3::identity, |_| isometry(matrix))
         };
         frames.extend(self.links.iter().zip(&*out).map(frame));
+        balls.clear();
+        let ball = |(link, matrix): (&ReferenceLink, &Matrix4<f64>)| match &link.mesh {
+            Some(mesh) => {
+                let (center, radius) = mesh.around();
+                (turned(matrix, &center.coords) + origin(matrix), radius)
+            }
+            None => (origin(matrix), 0.0),
+        };
+        balls.extend(self.links.iter().zip(&*out).map(ball));
     }
 
     /// An upper bound (m) on how far the joints below the link `stop` move a point of `link` relative to `stop` (all joints
     /// when it is `None`), while every coordinate goes as far as `travels` says and the links start where they are `placed`.
     ///
-    /// A joint that turns by w moves a point no farther than w times its distance from the origin of the joint.
-    /// That distance is at most the one where they are placed plus how far the joints nearer to the link have moved the point. A base
-    /// that floats is one more such joint above the root, for pairs that do not `stop` below it.
+    /// A joint that turns by w moves a point no farther than w times its distance from the axis of the joint.
+    /// That distance is at most the one where they are placed plus how far the joints nearer to the link have moved the point; of all points
+    /// of the link it is no more than that of the ball around them. A base that floats turns about any axis through the root, as one more
+    /// joint above it, for pairs that do not `stop` below it.
     pub(super) fn travel(
         &self,
         link: usize,
@@ -188,9 +198,8 @@ impl ReferenceArm {
         travels: &Travels,
         placed: &Placement,
     ) -> f64 {
-        let origin = |i: usize| Vector3::from(placed.matrices[i].fixed_view::<3, 1>(0, 3));
         let Travels { joints: travels, base } = travels;
-        let tip = origin(link);
+        let (center, radius) = placed.balls[link];
         let mut moved = 0.0;
         let mut at = Some(link);
         while at != stop {
@@ -201,7 +210,8 @@ impl ReferenceArm {
                 JointMotion::Fixed => {}
                 JointMotion::Slides => moved += travel,
                 JointMotion::Turns => {
-                    let now = (tip - origin(i)).norm() + self.links[link].radius;
+                    let arm = center - origin(&placed.matrices[i]);
+                    let now = arm.cross(&placed.axes[i]).norm() + radius + ROUNDING * arm.amax();
                     moved += travel * (now + moved);
                 }
             }
@@ -210,7 +220,7 @@ impl ReferenceArm {
         if let (None, Some([slide, turn])) = (stop, base)
             && let Some(root) = self.above(link).last()
         {
-            let now = (tip - origin(*root)).norm() + self.links[link].radius;
+            let now = (center - origin(&placed.matrices[*root])).norm() + radius;
             moved += turn * (now + moved) + slide;
         }
         // Enlarged against rounding.
@@ -236,6 +246,29 @@ pub(super) struct Placement {
     matrices: Vec<Matrix4<f64>>,
     /// The same for links with meshes.
     pub(super) frames: Vec<Isometry3<f64>>,
+    /// The axes of the joints above them.
+    axes: Vec<Vector3<f64>>,
+    /// The balls around their meshes.
+    balls: Vec<(Vector3<f64>, f64)>,
+}
+
+/// More than the rounding of a distance from an axis, as a part of coordinates.
+const ROUNDING: f64 = 1e-12;
+
+fn origin(m: &Matrix4<f64>) -> Vector3<f64> {
+    m.fixed_view::<3, 1>(0, 3).into_owned()
+}
+
+/// The product of two homogeneous matrices, of which the last rows are 0, 0, 0, 1.
+fn compose(a: &Matrix4<f64>, b: &Matrix4<f64>) -> Matrix4<f64> {
+    let mut product = Matrix4::identity();
+    for c in 0..4 {
+        for r in 0..3 {
+            let turned = a[(r, 0)] * b[(0, c)] + a[(r, 1)] * b[(1, c)] + a[(r, 2)] * b[(2, c)];
+            product[(r, c)] = if c == 3 { turned + a[(r, 3)] } else { turned };
+        }
+    }
+    product
 }
 
 fn isometry(m: &Matrix4<f64>) -> Isometry3<f64> {
@@ -249,15 +282,6 @@ fn isometry(m: &Matrix4<f64>) -> Isometry3<f64> {
 pub(super) struct Travels {
     pub(super) joints: Vec<f64>,
     pub(super) base: Option<[f64; 2]>,
-}
-
-impl Travels {
-    /// The larger of each.
-    pub(super) fn max(&self, other: &Self) -> Self {
-        let joints = self.joints.iter().zip(&other.joints).map(|(x, y)| x.max(*y)).collect();
-        let base = self.base.zip(other.base).map(|([s, t], [u, v])| [s.max(u), t.max(v)]);
-        Self { joints, base }
-    }
 }
 
 /// The homogeneous matrix of a place and a quaternion.

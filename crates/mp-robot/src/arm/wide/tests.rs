@@ -166,7 +166,8 @@ fn covers_prove_together_what_they_prove_one_by_one() {
             let pairs = links
                 && (0..robot.pairs.len()).all(|p| {
                     let known = wide.pair_apart(robot, p, k);
-                    add(wide.near_pair(robot, p, k), of_pair(robot, p, &wide.far), known, round % 2 == 1)
+                    let [far_a, far_b] = of_pair(robot, p, &wide.far);
+                    add(wide.near_pair(robot, p, k), far_a + far_b, known, round % 2 == 1)
                 });
             let expected = pairs.then_some(one_by_one.part);
             assert_eq!(together.map(f64::to_bits), expected.map(f64::to_bits), "{together:?} {expected:?}");
