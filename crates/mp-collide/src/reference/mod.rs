@@ -387,6 +387,11 @@ impl Search<'_> {
         if bound >= self.best {
             return bound;
         }
+        if self.share < 1.0
+            && let Some(distance) = self.of_few_balls()
+        {
+            return if distance <= self.touching { 0.0 } else { distance };
+        }
         if let Some(found) = self.by_hint() {
             return found;
         }
