@@ -6,6 +6,10 @@ mod otherwise;
 use mp_formats::error::{Error, ErrorKind};
 use std::path::Path;
 
+/// Larger files are refused.
+#[cfg(feature = "xacro")]
+const MAX_BYTES: u64 = 16 << 20;
+
 /// The URDF for which the macros in the file at `path` stand; `arguments` are `NAME:=VALUE`. The file and those that it includes are read from
 /// the disk. `$(find PACKAGE)` looks for packages of ROS by the environment, and above the file.
 ///
@@ -55,9 +59,7 @@ fn expanded(path: &Path, arguments: &[(&str, &str)]) -> Result<String, Error> {
         .help("expand it by the program of ROS: `xacro FILE > robot.urdf`")
     };
     for file in std::iter::once(path).chain(included.iter().map(PathBuf::as_path)) {
-        let bytes =
-            std::fs::read(file).map_err(|e| Error::new(ErrorKind::Io, file.display(), e.to_string()))?;
-        let text = mp_formats::xml::text(&file.display().to_string(), &bytes)?;
+        let text = mp_formats::xml::text(&file.display().to_string(), &mp_store::read(file, MAX_BYTES)?)?;
         if let Some(what) = definitions.add(&text) {
             return Err(refused(file, &what));
         }
