@@ -59,7 +59,8 @@ fn expanded(path: &Path, arguments: &[(&str, &str)]) -> Result<String, Error> {
         .help("expand it by the program of ROS: `xacro FILE > robot.urdf`")
     };
     for file in std::iter::once(path).chain(included.iter().map(PathBuf::as_path)) {
-        let text = mp_formats::xml::text(&file.display().to_string(), &mp_store::read(file, MAX_BYTES)?)?;
+        let bytes = mp_store::read(file, MAX_BYTES)?;
+        let text = mp_formats::xml::text(&file.display().to_string(), &bytes)?;
         if let Some(what) = definitions.add(&text) {
             return Err(refused(file, &what));
         }
