@@ -287,7 +287,8 @@ impl Triangles<'_> {
         let children: std::collections::HashSet<_> = nodes.iter().flat_map(|node| &node.children).collect();
         let roots = match scenes.get(*scene) {
             Some(scene) => scene.nodes.clone(),
-            None => (0..nodes.len()).filter(|i| !children.contains(i)).collect(),
+            None if scenes.is_empty() => (0..nodes.len()).filter(|i| !children.contains(i)).collect(),
+            None => return Err(self.wrong(format!("there is no scene {scene}"))),
         };
         let mut places = vec![None; nodes.len()];
         let mut order = Vec::new();
@@ -306,6 +307,10 @@ impl Triangles<'_> {
             places[i] = Some(place);
             order.push((i, node, place));
             stack.extend(node.children.iter().rev().map(|&child| (child, place, depth + 1)));
+        }
+        let shows = order.iter().any(|(_, node, _)| node.mesh.is_some());
+        if !shows && !self.document.meshes.is_empty() {
+            return Err(self.wrong("the scene shows no mesh, and the file has some"));
         }
         for (i, node, place) in order {
             if node.extensions.contains_key(INSTANCES) {

@@ -39,6 +39,15 @@ fn extensions_that_are_needed_are_read_or_refused() {
     assert!(e.kind() == ErrorKind::Unsupported && e.message().contains(INSTANCES), "{e}");
 }
 
+/// A mesh that nothing shows would be missing from a robot without a word.
+#[test]
+fn meshes_that_no_node_shows_are_an_error() {
+    let text = std::fs::read_to_string(format!("{CORPUS}2")).unwrap();
+    let error = |text: &str| parse_mesh("m.gltf", text.as_bytes()).unwrap_err().to_string();
+    assert!(error(&text.replace("\"mesh\":", "\"mosh\":")).contains("shows no mesh"));
+    assert!(error(&text.replace("\"scene\":0", "\"scene\":7")).contains("there is no scene 7"));
+}
+
 #[test]
 fn morph_targets_count_by_their_weights() {
     let text = std::fs::read_to_string(format!("{CORPUS}2")).unwrap();
