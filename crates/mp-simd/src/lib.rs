@@ -219,22 +219,8 @@ pub fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
     kernel.run::<Scalar>()
 }
 
-/// Runs `kernel` on the widest this CPU has.
+/// Runs a kernel of eight `f64` on `isa`, or on arrays where there are no registers for it.
 #[inline]
-fn run_on_widest<K: WideKernel>(kernel: K) -> K::Output {
-    #[cfg(target_arch = "x86_64")]
-    match Isa::detect() {
-        // SAFETY: `detect` has just said that the CPU has the features the function enables.
-        Isa::Avx512 => return unsafe { x86::doubles::avx512(kernel) },
-        // SAFETY: as above.
-        Isa::Avx2 => return unsafe { x86::doubles::avx2(kernel) },
-        _ => {}
-    }
-    kernel.run::<Wide>()
-}
-
-/// Runs `kernel` on `isa`, or on what every CPU has.
-#[cfg(test)]
 fn run_wide<K: WideKernel>(isa: Isa, kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]
     match isa {

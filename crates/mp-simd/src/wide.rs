@@ -5,7 +5,7 @@
 //!
 //! A [`Wide`] is eight numbers in memory. A [`WideKernel`] loads them into registers, [`Doubles`], of which it does not name the kind.
 
-use crate::run_on_widest;
+use crate::{Isa, run_wide};
 use std::ops::{Add, Div, Mul, Sub};
 
 /// How many numbers a [`Wide`] has.
@@ -16,7 +16,7 @@ pub const LANES: usize = 8;
 #[repr(align(64))]
 pub struct Wide(pub [f64; LANES]);
 
-/// Eight numbers in registers, or in memory where a processor has none that are made use of.
+/// Eight numbers that a kernel computes with: in registers, or as an array of which the compiler makes what it can.
 pub trait Doubles:
     Copy
     + Add<Output = Self>
@@ -61,7 +61,7 @@ pub trait Doubles:
 #[cold]
 #[inline(never)]
 fn largest_of_any(all: &Wide) -> f64 {
-    all.0.iter().fold(0.0, |most: f64, x| if x.is_nan() || most.is_nan() { f64::NAN } else { most.max(*x) })
+    if all.0.iter().any(|x| x.is_nan()) { f64::NAN } else { f64::INFINITY }
 }
 
 /// A computation on eight numbers. `run` and all it calls are to be `#[inline(always)]`, so that they are compiled for the processor's
@@ -76,7 +76,7 @@ pub trait WideKernel {
 /// Runs `kernel` with the widest instructions of the processor. The results are the same on all.
 #[inline]
 pub fn on_widest<K: WideKernel>(kernel: K) -> K::Output {
-    run_on_widest(kernel)
+    run_wide(Isa::detect(), kernel)
 }
 
 macro_rules! lanes {
@@ -324,7 +324,6 @@ impl<D: Doubles> Frames<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Isa, run_wide};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 

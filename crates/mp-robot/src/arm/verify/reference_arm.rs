@@ -31,7 +31,7 @@ pub(super) struct ReferenceLink {
     depth: usize,
     origin: Matrix4<f64>,
     axis: Vector3<f64>,
-    /// What multiplies the sine of a turn about the axis, and one less its cosine.
+    /// The turn about the axis by an angle is 1 + sin times the first + (1 − cos) times the second (Rodrigues).
     turn: [Matrix3<f64>; 2],
     motion: JointMotion,
     /// The value of the joint: coordinate, factor, offset.
