@@ -111,12 +111,13 @@ fn a_taut_path_follows_what_it_leads_round() {
     let corners = [(-2.0, 0.0), (-2.0, 2.0), (0.0, 2.5), (2.0, 2.0), (2.0, 0.0)];
     let path = Path::straight(corners.map(|(x, y)| Vector2::new(x, y)).to_vec());
     let shortest = 2.0 * 3.0_f64.sqrt() + std::f64::consts::PI / 3.0;
-    let taut = tauten(&space, &mut check, &path, Effort::default());
+    let effort = Effort { taut: 5, ..Effort::default() };
+    let taut = tauten(&space, &mut check, &path, effort);
     assert!(verify_path(&space, &taut, &mut check).is_free());
     let part = |path: &Path<_>| path.length(&space) / shortest;
     assert!(part(&taut) < 1.02 && part(&reduce(&space, &mut check, &path)) > 1.2, "{}", part(&taut));
     // Without any attempt corners are cut, but no states are joined.
-    let none = Effort { attempts: 0, ..Effort::default() };
+    let none = Effort { attempts: 0, ..effort };
     assert!(part(&tauten(&space, &mut check, &path, none)) > part(&taut));
 }
 
@@ -168,10 +169,12 @@ fn loose_paths_pass_a_finer_check() {
     let free = |q: &Vector2<f64>| !((1.9..=2.1).contains(&q.x) && q.y <= 3.0);
     let given = [(1.0, 1.0), (0.5, 3.5), (1.5, 3.9), (3.0, 3.4), (3.0, 1.0)];
     let path = Path::straight(given.map(|(x, y)| Vector2::new(x, y)).to_vec());
+    // As near to the wall as it goes.
+    let effort = Effort { taut: 5, ..Effort::default() };
     let mut passed = [0, 0];
     for seed in 0..100 {
         let mut check = Discrete::new(&space, free, Length::Fraction(0.0025)).unwrap();
-        let draft = simplified(&space, &mut check, &path, Effort::default(), &mut Rng::seed(seed));
+        let draft = simplified(&space, &mut check, &path, effort, &mut Rng::seed(seed));
         let mut fine = FineDiscrete::new(&space, free, Length::Fraction(0.0005)).unwrap();
         let (loose, refused) = loosen(&space, &mut fine, &path, &draft, 0.005);
         let tight = draft.path();
@@ -209,7 +212,7 @@ fn chosen_shortcuts_take_few_tests() {
     let free = |q: &Vector2<f64>| !((1.9..=2.1).contains(&q.x) && q.y <= 3.0);
     let given = [(1.0, 1.0), (0.5, 3.5), (1.5, 3.9), (3.0, 3.4), (3.0, 1.0)];
     let path = Path::straight(given.map(|(x, y)| Vector2::new(x, y)).to_vec());
-    let effort = Effort { taut: 0, ..Effort::default() };
+    let effort = Effort::default();
     let (mut tests, mut lengths) = ([0_u32; 2], [0.0; 2]);
     for seed in 0..40 {
         let counted = |q: &Vector2<f64>| {

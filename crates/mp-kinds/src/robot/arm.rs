@@ -413,7 +413,7 @@ impl<C: LinkedSpace> Motion for LinkedScene<C> {
     }
     /// Half of the default: the other half shortens paths by another 1% to 2%, and takes longer than planning and proof together.
     fn effort(&self) -> Effort {
-        Effort { attempts: 100, patience: 30, least_gain: 2e-3, taut: 5, rounds: 2 }
+        Effort { attempts: 100, patience: 30, least_gain: 2e-3, taut: 1, rounds: 2 }
     }
     fn make_ready(&self, interrupt: &Interrupt) -> Result<(), Interrupted> {
         self.arm.make_ready(interrupt)
