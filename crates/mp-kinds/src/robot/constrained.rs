@@ -271,6 +271,9 @@ impl AnyMotion for Constrained {
     fn any_keeping(&self, kept: f64) -> Result<Arc<dyn Robot>, Error> {
         Ok(self.around(self.robot.any_keeping(kept)?))
     }
+    fn any_with_goals(&self, kept: &[bool]) -> Option<Arc<dyn Robot>> {
+        Some(self.around(self.robot.any_with_goals(kept)?))
+    }
     fn any_verifier(&self) -> Result<AnyVerifier<'_>, Error> {
         Ok(AnyVerifier::new(Verifier { inner: self.robot.any_verifier()?, robot: self }))
     }
