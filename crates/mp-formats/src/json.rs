@@ -60,19 +60,10 @@ pub(crate) fn names(file: &str, text: &str, wanted: &[Column]) -> Result<Option<
             .expected("one list of names")
             .help("keep the list of the columns of `path`, and remove the other one"));
     }
-    // What would be skipped, although it says what the numbers are.
-    let foreign = |(key, value): (&String, &Value)| {
-        let lower = key.to_lowercase();
-        let unit = value.as_str().filter(|_| lower.contains("unit"));
-        let converted = |unit: &str| ["m", "rad"].iter().find_map(|own| factor(Some(unit), own));
-        let other = unit.and_then(converted).is_some_and(|(times, over)| times != over);
-        (other || (lower.contains("degree") && *value == Value::Bool(true))).then(|| key.clone())
-    };
     let with_units =
         lists.iter().flat_map(|(_, list): &(_, Vec<String>)| list).any(|name| bracketed(name).is_some());
-    if let Some(key) = read.others.iter().find_map(foreign).filter(|_| !with_units) {
-        let message = format!("`{}` says that the numbers are not in radians and metres", clipped(&key));
-        return Err(error(&key, message)
+    if let Some(key) = foreign_units(&read.others).filter(|_| !with_units) {
+        return Err(error(key, not_in_radians(key))
             .expected("\"columns\": [\"NAME [deg]\", …]")
             .help("say the unit of each column by its name, or remove this member if it is not so"));
     }
@@ -95,6 +86,25 @@ pub(crate) fn names(file: &str, text: &str, wanted: &[Column]) -> Result<Option<
         }
         _ => Ok(lists.pop().map(|(_, list)| list)),
     }
+}
+
+/// A member that would be skipped, although it says that numbers are not in radians and metres.
+#[must_use]
+pub fn foreign_units(members: &BTreeMap<String, Value>) -> Option<&str> {
+    let foreign = |(key, value): (&String, &Value)| {
+        let lower = key.to_lowercase();
+        let unit = value.as_str().filter(|_| lower.contains("unit"));
+        let converted = |unit: &str| ["m", "rad"].iter().find_map(|own| factor(Some(unit), own));
+        let other = unit.and_then(converted).is_some_and(|(times, over)| times != over);
+        other || (lower.contains("degree") && *value == Value::Bool(true))
+    };
+    members.iter().find(|member| foreign(*member)).map(|(key, _)| key.as_str())
+}
+
+/// What is wrong with [`foreign_units`].
+#[must_use]
+pub fn not_in_radians(key: &str) -> String {
+    format!("`{}` says that the numbers are not in radians and metres", clipped(key))
 }
 
 /// The part of a result that is read: its path. All other members are skipped.

@@ -322,6 +322,21 @@ mod tests {
         assert!(read(&two, TrajectoryKind::Json).unwrap_err().contains("2 trajectories"));
         let base = r#"{"joint_trajectory": {"joint_names": [], "points": []}, "multi_dof_joint_trajectory": {"joint_names": ["base"], "points": []}}"#;
         assert!(read(base, TrajectoryKind::Json).unwrap_err().contains("several degrees of freedom"));
+        // Units that would be skipped, as in paths.
+        let text = ros::json_text(&sample());
+        for (said, fine) in
+            [(r#""units": "deg""#, false), (r#""degrees": true"#, false), (r#""units": "rad""#, true)]
+        {
+            let text = text.replacen('{', &format!("{{{said}, "), 1);
+            for text in [text.clone(), format!(r#"{{"joint_trajectory": {text}}}"#)] {
+                let read = read(&text, TrajectoryKind::Json);
+                assert!(
+                    read.is_ok() == fine
+                        && read.err().is_none_or(|e| e.contains("not in radians and metres")),
+                    "{said}"
+                );
+            }
+        }
         assert!(
             read(
                 "joint_names: [&a lift, *a]\npoints: [{positions: [0, 0], time_from_start: 0}]\n",

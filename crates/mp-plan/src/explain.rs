@@ -66,7 +66,7 @@ fn free_near(kind: &dyn Robot, q: &Configuration) -> Option<Configuration> {
 }
 
 /// What is wrong with a configuration, to follow the words "the start is".
-fn fault(kind: &dyn Robot, q: &Configuration) -> Option<String> {
+pub(crate) fn fault(kind: &dyn Robot, q: &Configuration) -> Option<String> {
     if !kind.any_space().contains(q) {
         return Some(kind.out_of_bounds(q));
     }

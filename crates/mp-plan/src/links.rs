@@ -43,7 +43,7 @@ impl Scene {
             let next = self.clone().of_robot(Arc::clone(under.robot())).next_part(end, interrupt)?;
             return Ok(next.map(|next| {
                 let robot = under.around(Arc::clone(&next.robot));
-                next.of_robot(robot)
+                next.of_robot(robot).with_free_places()
             }));
         }
         let Some(arm) = self.robot::<ArmScene>() else { return Ok(None) };

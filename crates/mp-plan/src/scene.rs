@@ -1,6 +1,6 @@
 //! A scene of any kind, and what can be done with it.
 
-use crate::explain::{check_ends, explain, lint, wrong_ends};
+use crate::explain::{check_ends, explain, fault, lint, wrong_ends};
 use crate::finish::certificate::certificate;
 use crate::finish::check::check;
 use crate::finish::finish_given;
@@ -341,7 +341,20 @@ impl Scene {
         check_clearance(clearance)?;
         match clearance == self.clearance_kept() {
             true => Ok(self.clone()),
-            false => Ok(Self { robot: self.robot.any_keeping(clearance)?, ..self.clone() }),
+            false => {
+                Ok(Self { robot: self.robot.any_keeping(clearance)?, ..self.clone() }.with_free_places())
+            }
+        }
+    }
+
+    /// Of the configurations that reach a place, those alone that are free here too, where there are any.
+    pub(crate) fn with_free_places(self) -> Self {
+        let robot = &*self.robot;
+        let kept = |q| !robot.reaches_place(q) || fault(robot, q).is_none();
+        let kept: Vec<bool> = robot.goals().iter().map(kept).collect();
+        match robot.any_with_goals(&kept).filter(|_| kept.contains(&true) && kept.contains(&false)) {
+            Some(robot) => Self { robot, ..self },
+            None => self,
         }
     }
 
@@ -363,7 +376,7 @@ impl Scene {
     /// When the distance between tested states is not above zero, or below 10⁻⁹ of the extent of the space.
     pub fn under(&self, constraint: Constraint) -> Result<Self, Error> {
         let robot = Arc::new(Constrained::new(Arc::clone(&self.robot), constraint)?);
-        Ok(Self { robot, document: None, ..self.clone() })
+        Ok(Self { robot, document: None, ..self.clone() }.with_free_places())
     }
 
     /// The clearance (m) that paths keep from obstacles: zero by default; [`keeping`](Self::keeping) sets it.

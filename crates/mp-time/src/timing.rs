@@ -219,16 +219,25 @@ impl Section<'_> {
                 best = next;
             }
         }
-        let made = averaged(&best.trajectory, best.window, apart)?;
-        let beyond = (0..joints.len()).map(|joint| {
-            let jerk = made.jerkiest(joint).amount / limits.jerk[joint];
-            let acceleration = made.hardest(joint).amount / limits.acceleration[joint];
-            (mp_math::cbrt(jerk / MORE)).max((acceleration / MORE).sqrt())
-        });
-        let slower = beyond.fold(1.0, f64::max);
+        let mut made = averaged(&best.trajectory, best.window, apart)?;
+        let mut slower = 1.0;
+        // Once slower, a millisecond is a shorter part of the motion, in which there may be more jerk.
+        for _ in 0..TIMES {
+            let beyond = (0..joints.len()).map(|joint| {
+                let jerk = made.jerkiest(joint).amount / limits.jerk[joint];
+                let acceleration = made.hardest(joint).amount / limits.acceleration[joint];
+                (mp_math::cbrt(jerk / MORE)).max((acceleration / MORE).sqrt())
+            });
+            let by = beyond.fold(1.0, f64::max);
+            if by < 1.0 + 1e-6 {
+                break;
+            }
+            slower *= by;
+            made = made.slower(by);
+        }
         let corners =
             best.corners.iter().map(|(corner, t)| (*corner, slower * (t + 0.5 * best.window))).collect();
-        Ok(TimedSection { trajectory: made.slower(slower), corners, window: slower * best.window })
+        Ok(TimedSection { trajectory: made, corners, window: slower * best.window })
     }
 
     /// As fast as limits of velocity and acceleration allow.

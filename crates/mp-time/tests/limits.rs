@@ -189,6 +189,31 @@ fn limits_of_jerk_hold_at_1_khz() {
     assert!(timed_paths > 190, "{timed_paths}");
 }
 
+/// Where points were left out and all gets slower, a millisecond is a shorter part of it, in which there may be more jerk.
+#[test]
+fn limits_of_jerk_hold_on_short_paths() {
+    let mut rng = Rng::seed(81);
+    for case in 0..60 {
+        let mut points = vec![vec![0.0; 3]];
+        for _ in 0..5 {
+            let far = mp_math::exp(rng.random_range(-16.0..-7.0));
+            let last = points.last().unwrap();
+            points.push(last.iter().map(|q| q + far * rng.random_range(-1.0..1.0)).collect());
+        }
+        let mut blended = BlendedPath::new(&points, 0.1).unwrap();
+        (0..blended.corners()).for_each(|corner| blended.tighten(corner, 0.0));
+        let jerk = [24.0, 30.0, f64::INFINITY];
+        let limits =
+            Limits::new(vec![1.0; 3], vec![3.0, 3.0, 0.5]).unwrap().with_jerk(jerk.to_vec()).unwrap();
+        let timing = timed(&blended, &limits, [("j", "rad"); 3]).unwrap();
+        let made = timing.trajectory.in_nanoseconds().unwrap();
+        for (joint, limit) in jerk.iter().enumerate() {
+            let most = made.jerkiest(joint);
+            assert!(most.amount < limit * (1.0 + 5e-4), "{case} {joint}: {most:?}");
+        }
+    }
+}
+
 /// How long a motion of one joint takes at least, from standing still to standing still.
 fn least_seconds(far: f64, v: f64, a: f64, j: f64) -> f64 {
     // The largest acceleration that is reached on the way to full speed, and how far that takes.

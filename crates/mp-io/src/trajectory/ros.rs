@@ -2,17 +2,19 @@
 
 use super::{GUIDE, TrajectoryFile};
 use crate::yaml;
-use mp_formats::columns::{Column, Fault, HELP, Matching};
+use mp_formats::columns::{Column, Fault, HELP, Matching, bracketed};
 use mp_formats::error::{Error, ErrorKind};
 use mp_formats::files::decode;
 use mp_formats::json;
 use serde::Deserialize;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 /// Any of the messages. Other members are skipped.
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Message {
     joint_names: Option<Vec<String>>,
     points: Option<Vec<Point>>,
@@ -20,6 +22,8 @@ pub(super) struct Message {
     multi_dof_joint_trajectory: Option<Joints>,
     trajectory: Option<Several>,
     trajectory_start: Option<State>,
+    #[serde(flatten)]
+    others: BTreeMap<String, Value>,
 }
 
 /// Where the robot is before, in messages of MoveIt.
@@ -79,25 +83,15 @@ pub(super) struct Point {
 impl Message {
     /// A `JointTrajectory`.
     pub(super) fn of_joints(names: Vec<String>, points: Vec<Point>) -> Self {
-        Self {
-            joint_names: Some(names),
-            points: Some(points),
-            joint_trajectory: None,
-            multi_dof_joint_trajectory: None,
-            trajectory: None,
-            trajectory_start: None,
-        }
+        Self { joint_names: Some(names), points: Some(points), ..Self::default() }
     }
 
     /// A `RobotTrajectory` of a `JointTrajectory`, beside one of these joints of several degrees of freedom.
     pub(super) fn beside(self, joint_names: Vec<String>) -> Self {
         Self {
-            joint_names: None,
-            points: None,
             joint_trajectory: Some(Box::new(self)),
             multi_dof_joint_trajectory: Some(Joints { joint_names }),
-            trajectory: None,
-            trajectory_start: None,
+            ..Self::default()
         }
     }
 }
@@ -180,6 +174,12 @@ pub(super) fn made(
     endless: &[bool],
 ) -> Result<TrajectoryFile, Error> {
     let error = |message: String| Error::new(ErrorKind::Content, file, message).help(guide());
+    let with_units = message.joint_names.iter().flatten().any(|name| bracketed(name).is_some());
+    if let Some(key) = json::foreign_units(&message.others).filter(|_| !with_units) {
+        return Err(error(json::not_in_radians(key))
+            .expected("\"joint_names\": [\"NAME [deg]\", …]")
+            .help("say the unit of each joint by its name, or remove this member if it is not so"));
+    }
     let several = message.multi_dof_joint_trajectory.is_some_and(|joints| !joints.joint_names.is_empty());
     if several {
         return Err(error("a joint of several degrees of freedom moves, such as a base".to_owned()));

@@ -390,6 +390,14 @@ impl<C: LinkedSpace> TypedMotion for LinkedScene<C> {
     fn starting_as(self, row: &[f64]) -> Self {
         Self { given_start: row.to_vec(), ..self }
     }
+    fn with_goals(&self, kept: &[bool]) -> Option<Self> {
+        fn of<T: Clone>(all: &[T], kept: &[bool]) -> Vec<T> {
+            all.iter().zip(kept).filter(|(_, kept)| **kept).map(|(of, _)| of.clone()).collect()
+        }
+        let (goals, entries) = (of(&self.goals, kept), of(&self.entries, kept));
+        let goal_parts = self.goal_parts.as_ref().map(|parts| of(parts, kept));
+        Some(Self { goals, entries, goal_parts, ..self.clone() })
+    }
     fn keeping(&self, kept: f64) -> Result<Self, Error> {
         Ok(Self { arm: self.arm.clone().keeping(kept), ..self.clone() })
     }

@@ -217,19 +217,34 @@ impl MotionValidity<Configuration> for Verifier<'_> {
             (0..self.robot.columns().len()).map(value).collect()
         };
         for piece in 0..pieces {
-            // In order; a part is halved until its ends are near each other.
-            let mut open = vec![(0.5, 1.0), (0.0, 0.5)];
+            // In order; a part is halved until nothing in it is far from its middle, by Taylor's formula: its ends may be in one
+            // place although it goes far between them.
+            let mut open = vec![(0.0, 1.0)];
             while let Some((a, b)) = open.pop() {
-                let at = (piece as f64 + a) / pieces as f64;
+                let at = |u: f64| (piece as f64 + u) / pieces as f64;
                 if self.inner.is_interrupted() {
-                    return Some(MotionCheck::Unproven { at });
+                    return Some(MotionCheck::Unproven { at: at(a) });
                 }
-                let ends = [a, b].map(|u| state(piece, u));
-                if FINER * space.distance(&ends[0], &ends[1]) > self.robot.every {
-                    let middle = 0.5 * (a + b);
+                let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+                let reach = |i| {
+                    let mut c = curve.polynomial(piece, i);
+                    for first in 0..5 {
+                        for k in (first..5).rev() {
+                            c[k] += middle * c[k + 1];
+                        }
+                    }
+                    c[1..].iter().rev().fold(0.0, |sum, c| (sum + c.abs()) * half)
+                };
+                let q = state(piece, middle);
+                let reach: Vec<_> = (0..q.len()).map(reach).collect();
+                let far: Configuration = q.iter().zip(&reach).map(|(q, reach)| q + reach).collect();
+                // A whole turn away is no distance.
+                if reach.iter().any(|&reach| reach > 1.0)
+                    || 2.0 * FINER * space.distance(&q, &far) > self.robot.every
+                {
                     open.extend([(middle, b), (a, middle)]);
-                } else if !ends.iter().all(|q| self.robot.holds(q)) {
-                    return Some(MotionCheck::Collision { at });
+                } else if let Some(u) = [a, b].into_iter().find(|&u| !self.robot.holds(&state(piece, u))) {
+                    return Some(MotionCheck::Collision { at: at(u) });
                 }
             }
         }
@@ -255,6 +270,9 @@ impl AnyMotion for Constrained {
     }
     fn any_keeping(&self, kept: f64) -> Result<Arc<dyn Robot>, Error> {
         Ok(self.around(self.robot.any_keeping(kept)?))
+    }
+    fn any_with_goals(&self, kept: &[bool]) -> Option<Arc<dyn Robot>> {
+        Some(self.around(self.robot.any_with_goals(kept)?))
     }
     fn any_verifier(&self) -> Result<AnyVerifier<'_>, Error> {
         Ok(AnyVerifier::new(Verifier { inner: self.robot.any_verifier()?, robot: self }))

@@ -54,6 +54,11 @@ pub trait TypedMotion: Sized {
         Err(Error::new("this robot cannot be given another start or goal")
             .help("make the scene again with other ends"))
     }
+    /// The same robot without the goals that are not kept, of which there is at least one that is; `None`, the default, where no goal is a
+    /// place that several configurations reach.
+    fn with_goals(&self, _kept: &[bool]) -> Option<Self> {
+        None
+    }
     /// The same scene, whose start was given by this row. By default that makes no difference.
     #[must_use]
     fn starting_as(self, _row: &[f64]) -> Self {
@@ -178,6 +183,8 @@ pub trait AnyMotion {
     fn any_verifier(&self) -> Result<AnyVerifier<'_>, Error>;
     /// What planners may know of the obstacles.
     fn any_obstacles<'c>(&'c self, counting: &Counting<'c>) -> ObstacleKnowledge<'c, Configuration>;
+    /// The same robot without some of its goals: [`TypedMotion::with_goals`].
+    fn any_with_goals(&self, kept: &[bool]) -> Option<Arc<dyn Robot>>;
     /// The same robot with other ends, the start given by a row.
     ///
     /// # Errors
@@ -205,6 +212,9 @@ impl<K: TypedMotion + Robot> AnyMotion for K {
     }
     fn any_keeping(&self, kept: f64) -> Result<Arc<dyn Robot>, Error> {
         Ok(Arc::new(self.keeping(kept)?))
+    }
+    fn any_with_goals(&self, kept: &[bool]) -> Option<Arc<dyn Robot>> {
+        Some(Arc::new(self.with_goals(kept)?))
     }
     fn any_verifier(&self) -> Result<AnyVerifier<'_>, Error> {
         Ok(AnyVerifier::new(self.verifier()?))

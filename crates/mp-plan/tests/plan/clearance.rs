@@ -1,6 +1,7 @@
 //! Paths that keep a clearance from obstacles, for each kind of robot.
 
-use mp_plan::{Interrupt, MotionValidator, PathRows, Request, Scene};
+use mp_cspace::Length;
+use mp_plan::{Constraint, Interrupt, MotionValidator, PathRows, Request, Scene};
 
 /// Scenes, each with a clearance (m) that its ends have.
 const SCENES: [(&str, f64); 9] = [
@@ -136,6 +137,29 @@ fn ends_too_near_are_said_with_what_is_near() {
     let scene = Scene::find("rrs-high").unwrap();
     let error = scene.plan(&request(&scene).clearance(0.2)).unwrap_err().report();
     assert!(error.contains("0.185 m from contact") && error.contains("nearest free"), "{error}");
+}
+
+/// Of the configurations that reach a place, one that does not keep the clearance, or a constraint, is no reason to refuse the others.
+#[test]
+fn a_place_is_reached_where_the_clearance_is_kept() {
+    let scene = Scene::find("mobile-arm").unwrap();
+    let (goals, kept) = (scene.goals(), scene.keeping(0.02).unwrap());
+    let free: Vec<_> = goals.iter().filter(|q| kept.explain(q).unwrap().free).cloned().collect();
+    assert!(free.len() > 10 && free.len() < goals.len(), "{}", free.len());
+    assert_eq!(kept.goals(), free);
+    assert!(kept.check_ends().is_ok(), "{:?}", kept.check_ends());
+    let report = scene.plan(&request(&scene).clearance(0.02)).unwrap();
+    assert!(report.solved && report.clearance_kept == 0.02, "{:?}", report.why);
+
+    let mut turned: Vec<f64> = goals.iter().map(|q| q[8]).collect();
+    turned.sort_by(f64::total_cmp);
+    let most = turned[turned.len() / 2].max(scene.start()[8]);
+    let rule = Constraint::new("turned", Length::Fraction(0.01), move |q: &[f64]| q[8] <= most);
+    let under = scene.under(rule).unwrap();
+    assert_eq!(under.goals(), goals.into_iter().filter(|q| q[8] <= most).collect::<Vec<_>>());
+    assert!(under.goals().len() < turned.len() && under.check_ends().is_ok());
+    // Where none is free, all are there to be explained.
+    assert_eq!(scene.keeping(5.0).unwrap().goals().len(), turned.len());
 }
 
 #[test]

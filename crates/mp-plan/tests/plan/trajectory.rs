@@ -206,6 +206,20 @@ fn corners_are_rounded_only_as_far_as_is_free() {
         Constraint::new("along", Length::Fraction(0.001), |row: &[f64]| row[1] < 1e-6 || row[0] > 1.0 - 1e-6);
     let along = timed(&open.under(constraint).unwrap(), &corner(&open), &pace);
     assert_eq!(along.tightened[0].deviation, 0.0);
+    // A curve that goes to both sides of one place, where it is at the ends and in the middle.
+    let knots = Knots {
+        times: vec![0.0, 2.0],
+        positions: vec![vec![0.0, 0.0]; 2],
+        velocities: vec![vec![0.0, 0.5]; 2],
+        accelerations: Vec::new(),
+    };
+    let wave = Trajectory::of_controller([("x", "m"), ("y", "m")], knots).unwrap();
+    for (least, kept) in [(-0.0963, true), (-0.0961, false)] {
+        let above = Constraint::new("above", Length::Fraction(0.001), move |row: &[f64]| row[1] >= least);
+        let verdict = open.under(above).unwrap().check_trajectory(&wave, &Interrupt::never()).unwrap();
+        let broken = verdict.faults.iter().any(|fault| fault.contains("constraint `above`"));
+        assert_eq!(broken, !kept, "{least}: {:?}", verdict.faults);
+    }
 }
 
 #[test]
