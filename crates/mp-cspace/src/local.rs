@@ -36,7 +36,7 @@ pub struct Motion<S, E> {
     pub end: S,
     /// How it gets there; `()` for the space's own interpolation.
     pub edge: E,
-    /// Cost, the distance of the space unless the local planner says otherwise.
+    /// Cost in forward time: the distance of the space, unless the local planner says otherwise.
     pub cost: f64,
 }
 
@@ -154,11 +154,16 @@ impl<C: Space, M: MotionValidity<C::State>> LocalPlanner<C::State> for Straight<
         reach: Reach,
     ) -> Extension<C::State, ()> {
         let distance = self.space.distance(from, toward);
+        // A metric need not be symmetric.
+        let whole = match direction {
+            Direction::Forward => distance,
+            Direction::Backward => self.space.distance(toward, from),
+        };
         let (end, cost, reached) = match reach {
             Reach::Step(step) if step < distance => {
-                (self.space.interpolate(from, toward, step / distance), step, false)
+                (self.space.interpolate(from, toward, step / distance), step * (whole / distance), false)
             }
-            _ => (toward.clone(), distance, true),
+            _ => (toward.clone(), whole, true),
         };
         let check = check_toward(&mut self.check, from, &end, direction);
         let motion = Motion { end, edge: (), cost };

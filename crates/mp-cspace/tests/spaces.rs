@@ -29,6 +29,32 @@ fn conforms<C: Space + TrueMetric>(space: &C, kit: SpaceKit) {
     }
 }
 
+/// Uphill is farther than downhill: what a tree from the goal adds costs what it costs in forward time.
+#[test]
+fn straight_motions_cost_their_distance_in_forward_time() {
+    type Point = nalgebra::Vector2<f64>;
+    let uphill =
+        MetricFn::new(|a: &Point, b: &Point| (b - a).norm() + 3.0 * (b.y - a.y).max(0.0), 4.5).unwrap();
+    let space = WithMetric::new(Rn::<2>::new([0.0; 2], [1.0; 2]).unwrap(), uphill);
+    let (low, high) = (Point::new(0.5, 0.25), Point::new(0.5, 0.75));
+    let check = Discrete::new(&space, |_: &Point| true, Length::Fraction(0.1)).unwrap();
+    let mut planner = Straight::new(&space, check);
+    let mut cost =
+        |from: &Point, to: &Point, direction, reach| match planner.extend(from, to, direction, reach) {
+            Extension::Advanced(motion) | Extension::Reached(motion) => (motion.end, motion.cost),
+            Extension::Trapped => panic!("all is free"),
+        };
+    let (up, down) = (2.0, 0.5);
+    assert_eq!(cost(&low, &high, Direction::Forward, Reach::Full), (high, up));
+    assert_eq!(cost(&low, &high, Direction::Backward, Reach::Full), (high, down));
+    assert_eq!(cost(&high, &low, Direction::Backward, Reach::Full), (low, up));
+    // Half of the way.
+    let middle = Point::new(0.5, 0.5);
+    assert_eq!(cost(&low, &high, Direction::Forward, Reach::Step(0.5 * up)), (middle, 0.5 * up));
+    assert_eq!(cost(&low, &high, Direction::Backward, Reach::Step(0.5 * up)), (middle, 0.5 * down));
+    assert_eq!(cost(&high, &low, Direction::Backward, Reach::Step(0.5 * down)), (middle, 0.5 * up));
+}
+
 /// The axioms on three states and two times chosen by proptest, which shrinks to simple ones.
 fn axioms<S: Clone + Debug + PartialEq + Send + Sync>(
     space: &dyn Space<State = S>,

@@ -44,6 +44,8 @@
 //!   An edge that fails is blocked, and planning goes on. Edges that passed are not verified again.
 //! - On several threads ([`Builder::on`], [`ParallelProblem`]) the roadmap is the same to the bit as on one.
 //! - Bad input is a [`BuildError`] before planning begins.
+//! - An edge has one length for both directions, so the metric should be symmetric. Where it is not, paths are as safe, but
+//!   may be longer than others in the roadmap.
 //! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping
 //!   and continuing changes nothing.
 

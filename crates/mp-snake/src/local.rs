@@ -134,11 +134,16 @@ where
     ) -> Extension<C::State, PolylineEdge<C::State>> {
         let space = self.snake.space();
         let distance = space.distance(from, toward);
+        // A metric need not be symmetric.
+        let whole = match direction {
+            Direction::Forward => distance,
+            Direction::Backward => space.distance(toward, from),
+        };
         let (end, length, reached) = match reach {
             Reach::Step(step) if step < distance => {
-                (space.interpolate(from, toward, step / distance), step, false)
+                (space.interpolate(from, toward, step / distance), step * (whole / distance), false)
             }
-            _ => (toward.clone(), distance, true),
+            _ => (toward.clone(), whole, true),
         };
         let found = |edge, cost| {
             let motion = Motion { end: end.clone(), edge, cost };

@@ -1,6 +1,6 @@
 //! Fields of a world of the plane, as images of it: eq. 3, and the risk that is everywhere.
 
-use crate::params::positive;
+use crate::params::{not_negative, positive};
 use crate::risk::{MotionNoise, RangeNoise, everywhere};
 use crate::{Grid, outline_energy};
 use mp_cspace::ParameterError;
@@ -23,7 +23,7 @@ pub const STRIDE: f64 = 5.0 / 3.0;
 /// would have more than 2048.
 ///
 /// # Errors
-/// When the range is not positive and finite, or the bounds are not finite.
+/// When the range is not positive and finite, the bounds are not finite, or an upper one is below its lower one.
 pub fn occupancy(
     [x, y]: [[f64; 2]; 2],
     range: f64,
@@ -31,6 +31,9 @@ pub fn occupancy(
 ) -> Result<Grid, ParameterError> {
     let range = positive("the range of repulsion", range)?;
     let sides = [x, y].map(|[low, high]| high - low);
+    for side in sides {
+        not_negative("a side of the bounds", side)?;
+    }
     let cell = (range / CELLS).max(sides[0].max(sides[1]) / MOST_CELLS as f64);
     let [width, height] = sides.map(|side| ((side / cell).ceil() as usize).clamp(2, MOST_CELLS + 1));
     Grid::from_fn([x[0], y[0]], cell, (width, height), |p| f64::from(u8::from(touches(p))))
@@ -50,7 +53,7 @@ pub fn paper_energy(occupied: &Grid, range: f64) -> Result<Grid, ParameterError>
 /// default ones times `factor`.
 ///
 /// # Errors
-/// When the factor is negative or not finite, or the range is not.
+/// When the factor is not positive and finite, or the range is not, or they take too wide a blur.
 pub fn risk_energy(occupied: &Grid, range: f64, factor: f64) -> Result<Grid, ParameterError> {
     let (motion, sensor) = (MotionNoise::default().times(factor), RangeNoise::default().times(factor));
     let risk = everywhere(occupied, motion, sensor, STRIDE * range)?;
@@ -79,7 +82,9 @@ mod tests {
         // However short the range is.
         assert!(occupancy([[0.0, 3.0], [0.0, 2.0]], 1e-9, |_| false).unwrap().size().0 <= MOST_CELLS + 1);
         assert!(occupancy([[0.0, 3.0], [0.0, 2.0]], f64::NAN, |_| false).is_err());
-        assert!(occupancy([[0.0, f64::INFINITY], [0.0, 2.0]], 0.1, |_| false).is_err());
+        for high in [f64::INFINITY, f64::NAN, -1.0] {
+            assert!(occupancy([[0.0, high], [0.0, 2.0]], 0.1, |_| false).is_err(), "{high}");
+        }
     }
 
     /// Both push away from the outline on its outside, the more the nearer; the noise widens the risk.

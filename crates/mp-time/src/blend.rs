@@ -128,9 +128,9 @@ impl BlendedPath {
         distance(&self.directions[corner], &self.directions[corner + 1])
     }
 
-    /// Rounds a corner less: `factor` times as far from it. Zero makes the robot stop there.
+    /// Rounds a corner less: `factor` times as far from it, from 0 to 1. Zero makes the robot stop there, as do what is less and NaN.
     pub fn tighten(&mut self, corner: usize, factor: f64) {
-        self.reaches[corner] *= factor;
+        self.reaches[corner] *= if factor > 0.0 { factor.min(1.0) } else { 0.0 };
     }
 
     /// The curve around a corner; `None` where the robot stops.
@@ -234,6 +234,12 @@ mod tests {
         assert!((path.deviation(0) - 0.05).abs() < 1e-12);
         path.tighten(0, 0.0);
         assert!(path.stops(0) && path.blend(0).is_none() && path.parts().len() == 4 && path.parts()[0].stops);
+        // Never more, and nothing of the path is left out.
+        for (factor, stops) in [(9.0, false), (-1.0, true), (f64::NAN, true)] {
+            let mut path = BlendedPath::new(&points, 0.1).unwrap();
+            path.tighten(1, factor);
+            assert_eq!((path.stops(1), path.deviation(1) <= 0.1 + 1e-12), (stops, true), "{factor}");
+        }
         // No more than half of the lines, whatever is allowed.
         let wide = BlendedPath::new(&points, 10.0).unwrap();
         assert_eq!(wide.parts().len(), 4);

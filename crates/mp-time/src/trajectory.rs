@@ -370,7 +370,8 @@ impl Trajectory {
     pub fn resampled(&self, rate: f64) -> Result<Self, TimeError> {
         const MOST: f64 = 1e7;
         let [first, last] = self.span();
-        let count = ((last - first) * rate - 1e-9).ceil();
+        // The first point at least, unless the last one is the first.
+        let count = ((last - first) * rate - 1e-9).ceil().max(f64::from(u8::from(last > first)));
         // Written so that NaN is refused.
         if !(rate > 0.0 && count < MOST) {
             return Err(TimeError::Rate { rate, most: MOST / (last - first) });
@@ -410,7 +411,7 @@ impl Trajectory {
         Self::new(self.joints(), knots, self.interpolation)
     }
 
-    /// The same curve in space, `factor` times as slow.
+    /// The same curve in space, `factor` times as slow; the factor is above zero and finite.
     #[must_use]
     pub fn slower(mut self, factor: f64) -> Self {
         let first = self.knots.times[0];
@@ -532,6 +533,8 @@ mod tests {
             assert!((sampled.at(t).position[0] - made.at(t).position[0]).abs() < 1e-9);
         }
         assert_eq!(made.resampled(3.0).unwrap().span(), made.span());
+        // However low the rate, it does not begin where it ends.
+        assert_eq!(made.resampled(1e-300).unwrap().span(), made.span());
         assert!(made.resampled(0.0).is_err() && made.resampled(f64::NAN).is_err());
         // 2.5 seconds.
         assert_eq!(made.resampled(1e9), Err(TimeError::Rate { rate: 1e9, most: 4e6 }));

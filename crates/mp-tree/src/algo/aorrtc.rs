@@ -26,8 +26,8 @@
 //!
 //! **When to use it.** Try it first when the length of the path matters: it has a path as soon as RRT-Connect
 //! has one, and improves it from then on. Both ends must be known states (or the goal a sampler), motions
-//! must run backward as well as forward, the metric should satisfy the triangle inequality, and no motion
-//! should cost less than its distance. It lowers the [objective](crate::Problem::with_objective) of the
+//! must run backward as well as forward, the metric should be symmetric and satisfy the triangle inequality,
+//! and no motion should cost less than its distance. It lowers the [objective](crate::Problem::with_objective) of the
 //! problem, which is the length by default.
 //!
 //! | parameter | range | default |
