@@ -117,7 +117,6 @@ mod tests {
         assert!(blurred(&grid, 0.0).is_err() && blurred(&grid, 1e9).is_err());
     }
 
-    /// The energy falls away from the outline of a disc, on both sides: it repels.
     /// However wide the blur, it does no more work than one as wide as the map. The last one took ten minutes.
     #[test]
     fn a_blur_wider_than_the_map_sees_its_border_beyond() {
@@ -139,6 +138,7 @@ mod tests {
         assert!((blurred(&large, 1e5).unwrap().values()[0] - 150.0).abs() < 1.0);
     }
 
+    /// The energy falls away from the outline of a disc, on both sides: it repels.
     #[test]
     fn outlines_repel() {
         let disc =
