@@ -11,7 +11,7 @@
 //! | [`partial_shortcut`] | the same for one factor of the space at a time |
 //! | [`bspline`] | rounds corners by cubic B-spline subdivision |
 //! | [`tauten`] | joins states of the path, and cuts corners, in turn |
-//! | [`simplify`] | all of these in a good order |
+//! | [`simplify`] | reduces, pulls taut, takes shortcuts of one factor and rounds corners, in a good order |
 //! | [`cheapen`] | lowers what the path costs by an [`Objective`] |
 //! | [`simplified_by_samples`] | the same with few tests, for robots that take long to answer |
 //! | [`hybridized`] | merges several paths into one |
