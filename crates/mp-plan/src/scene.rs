@@ -347,7 +347,7 @@ impl Scene {
         }
     }
 
-    /// Of the configurations that reach a place, those alone that are free here too, where there are any.
+    /// The same scene without the configurations that reach a place of a link, but are not free here. They stay where no goal would be left.
     pub(crate) fn with_free_places(self) -> Self {
         let robot = &*self.robot;
         let kept = |q| !robot.reaches_place(q) || fault(robot, q).is_none();

@@ -217,8 +217,8 @@ impl MotionValidity<Configuration> for Verifier<'_> {
             (0..self.robot.columns().len()).map(value).collect()
         };
         for piece in 0..pieces {
-            // In order; a part is halved until nothing in it is far from its middle, by Taylor's formula: its ends may be in one
-            // place although it goes far between them.
+            // Parts in order, from the first on. A part is halved until Taylor's formula about its middle shows that nothing in it is far
+            // from there. That its ends are near each other would not do: the curve may go far between them and come back.
             let mut open = vec![(0.0, 1.0)];
             while let Some((a, b)) = open.pop() {
                 let at = |u: f64| (piece as f64 + u) / pieces as f64;
@@ -238,7 +238,7 @@ impl MotionValidity<Configuration> for Verifier<'_> {
                 let q = state(piece, middle);
                 let reach: Vec<_> = (0..q.len()).map(reach).collect();
                 let far: Configuration = q.iter().zip(&reach).map(|(q, reach)| q + reach).collect();
-                // A whole turn away is no distance.
+                // The distance of angles does not see whole turns.
                 if reach.iter().any(|&reach| reach > 1.0)
                     || 2.0 * FINER * space.distance(&q, &far) > self.robot.every
                 {

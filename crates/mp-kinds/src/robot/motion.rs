@@ -54,8 +54,8 @@ pub trait TypedMotion: Sized {
         Err(Error::new("this robot cannot be given another start or goal")
             .help("make the scene again with other ends"))
     }
-    /// The same robot without the goals that are not kept, of which there is at least one that is; `None`, the default, where no goal is a
-    /// place that several configurations reach.
+    /// The same robot with fewer goals: `kept` says of each one whether it stays. `None`, the default, for robots of which no goal is a place
+    /// that several configurations reach.
     fn with_goals(&self, _kept: &[bool]) -> Option<Self> {
         None
     }
