@@ -26,7 +26,7 @@ const FAR_SHORTER: f64 = 0.8;
 
 /// How far points of a robot that tests many states at once travel between two of these while its path is made short, as a multiple of the
 /// clearance of shortcuts.
-const SPACING: f64 = 10.0;
+const SPACING: f64 = 25.0;
 
 /// Which part of the clearance of shortcuts the parts of such a robot keep from each other.
 const OWN: f64 = 0.25;

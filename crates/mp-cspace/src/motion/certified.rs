@@ -255,19 +255,20 @@ where
     }
 
     fn check_extension(&mut self, from: &C::State, to: &C::State, known: KnownFree) -> MotionCheck {
+        // Contact is likeliest at the end that is not known to be free.
+        let (end, at) = if known == KnownFree::To { (from, 0.0) } else { (to, 1.0) };
+        let eight = self.valid.contacts_at_once() >= MOST_AT_ONCE;
+        // Before the bound, which takes as long for some.
+        if eight && let Some(at) = self.contact_of_eight([from, to], (end, at)) {
+            return MotionCheck::Collision { at };
+        }
         let travel = self.valid.motion_bound(from, to);
         // Written so that NaN fails it too.
         let provable = travel / self.tolerance < MAX_TOLERANCES;
         if !provable {
             return MotionCheck::Unproven { at: 0.0 };
         }
-        // Contact is likeliest at the end that is not known to be free.
-        let (end, at) = if known == KnownFree::To { (from, 0.0) } else { (to, 1.0) };
-        if self.valid.contacts_at_once() >= MOST_AT_ONCE {
-            if let Some(at) = self.contact_of_eight([from, to], (end, at)) {
-                return MotionCheck::Collision { at };
-            }
-        } else if self.valid.in_contact(end) {
+        if !eight && self.valid.in_contact(end) {
             return MotionCheck::Collision { at };
         }
         if self.valid.contact_first()

@@ -7,8 +7,8 @@ use super::wide::{COARSE, LEAST, Part};
 use crate::kept::beyond;
 use mp_collide::{BodyId, Contacts, Query, Scene};
 use mp_cspace::{
-    Clearance, ClearanceSearch, Coordinates, IntervalClearance, LeastClearance, MotionClearance,
-    MotionInterval, Rng, Validity, obstacles::ObstacleHints,
+    Clearance, ClearanceSearch, Configuration, Coordinates, IntervalClearance, LeastClearance,
+    MotionClearance, MotionInterval, Rng, Validity, obstacles::ObstacleHints,
 };
 use mp_simd::wide::LANES;
 use nalgebra::Isometry3;
@@ -263,10 +263,12 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         if from.len() != numbers || to.len() != numbers {
             return f64::INFINITY;
         }
-        let travels = |i: usize| kinematics.travel(i, from, to);
+        // Once, as many links and pairs ask for them.
+        let of_joints = Configuration::from_fn(joints, |i| kinematics.travel(i, from, to));
+        let travels = |i: usize| of_joints[i];
         let base = kinematics.base_travel(from, to);
         // `max` would drop NaN.
-        if !((0..joints).all(|i| travels(i).is_finite()) && base.far(1.0).is_finite()) {
+        if !(of_joints.iter().all(|travel| travel.is_finite()) && base.far(1.0).is_finite()) {
             return f64::INFINITY;
         }
         let whole = |body: &LinkBody| body.chain.whole(travels) + base.far(body.chain.from_base);

@@ -250,9 +250,9 @@ where
         return Grown::Trapped;
     }
     let most = (step / distance).min(1.0);
-    let ends = [1.0, 0.5, 0.25, 0.125].map(|part| space.interpolate(state, along, most * part));
-    match ends.iter().find(|q| space.contains(q)) {
-        Some(end) => growing.step_toward(from, end),
+    let mut ends = [1.0, 0.5, 0.25, 0.125].iter().map(|part| space.interpolate(state, along, most * part));
+    match ends.find(|q| space.contains(q)) {
+        Some(end) => growing.step_toward(from, &end),
         None => Grown::Trapped,
     }
 }
