@@ -81,7 +81,8 @@ impl Scene {
         let scene = &self.scene;
         let cancel = mp_plan::Cancel::new();
         let (bytes, raised) = self.work(py, &cancel, None, |_| {
-            let mut file = SceneFile::of(scene)?;
+            let meshes = content == Some(Content::Gltf);
+            let mut file = if meshes { SceneFile::for_glb(scene) } else { SceneFile::of(scene) }?;
             match (report, path) {
                 (Some(report), path) => {
                     file.add_report(scene, &mp_plan::Report { path, ..report })?;

@@ -193,7 +193,8 @@ impl Picture {
             }
             _ => {}
         }
-        let mut file = SceneFile::of(scene)?;
+        let meshes = matches!(self, Self::Meshes(_));
+        let mut file = if meshes { SceneFile::for_glb(scene) } else { SceneFile::of(scene) }?;
         match (report, path.zip(verdict)) {
             (Some(report), _) => file.add_run(scene, report)?,
             (None, Some((path, verdict))) => {

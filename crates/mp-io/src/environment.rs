@@ -219,10 +219,14 @@ fn extension<'a>(
         env.bounds = Some(b);
         places.bounds = Some(rest);
     } else {
+        let help = match obstacle_number(line.text) {
+            Some(_) => "move `End` behind the last obstacle",
+            None => "begin the line with # to make it a comment",
+        };
         return Err(text
             .error(key, format!("`{}` after `End`", clipped(key.text)))
             .expected("`Space SE2`, `Space SE3` or `Bounds xmin ymin zmin xmax ymax zmax`")
-            .help("begin the line with # to make it a comment"));
+            .help(help));
     }
     Ok(())
 }

@@ -362,6 +362,7 @@ fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
         columns: head.columns,
         limits: head.limits,
         bounds: head.bounds,
+        origin: [0.0; 3],
         meshes: head.meshes.iter().map(mesh).collect::<Result<_, ViewError>>()?,
         areas: head.areas.iter().map(area).collect::<Result<_, ViewError>>()?,
         lines: head.lines.iter().map(line).collect::<Result<_, ViewError>>()?,

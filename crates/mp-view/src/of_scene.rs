@@ -2,7 +2,10 @@
 
 use crate::{Area, Body, Configuration, Mesh, PathTrack, Polyline, Role, SceneFile, Shape};
 use mp_plan::{BodyShape, Error, PathRows, Report, Scene, Track};
-use nalgebra::{Isometry3, Point3};
+use nalgebra::{Isometry3, Point3, Translation3, Vector3};
+
+/// How many times its size a scene must be away from the origin to be far: numbers of 32 bits are wrong by up to 6e-8 of their size.
+const FAR: f64 = 1000.0;
 
 /// The colour of obstacles that move.
 const MOVING: [u8; 3] = [0x8d, 0x99, 0xae];
@@ -13,6 +16,27 @@ impl SceneFile {
     /// # Errors
     /// Never for the scenes of `mp-plan`; a kind of robot of your own may refuse its own start or goals.
     pub fn of(scene: &Scene) -> Result<Self, Error> {
+        Self::about(scene, Vector3::zeros())
+    }
+
+    /// As [`of`](Self::of), for [`to_glb`](Self::to_glb): where the scene is so far from the origin that numbers of 32 bits would
+    /// move its bodies, as in coordinates of surveys, places are relative to its middle, which becomes the `origin` of the file.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn for_glb(scene: &Scene) -> Result<Self, Error> {
+        let file = Self::of(scene)?;
+        file.far().map_or(Ok(file), |middle| Self::about(scene, middle))
+    }
+
+    /// The middle of the scene, where it is too far from the origin for numbers of 32 bits.
+    pub(crate) fn far(&self) -> Option<Vector3<f64>> {
+        let [low, high] = self.bounds.map(Vector3::from);
+        let middle = (low + high) / 2.0;
+        (middle.amax() > FAR * (high - low).amax()).then_some(middle)
+    }
+
+    fn about(scene: &Scene, origin: Vector3<f64>) -> Result<Self, Error> {
         let mut file = Self {
             name: scene.name().to_owned(),
             space: scene.space(),
@@ -20,15 +44,16 @@ impl SceneFile {
             columns: scene.columns(),
             limits: scene.limits(),
             bounds: [[0.0; 3]; 2],
+            origin: origin.into(),
             meshes: Vec::new(),
             areas: Vec::new(),
             lines: Vec::new(),
             bodies: Vec::new(),
-            start: configuration(scene, scene.start())?,
+            start: configuration(scene, scene.start(), &origin)?,
             goals: scene
                 .goals()
                 .into_iter()
-                .map(|row| configuration(scene, row))
+                .map(|row| configuration(scene, row, &origin))
                 .collect::<Result<_, _>>()?,
             paths: Vec::new(),
             trees: Vec::new(),
@@ -38,7 +63,7 @@ impl SceneFile {
         let mut bounds = Bounds::default();
         let mut ends = Vec::new();
         for row in scene.goals().into_iter().chain([scene.start()]) {
-            ends.push(scene.poses(&row)?);
+            ends.push(poses(scene, &row, &origin)?);
         }
         // Obstacles that move have poses along the path, as the robot has, and the colour of obstacles.
         let bodies = scene.bodies();
@@ -46,7 +71,8 @@ impl SceneFile {
         let mut robots = 0;
         for body in bodies {
             let points = corners(&body.shape);
-            match &body.pose {
+            let moved = body.pose.map(|pose| Translation3::from(-origin) * pose);
+            match &moved {
                 Some(pose) => bounds.add(points.iter().map(|p| pose * p)),
                 None => {
                     // What moves by itself may go far away: it is enough where it begins, at the start, which is the last.
@@ -56,13 +82,17 @@ impl SceneFile {
                     robots += 1;
                 }
             }
-            let (name, pose) = (body.name, body.pose.as_ref().map(seven));
+            // The points of a shape are written with 32 bits too: about their middle, if that is far away.
+            let middle = moved.filter(|_| origin != Vector3::zeros()).map(|_| middle_of(&points));
+            let middle = middle.unwrap_or_default();
+            let pose = moved.map(|pose| seven(&(pose * Translation3::from(middle))));
+            let name = body.name;
             let role = match pose {
                 Some(_) => Role::Obstacle,
                 None if robots > own => Role::Moving,
                 None => Role::Robot,
             };
-            let shape = file.add_shape(&body.shape);
+            let shape = file.add_shape(&body.shape, middle);
             let color = (role == Role::Moving).then_some(MOVING);
             file.bodies.push(Body { name, role, shape, pose, color });
         }
@@ -91,7 +121,10 @@ impl SceneFile {
         verified: bool,
         length: f64,
     ) -> Result<(), Error> {
-        self.paths.push(PathTrack::of(name, verified, Some(length), scene.track(path)?));
+        let (mut track, origin) = (scene.track(path)?, Vector3::from(self.origin));
+        track.poses.iter_mut().flatten().for_each(|pose| pose.translation.vector -= origin);
+        track.trace.iter_mut().for_each(|p| *p -= origin);
+        self.paths.push(PathTrack::of(name, verified, Some(length), track));
         Ok(())
     }
 
@@ -132,13 +165,16 @@ impl SceneFile {
         Ok(())
     }
 
-    fn add_shape(&mut self, shape: &BodyShape) -> Shape {
+    /// Adds the points of a shape, relative to one in its frame.
+    fn add_shape(&mut self, shape: &BodyShape, middle: Vector3<f64>) -> Shape {
+        let flat = |p: &nalgebra::Point2<f64>| [(p.x - middle.x) as f32, (p.y - middle.y) as f32];
         match shape {
             BodyShape::Mesh(mesh) => {
                 self.meshes.push(Mesh {
                     positions: mesh
                         .vertices()
                         .iter()
+                        .map(|p| p - middle)
                         .flat_map(|p| [p.x as f32, p.y as f32, p.z as f32])
                         .collect(),
                     triangles: mesh.triangles().iter().flatten().copied().collect(),
@@ -146,16 +182,14 @@ impl SceneFile {
                 Shape::Mesh(self.meshes.len() - 1)
             }
             BodyShape::Area(rings) => {
-                let ring = |ring: &Vec<nalgebra::Point2<f64>>| {
-                    ring.iter().flat_map(|p| [p.x as f32, p.y as f32]).collect()
-                };
+                let ring = |ring: &Vec<nalgebra::Point2<f64>>| ring.iter().flat_map(flat).collect();
                 self.areas.push(Area { rings: rings.iter().map(ring).collect() });
                 Shape::Area(self.areas.len() - 1)
             }
             BodyShape::Lines(lines) => {
                 let first = self.lines.len();
                 let line = |line: &Vec<nalgebra::Point2<f64>>| Polyline {
-                    points: line.iter().flat_map(|p| [p.x as f32, p.y as f32, 0.0]).collect(),
+                    points: line.iter().map(flat).flat_map(|[x, y]| [x, y, 0.0]).collect(),
                 };
                 self.lines.extend(lines.iter().map(line));
                 Shape::Lines((first..self.lines.len()).collect())
@@ -187,10 +221,25 @@ fn path_of(scene: &Scene, report: &Report) -> Option<PathRows> {
     Some(PathRows { format: scene.path_format(), columns: report.columns.clone(), rows })
 }
 
-/// A configuration with the poses of the robot's bodies.
-fn configuration(scene: &Scene, row: Vec<f64>) -> Result<Configuration, Error> {
-    let poses = scene.poses(&row)?.iter().flat_map(seven).collect();
+/// A configuration with the poses of the robot's bodies relative to `origin`.
+fn configuration(scene: &Scene, row: Vec<f64>, origin: &Vector3<f64>) -> Result<Configuration, Error> {
+    let poses = poses(scene, &row, origin)?.iter().flat_map(seven).collect();
     Ok(Configuration { row, poses })
+}
+
+/// The poses of the robot's bodies relative to `origin`.
+fn poses(scene: &Scene, row: &[f64], origin: &Vector3<f64>) -> Result<Vec<Isometry3<f64>>, Error> {
+    let mut poses = scene.poses(row)?;
+    poses.iter_mut().for_each(|pose| pose.translation.vector -= origin);
+    Ok(poses)
+}
+
+/// The middle of the box around points.
+fn middle_of(points: &[Point3<f64>]) -> Vector3<f64> {
+    let mut bounds = Bounds::default();
+    bounds.add(points.iter().copied());
+    let [low, high] = bounds.get().map(Vector3::from);
+    (low + high) / 2.0
 }
 
 /// x y z, and the unit quaternion x y z w.

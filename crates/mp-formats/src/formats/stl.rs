@@ -157,7 +157,8 @@ fn text(text: &Text<'_>, interrupt: &mut Interrupt, remark: &mut dyn FnMut(&str)
                 return Err(Error::interrupted(text.file));
             }
             let word = lexer.next();
-            if word.is_some_and(|w| w.text.eq_ignore_ascii_case("endsolid")) {
+            if word.is_some_and(|w| w.text.to_ascii_lowercase().starts_with("end")) {
+                expect_end(text, word, &mut lexer, "solid")?;
                 lexer.next_line();
                 break;
             }
@@ -197,9 +198,24 @@ fn facet(text: &Text<'_>, lexer: &mut Lexer<'_>) -> Result<[Point3<f64>; 3], Err
             corner[axis] = text.number(word, what)?;
         }
     }
-    expect(text, lexer.next(), "endloop")?;
-    expect(text, lexer.next(), "endfacet")?;
+    for part in ["loop", "facet"] {
+        let word = lexer.next();
+        expect_end(text, word, lexer, part)?;
+    }
     Ok(triangle)
+}
+
+/// The end of a part, such as `endloop`. Some writers make two words of it.
+fn expect_end(
+    text: &Text<'_>,
+    word: Option<Token<'_>>,
+    lexer: &mut Lexer<'_>,
+    part: &str,
+) -> Result<(), Error> {
+    match word {
+        Some(w) if w.text.eq_ignore_ascii_case("end") => expect(text, lexer.next(), part),
+        word => expect(text, word, &format!("end{part}")),
+    }
 }
 
 fn expect(text: &Text<'_>, word: Option<Token<'_>>, keyword: &str) -> Result<(), Error> {
@@ -391,6 +407,16 @@ mod tests {
         // Coordinates are used.
         let bad = facet("0 0 1").replace("vertex 1 0 0", "vertex 1 -nan(ind) 0");
         assert!(remarks(bad.as_bytes()).0.is_err());
+    }
+
+    /// numpy-stl#206, meshlab#194.
+    #[test]
+    fn ends_of_two_words() {
+        let facet = "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 end loop End Facet";
+        let two = format!("solid a\n{facet}\n{facet}\nend solid a\nsolid b\n{facet}\nEND SOLID\n");
+        assert_eq!(remarks(two.as_bytes()), (Ok(3), Vec::new()));
+        let e = remarks(two.replacen("end loop", "end facet", 1).as_bytes()).0.unwrap_err();
+        assert!(e.contains("`facet` is out of place; expected `loop`"), "{e}");
     }
 
     #[test]

@@ -22,6 +22,8 @@ pub struct JointLimits {
     pub file: PathBuf,
     /// The joints that it names.
     pub joints: Vec<LimitsOfJoint>,
+    /// The parts of the limits of velocity and of acceleration that MoveIt takes where a request names none.
+    pub parts: [Option<f64>; 2],
 }
 
 /// The limits that a `joint_limits.yaml` gives to a joint.
@@ -46,20 +48,22 @@ pub(super) fn beside(files: &dyn Files, srdf: &Path) -> Result<JointLimits, Erro
     }
     let name = file.display().to_string();
     let read = |bytes: Vec<u8>| parse(&name, &bytes);
-    let joints = files.read(&file, MAX_TEXT_BYTES).and_then(read).map_err(|e| e.help(HELP))?;
-    Ok(JointLimits { file, joints })
+    let limits = files.read(&file, MAX_TEXT_BYTES).and_then(read).map_err(|e| e.help(HELP))?;
+    Ok(JointLimits { file, ..limits })
 }
 
-/// The joints of a file that errors call `name`, with what is said of them.
-pub(crate) fn parse(name: &str, bytes: &[u8]) -> Result<Vec<LimitsOfJoint>, Error> {
+/// What a file that errors call `name` says.
+pub(crate) fn parse(name: &str, bytes: &[u8]) -> Result<JointLimits, Error> {
     let text = &*decode_mesh(name, bytes)?;
     let mut file = &yaml::value(name, text)?;
     // Where parameters of ROS 2 are, around what MoveIt takes from files of its own.
     for around in ["/**", "ros__parameters", "robot_description_planning"] {
         file = file.get(around).unwrap_or(file);
     }
+    let part = |what| file.get(format!("default_{what}_scaling_factor")).and_then(Value::as_f64);
+    let parts = ["velocity", "acceleration"].map(part);
     let joints = match file.get("joint_limits") {
-        None | Some(Value::Null) => return Ok(Vec::new()),
+        None | Some(Value::Null) => return Ok(JointLimits { parts, ..JointLimits::default() }),
         Some(Value::Object(joints)) => joints,
         Some(_) => {
             let wrong = Entry { name, text, joint: "", values: &Value::Null };
@@ -68,7 +72,8 @@ pub(crate) fn parse(name: &str, bytes: &[u8]) -> Result<Vec<LimitsOfJoint>, Erro
                 .expected("joints by name"));
         }
     };
-    joints.iter().map(|(joint, values)| Entry { name, text, joint, values }.limits()).collect()
+    let joints = joints.iter().map(|(joint, values)| Entry { name, text, joint, values }.limits());
+    Ok(JointLimits { file: PathBuf::new(), joints: joints.collect::<Result<_, _>>()?, parts })
 }
 
 /// What the file says of a joint.
@@ -88,9 +93,9 @@ impl Entry<'_> {
                 .error("", message)
                 .expected("`max_velocity` and the like, each in a line below it"));
         }
-        let rate = |what: &str| {
+        let rate = |what: &str, sign: f64| {
             let key = format!("max_{what}");
-            match self.limit(what, &key)? {
+            match self.limit(what, &key)?.map(|limit| limit * sign) {
                 Some(limit) if limit <= 0.0 => {
                     let message = format!("`{key}` is {limit}: a joint could not move");
                     Err(self.error(&key, message).expected("a number above zero"))
@@ -105,7 +110,11 @@ impl Entry<'_> {
             let message = format!("`min_position` is {low}, above `max_position`, which is {high}");
             return Err(self.error("min_position", message));
         }
-        let rates = [rate("velocity")?, rate("acceleration")?, rate("jerk")?];
+        // Pilz writes how hard a joint may brake below zero. Joints speed up and slow down by one limit here.
+        let braking = self.limit("deceleration", "max_deceleration")?.map_or(1.0, f64::signum);
+        let accelerations = [rate("acceleration", 1.0)?, rate("deceleration", braking)?];
+        let acceleration = accelerations.into_iter().flatten().reduce(f64::min);
+        let rates = [rate("velocity", 1.0)?, acceleration, rate("jerk", 1.0)?];
         Ok(LimitsOfJoint { joint: self.joint.to_owned(), positions, rates })
     }
 
@@ -185,20 +194,31 @@ mod tests {
         let text = "default_velocity_scaling_factor: 0.1\njoint_limits:\n  lift:\n    has_velocity_limits: true\n    max_velocity: 2\n    \
                     has_acceleration_limits: true\n    max_acceleration: 3.75\n    has_jerk_limits: true\n    max_jerk: 50\n  elbow:\n    has_velocity_limits: false\n    max_velocity: 1.5\n";
         let rates = [Some(2.0), Some(3.75), Some(50.0)];
-        let limits = |text: &str| parse("l", text.as_bytes()).unwrap();
+        let limits = |text: &str| parse("l", text.as_bytes()).unwrap().joints;
+        assert_eq!(parse("l", text.as_bytes()).unwrap().parts, [Some(0.1), None]);
         assert_eq!(limits(text), [of("elbow", [None; 2], [None; 3]), of("lift", [None; 2], rates)]);
         assert!(limits("").is_empty() && limits("joint_limits:\n").is_empty());
         assert_eq!(limits("joint_limits:\n  lift:\n"), [of("lift", [None; 2], [None; 3])]);
+        // Joints brake no harder than they may; Pilz writes that below zero.
+        for (more, least) in [("-2", 2.0), ("2", 2.0), ("-5", 3.75)] {
+            let pilz = format!("has_deceleration_limits: true\n    max_deceleration: {more}\n    has_jerk");
+            let lift = &limits(&text.replacen("has_jerk", &pilz, 1))[1];
+            assert_eq!(lift.rates, [Some(2.0), Some(least), Some(50.0)], "{more}");
+        }
         // As parameters of ROS 2, and with a comment in another encoding.
         let deep = "/**:\n  ros__parameters:\n    robot_description_planning:\n      joint_limits: {lift: {max_jerk: 50}}\n";
         assert_eq!(limits(deep), [of("lift", [None; 2], [None, None, Some(50.0)])]);
-        assert_eq!(parse("l", b"joint_limits: {lift: {max_jerk: 50}} # \xfc\n").unwrap(), limits(deep));
+        assert_eq!(
+            parse("l", b"joint_limits: {lift: {max_jerk: 50}} # \xfc\n").unwrap().joints,
+            limits(deep)
+        );
     }
 
     #[test]
     fn positions_are_limits_as_in_moveit() {
-        let limits =
-            |of: &str| parse("l", format!("joint_limits:\n  j: {{{of}}}\n").as_bytes()).unwrap()[0].positions;
+        let limits = |of: &str| {
+            parse("l", format!("joint_limits:\n  j: {{{of}}}\n").as_bytes()).unwrap().joints[0].positions
+        };
         let both = "min_position: -1, max_position: 2";
         assert_eq!(limits(both), [Some(-1.0), Some(2.0)]);
         assert_eq!(limits(&format!("has_position_limits: true, {both}")), [Some(-1.0), Some(2.0)]);
@@ -214,7 +234,7 @@ mod tests {
     fn words_that_mean_true_and_false() {
         let is = |word: &str| {
             let text = format!("joint_limits:\n  j:\n    has_velocity_limits: {word}\n    max_velocity: 2\n");
-            parse("l", text.as_bytes()).unwrap()[0].rates[0].is_some()
+            parse("l", text.as_bytes()).unwrap().joints[0].rates[0].is_some()
         };
         for word in ["true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON", "y", "~", "\"true\""] {
             assert!(is(word), "{word}");
@@ -243,6 +263,7 @@ mod tests {
                 5,
                 "above `max_position`",
             ),
+            ("  j:\n    max_deceleration: 0\n", 3, "`max_deceleration` is 0"),
             ("  j: {max_jerk: x}\n  k:\n    max_jerk: 2\n", 2, "`max_jerk` is \"x\""),
             ("  j: 5\n", 2, "`j` has no limits"),
             ("  - j\n", 1, "`joint_limits` has no joints"),

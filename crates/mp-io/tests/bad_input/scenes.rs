@@ -25,6 +25,7 @@ fn environments() {
         env("2 0 0 0 0 0\nEnd\n", "", "s.env:7:6: the file ends too early; expected the pose of obstacle #1, six numbers: x y z α β γ", "the file may be cut short: copy or export it again"),
         env("End\n", "", "s.env:8:12: the file ends too early; expected `Obstacle #k` or `End`", "the file may be cut short: copy or export it again"),
         env("End\n", "End\nBound 0 0 0 1 1 1\n", "s.env:10:1: `Bound` after `End`; expected `Space SE2`, `Space SE3` or `Bounds xmin ymin zmin xmax ymax zmax`", "begin the line with # to make it a comment"),
+        env("End\n", "End\nObstacle #2\nmesh.off\n0 0 0 0 0 0\n", "s.env:10:1: `Obstacle` after `End`; expected `Space SE2`, `Space SE3` or `Bounds xmin ymin zmin xmax ymax zmax`", "move `End` behind the last obstacle"),
         env("End\n", "End\nSpace SE4\n", "s.env:10:7: `SE4` is not a space; expected `Space SE2` or `Space SE3`", "the format is described in docs/formats/gempa-environment.md"),
         env("End\n", "End\nSpace\n", "s.env:10:6: `Space` names no space; expected `Space SE2` or `Space SE3`", "the format is described in docs/formats/gempa-environment.md"),
         env("End\n", "End\nSpace SE2\nSpace SE3\n", "s.env:11:1: `Space` is given twice", "remove one of the lines"),

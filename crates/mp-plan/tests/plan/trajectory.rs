@@ -415,6 +415,12 @@ fn limits_of_position_are_those_of_moveit() {
     let error = load("  a:\n    has_velocity_limits: ture\n", "").unwrap_err();
     assert!(error.contains("joint_limits.yaml:3") && error.contains("ture"), "{error}");
     assert!(load("  a:\n    has_velocity_limits: ture\n", "srdf = false\n").is_ok());
+    // The part that MoveIt takes where a request names none is said, not taken.
+    let scene = load("  a:\n    max_velocity: 1\ndefault_velocity_scaling_factor: 0.1\n", "").unwrap();
+    let notes = scene.notes().join("\n");
+    assert!(notes.contains("--velocity-scale 0.1") && !notes.contains("acceleration-scale"), "{notes}");
+    let scene = load("  a:\ndefault_velocity_scaling_factor: 1\n", "").unwrap();
+    assert!(!scene.notes().iter().any(|note| note.contains("scale")), "{:?}", scene.notes());
 }
 
 /// MoveIt's file beside the SRDF comes before the URDF, and the problem before both.

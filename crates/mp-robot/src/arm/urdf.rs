@@ -180,9 +180,16 @@ impl ArmModel {
         if let Some(axis) = child(node, "axis") {
             joint = joint.axis(Vector3::from(reader.needed_numbers(&axis, "xyz")?));
         }
-        let velocity = child(node, "limit").and_then(|limit| attribute(&limit, "velocity"));
-        let velocity = velocity.and_then(|v| v.trim().parse::<f64>().ok());
-        joint.max_velocity = velocity.filter(|v| *v > 0.0 && v.is_finite());
+        let limit = child(node, "limit");
+        let rate = |name: &str| {
+            let rate = attribute(limit.as_ref()?, name)?.trim().parse().ok();
+            rate.filter(|rate: &f64| *rate > 0.0 && rate.is_finite())
+        };
+        joint.max_velocity = rate("velocity");
+        // Since URDF 1.2. Joints speed up and slow down by one limit here.
+        joint.max_acceleration =
+            [rate("acceleration"), rate("deceleration")].into_iter().flatten().reduce(f64::min);
+        joint.max_jerk = rate("jerk");
         if let Some(mimic) = child(node, "mimic") {
             let multiplier = reader.number(&mimic, "multiplier")?.unwrap_or(1.0);
             let offset = reader.number(&mimic, "offset")?.unwrap_or(0.0);

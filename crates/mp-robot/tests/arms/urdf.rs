@@ -195,6 +195,20 @@ fn velocities_are_read_and_those_of_followers_count() {
     }
 }
 
+/// URDF 1.2 has limits of acceleration and jerk too. A joint brakes no harder than it may.
+#[test]
+fn accelerations_and_jerk_are_read() {
+    let rates = |more: &str| {
+        let text = GRIPPER.replacen("velocity=\"1\"", &format!("velocity=\"1\" {more}"), 1);
+        read(&text).unwrap().rates("lift")
+    };
+    let all = "acceleration=\"5\" deceleration=\"3\" jerk=\"100\"";
+    assert_eq!(rates(all), [Some(1.0), Some(3.0), Some(100.0)]);
+    assert_eq!(rates("acceleration=\"0.5\" deceleration=\"3\""), [Some(1.0), Some(0.5), None]);
+    assert_eq!(rates("deceleration=\"2\""), [Some(1.0), Some(2.0), None]);
+    assert_eq!(rates("acceleration=\"inf\" jerk=\"0\""), [Some(1.0), None, None]);
+}
+
 #[test]
 fn limits_can_be_set_and_pairs_given() {
     let model = read(GRIPPER).unwrap();

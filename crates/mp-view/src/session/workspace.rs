@@ -11,7 +11,7 @@ use mp_geom::TriMesh;
 use mp_io::{Content, Disk, DocumentShape, FORMATS, Files, ProblemDocument, SceneDocument};
 use mp_plan::{
     EditedScene, Error, Interrupt, MetricName, PathFileKind, PathRows, Request, Scene, SceneProblem,
-    TrajectoryKind,
+    TrajectoryKind, brief,
 };
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde_json::{Value, json};
@@ -297,7 +297,16 @@ impl Workspace {
         members.insert("unedited".to_owned(), json(&open.unedited));
         let wrong = open.scene.wrong_ends();
         let odd = open.scene.lint().into_iter().filter(|found| !wrong.contains(found));
-        let notes: Vec<String> = open.scene.notes().iter().cloned().chain(odd).collect();
+        let far = file.far().map(|middle| {
+            let away = middle.amax();
+            format!(
+                "the scene is {} m away from the origin, and the page draws with numbers of 32 bits: bodies are shown up to {} m \
+                 off. Plans, files and pictures of `mp` are exact",
+                brief(away),
+                brief(away * f64::from(f32::EPSILON))
+            )
+        });
+        let notes: Vec<String> = open.scene.notes().iter().cloned().chain(odd).chain(far).collect();
         members.insert("warnings".to_owned(), wrong.into());
         members.insert("notes".to_owned(), notes.into());
         members.insert("planner".to_owned(), open.scene.default_planner().into());
@@ -310,7 +319,10 @@ impl Workspace {
 
     /// The scene file of what is open, with the colours of its document, and with obstacles of the plane where it puts them.
     fn scene_file(&self, open: &Open) -> Result<SceneFile, Error> {
-        let mut file = SceneFile::of(&open.scene)?;
+        Ok(Self::dressed(open, SceneFile::of(&open.scene)?))
+    }
+
+    fn dressed(open: &Open, mut file: SceneFile) -> SceneFile {
         match &open.document {
             Some(Document::Scene(document)) => {
                 for (body, drawn) in document.bodies().zip(&mut file.bodies) {
@@ -324,15 +336,15 @@ impl Workspace {
                         let ring =
                             |ring: Vec<[f64; 2]>| ring.as_flattened().iter().map(|x| *x as f32).collect();
                         file.areas[*area].rings = rings.into_iter().map(ring).collect();
-                        let [x, y, _, angle, ..] = obstacle.pose;
-                        let pose = mp_geom::pose_from_six([x, y, 0.0, angle, 0.0, 0.0]);
+                        let ([x, y, _, angle, ..], [a, b, _]) = (obstacle.pose, file.origin);
+                        let pose = mp_geom::pose_from_six([x - a, y - b, 0.0, angle, 0.0, 0.0]);
                         drawn.pose = Some(crate::of_scene::seven(&pose));
                     }
                 }
             }
             None => {}
         }
-        Ok(file)
+        file
     }
 
     /// Keeps the meshes of files, for documents.
@@ -500,7 +512,13 @@ impl Workspace {
     fn export(&self, request: &Message) -> Answer {
         let open = &Open { scene: self.scene_to_plan(request)?, ..self.opened()?.clone() };
         let name = plain_name(request)?;
-        let mut file = self.scene_file(open)?;
+        let formats = [Content::ViewerScene, Content::Gltf, Content::Page].map(Content::ending);
+        // A page with the planner inside puts the scene into its own text.
+        let formats = if cfg!(target_family = "wasm") { &formats[..2] } else { &formats[..] };
+        let ending = format_of(request, formats, "exports")?;
+        let meshes = ending == Content::Gltf.ending();
+        let file = if meshes { SceneFile::for_glb(&open.scene) } else { SceneFile::of(&open.scene) }?;
+        let mut file = Self::dressed(open, file);
         for path in request.head.get("paths").and_then(Value::as_array).into_iter().flatten() {
             let members = path.as_object().cloned().unwrap_or_default();
             let rows = rows_of(&members, "rows")?;
@@ -508,14 +526,10 @@ impl Workspace {
             let path = PathRows { format, columns: open.scene.columns(), rows };
             file.add_path(&open.scene, text_of(&members, "name")?, &path)?;
         }
-        let formats = [Content::ViewerScene, Content::Gltf, Content::Page].map(Content::ending);
-        // A page with the planner inside puts the scene into its own text.
-        let formats = if cfg!(target_family = "wasm") { &formats[..2] } else { &formats[..] };
-        let ending = format_of(request, formats, "exports")?;
         let bytes = match ending {
             #[cfg(not(target_family = "wasm"))]
             ending if ending == Content::Page.ending() => file.to_html().into_bytes(),
-            ending if ending == Content::Gltf.ending() => file.to_glb(GLB_SECONDS),
+            _ if meshes => file.to_glb(GLB_SECONDS),
             _ => file.to_bytes(),
         };
         self.written(request, vec![(format!("{name}.{ending}"), bytes)])

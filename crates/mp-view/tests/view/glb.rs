@@ -171,3 +171,54 @@ fn little_or_broken_scenes_are_still_files() {
     };
     assert_eq!(gltf::Gltf::from_slice(&empty.to_glb(8.0)).unwrap().document.nodes().count(), 1);
 }
+
+/// In coordinates of surveys numbers of 32 bits are half a metre apart: places are relative to the middle of the scene.
+#[test]
+fn scenes_far_from_the_origin_keep_their_places() {
+    let rigid = "[robot]\nbox = [0.5, 0.5, 0.5]\nbounds = [[499990, 4499990, 90], [500030, 4500030, 110]]\n\
+         [motion]\nstart = [500002, 4500012.345, 100, 0, 0, 0]\ngoal = [500010.7, 4500012.345, 100, 0, 0, 0]\n\
+         [[obstacle]]\nname = \"pillar\"\nbox = [1, 1, 1]\npose = [500003.4, 4500010.3, 100, 0, 0, 0]\n";
+    let plane = "[world]\nbounds = [[500000, 4500000], [500010, 4500010]]\n[robot]\ndisc = 0.1\n\
+         [motion]\nstart = [500002, 4500005.345]\ngoal = [500008.7, 4500005.345]\n\
+         [[obstacle]]\nname = \"pillar\"\nrectangle = [[500003.1, 4500002.2], [500005.3, 4500003.1]]\n";
+    for (text, pillar, start) in [
+        (rigid, [500_003.4, 4_500_010.3], [500_002.0, 4_500_012.345]),
+        (plane, [500_004.2, 4_500_002.65], [500_002.0, 4_500_005.345]),
+    ] {
+        let scene = Scene::parse("far", text, std::path::Path::new("")).unwrap();
+        let report = scene.plan(&Request::new("rrt-connect").seed(1)).unwrap();
+        let mut file = SceneFile::for_glb(&scene).unwrap();
+        file.add_run(&scene, &report).unwrap();
+        let bytes = file.to_glb(1.0);
+        let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+        // The reader of the other tests has numbers of 32 bits.
+        let head: serde_json::Value = serde_json::from_slice(&bytes[20..20 + length]).unwrap();
+        let data = &bytes[28 + length..];
+        let nodes = head["nodes"].as_array().unwrap();
+        let named = |name: &str| nodes.iter().rfind(|n| n["name"] == name && n["translation"].is_array());
+        let at = |node: &serde_json::Value, k: usize| node["translation"][k].as_f64().unwrap();
+        let origin = named("origin").unwrap();
+        let accessor = |i: &serde_json::Value| {
+            let accessor = &head["accessors"][i.as_u64().unwrap() as usize];
+            let view = &head["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+            let from = view["byteOffset"].as_u64().unwrap() as usize;
+            let number = move |k: usize| f32::from_le_bytes(data[from + 4 * k..][..4].try_into().unwrap());
+            (accessor["count"].as_u64().unwrap() as usize, number)
+        };
+        let node = named("pillar").unwrap();
+        let primitive = &head["meshes"][node["mesh"].as_u64().unwrap() as usize]["primitives"][0];
+        let (count, number) = accessor(&primitive["attributes"]["POSITION"]);
+        let (_, moved) = accessor(&head["animations"][0]["samplers"][0]["output"]);
+        for k in 0..2 {
+            let all = (0..count).map(|i| f64::from(number(3 * i + k)));
+            let (low, high) = all.fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
+            let middle = at(origin, k) + at(node, k) + (low + high) / 2.0;
+            assert!((middle - pillar[k]).abs() < 1e-4, "{middle}");
+            let begin = at(origin, k) + f64::from(moved(k));
+            assert!((begin - start[k]).abs() < 1e-4, "{begin}");
+        }
+    }
+    // All others are as they were.
+    let easy = Scene::find("easy").unwrap();
+    assert_eq!(SceneFile::for_glb(&easy).unwrap(), SceneFile::of(&easy).unwrap());
+}

@@ -115,6 +115,16 @@ fn with_joint_limits(mut model: ArmModel, robot: &DescribedRobot) -> Result<(Arm
         let why = "these joints turn without end or mimic others";
         said.push(format!("limits of position in {file} are not taken, for {why}: {}", without.join(", ")));
     }
+    let options = ["velocity", "acceleration"].into_iter().zip(robot.joint_limits.parts);
+    let options = options
+        .filter_map(|(what, part)| Some(format!("`--{what}-scale {}`", part.filter(|part| *part < 1.0)?)));
+    let options: Vec<_> = options.collect();
+    if !options.is_empty() {
+        said.push(format!(
+            "MoveIt takes parts of the limits where a request names none, as {file} says; trajectories take the whole limits here, unless {} say otherwise",
+            options.join(" and ")
+        ));
+    }
     Ok((model, said))
 }
 
