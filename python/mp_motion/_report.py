@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import warnings
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
@@ -139,7 +140,7 @@ class Report(InScene):
     solved : bool
         Whether a path was found, and passed the independent verifier.
     path : ndarray, shape (n, len(columns)), or None
-        The path: one configuration in each row, the start first.
+        The path: one configuration in each row, the start first. It is read-only; ``path.copy()`` is not.
     columns : tuple of Column
         The meaning of each number of a configuration.
     stopped_by, why : str or None
@@ -168,6 +169,8 @@ class Report(InScene):
         What the path costs, where the objective was not its length.
     won : str or None
         Of the planner ``auto``, the search that has found the path.
+    roadmap_error : str or None
+        Why the file of the roadmap was not written at the end, which is a warning too.
     shortened : bool
         Whether the path was shortened.
     fingerprint : str or None
@@ -211,6 +214,7 @@ class Report(InScene):
     path_file: str | None = None
     picture_file: str | None = None
     certificate_file: str | None = None
+    roadmap_error: str | None = None
     clearance_kept: float = 0.0
     cost: float | None = None
     won: str | None = None
@@ -225,7 +229,15 @@ class Report(InScene):
         members["columns"] = tuple(Column(**column) for column in members["columns"])
         members["stages"] = tuple(StageTime(**stage) for stage in members["stages"])
         members["path"], members["first_path"] = path, first_path
+        for rows in (path, first_path):
+            if rows is not None:
+                # The other members are of these numbers.
+                rows.flags.writeable = False
         return cls(**members, calls=calls, _scene=scene)
+
+    def _warn(self) -> None:
+        if self.roadmap_error is not None:
+            warnings.warn(f"the roadmap was not kept: {self.roadmap_error}", RuntimeWarning, stacklevel=3)
 
     @classmethod
     def from_json(cls, text: str) -> Report:
@@ -240,7 +252,7 @@ class Report(InScene):
         members: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("_scene", "calls")}
         if self.clearance_kept == 0.0:
             del members["clearance_kept"]
-        for name in ("cost", "won"):
+        for name in ("cost", "won", "roadmap_error"):
             if members[name] is None:
                 del members[name]
         members["columns"] = [vars(column) for column in self.columns]

@@ -784,6 +784,7 @@ class Scene:
             parts, raised = self._native.plan(options.to_json(self), cancel, tell)
         calls = self._native.function_calls() - before
         report = Report._of(*parts, scene=self, calls=None if self._robot is None else calls)
+        report._warn()
         if raised is None:
             return report
         if isinstance(raised, KeyboardInterrupt):
@@ -847,7 +848,9 @@ class Scene:
             reports, raised = self._native.routes(options.to_json(self), count, str(apart), cancel, tell)
         if raised is not None:
             raise raised
-        return [Report._of(*parts, scene=self) for parts in reports]
+        found = [Report._of(*parts, scene=self) for parts in reports]
+        found[0]._warn()
+        return found
 
     def roadmap(
         self,

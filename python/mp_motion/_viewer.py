@@ -83,7 +83,7 @@ class Viewer:
         self._shown: dict[str, bytes] = {}
         self._pages: set[Page] = set()
         self._lock = threading.Condition()
-        self._seen = False
+        self._seen = self._closed = False
         # Other users of this machine can read the arguments of programs: the browser is started with an address that works
         # once.
         self._token, self._ticket = secrets.token_urlsafe(24), secrets.token_urlsafe(24)
@@ -141,6 +141,8 @@ class Viewer:
         self._send(CONFIGURATION, self._scene._path([row]))
 
     def _send(self, name: str, rows: Any) -> None:
+        if self._closed:
+            raise Error("the viewer is closed", remedy="open another one by scene.view()")
         message = self._scene._native.path_for_page(name, rows)
         with self._lock:
             # The last one shown is the one that a page that is opened later shows.
@@ -158,7 +160,8 @@ class Viewer:
                 self._lock.wait(0.2)
 
     def close(self) -> None:
-        """End the server. What is shown stays in the page."""
+        """End the server. What is shown stays in the page; to show more then is an error."""
+        self._closed = True
         self._server.shutdown()
         self._server.server_close()
         with self._lock:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -203,6 +204,29 @@ def test_roadmaps_grow_are_saved_and_gone_on_with() -> None:
     assert report.solved and report.nodes >= roadmap.nodes
     with pytest.raises(mp.Error, match=r"not free|collision|bounds"):
         roadmap.query([1e6] * 6, scene.start)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="elsewhere a folder in use is not removed")
+def test_a_lost_roadmap_is_a_warning(folder: Path) -> None:
+    (folder / "maps").mkdir()
+
+    def lose(_: mp.Progress) -> None:
+        shutil.rmtree(folder / "maps", ignore_errors=True)
+
+    options = mp.Options("prm-star", seed=1, time=2, roadmap="maps/m.roadmap")
+    with pytest.warns(RuntimeWarning, match=r"the roadmap was not kept: maps/m\.roadmap"):
+        report = mp.Scene("easy").plan_by(options, progress=lose)
+    assert report.solved and report.roadmap_error is not None
+    assert mp.Report.from_json(report.to_json()).roadmap_error == report.roadmap_error
+
+
+def test_paths_of_reports_stay_as_they_were_verified() -> None:
+    report = mp.Scene("easy").plan("rrt-connect", seed=1)
+    for given in (report, mp.Report.from_json(report.to_json())):
+        assert given.path is not None
+        with pytest.raises(ValueError, match="read-only"):
+            given.path[0, 0] = 7.0
+        given.path.copy()[0, 0] = 7.0
 
 
 def test_routes_are_apart() -> None:

@@ -134,6 +134,10 @@ def test_a_page_is_told_of_the_end(scene: mp.Scene) -> None:
     tab = Tab(viewer)
     viewer.close()
     assert tab.next() is None
+    with pytest.raises(mp.Error, match="the viewer is closed"):
+        viewer.move(scene.start)
+    with pytest.raises(mp.Error, match="the viewer is closed"):
+        viewer.show([scene.start])
     with pytest.raises(OSError, match="refused"):
         urllib.request.urlopen(viewer.address, timeout=60)
 

@@ -50,7 +50,8 @@ pub(crate) fn run(args: &Check) -> Result<bool, Error> {
         }
     }
     if given < parts {
-        note(&format!("the motion has {parts} parts: the paths of {given} were checked"));
+        let were = if given == 1 { "the first was".to_owned() } else { format!("the first {given} were") };
+        note(&format!("the motion has {parts} parts: only {were} checked"));
     }
     Ok(free)
 }

@@ -344,7 +344,7 @@ pub(crate) struct Check {
     /// A scene file, or the name of a shipped scene; `-` for standard input.
     pub(crate) scene: PathBuf,
     /// A path: text, `.json` or `.csv`; or a trajectory of an arm: `.csv` with times, `.json` or `.yaml` as ROS and MoveIt write them, `.mcap`; `-` for
-    /// standard input. Of a motion of several parts, the paths of its parts in order.
+    /// standard input. Of a motion of several parts, the paths of its parts in order, or of the first ones.
     #[arg(required_unless_present = "at")]
     pub(crate) paths: Vec<PathBuf>,
     /// The curve between the points of a trajectory. `controller`: what joint_trajectory_controller of ROS runs, quintic where there are

@@ -102,11 +102,19 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let (mut reports, complete): (Vec<_>, Vec<_>) = made.into_iter().unzip();
     reports.extend(not_loaded);
     let solved = reports.iter().all(|r| r.solved) && !complete.contains(&false);
+    let lost = lost_roadmap(&reports);
     show(args, reports, single)?;
     if missing > 0 {
         note(&format!("{}: {missing} of {} runs were not started", ended_by(&cancel), jobs.len()));
     }
-    Ok(missing == 0 && solved)
+    lost.map_or(Ok(missing == 0 && solved), Err)
+}
+
+/// The error of the first run whose roadmap was not written. It is told when all else is written.
+fn lost_roadmap(reports: &[Report]) -> Option<Error> {
+    let why = reports.iter().find_map(|report| report.roadmap_error.as_ref())?;
+    let help = "the path and the other files are as they should be; name a --roadmap that can be written, or make room";
+    Some(Error::new(format!("the roadmap was not kept: {why}")).help(help))
 }
 
 /// Refuses several scenes or runs where there can be one only.
@@ -215,6 +223,7 @@ fn routes(
     }
     drop(line);
     let solved = reports.iter().filter(|report| report.solved).count();
+    let lost = lost_roadmap(&reports);
     if args.json {
         print_json(&Runs::new(reports))?;
     } else {
@@ -225,7 +234,7 @@ fn routes(
     if solved < usize::from(count) {
         note(&format!("{solved} of {count} routes were found that are {} apart", args.apart));
     }
-    Ok(solved >= usize::from(count))
+    lost.map_or(Ok(solved >= usize::from(count)), Err)
 }
 
 /// Plans the parts of a motion one after the other, and writes each to files of its own. True when all are solved.
@@ -267,6 +276,7 @@ fn parts(
         }
     }
     let solved = all_complete && reports.len() == count && reports.iter().all(|report| report.solved);
+    let cannot_begin = cannot_begin.or_else(|| lost_roadmap(&reports));
     if args.json {
         print_json(&Runs::new(reports))?;
     } else {

@@ -1,6 +1,6 @@
 //! Summaries and tables of runs, for people.
 
-use mp_plan::{Report, StageTime, StoppedBy, at_least, brief, medians};
+use mp_plan::{Report, StageTime, StoppedBy, at_least, brief, count, medians};
 
 /// A summary of one run, a few lines.
 pub(crate) fn summary(report: &Report) -> String {
@@ -81,7 +81,7 @@ pub(crate) fn summary(report: &Report) -> String {
         row("stages", stages(report));
     }
     if let (Some(file), Some(path)) = (&report.path_file, &report.path) {
-        row("path", format!("{file}, {} configurations", path.len()));
+        row("path", format!("{file}, {}", count(path.len(), "configuration")));
     }
     if let Some(file) = &report.picture_file {
         row("picture", file.clone());
@@ -241,6 +241,7 @@ mod tests {
             path_file: None,
             picture_file: None,
             certificate_file: None,
+            roadmap_error: None,
             path: time.map(|_| vec![vec![0.0; 6]]),
         }
     }

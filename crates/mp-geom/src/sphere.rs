@@ -38,12 +38,15 @@ const MAX_TURNS: usize = 1000;
 /// A sphere that does not grow is gone on from where its reach is less by more than this part.
 const MOVED: f64 = 1e-12;
 
-/// The smallest sphere enclosing `points`, exact up to rounding; `None` when there are no points.
+/// The smallest sphere enclosing `points`, exact up to rounding; `None` when there are no points, or one is not finite.
 ///
 /// Every point satisfies [`Sphere::contains`].
 #[must_use]
 pub fn minimal_sphere(points: &[Point3<f64>]) -> Option<Sphere> {
     let first = *points.first()?;
+    if points.iter().any(|point| point.iter().any(|x| !x.is_finite())) {
+        return None;
+    }
     let mut support = vec![first];
     let mut center = first;
     let mut basis_radius = 0.0;
@@ -208,6 +211,9 @@ mod tests {
         assert_eq!(minimal_sphere(&[]), None);
         let p = Point3::new(1.0, 2.0, 3.0);
         assert_eq!(minimal_sphere(&[p; 5]), Some(Sphere { center: p, radius: 0.0 }));
+        for odd in [f64::NAN, f64::INFINITY] {
+            assert_eq!(minimal_sphere(&[p, Point3::new(0.0, odd, 0.0)]), None);
+        }
         let s = minimal_sphere(&[p, p, p + Vector3::x() * 4.0]).unwrap();
         assert_eq!(s, Sphere { center: Point3::new(3.0, 2.0, 3.0), radius: 2.0 });
         // Flat, hardly acute: the circle about all three is as large, as computed, as that about the long side, which the third is outside of.

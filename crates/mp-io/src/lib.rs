@@ -71,5 +71,7 @@ pub use robot::{
 pub use robots::{FoundRobot, RobotPath};
 pub use shape::ShapeEntry;
 pub use toml_problem::{GoalEntry, GoalPart, NamedStart, StartEntry, Timing};
-pub use trajectory::{RecordedBody, RecordedShape, Recording, TrajectoryFile, TrajectoryKind};
+pub use trajectory::{
+    Follower, KnownJoints, RecordedBody, RecordedShape, Recording, TrajectoryFile, TrajectoryKind,
+};
 pub use xacro::expand_xacro;

@@ -5,6 +5,7 @@ use crate::pose_goal::PoseEntry;
 use mp_formats::error::{Error, ErrorKind};
 use mp_formats::mesh::MAX_COORDINATE;
 use mp_formats::text::clipped;
+use mp_geom::pose_from_six;
 use serde::de::{DeserializeOwned, Error as _};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
@@ -532,7 +533,7 @@ pub(crate) fn timed_rows(
         return fault(format!("the path of {what} is empty"));
     }
     let mut last = f64::NEG_INFINITY;
-    let mut found = Vec::new();
+    let mut found: Vec<Vec<f64>> = Vec::new();
     for (i, row) in rows.get_ref().iter().enumerate() {
         text.check(&format!("the path of {what}"), row, &span)?;
         if ![1 + numbers - optional, 1 + numbers].contains(&row.len()) {
@@ -548,9 +549,28 @@ pub(crate) fn timed_rows(
         last = row[0];
         let mut row = row.clone();
         row.resize(1 + numbers, 0.0);
+        if found.last().is_some_and(|before| is_half_turn(before, &row)) {
+            let message = format!(
+                "row {} of the path of {what} is turned half way round from the row before: nothing says which way it turns",
+                i + 1
+            );
+            return Err(text
+                .error(&span, message)
+                .expected("a row between the two, such as one at a quarter turn"));
+        }
         found.push(row);
     }
     Ok(found)
+}
+
+/// Whether two timed poses, with an angle or three, are exactly half a turn apart.
+fn is_half_turn(from: &[f64], to: &[f64]) -> bool {
+    let rotation = |row: &[f64]| match *row {
+        [_, x, y, angle] => pose_from_six([x, y, 0.0, angle, 0.0, 0.0]).rotation,
+        _ => pose_from_six(std::array::from_fn(|i| row.get(i + 1).copied().unwrap_or(0.0))).rotation,
+    };
+    // The cosine of half of the angle between them.
+    rotation(from).coords.dot(&rotation(to).coords).abs() < 1e-9
 }
 
 #[cfg(test)]

@@ -31,6 +31,29 @@ pub struct TrajectoryFile {
     pub attached: Vec<String>,
 }
 
+/// What is known of the joints of the robot beside their names and units.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct KnownJoints<'r> {
+    /// Which of the joints wanted turn without end, so that whole turns make no difference between the state before the trajectory, which
+    /// messages of MoveIt have, and its first point. Those beyond the end do not.
+    pub endless: &'r [bool],
+    /// The joints that follow others. Messages of ROS may list them too, where they should be.
+    pub followers: &'r [Follower],
+}
+
+/// A joint that follows another: it is at `multiplier` times the value of the leader plus `offset`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Follower {
+    /// Its name.
+    pub name: String,
+    /// The name of the joint that it follows.
+    pub leader: String,
+    /// What the value of the leader is multiplied with.
+    pub multiplier: f64,
+    /// What is added (rad or m).
+    pub offset: f64,
+}
+
 /// A format of files that hold a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TrajectoryKind {
@@ -77,26 +100,25 @@ impl TrajectoryFile {
         kind: TrajectoryKind,
         wanted: &[Column],
     ) -> Result<Option<Self>, Error> {
-        Self::parse_of(file, bytes, kind, wanted, &[])
+        Self::parse_of(file, bytes, kind, wanted, KnownJoints::default())
     }
 
-    /// As [`parse`](Self::parse), of joints some of which are `endless`: they turn without end, so that whole turns make no difference between the
-    /// state before the trajectory, which messages of MoveIt have, and its first point.
+    /// As [`parse`](Self::parse), with what is known of the joints of the robot.
     ///
     /// # Errors
-    /// As [`parse`](Self::parse).
+    /// As [`parse`](Self::parse), and when a joint is not where it should be as it follows another.
     pub fn parse_of(
         file: &str,
         bytes: &[u8],
         kind: TrajectoryKind,
         wanted: &[Column],
-        endless: &[bool],
+        known: KnownJoints<'_>,
     ) -> Result<Option<Self>, Error> {
         let read = match kind {
             TrajectoryKind::Csv => csv::parse(file, bytes, wanted)?,
-            TrajectoryKind::Json => ros::parse_json(file, bytes, wanted, endless)?,
-            TrajectoryKind::Yaml => ros::parse_yaml(file, bytes, wanted, endless)?,
-            TrajectoryKind::Mcap => Some(mcap::parse(file, bytes, wanted)?),
+            TrajectoryKind::Json => ros::parse_json(file, bytes, wanted, known)?,
+            TrajectoryKind::Yaml => ros::parse_yaml(file, bytes, wanted, known)?,
+            TrajectoryKind::Mcap => Some(mcap::parse(file, bytes, wanted, known)?),
         };
         let Some(read) = read else { return Ok(None) };
         if let Some(i) = read.times.windows(2).position(|t| t[1] <= t[0]) {
@@ -313,10 +335,35 @@ mod tests {
             );
             let text = format!(r#"{{"trajectory": [{inside}], "trajectory_start": {state}}}"#);
             let read = |text: &str| {
-                let (kind, endless) = (TrajectoryKind::Json, [false, endless]);
-                TrajectoryFile::parse_of("t", text.as_bytes(), kind, &wanted(), &endless).is_ok()
+                let known = KnownJoints { endless: &[false, endless], followers: &[] };
+                TrajectoryFile::parse_of("t", text.as_bytes(), TrajectoryKind::Json, &wanted(), known).is_ok()
             };
             assert_eq!(read(&text), begins, "{turns} {endless}");
+        }
+        // Joints that follow others, as in `/joint_states`, where they should be.
+        let finger =
+            Follower { name: "finger".to_owned(), leader: "elbow".to_owned(), multiplier: -0.5, offset: 0.1 };
+        let known = KnownJoints { followers: &[finger], ..KnownJoints::default() };
+        let with = |at: f64, velocity: f64| {
+            let text = format!(
+                r#"{{"joint_names": ["finger", "elbow", "lift"], "points": [
+                {{"positions": [-0.4, 1, 0], "velocities": [0, 0, 0], "time_from_start": {{"sec": 0, "nanosec": 0}}}},
+                {{"positions": [{at}, 1.2, 0.3], "velocities": [{velocity}, 2, 0], "time_from_start": {{"sec": 1, "nanosec": 0}}}}]}}"#
+            );
+            let read = |known| {
+                TrajectoryFile::parse_of("t", text.as_bytes(), TrajectoryKind::Json, &wanted(), known)
+            };
+            assert!(read(KnownJoints::default()).unwrap_err().report().contains("`finger` is no number"));
+            read(known).map_err(|e| e.report())
+        };
+        let read_with = with(-0.50004, -1.0).unwrap().unwrap();
+        assert_eq!(read_with.positions, [[0.0, 1.0], [0.3, 1.2]]);
+        assert_eq!(read_with.velocities, [[0.0, 0.0], [0.0, 2.0]]);
+        for (refused, words) in [
+            (with(-0.6, -1.0), "positions of point 2: finger is -0.6"),
+            (with(-0.5, 1.0), "velocities of point 2"),
+        ] {
+            assert!(refused.as_ref().unwrap_err().contains(words), "{refused:?}");
         }
         let two = format!(r#"{{"trajectory": [{inside}, {inside}]}}"#);
         assert!(read(&two, TrajectoryKind::Json).unwrap_err().contains("2 trajectories"));

@@ -71,6 +71,12 @@ impl<'t> Reader<'t> {
             Event::Scalar(text, .., Some(tag)) if !tag.is_yaml_core_schema() => {
                 angle(&text, &tag.suffix).ok_or_else(|| self.error(at, "this has a tag, which is not read"))
             }
+            Event::Scalar(text, ScalarStyle::Plain, ..) if octal(&text) => {
+                let message = format!("{text} is one number in YAML 1.1 and another one in YAML 1.2");
+                Err(self
+                    .error(at, message)
+                    .help("leave the zeros at its beginning out, or write it between quotes"))
+            }
             Event::Scalar(text, style, ..) => Ok(scalar(&text, style == ScalarStyle::Plain)),
             Event::SequenceStart(..) => {
                 let mut items = Vec::new();
@@ -147,6 +153,14 @@ fn scalar(text: &str, plain: bool) -> Value {
     }
 }
 
+/// Whether a whole number begins with a zero and so is in octal digits in YAML 1.1, which PyYAML and yaml-cpp read, and in decimal ones in
+/// YAML 1.2, where that makes a difference.
+fn octal(text: &str) -> bool {
+    let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
+    let zero = digits.len() > 1 && digits.starts_with('0') && digits.bytes().all(|b| b.is_ascii_digit());
+    zero && u64::from_str_radix(digits, 8) != digits.parse()
+}
+
 /// An angle (rad) with one of the tags of MoveIt, `!degrees 90` and `!radians 1.57`.
 fn angle(text: &str, tag: &str) -> Option<Value> {
     let number: f64 = text.trim().parse().ok()?;
@@ -173,6 +187,19 @@ mod tests {
         for text in ["a: &a [*a]\n", "a: *b\n", "a: &a x\n*a : 1\n"] {
             assert!(read(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn numbers_that_begin_with_zero() {
+        let same = [("0", 0.0), ("00", 0.0), ("07", 7.0), ("-03", -3.0), ("0.10", 0.1), ("010.5", 10.5)];
+        for (text, number) in same {
+            assert_eq!(read(&format!("sec: {text}")).unwrap()["sec"].as_f64(), Some(number), "{text}");
+        }
+        for text in ["010", "-012", "+010", "08", "0000001000"] {
+            let said = read(&format!("a: 1\nsec: {text}\n")).unwrap_err();
+            assert!(said.contains("t.yaml:2:6") && said.contains("leave the zeros"), "{said}");
+        }
+        assert_eq!(read("a: '010'").unwrap()["a"], "010");
     }
 
     #[test]

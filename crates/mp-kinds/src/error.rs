@@ -184,7 +184,13 @@ impl From<BuildError> for Error {
             | BuildError::UnknownParameter { .. } => ErrorKind::Request,
             _ => ErrorKind::Planner,
         };
-        Self::new(error.to_string()).of_kind(kind)
+        let made = Self::new(error.to_string()).of_kind(kind);
+        match error {
+            BuildError::Inputs { .. } => {
+                made.help("change what moves the robot, in the table `[robot]` of its file: a shorter `duration`, or smaller speeds")
+            }
+            _ => made,
+        }
     }
 }
 

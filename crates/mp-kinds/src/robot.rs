@@ -354,6 +354,12 @@ pub trait Description: Motion {
         None
     }
 
+    /// The joints that follow others: of each its name, that of its leader, and what the value of this is multiplied with before something
+    /// (rad or m) is added to it. By default there are none.
+    fn followers(&self) -> Vec<(String, String, [f64; 2])> {
+        Vec::new()
+    }
+
     /// The joints that the scene holds, where (rad or m), and whether whole turns make no difference to them. By default there are none.
     fn held(&self) -> Vec<(String, f64, bool)> {
         Vec::new()

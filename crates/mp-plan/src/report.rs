@@ -88,6 +88,9 @@ pub struct Report {
     /// The file to which a front end wrote the certificate of the path.
     #[serde(default)]
     pub certificate_file: Option<String>,
+    /// Why the file of the roadmap was not written at the end of the run. The path is not concerned.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roadmap_error: Option<String>,
     /// The meaning of each number of a configuration, in order.
     pub columns: Vec<Column>,
     /// The path, one configuration in each row, start first.

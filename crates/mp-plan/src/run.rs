@@ -313,10 +313,13 @@ impl<'p, 'k> RobotRun<'p, 'k> {
             Some(NamedPlanner::Auto(auto)) => auto.won(),
             _ => None,
         };
+        let mut roadmap_error = None;
         let (map, roadmap) = match &mut self.made {
             None | Some(NamedPlanner::Tree(_) | NamedPlanner::Auto(_)) => (None, None),
             Some(NamedPlanner::Roadmap(made)) => {
-                let (map, roadmap) = made.keep(self.file.as_ref(), control.keep_roadmap)?;
+                // The path is not lost with the file.
+                roadmap_error = made.save_to(self.file.as_ref()).err().map(|e| e.to_string());
+                let (map, roadmap) = made.keep(control.keep_roadmap);
                 if let Some(watch) = control.watch.as_mut().filter(|watch| watch.wants_roadmap()) {
                     watch.roadmap(made.grown(&|q| kind.row(q)));
                 }
@@ -350,6 +353,7 @@ impl<'p, 'k> RobotRun<'p, 'k> {
             others: Vec::new(),
             map,
             roadmap,
+            roadmap_error,
             won,
         })
     }
@@ -374,7 +378,10 @@ impl<'p, 'k> RobotRun<'p, 'k> {
         let progress = self.progress();
         let map = match &mut self.made {
             None | Some(NamedPlanner::Tree(_) | NamedPlanner::Auto(_)) => None,
-            Some(NamedPlanner::Roadmap(made)) => Some(made.keep(self.file.as_ref(), false)?.0),
+            Some(NamedPlanner::Roadmap(made)) => {
+                made.save_to(self.file.as_ref())?;
+                Some(made.keep(false).0)
+            }
         };
         // Checkers report their last queries when they are dropped.
         self.made = None;

@@ -65,7 +65,12 @@ impl Grid {
         let origin = origin.into();
         let middle =
             |i: usize| Vector2::new((i % width.max(1)) as f64 + 0.5, (i / width.max(1)) as f64 + 0.5);
-        let values = (0..width * height).map(|i| f(origin + middle(i) * cell)).collect();
+        let number = width.checked_mul(height).ok_or(ParameterError {
+            name: "the number of cells",
+            expected: "one that memory can hold",
+            value: width as f64 * height as f64,
+        })?;
+        let values = (0..number).map(|i| f(origin + middle(i) * cell)).collect();
         Self::new(origin, cell, width, values)
     }
 
@@ -183,5 +188,6 @@ mod tests {
             assert!(Grid::new([0.0, 0.0], cell, width, vec![0.0; n]).is_err());
         }
         assert!(Grid::new([0.0, 0.0], 1.0, 2, vec![f64::NAN; 4]).is_err());
+        assert!(Grid::from_fn([0.0, 0.0], 1.0, (usize::MAX, 2), |_| 0.0).is_err());
     }
 }

@@ -75,13 +75,14 @@ pub fn laplacian(grid: &Grid) -> Grid {
 /// larger than that it is flat: use a [`Repulsion`](crate::Repulsion) by [`signed_distance`] there.
 ///
 /// # Errors
-/// When `sigma` or `weight` is not positive and finite.
+/// When `sigma` or `weight` is not positive and finite, or energies would not be finite.
 ///
 /// [`signed_distance`]: crate::signed_distance
 pub fn outline_energy(image: &Grid, sigma: f64, weight: f64) -> Result<Grid, ParameterError> {
     let weight = positive("the weight of an image", weight)?;
     let squares = blurred(&laplacian(image), sigma)?.map(|x| x * x);
     let most = squares.values().iter().copied().fold(0.0, f64::max);
+    positive("the weight of an image times its greatest square", (weight * most).max(f64::MIN_POSITIVE))?;
     Ok(if most > 0.0 { squares.map(|x| weight * x / most) } else { squares })
 }
 
@@ -148,6 +149,8 @@ mod tests {
         let ridge = (30..50).map(|i| at(f64::from(i) * 0.01)).fold(0.0, f64::max);
         assert!(ridge > 1.0 && ridge <= 2.0, "{ridge}");
         assert!(at(0.7) < 0.01 && at(0.05) < 0.01 && at(0.46) > at(0.52) && at(0.52) > at(0.6));
+        // Energies that would be infinite.
+        assert!(outline_energy(&disc, 0.06, 1e308).is_err());
         let flat = outline_energy(&disc.map(|_| 1.0), 0.06, 2.0).unwrap();
         assert!(flat.values().iter().all(|v| *v == 0.0));
     }

@@ -1,6 +1,7 @@
 //! Files that grow by whole lines.
 
-use crate::error::Error;
+use crate::FileId;
+use crate::error::{Error, ErrorKind};
 use crate::write::write;
 use std::fs::File;
 use std::io::{self, Write};
@@ -18,6 +19,7 @@ const SYNC: Duration = Duration::from_secs(1);
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
+    id: FileId,
     open: Mutex<Open>,
 }
 
@@ -51,14 +53,28 @@ impl Journal {
             Ok(file)
         };
         let file = open().map_err(|e| failed(path, &e))?;
-        Ok(Self { path: path.to_owned(), open: Mutex::new(Open { file, synced: Instant::now() }) })
+        Ok(Self {
+            path: path.to_owned(),
+            id: FileId::of(path),
+            open: Mutex::new(Open { file, synced: Instant::now() }),
+        })
     }
 
     /// Appends `line`, which has no line break.
     ///
     /// # Errors
-    /// When it cannot be written, for example because the disk is full. The file is then as before.
+    /// When it cannot be written, for example because the disk is full. The file is then as before. And when the file has been deleted or
+    /// replaced since it was opened, as nobody would find the line.
     pub fn append(&self, line: &str) -> Result<(), Error> {
+        if FileId::of(&self.path) != self.id {
+            let remedy = "start again, and leave the file where it is: what it held is lost";
+            return Err(Error::new(
+                ErrorKind::Io,
+                &self.path,
+                "the file was deleted or replaced while it grew",
+                remedy,
+            ));
+        }
         let open = &mut *self.open.lock().unwrap_or_else(PoisonError::into_inner);
         let appended = open.append(line);
         appended.map_err(|e| failed(&self.path, &e))
@@ -115,6 +131,24 @@ mod tests {
         assert!(lines.iter().all(|line| line.split(' ').count() == 2));
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn a_file_that_is_gone_is_an_error() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("runs");
+        let journal = Journal::create(&path, "first\n").unwrap();
+        journal.append("second").unwrap();
+        // Moved and back it is the same file.
+        std::fs::rename(&path, dir.path().join("aside")).unwrap();
+        let gone = journal.append("third").unwrap_err();
+        assert!(gone.to_string().contains("deleted or replaced"), "{gone}");
+        std::fs::rename(dir.path().join("aside"), &path).unwrap();
+        journal.append("third").unwrap();
+        std::fs::remove_file(&path).unwrap();
+        std::fs::write(&path, "first\n").unwrap();
+        assert!(journal.append("fourth").is_err());
+    }
+
     #[test]
     fn a_line_that_is_not_whole_is_cut_off() {
         let dir = tempfile::tempdir().unwrap();
@@ -132,7 +166,7 @@ mod tests {
     fn a_full_disk_is_an_error_with_a_remedy() {
         let file = File::options().append(true).open("/dev/full").unwrap();
         let open = Mutex::new(Open { file, synced: Instant::now() });
-        let journal = Journal { path: "x".into(), open };
+        let journal = Journal { id: FileId::of(Path::new("x")), path: "x".into(), open };
         let e = journal.append("line").unwrap_err();
         assert!(e.message().contains("disk is full") && e.remedy().contains("make room"), "{e}");
     }

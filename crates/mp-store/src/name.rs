@@ -96,8 +96,7 @@ pub fn write_all<B: AsRef<[u8]>, E: From<Error>>(
         }
         let (_, old) = target(&file)?;
         if old.is_some() && !overwrite {
-            let remedy = "take another name, or say that it may be overwritten";
-            return Err(refused("the file exists already", remedy).into());
+            return Err(exists(&file).into());
         }
         let new = filled(&file, folder, old.as_ref(), parts)?;
         ready.push(Ready { name, file, new, replaces: old.is_some() });
@@ -106,7 +105,8 @@ pub fn write_all<B: AsRef<[u8]>, E: From<Error>>(
     for Ready { file, new, replaces, .. } in ready {
         // The old one stays under another name until all is done, where the system can do that.
         let old = if replaces { Temporary::of(&file).ok() } else { None };
-        if let Err(e) = new.rename(&file) {
+        let named = if overwrite { new.rename(&file) } else { new.name_anew(&file) };
+        if let Err(e) = named {
             for (file, replaced, old) in done {
                 let _ = match (old, replaced) {
                     (Some(old), _) => old.rename(&file),
@@ -114,12 +114,18 @@ pub fn write_all<B: AsRef<[u8]>, E: From<Error>>(
                     (None, false) => std::fs::remove_file(&file),
                 };
             }
-            return Err(write_failed(&file, folder, &e).into());
+            let appeared = !overwrite && e.kind() == std::io::ErrorKind::AlreadyExists;
+            return Err(if appeared { exists(&file) } else { write_failed(&file, folder, &e) }.into());
         }
         done.push((file, replaces, old));
     }
     sync_folder(folder);
     Ok(())
+}
+
+fn exists(file: &Path) -> Error {
+    let remedy = "take another name, or say that it may be overwritten";
+    Error::new(ErrorKind::Io, file, "the file exists already", remedy)
 }
 
 /// A file that is written under a temporary name.
@@ -276,6 +282,35 @@ mod tests {
 
     /// A name that is taken by a folder after all was checked: the files that had their names already are as
     /// before.
+    /// Of several that write a new file at the same time, one does, and the others hear of it.
+    #[test]
+    fn a_new_file_is_written_by_one() {
+        let dir = tempfile::tempdir().unwrap();
+        for i in 0..50 {
+            let begin = std::sync::Barrier::new(4);
+            let write = |who: usize| {
+                let file = [(format!("{i}.toml"), [Ok::<_, Error>(who.to_string())])];
+                begin.wait();
+                write_all(dir.path(), file, false)
+            };
+            let all: Vec<_> = std::thread::scope(|scope| {
+                let threads: Vec<_> = (0..4).map(|who| scope.spawn(move || write(who))).collect();
+                threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+            });
+            let written = std::fs::read_to_string(dir.path().join(format!("{i}.toml"))).unwrap();
+            for (who, result) in all.into_iter().enumerate() {
+                let said = result.map_err(|e| e.message().to_owned());
+                let expected = if written == who.to_string() {
+                    Ok(())
+                } else {
+                    Err("the file exists already".to_owned())
+                };
+                assert_eq!(said, expected, "{i} {who}");
+            }
+        }
+        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 50);
+    }
+
     #[test]
     fn a_name_that_cannot_be_given_undoes_the_others() {
         let dir = tempfile::tempdir().unwrap();

@@ -61,6 +61,14 @@ impl Temporary {
         self.renamed = true;
         Ok(())
     }
+
+    /// Gives it the name `target`, in the same folder, which no file may have: not even since somebody looked, where the file system has links.
+    pub(crate) fn name_anew(self, target: &Path) -> io::Result<()> {
+        match std::fs::hard_link(&self.path, target) {
+            Err(e) if e.kind() != io::ErrorKind::AlreadyExists => self.rename(target),
+            linked => linked,
+        }
+    }
 }
 
 impl Drop for Temporary {

@@ -44,8 +44,10 @@ impl RunRequest {
         let about = match text_of(head, "do")? {
             "plan" => {
                 let value = head.get("request").cloned().unwrap_or_default();
-                let request: Request = serde_json::from_value(value)
-                    .map_err(|e| Error::new(format!("this is no request to plan: {e}")))?;
+                let request: Request = serde_json::from_value(value.clone()).map_err(|e| {
+                    let of = wrong_member(&value).map_or_else(String::new, |name| format!("`{name}`: "));
+                    Error::new(format!("this is no request to plan: {of}{e}"))
+                })?;
                 // A page writes files by `save` alone, into its folder.
                 if request.roadmap.is_some() {
                     return Err(Error::new("a page keeps no roadmap in a file")
@@ -63,6 +65,16 @@ impl RunRequest {
         };
         Ok(Some((number_of(head, "run")?, about)))
     }
+}
+
+/// The member without which a value would be a request: serde does not name it.
+fn wrong_member(value: &Value) -> Option<&String> {
+    let members = value.as_object()?;
+    members.keys().find(|name| {
+        let others = members.iter().filter(|(other, _)| other != name);
+        let others = others.map(|(name, value)| (name.clone(), value.clone())).collect();
+        serde_json::from_value::<Request>(Value::Object(others)).is_ok()
+    })
 }
 
 pub(crate) fn first_order(paused: bool) -> run::Order {

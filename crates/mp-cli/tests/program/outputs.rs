@@ -155,6 +155,27 @@ fn one_process_at_a_time_grows_a_roadmap() {
     assert_eq!(dir.entries("maps"), ["m.roadmap"]);
 }
 
+/// A roadmap that cannot be written at the end, as its folder is gone or the disk is full, costs no path.
+#[test]
+fn a_lost_roadmap_leaves_the_path() {
+    for (option, out) in [("--runs=1", "p.csv"), ("--routes=2", "p-1.csv")] {
+        let dir = Dir::new();
+        let run =
+            ["plan", "window.env", "--planner", "prm-star", "--roadmap", "maps/m.roadmap", "--time", "2"];
+        let child = start(&dir, &[&run[..], &[option, "--out", "p.csv", "--json"]].concat());
+        wait_until("a lock", OFTEN, || dir.exists("maps/.m.roadmap.lock"));
+        std::fs::remove_dir_all(dir.path("maps")).unwrap();
+        let run = finish(child);
+        assert!(run.code == 2 && run.stdout.contains("\"solved\":true"), "{option}: {run:?}");
+        for words in ["maps/m.roadmap", "no such folder", "the path"] {
+            assert!(run.stderr.contains(words), "{option}: {words}: {run:?}");
+        }
+        assert!(run.stdout.contains("\"roadmap_error\":\"maps/m.roadmap: "), "{run:?}");
+        let check = mp(&dir, &["check", "window.env", out]);
+        assert_eq!(check.code, 0, "{option}: {check:?}");
+    }
+}
+
 /// Growth is written on the way: whoever is killed loses some seconds of it.
 #[test]
 fn a_killed_run_leaves_its_roadmap() {

@@ -24,7 +24,7 @@ pub struct DescribedRobot {
     pub srdf_found: Option<PathBuf>,
     /// How far and how fast its joints may move, as the `joint_limits.yaml` of MoveIt beside the SRDF says.
     pub joint_limits: JointLimits,
-    /// The name of an SRDF beside the URDF that is not taken.
+    /// The name of an SRDF near the URDF that is not taken, relative to the folder of the URDF.
     pub srdf_beside: Option<String>,
     /// The folder that `package://` means.
     pub packages: Option<PathBuf>,

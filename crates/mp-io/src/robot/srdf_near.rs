@@ -17,7 +17,8 @@ pub struct FoundSrdf {
 /// How many folders above that of the URDF are looked at for packages of MoveIt.
 const ABOVE: usize = 3;
 
-/// The SRDF of the robot that `urdf` describes, in the file `file`, and the name of one beside it that may be of another robot.
+/// The SRDF of the robot that `urdf` describes, in the file `file`, and the name of one in the first three folders that may be of another robot,
+/// relative to the folder of the URDF.
 ///
 /// It searches the folder of the URDF, the folder `srdf` in and beside it, and the folder `config` of each `*_moveit_config` in the folder of
 /// the URDF and the three above, in this order, each by the alphabet. An SRDF is of this robot if it has the same `<robot name>` as the URDF.
@@ -27,13 +28,13 @@ pub(super) fn srdf_near(files: &dyn Files, file: &Path, urdf: &str) -> (Option<F
     let folder = file.parent().unwrap_or(Path::new(""));
     let own = file.with_extension(Content::RobotSemantics.ending());
     let mut places = srdfs_in(files, folder);
-    let beside = places.first().cloned();
     // Not all kinds of files know what else is in a folder.
     if !places.contains(&own) && files.holds(&own) {
         places.insert(0, own.clone());
     }
     places.extend(srdfs_in(files, &folder.join("srdf")));
     places.extend(srdfs_in(files, &folder.join("..").join("srdf")));
+    let beside = places.first().cloned();
     let mut above = folder.to_owned();
     for _ in 0..=ABOVE {
         let packages = files.names_in(&above).into_iter().filter(|name| name.ends_with("_moveit_config"));
@@ -50,8 +51,8 @@ pub(super) fn srdf_near(files: &dyn Files, file: &Path, urdf: &str) -> (Option<F
     let of_robot = found.iter().position(|f| is_own(f) && f.file.file_stem() == own.file_stem());
     let of_robot = of_robot.or_else(|| found.iter().position(is_own));
     let chosen = of_robot.or_else(|| found.iter().position(|f| f.file == own));
-    let name = |place: PathBuf| Some(place.file_name()?.to_string_lossy().into_owned());
-    (chosen.map(|at| found.swap_remove(at)), beside.and_then(name))
+    let name = |place: PathBuf| place.strip_prefix(folder).unwrap_or(&place).display().to_string();
+    (chosen.map(|at| found.swap_remove(at)), beside.map(name))
 }
 
 /// The SRDFs in a folder, by the alphabet.
@@ -90,6 +91,22 @@ pub fn robot_name(text: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mp_formats::files::Disk;
+
+    /// As in packages of example-robot-data: the URDF is of "iCub", the SRDF of "icub".
+    #[test]
+    fn one_of_another_robot_is_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let (robots, srdf) = (dir.path().join("robots"), dir.path().join("srdf"));
+        std::fs::create_dir(&robots).unwrap();
+        std::fs::create_dir(&srdf).unwrap();
+        let near = || srdf_near(&Disk, &robots.join("a.urdf"), "<robot name='iCub'/>");
+        assert_eq!(near(), (None, None));
+        std::fs::write(srdf.join("icub.srdf"), "<robot name='icub'/>").unwrap();
+        assert_eq!(near(), (None, Some(Path::new("../srdf/icub.srdf").display().to_string())));
+        std::fs::write(srdf.join("other.srdf"), "<robot name='iCub'/>").unwrap();
+        assert_eq!(near().0.map(|found| found.file), Some(robots.join("../srdf/other.srdf")));
+    }
 
     #[test]
     fn robots_have_names() {

@@ -5,6 +5,7 @@ mod cdr;
 mod container;
 mod messages;
 
+use super::KnownJoints;
 use super::ros::{Message, Point, Time, made};
 use crate::TrajectoryFile;
 use container::{Recorded, Topic, messages as read_messages};
@@ -126,7 +127,12 @@ impl Recording {
 ///
 /// # Errors
 /// As [`TrajectoryFile::parse`], and when there are several trajectories, or none.
-pub(super) fn parse(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<TrajectoryFile, Error> {
+pub(super) fn parse(
+    file: &str,
+    bytes: &[u8],
+    wanted: &[Column],
+    known: KnownJoints<'_>,
+) -> Result<TrajectoryFile, Error> {
     let same = |schema: &str, name: &str| schema == name || schema == name.replace("/msg/", "/");
     let all = read_messages(file, bytes, |schema| {
         let known = [JOINT_TRAJECTORY.name, ROBOT_TRAJECTORY, JOINT_STATE.name];
@@ -146,7 +152,7 @@ pub(super) fn parse(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<Traje
         [only] => {
             let several = same(&only.schema, ROBOT_TRAJECTORY);
             let message = read_joint_trajectory(&only.bytes, several).ok_or_else(|| broken(only))?;
-            return made(file, message, wanted, &[]);
+            return made(file, message, wanted, known);
         }
         more => return Err(error(file, format!("there are {} trajectories", more.len())).expected("one")),
     }
@@ -175,7 +181,7 @@ pub(super) fn parse(file: &str, bytes: &[u8], wanted: &[Column]) -> Result<Traje
         let time_from_start = Time::Seconds(since as f64 / 1e9);
         points.push(Point { positions, velocities: Vec::new(), accelerations: Vec::new(), time_from_start });
     }
-    made(file, Message::of_joints(names, points), wanted, &[])
+    made(file, Message::of_joints(names, points), wanted, known)
 }
 
 #[cfg(test)]
@@ -215,7 +221,7 @@ mod tests {
     }
 
     fn read(bytes: &[u8]) -> Result<TrajectoryFile, String> {
-        parse("t.mcap", bytes, &wanted()).map_err(|e| e.report())
+        parse("t.mcap", bytes, &wanted(), KnownJoints::default()).map_err(|e| e.report())
     }
 
     #[test]
@@ -230,7 +236,7 @@ mod tests {
         let bytes = Recording { trajectory: full.clone(), ..made.clone() }.to_mcap();
         assert_eq!(read(&bytes).unwrap(), full);
         let turned = [Column::new("elbow", "rad"), Column::new("lift", "m")];
-        assert_eq!(parse("t", &bytes, &turned).unwrap().positions[0], [-2.0, 0.1]);
+        assert_eq!(parse("t", &bytes, &turned, KnownJoints::default()).unwrap().positions[0], [-2.0, 0.1]);
         for cut in 0..bytes.len() {
             // What is behind the data is not needed.
             if let Ok(read) = read(&bytes[..cut]) {

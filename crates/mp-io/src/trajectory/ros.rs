@@ -1,6 +1,6 @@
 //! `trajectory_msgs/JointTrajectory` of ROS as JSON and YAML, also inside of `RobotTrajectory` and `DisplayTrajectory` of MoveIt.
 
-use super::{GUIDE, TrajectoryFile};
+use super::{Follower, GUIDE, KnownJoints, TrajectoryFile};
 use crate::yaml;
 use mp_formats::columns::{Column, Fault, HELP, Matching, bracketed};
 use mp_formats::error::{Error, ErrorKind};
@@ -139,7 +139,7 @@ pub(super) fn parse_json(
     file: &str,
     bytes: &[u8],
     wanted: &[Column],
-    endless: &[bool],
+    known: KnownJoints<'_>,
 ) -> Result<Option<TrajectoryFile>, Error> {
     let text = decode(file, bytes)?;
     // What is no JSON is said by what reads the path.
@@ -147,7 +147,7 @@ pub(super) fn parse_json(
         return Ok(None);
     }
     let message: Message = json::parse(file, text, WHAT, &guide())?;
-    made(file, message, wanted, endless).map(Some)
+    made(file, message, wanted, known).map(Some)
 }
 
 /// As [`TrajectoryFile::parse_of`].
@@ -155,7 +155,7 @@ pub(super) fn parse_yaml(
     file: &str,
     bytes: &[u8],
     wanted: &[Column],
-    endless: &[bool],
+    known: KnownJoints<'_>,
 ) -> Result<Option<TrajectoryFile>, Error> {
     let value = yaml::value(file, decode(file, bytes)?)?;
     if !is_message(&value) {
@@ -163,15 +163,42 @@ pub(super) fn parse_yaml(
     }
     let message = serde_json::from_value(value)
         .map_err(|e| Error::new(ErrorKind::Format, file, e.to_string()).expected(WHAT).help(guide()))?;
-    made(file, message, wanted, endless).map(Some)
+    made(file, message, wanted, known).map(Some)
 }
 
-/// The trajectory of a message; of joints that are `endless`, whole turns make no difference to where it begins.
+/// Leader and follower are written in so many digits at least, rad or m.
+const FOLLOWS: f64 = 1e-4;
+
+/// A follower beside its leader in the rows of a message.
+struct Beside<'f> {
+    at: usize,
+    leader: usize,
+    by: &'f Follower,
+}
+
+impl<'f> Beside<'f> {
+    /// The followers among joints of these names, which are no numbers of a configuration themselves.
+    fn all(names: &[String], followers: &'f [Follower]) -> Vec<Self> {
+        let named = |name: &str| names.iter().position(|other| other == name);
+        let both = |by: &'f Follower| Some(Self { at: named(&by.name)?, leader: named(&by.leader)?, by });
+        followers.iter().filter_map(both).collect()
+    }
+
+    /// How far the follower is from where it should be, if that is too far. The offset counts for positions alone.
+    fn off(&self, row: &[f64], offset: f64) -> Option<String> {
+        let (Follower { name, leader, multiplier, .. }, at) = (self.by, row[self.at]);
+        let wanted = multiplier * row[self.leader] + offset;
+        let there = (at - wanted).abs() <= FOLLOWS * multiplier.abs().max(1.0);
+        (!there).then(|| format!("{name} is {at}, and as it follows {leader} it would be {wanted}"))
+    }
+}
+
+/// The trajectory of a message.
 pub(super) fn made(
     file: &str,
     message: Message,
     wanted: &[Column],
-    endless: &[bool],
+    known: KnownJoints<'_>,
 ) -> Result<TrajectoryFile, Error> {
     let error = |message: String| Error::new(ErrorKind::Content, file, message).help(guide());
     let with_units = message.joint_names.iter().flatten().any(|name| bracketed(name).is_some());
@@ -194,7 +221,8 @@ pub(super) fn made(
         let off = |(i, (column, first)): (usize, (&Column, &f64))| {
             let at = start.name.iter().position(|name| *name == column.name)?;
             let state = start.position.get(at)?;
-            let turns = if endless.get(i) == Some(&true) { ((state - first) / TAU).round() } else { 0.0 };
+            let turns =
+                if known.endless.get(i) == Some(&true) { ((state - first) / TAU).round() } else { 0.0 };
             let there = (state - first - turns * TAU).abs() <= START;
             (!there).then(|| format!("{} is {state} there and {first} at the first point", column.name))
         };
@@ -207,12 +235,12 @@ pub(super) fn made(
     };
     match (message.joint_trajectory, message.trajectory) {
         (Some(inner), _) | (None, Some(Several::One(inner))) => {
-            return made(file, *inner, wanted, endless).and_then(begins);
+            return made(file, *inner, wanted, known).and_then(begins);
         }
         (None, Some(Several::List(mut all))) => {
             let count = all.len();
             return match (all.pop(), count) {
-                (Some(only), 1) => made(file, only, wanted, endless).and_then(begins),
+                (Some(only), 1) => made(file, only, wanted, known).and_then(begins),
                 _ => Err(error(format!("there are {count} trajectories")).expected("one")),
             };
         }
@@ -225,7 +253,11 @@ pub(super) fn made(
         return Err(error("the trajectory has no points".to_owned()));
     }
     let faulty = |fault: Fault| error(fault.message).expected(fault.expected).help(HELP);
-    let matching = Matching::new(&names, wanted).map_err(faulty)?;
+    let beside = Beside::all(&names, known.followers);
+    let own = |at: usize| beside.iter().all(|follower| follower.at != at);
+    let matched: Vec<_> =
+        names.iter().enumerate().filter(|(at, _)| own(*at)).map(|(_, n)| n.clone()).collect();
+    let matching = Matching::new(&matched, wanted).map_err(faulty)?;
     let mut read = TrajectoryFile { joints: wanted.to_vec(), ..TrajectoryFile::default() };
     let has = |numbers: fn(&Point) -> &Vec<f64>| points.iter().any(|point| !numbers(point).is_empty());
     let (velocities, accelerations) = (has(|point| &point.velocities), has(|point| &point.accelerations));
@@ -260,7 +292,15 @@ pub(super) fn made(
                 let expected = format!("one for each of the {} joints", names.len());
                 return Err(error(format!("point {} has {found}", i + 1)).expected(expected));
             }
-            rows.push(matching.configuration(numbers).map_err(faulty)?);
+            let offset = |follower: &Beside<'_>| if what == "position" { follower.by.offset } else { 0.0 };
+            if let Some(off) = beside.iter().find_map(|it| it.off(numbers, offset(it))) {
+                return Err(error(format!("the {several} of point {}: {off}", i + 1))
+                    .expected(format!("at most {FOLLOWS} between them"))
+                    .help("leave the joints that follow others out: they move with them"));
+            }
+            let numbers: Vec<_> =
+                numbers.iter().enumerate().filter(|(at, _)| own(*at)).map(|(_, number)| *number).collect();
+            rows.push(matching.configuration(&numbers).map_err(faulty)?);
         }
     }
     Ok(read)

@@ -483,6 +483,13 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         let turns = |joint: &Joint| joint.described == Some(JointKind::Continuous);
         joints.filter_map(|joint| Some((joint.name.clone(), joint.kind.held()?, turns(joint)))).collect()
     }
+    fn followers(&self) -> Vec<(String, String, [f64; 2])> {
+        let follower = |joint: &Joint| {
+            let mimic = joint.mimic.as_ref()?;
+            Some((joint.name.clone(), mimic.joint.clone(), [mimic.multiplier, mimic.offset]))
+        };
+        self.arm.model().joints.iter().filter_map(follower).collect()
+    }
     fn touching(&self, q: &Configuration) -> Vec<Contact> {
         let contacts = self.arm.clone().explain(q.as_slice());
         let touch = |c: mp_robot::ArmContact| Contact {

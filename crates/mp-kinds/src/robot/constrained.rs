@@ -341,6 +341,7 @@ impl Description for Constrained {
         fn space_name(&self) -> String;
         fn touching(&self, q: &Configuration) -> Vec<Contact>;
         fn held(&self) -> Vec<(String, f64, bool)>;
+        fn followers(&self) -> Vec<(String, String, [f64; 2])>;
         fn closest(&self, q: &Configuration) -> Option<(String, f64)>;
         fn remedy(&self, touching: &[Contact]) -> Option<String>;
         fn enclosures(&self, q: &Configuration) -> Vec<[String; 2]>;

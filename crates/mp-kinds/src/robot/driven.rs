@@ -302,6 +302,9 @@ impl Description for DrivenScene {
     fn held(&self) -> Vec<(String, f64, bool)> {
         self.robot.held()
     }
+    fn followers(&self) -> Vec<(String, String, [f64; 2])> {
+        self.robot.followers()
+    }
     fn closest(&self, q: &Configuration) -> Option<(String, f64)> {
         self.robot.closest(&self.parts(q).q)
     }

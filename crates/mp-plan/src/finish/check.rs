@@ -8,7 +8,7 @@ use mp_cspace::angle::rotation_angle;
 use mp_cspace::{Configuration, Interrupt, MotionCheck, Path, Space, path::PathFault};
 use mp_geom::pose_from_six;
 use mp_kinds::goals::next_to;
-use mp_kinds::numbers::{at_least, brief, plain};
+use mp_kinds::numbers::{at_least, brief, count, plain};
 use mp_kinds::proof::{clearance, verified};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -63,10 +63,10 @@ impl Verdict {
             };
             let how = if self.clearance > 0.0 { "certified free" } else { "free wherever it was tested" };
             return format!(
-                "{}: {how} in {}\n  {} configurations, {shape}length {}, {clearance}{time}",
+                "{}: {how} in {}\n  {}, {shape}length {}, {clearance}{time}",
                 self.path,
                 self.scene,
-                self.configurations,
+                count(self.configurations, "configuration"),
                 brief(self.path_length),
             );
         }

@@ -127,6 +127,7 @@ impl Report {
             path_file: None,
             picture_file: None,
             certificate_file: None,
+            roadmap_error: None,
             columns: Vec::new(),
             path: None,
             portfolio: None,
@@ -172,6 +173,7 @@ pub(crate) fn reported(
         first_path: found.first.as_ref().map(|(.., path)| kind.rows(path)),
         columns: kind.columns(),
         won: found.won,
+        roadmap_error: found.roadmap_error,
         ..Report::empty()
     };
     let path = match found.outcome {
@@ -258,6 +260,7 @@ pub(crate) fn found_report(
         others: Vec::new(),
         map,
         roadmap: None,
+        roadmap_error: None,
         won: None,
     };
     let left = left(request, control, &found);

@@ -243,16 +243,10 @@ impl<'p> RoadmapPlanner<'p> {
         file.write(self.planner.map())
     }
 
-    /// Writes the roadmap to `file`, if one is given. Returns the numbers of edges and of components, and the roadmap itself
-    /// if it is `wanted`.
-    pub(crate) fn keep(
-        &mut self,
-        file: Option<&GrowingFile<'_>>,
-        wanted: bool,
-    ) -> Result<([usize; 2], Option<Roadmap<Configuration>>), Error> {
-        file.map_or(Ok(()), |file| self.save(&file.file))?;
+    /// Returns the numbers of edges and of components, and the roadmap itself if it is `wanted`.
+    pub(crate) fn keep(&mut self, wanted: bool) -> ([usize; 2], Option<Roadmap<Configuration>>) {
         let map = [self.planner.map().edges(), self.planner.map_mut().components()];
-        Ok((map, wanted.then(|| self.planner.map().clone())))
+        (map, wanted.then(|| self.planner.map().clone()))
     }
 
     pub(crate) fn grown(&mut self, row: &dyn Fn(&Configuration) -> Vec<f64>) -> GrownRoadmap {
@@ -270,6 +264,13 @@ impl<'p> RoadmapPlanner<'p> {
             kinds: map.tags().map(|tag| tag.kind.name()).collect(),
             components,
         }
+    }
+}
+
+impl RoadmapPlanner<'_> {
+    /// Writes the roadmap to `file`, if one is given.
+    pub(crate) fn save_to(&self, file: Option<&GrowingFile<'_>>) -> Result<(), Error> {
+        file.map_or(Ok(()), |file| self.save(&file.file))
     }
 }
 
@@ -306,11 +307,7 @@ impl<'p> RoadmapPlanner<'p> {
     pub(crate) fn save(&self, _: &RoadmapFile<'_>) -> Result<(), Error> {
         match self.none.0 {}
     }
-    pub(crate) fn keep(
-        &mut self,
-        _: Option<&GrowingFile<'_>>,
-        _: bool,
-    ) -> Result<([usize; 2], Option<Roadmap<Configuration>>), Error> {
+    pub(crate) fn keep(&mut self, _: bool) -> ([usize; 2], Option<Roadmap<Configuration>>) {
         match self.none.0 {}
     }
 }

@@ -28,6 +28,7 @@ struct Listed {
     time: Duration,
     ended: StopReason,
     map: Option<[usize; 2]>,
+    roadmap_error: Option<String>,
 }
 
 /// At most `count` routes: see [`Scene::routes`](crate::Scene::routes).
@@ -70,6 +71,7 @@ pub(crate) fn routes(
             time: Duration::ZERO,
             ended,
             map: None,
+            roadmap_error: None,
         },
         (listed, _) => listed?,
     };
@@ -87,6 +89,7 @@ pub(crate) fn routes(
         others: Vec::new(),
         map: listed.map,
         roadmap: None,
+        roadmap_error: listed.roadmap_error.clone(),
         won: None,
     };
     if listed.paths.is_empty() {
@@ -198,7 +201,7 @@ fn of_tree(
         if paths.len() >= count || ended.is_some() {
             let (progress, time) = (planner.progress(), clock.now().saturating_sub(began));
             let ended = ended.unwrap_or(StopReason::Exhausted);
-            return Ok(Listed { paths, progress, time, ended, map: None });
+            return Ok(Listed { paths, progress, time, ended, map: None, roadmap_error: None });
         }
         target = target.saturating_mul(2);
     }
@@ -249,7 +252,8 @@ fn of_roadmap(
                 (reason, pausing.paused)
             })
         });
-        let (map, roadmap) = made.keep(file.as_ref(), true)?;
+        let roadmap_error = made.save_to(file.as_ref()).err().map(|e| e.to_string());
+        let (map, roadmap) = made.keep(true);
         let roadmap = roadmap.unwrap_or_default();
         let mut roadmap = AnyRoadmap::new(&prepared.space, roadmap, prepared.index.clone(), NEIGHBOURS)?;
         let found = match (prepared.problem(), prepared.interrupt().raised()) {
@@ -276,7 +280,7 @@ fn of_roadmap(
         keep(prepared, &mut paths, found.ok());
         if paths.len() >= count || !paused {
             let (progress, time) = (made.planner().progress(), clock.now().saturating_sub(began));
-            return Ok(Listed { paths, progress, time, ended, map: Some(map) });
+            return Ok(Listed { paths, progress, time, ended, map: Some(map), roadmap_error });
         }
         target = target.saturating_mul(2);
     }

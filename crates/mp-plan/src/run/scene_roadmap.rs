@@ -181,7 +181,8 @@ fn grown(
     let reason = with_checkpoints(&mut made, &mut file, |made, due| {
         prepared.watched(control, |stop, events| made.build(&mut rng, &mut stop.or(due), events))
     });
-    let ([edges, components], map) = made.keep(file.as_ref(), true)?;
+    made.save_to(file.as_ref())?;
+    let ([edges, components], map) = made.keep(true);
     drop(made);
     let map = map.unwrap_or_default();
     tracing::info!(nodes = map.len(), edges, components, by = StoppedBy::from(reason).word(), "built");
@@ -237,6 +238,7 @@ impl RobotRoadmap {
             map,
             won: None,
             roadmap: None,
+            roadmap_error: None,
         };
         reported(kind, request, found, why, control, None)
     }

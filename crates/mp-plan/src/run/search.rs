@@ -38,6 +38,8 @@ pub struct Search {
     pub won: Option<String>,
     /// The roadmap itself, if [requested](Control::keep_roadmap).
     pub roadmap: Option<Roadmap<Configuration>>,
+    /// Why the file of the roadmap was not written.
+    pub roadmap_error: Option<String>,
 }
 
 /// Runs the planner of a request, and relaxes the path if the request says so. The path is neither shortened nor written

@@ -682,6 +682,18 @@ fn later_versions_mean_what_they_say() {
     assert!(bad.to_string().contains("quat_xyzw of <origin> is \"0 0 1\", not 4 numbers"), "{bad}");
 }
 
+/// As in SDF: it was passed over, and the mesh was as large as its file.
+#[test]
+fn an_element_that_scales_is_an_error() {
+    let text = r#"<robot name="r"><link name="a"/><link name="b"><collision><geometry>
+        <mesh filename="b.stl"><scale>0.001 0.001 0.001</scale></mesh></geometry></collision></link>
+        <joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint></robot>"#;
+    let said = read(text).unwrap_err().to_string();
+    assert!(said.contains("line 2") && said.contains("scale=\"x y z\""), "{said}");
+    // What is only looked at is not read so strictly.
+    assert!(read(&text.replace("collision", "visual")).is_ok());
+}
+
 #[test]
 fn damaged_files_are_errors_or_robots() {
     for start in (0..GRIPPER.len()).step_by(GRIPPER.len() / cases_of(GRIPPER.len())) {

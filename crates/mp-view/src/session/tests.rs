@@ -135,6 +135,8 @@ fn explains_configurations() {
     assert_eq!(touching.head["free"], false);
     assert!(!touching.head["touching"].as_array().unwrap().is_empty() || touching.head["in_bounds"] == false);
     assert!(page.refused(json!({"do": "check", "row": [1, 2]})).contains("finite numbers"));
+    let half = json!({"do": "plan", "run": 1, "request": {"seed": 0.5, "planner": "rrt"}});
+    assert!(page.refused(half).contains("`seed`: invalid type: floating point"));
 }
 
 /// Of a configuration out of bounds the nearest free one within them is offered.

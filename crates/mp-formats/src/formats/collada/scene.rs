@@ -81,15 +81,21 @@ impl Asset {
 }
 
 pub(super) fn asset(document: &Document<'_>) -> Result<Asset, Error> {
-    let turn = Matrix4::identity();
-    let Some(asset) = child(document.root, "asset") else { return Ok(Asset { unit: 1.0, up: "Y_UP", turn }) };
-    let mut unit = 1.0;
-    if let Some((node, meter)) = child(asset, "unit").and_then(|u| Some((u, u.attribute("meter")?))) {
-        unit = meter.trim().parse().ok().filter(|m: &f64| m.is_finite() && *m > 0.0).ok_or_else(|| {
-            let message = format!("meter=\"{}\" is not a length", clipped(meter));
-            document.error(node, message).expected("a number above 0, the length of the unit in metres")
-        })?;
+    let own = child(document.root, "asset");
+    let unit = own.map_or(Ok(None), |asset| unit(document, asset))?.unwrap_or(1.0);
+    // Any part may have one of its own, which nobody writes and nothing reads.
+    let assets =
+        document.root.descendants().filter(|node| node.tag_name().name() == "asset" && Some(*node) != own);
+    for other in assets {
+        if self::unit(document, other)?.is_some_and(|other| other != unit) {
+            return Err(document
+                .error(other, format!("this part of the file is in another unit than the rest ({unit} m)"))
+                .with_kind(ErrorKind::Unsupported)
+                .help("export the mesh in one unit"));
+        }
     }
+    let turn = Matrix4::identity();
+    let Some(asset) = own else { return Ok(Asset { unit, up: "Y_UP", turn }) };
     let up = child(asset, "up_axis");
     let name = up.and_then(|u| document.words(u).next()).map_or("Y_UP", |w| w.text);
     #[rustfmt::skip]
@@ -113,6 +119,18 @@ pub(super) fn asset(document: &Document<'_>) -> Result<Asset, Error> {
         }
     };
     Ok(Asset { unit, up, turn })
+}
+
+/// The length (m) of the unit that an `<asset>` says.
+fn unit(document: &Document<'_>, asset: Node<'_, '_>) -> Result<Option<f64>, Error> {
+    let Some((node, meter)) = child(asset, "unit").and_then(|u| Some((u, u.attribute("meter")?))) else {
+        return Ok(None);
+    };
+    let unit = meter.trim().parse().ok().filter(|m: &f64| m.is_finite() && *m > 0.0).ok_or_else(|| {
+        let message = format!("meter=\"{}\" is not a length", clipped(meter));
+        document.error(node, message).expected("a number above 0, the length of the unit in metres")
+    })?;
+    Ok(Some(unit))
 }
 
 struct Walk<'d, 'a> {

@@ -182,6 +182,18 @@ fn units_and_up_axes() {
     }
 }
 
+/// Not read: the part would be of another size.
+#[test]
+fn one_unit_in_a_file() {
+    for (meter, refused) in [("1", false), ("0.01", true)] {
+        let part = format!("<geometry id=\"g\"><asset><unit meter=\"{meter}\"/></asset>");
+        let text = dae(ASSET, TRIANGLE, PLAIN).replacen("<geometry id=\"g\">", &part, 1);
+        assert!(text.contains(&part));
+        let said = parse_mesh("t.dae", text.as_bytes()).map_err(|e| e.report());
+        assert_eq!(said.as_ref().is_err_and(|e| e.contains("another unit")), refused, "{said:?}");
+    }
+}
+
 #[test]
 fn transforms_apply_in_their_order_and_through_instances() {
     let library = "<library_nodes><node id=\"n\"><scale>2 3 1</scale><instance_geometry url=\"#g\"/></node></library_nodes>";

@@ -395,7 +395,7 @@ pub(super) fn srdf_help(problem: &RobotProblem, touching: &[[&str; 2]]) -> Strin
     }
     match &robot.srdf_beside {
         Some(beside) => format!(
-            "{in_srdf} an SRDF: `srdf = \"{beside}\"` in a robot problem takes the one beside the URDF; {made}"
+            "{in_srdf} an SRDF: `srdf = \"{beside}\"` in a robot problem takes one that is near the URDF, maybe of a robot with another name; {made}"
         ),
         None => format!("{in_srdf} an SRDF: there is none near the URDF, and {made}"),
     }

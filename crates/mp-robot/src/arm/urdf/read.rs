@@ -141,6 +141,12 @@ impl<'t, 'a> Reader<'t, 'a> {
                 (radius, length) => Geometry::Primitive("capsule", vec![radius, length]),
             },
             "mesh" => {
+                // As SDF has them: the mesh would be of another size.
+                if let Some(inner) = child(&shape, "scale") {
+                    let message =
+                        "<scale> inside of <mesh> is of SDF: write <mesh filename=\"…\" scale=\"x y z\"/>";
+                    return Err(self.text.error(&inner, message));
+                }
                 let scale = self.numbers(&shape, "scale")?.unwrap_or([1.0; 3]);
                 Geometry::Mesh(self.word(&shape, "filename")?, scale)
             }
