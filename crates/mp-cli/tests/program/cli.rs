@@ -166,7 +166,9 @@ fn what_cannot_be_solved_is_not_and_nothing_is_written() {
     }
     let run = mp(&dir, &["plan", "closed.env", "--time", "0.2"]);
     assert_eq!(run.code, 1, "{run:?}");
-    assert!(run.stdout.contains("not solved") && run.stdout.contains("--time"), "{}", run.stdout);
+    // On a busy machine loading may take all of it.
+    let is_told = ["not solved", "not planned"].iter().any(|words| run.stdout.contains(words));
+    assert!(is_told && run.stdout.contains("--time"), "{}", run.stdout);
     assert!(!dir.exists("p.txt") && !dir.exists("out"));
 }
 

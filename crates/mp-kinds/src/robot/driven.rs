@@ -7,7 +7,9 @@ mod steer;
 mod system;
 
 use super::model::{self, DriveModel, MotionModel};
-use super::{Appearance, Body, Column, Contact, Description, End, Measured, Motion, no_metric};
+use super::{
+    Appearance, Body, Column, Contact, Description, End, HAIR, Measured, Motion, at_limit, no_metric,
+};
 use crate::goals::{GoalPart, examples};
 use crate::robot::motion::TypedMotion;
 use crate::turns::{continued, turning};
@@ -143,6 +145,7 @@ impl DrivenScene {
         let space = DrivenSpace::new(Arc::clone(&robot), system);
         let mut start = space.at_rest(robot.start().clone());
         start.velocity.iter_mut().zip(velocity).for_each(|(v, given)| *v = *given);
+        at_velocity_limits(&space.system, &mut start.velocity);
         let start = space.system.vector(&start);
         let checker = DrivenChecker::new(&robot, &space, robot.any_checker());
         let ends = vec![start.clone()];
@@ -159,6 +162,13 @@ impl DrivenScene {
     /// The parts of a state; those of the start, at rest, if `q` does not have the numbers of a state.
     fn parts(&self, q: &Configuration) -> Parts {
         self.space.parts(q).unwrap_or_else(|| self.space.at_rest(self.robot.start().clone()))
+    }
+}
+
+/// Puts velocities that are a [`HAIR`] beyond their limits at these.
+fn at_velocity_limits(system: &System, velocity: &mut [f64]) {
+    for (v, most) in velocity.iter_mut().zip(system.velocity_limits()) {
+        *v = at_limit(*v, [-most, *most], HAIR);
     }
 }
 
@@ -377,7 +387,8 @@ impl Description for DrivenScene {
         let (q, rest) = row.split_at(own);
         let (velocity, rest) = rest.split_at(system.velocities);
         let (input, duration) = rest.split_at(system.inputs);
-        let [velocity, input] = [velocity, input].map(<[f64]>::to_vec);
+        let [mut velocity, input] = [velocity, input].map(<[f64]>::to_vec);
+        at_velocity_limits(system, &mut velocity);
         let duration = duration.first().copied().unwrap_or(0.0);
         system.vector(&Parts { q: self.robot.state(q), velocity, input, duration })
     }

@@ -180,6 +180,25 @@ fn any_goal_of_a_set_will_do() {
     assert!(ends.iter().filter(|n| **n > 0).count() > 1, "{ends:?}");
 }
 
+/// Measured velocities are as far off as other numbers.
+#[test]
+fn a_start_velocity_a_hair_beyond_its_limit_is_at_the_limit() {
+    let puck = |speed: f64| {
+        let text = format!(
+            "[world]\nwalls = [[0, 0], [20, 10]]\nbounds = [[1, 1], [19, 9]]\n[robot]\nkind = \"accelerations\"\ndisc = 0.1\n\
+             speeds = [1, 2]\naccelerations = [1, 1]\nduration = 1\n[motion]\nstart = [5, 5, 0.5, {speed:?}]\n\
+             goal = {{ x = [6, 10], y = [5, 8] }}\n"
+        );
+        Scene::parse("puck", &text, std::path::Path::new("")).unwrap()
+    };
+    for (speed, at) in [(2.000_001, 2.0), (-2.000_001, -2.0), (1.999_999, 1.999_999)] {
+        let scene = puck(speed);
+        assert_eq!(scene.start()[2..4], [0.5, at]);
+        scene.check_ends().unwrap();
+    }
+    assert!(puck(2.001).check_ends().is_err());
+}
+
 /// A curve that is in bounds at both ends and in its middle, but leaves them by a hair in between, is refused.
 #[test]
 fn curves_stay_in_bounds_between_their_ends() {
