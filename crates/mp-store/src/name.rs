@@ -280,8 +280,6 @@ mod tests {
         assert_eq!(content(dir.path()).len(), before.len() + 1);
     }
 
-    /// A name that is taken by a folder after all was checked: the files that had their names already are as
-    /// before.
     /// Of several that write a new file at the same time, one does, and the others hear of it.
     #[test]
     fn a_new_file_is_written_by_one() {
@@ -311,6 +309,8 @@ mod tests {
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 50);
     }
 
+    /// A name that is taken by a folder after all was checked: the files that had their names already are as
+    /// before.
     #[test]
     fn a_name_that_cannot_be_given_undoes_the_others() {
         let dir = tempfile::tempdir().unwrap();
