@@ -35,7 +35,7 @@ use mp_cspace::{
 };
 use mp_geom::{Aabb, TriMesh};
 pub use mp_io::Column;
-use mp_io::PlacedBody;
+use mp_io::{Follower, PlacedBody};
 use nalgebra::{Isometry3, Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
@@ -354,9 +354,8 @@ pub trait Description: Motion {
         None
     }
 
-    /// The joints that follow others: of each its name, that of its leader, and what the value of this is multiplied with before something
-    /// (rad or m) is added to it. By default there are none.
-    fn followers(&self) -> Vec<(String, String, [f64; 2])> {
+    /// The joints that follow others, which are no numbers of a configuration. By default there are none.
+    fn followers(&self) -> Vec<Follower> {
         Vec::new()
     }
 

@@ -5,9 +5,7 @@ use crate::finish::trajectory::{UNKNOWN, check, time};
 use crate::sweep::track_in_time;
 use crate::{Body, BodyShape, Certificate, Error, Pace, PathRows, Scene, TimedPath, Track, Verdict, plain};
 use mp_cspace::Interrupt;
-use mp_io::{
-    Column, Follower, KnownJoints, RecordedBody, RecordedShape, Recording, TrajectoryFile, TrajectoryKind,
-};
+use mp_io::{Column, KnownJoints, RecordedBody, RecordedShape, Recording, TrajectoryFile, TrajectoryKind};
 use mp_time::{Interpolation, Knots, Trajectory};
 use nalgebra::Point2;
 use std::f64::consts::TAU;
@@ -138,13 +136,6 @@ impl Scene {
             .map(|(column, limits)| limits.is_none() && column.unit == "rad");
         let endless: Vec<_> = turns.collect();
         let followers = self.robot.followers();
-        let follower = |(name, leader, [multiplier, offset]): (String, String, [f64; 2])| Follower {
-            name,
-            leader,
-            multiplier,
-            offset,
-        };
-        let followers: Vec<_> = followers.into_iter().map(follower).collect();
         let known = KnownJoints { endless: &endless, followers: &followers };
         let read = TrajectoryFile::parse_of(name, bytes, kind, &columns, known)?;
         let Some(read) = read else { return Ok(None) };

@@ -258,7 +258,7 @@ where
         // Contact is likeliest at the end that is not known to be free.
         let (end, at) = if known == KnownFree::To { (from, 0.0) } else { (to, 1.0) };
         let eight = self.valid.contacts_at_once() >= MOST_AT_ONCE;
-        // Before the bound, which takes as long for some.
+        // Before the bound on travel, which takes nearly as long for arms of many links.
         if eight && let Some(at) = self.contact_of_eight([from, to], (end, at)) {
             return MotionCheck::Collision { at };
         }

@@ -25,8 +25,8 @@ use mp_cspace::{
     Manhattan, MotionClearance, ObstacleKnowledge, Path, ScaledEuclidean, Space, TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, continued_six, pose_from_six, six_from_pose};
-use mp_io::{DescribedRobot, Disk, Files, PlacedBody, RobotFilePart, RobotProblem};
-use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, Joint, JointKind, PLANAR_NUMBERS};
+use mp_io::{DescribedRobot, Disk, Files, Follower, PlacedBody, RobotFilePart, RobotProblem};
+use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, Joint, JointKind, Mimic, PLANAR_NUMBERS};
 use nalgebra::Isometry3;
 use named::{NamedValues, Values};
 pub use pose_goals::Reached;
@@ -483,10 +483,10 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
         let turns = |joint: &Joint| joint.described == Some(JointKind::Continuous);
         joints.filter_map(|joint| Some((joint.name.clone(), joint.kind.held()?, turns(joint)))).collect()
     }
-    fn followers(&self) -> Vec<(String, String, [f64; 2])> {
+    fn followers(&self) -> Vec<Follower> {
         let follower = |joint: &Joint| {
-            let mimic = joint.mimic.as_ref()?;
-            Some((joint.name.clone(), mimic.joint.clone(), [mimic.multiplier, mimic.offset]))
+            let Mimic { joint: leader, multiplier, offset } = joint.mimic.clone()?;
+            Some(Follower { name: joint.name.clone(), leader, multiplier, offset })
         };
         self.arm.model().joints.iter().filter_map(follower).collect()
     }

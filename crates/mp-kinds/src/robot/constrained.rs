@@ -13,6 +13,7 @@ use mp_cspace::{
     ObstacleKnowledge, Space as _, Validity,
 };
 use mp_geom::Aabb;
+use mp_io::Follower;
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -341,7 +342,7 @@ impl Description for Constrained {
         fn space_name(&self) -> String;
         fn touching(&self, q: &Configuration) -> Vec<Contact>;
         fn held(&self) -> Vec<(String, f64, bool)>;
-        fn followers(&self) -> Vec<(String, String, [f64; 2])>;
+        fn followers(&self) -> Vec<Follower>;
         fn closest(&self, q: &Configuration) -> Option<(String, f64)>;
         fn remedy(&self, touching: &[Contact]) -> Option<String>;
         fn enclosures(&self, q: &Configuration) -> Vec<[String; 2]>;

@@ -22,7 +22,7 @@ use mp_cspace::{
     Path, Rng, Space,
 };
 use mp_geom::Aabb;
-use mp_io::{Drive, Driven};
+use mp_io::{Drive, Driven, Follower};
 use nalgebra::{Isometry3, Point3};
 use space::DrivenSpace;
 use std::f64::consts::TAU;
@@ -312,7 +312,7 @@ impl Description for DrivenScene {
     fn held(&self) -> Vec<(String, f64, bool)> {
         self.robot.held()
     }
-    fn followers(&self) -> Vec<(String, String, [f64; 2])> {
+    fn followers(&self) -> Vec<Follower> {
         self.robot.followers()
     }
     fn closest(&self, q: &Configuration) -> Option<(String, f64)> {
