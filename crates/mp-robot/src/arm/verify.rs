@@ -53,6 +53,9 @@ const MAX_TRAVEL: f64 = 1e6;
 /// The share of a distance that is used to prove a part of a motion whose ends it does not reach: what is left is clearance that is shown.
 const USED: f64 = 0.7;
 
+/// The ways of a coordinate to both ends of a part differ by no more than this share, which the bound on travel has in hand.
+const EVEN: f64 = 1e-10;
+
 /// Motions are not cut into more parts than this.
 const MAX_PARTS: u64 = 1_000_000;
 
@@ -149,18 +152,22 @@ where
     fn travels(&self, middle: &C::State, ends: [&C::State; 2]) -> Travels {
         let pose = self.tree.pose;
         let (base, joints) = middle.as_slice().split_at(pose);
-        let travel = |(i, endless): (usize, &bool)| {
-            let [before, after] = ends.map(|end| {
-                let d = (end.as_slice()[pose + i] - joints[i]).abs();
-                if *endless && d > PI { (d % TAU).min(TAU - d % TAU) } else { d }
-            });
-            before.max(after)
+        let ways = |(i, endless): (usize, &bool)| {
+            ends.map(|end| {
+                let d = end.as_slice()[pose + i] - joints[i];
+                if *endless && d.abs() > PI { d - (d / TAU).round() * TAU } else { d }
+            })
         };
+        let ways: Vec<_> = self.tree.coordinates.iter().enumerate().map(ways).collect();
         let base = (pose > 0).then(|| {
             let [[slide, turn], [s, t]] = ends.map(|end| base_travel(base, &end.as_slice()[..pose]));
             [slide.max(s), turn.max(t)]
         });
-        Travels { joints: self.tree.coordinates.iter().enumerate().map(travel).collect(), base }
+        // By the contract of the space, up to rounding that is no part of the bound.
+        let is_even = |[before, after]: &[f64; 2]| (before + after).abs() <= EVEN * after.abs();
+        let ahead = ways.iter().all(is_even).then(|| ways.iter().map(|[_, after]| *after).collect());
+        let joints = ways.iter().map(|[before, after]| before.abs().max(after.abs())).collect();
+        Travels { joints, ahead, base }
     }
 
     /// The clearance (m) that the two of a pair keep.

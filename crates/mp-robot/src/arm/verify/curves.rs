@@ -151,7 +151,7 @@ where
             (first..last).flat_map(piece).fold(0.0, most) + ROUNDING * (1.0 + middle.abs())
         };
         let joints = middle.as_slice().iter().enumerate().map(far).collect();
-        (middle, Travels { joints, base: None })
+        (middle, Travels { joints, ahead: None, base: None })
     }
 
     /// Whether any pair is too near to contact to tell at `q`.

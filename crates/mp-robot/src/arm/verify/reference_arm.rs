@@ -191,6 +191,10 @@ impl ReferenceArm {
     /// That distance is at most the one where they are placed plus how far the joints nearer to the link have moved the point; of all points
     /// of the link it is no more than that of the ball around them. A base that floats turns about any axis through the root, as one more
     /// joint above it, for pairs that do not `stop` below it.
+    ///
+    /// Where coordinates go at constant speed, joints may also undo what others do: the bound is then no more than by the velocity v of the
+    /// centre of the ball and the angular velocity ω of the link, |v| + r |ω| + a / 2. The acceleration a of a point is that of all pairs of
+    /// joints: what one gives to its velocity turns with each joint above it, and with itself.
     pub(super) fn travel(
         &self,
         link: usize,
@@ -198,21 +202,31 @@ impl ReferenceArm {
         travels: &Travels,
         placed: &Placement,
     ) -> f64 {
-        let Travels { joints: travels, base } = travels;
+        let Travels { joints: travels, ahead, base } = travels;
         let (center, radius) = placed.balls[link];
-        let mut moved = 0.0;
+        let (mut moved, mut bent) = (0.0, 0.0);
+        let (mut velocity, mut turning) = (Vector3::zeros(), Vector3::zeros());
         let mut at = Some(link);
         while at != stop {
             let Some(i) = at else { break };
             let part = &self.links[i];
             let travel = travels[part.value.0] * part.value.1.abs();
+            let by = ahead.as_ref().map_or(0.0, |ahead| ahead[part.value.0] * part.value.1);
+            let axis = &placed.axes[i];
             match part.motion {
                 JointMotion::Fixed => {}
-                JointMotion::Slides => moved += travel,
+                JointMotion::Slides => {
+                    moved += travel;
+                    velocity += axis * by;
+                }
                 JointMotion::Turns => {
                     let arm = center - origin(&placed.matrices[i]);
-                    let now = arm.cross(&placed.axes[i]).norm() + radius + ROUNDING * arm.amax();
-                    moved += travel * (now + moved);
+                    let across = axis.cross(&arm);
+                    let reach = across.norm() + radius + ROUNDING * arm.amax() + moved;
+                    bent += travel * (moved + 0.5 * travel * reach);
+                    moved += travel * reach;
+                    velocity += across * by;
+                    turning += axis * by;
                 }
             }
             at = part.parent;
@@ -222,6 +236,9 @@ impl ReferenceArm {
         {
             let now = (center - origin(&placed.matrices[*root])).norm() + radius;
             moved += turn * (now + moved) + slide;
+        } else if ahead.is_some() {
+            let straight = velocity.norm() + radius * turning.norm() + bent;
+            moved = moved.min(straight + CANCELLED * moved);
         }
         // Enlarged against rounding.
         moved * (1.0 + 1e-9)
@@ -252,6 +269,9 @@ pub(super) struct Placement {
     balls: Vec<(Vector3<f64>, f64)>,
 }
 
+/// More than the rounding of velocities that undo each other, as a part of how far they move a point one by one.
+const CANCELLED: f64 = 1e-9;
+
 /// More than the rounding of a distance from an axis, as a part of coordinates.
 const ROUNDING: f64 = 1e-12;
 
@@ -281,6 +301,8 @@ fn isometry(m: &Matrix4<f64>) -> Isometry3<f64> {
 /// floats does.
 pub(super) struct Travels {
     pub(super) joints: Vec<f64>,
+    /// Where coordinates go at constant speed: by how much, with its sign, from the middle to the end, and as far from the beginning to the middle.
+    pub(super) ahead: Option<Vec<f64>>,
     pub(super) base: Option<[f64; 2]>,
 }
 
@@ -328,4 +350,110 @@ pub(super) struct CheckedPair {
     pub(super) other: Option<usize>,
     /// The nearest link above both.
     pub(super) meet: Option<usize>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::{Joint, JointKind};
+    use mp_cspace::Rng;
+    use rand::RngExt;
+
+    /// A chain of links with balls around them, with joints that turn, slide, and follow others, and a branch.
+    fn tree() -> ReferenceArm {
+        let names = ["a", "b", "c", "d", "e", "f", "g"];
+        let mut model = ArmModel::default();
+        let cube = |i: usize| mp_geom::primitives::cuboid(0.1, 0.2, 0.1 + 0.1 * i as f64).unwrap();
+        model.links = names
+            .iter()
+            .enumerate()
+            .map(|(i, name)| {
+                Link::new(*name).with(&cube(i), &Isometry3::translation(0.1, 0.05 * i as f64, 0.1))
+            })
+            .collect();
+        let turns = JointKind::Revolute { low: -3.0, high: 3.0 };
+        let kinds = [
+            turns,
+            JointKind::Prismatic { low: -1.0, high: 1.0 },
+            turns,
+            JointKind::Continuous,
+            turns,
+            turns,
+        ];
+        model.joints = (0..6)
+            .map(|i| {
+                let parent = if i == 5 { 2 } else { i };
+                let pose = mp_geom::pose_from_six([0.3, 0.1, 0.2, i as f64, 0.4, 0.2]);
+                let axis = Vector3::new((i % 2) as f64, 1.0 - (i % 3) as f64, 0.7);
+                let joint =
+                    Joint::new(format!("j{i}"), names[parent], names[i + 1], kinds[i]).axis(axis).at(pose);
+                if i == 2 { joint.mimic("j0", -0.8, 0.1) } else { joint }
+            })
+            .collect();
+        let pairs = [["a", "g"], ["c", "f"], ["f", "g"]];
+        ReferenceArm::new(&model, pairs.into_iter(), |mesh| Ok::<_, ()>(RefMesh::new(mesh)), || Ok(()))
+            .unwrap()
+    }
+
+    /// No point of the ball around a link goes farther, relative to the link where the bound stops, and often it goes nearly as far.
+    #[test]
+    fn travel_bounds_how_far_points_go() {
+        let (tree, mut rng) = (tree(), Rng::seed(4));
+        let count = tree.coordinates.len();
+        let (mut shares, mut gains) = (Vec::new(), Vec::new());
+        for round in 0..400 {
+            let size = [1e-3, 0.1, 0.5, 1.5][round % 4];
+            let mut random =
+                |most: f64| -> Vec<f64> { (0..count).map(|_| most * rng.random_range(-1.0..1.0)).collect() };
+            let (middle, ahead) = (random(2.0), random(size));
+            let at = |t: f64| {
+                let q: Vec<f64> = middle.iter().zip(&ahead).map(|(q, by)| q + t * by).collect();
+                let mut placed = Placement::default();
+                tree.place(&q, &mut placed);
+                placed
+            };
+            let joints: Vec<f64> = ahead.iter().map(|by| by.abs()).collect();
+            let placed = at(0.0);
+            for link in 1..tree.links.len() {
+                for stop in [None, Some(2)]
+                    .into_iter()
+                    .filter(|stop| stop.is_none_or(|stop| tree.above(link).contains(&stop) && link != stop))
+                {
+                    let bound = |ahead| {
+                        tree.travel(
+                            link,
+                            stop,
+                            &Travels { joints: joints.clone(), ahead, base: None },
+                            &placed,
+                        )
+                    };
+                    let (bound, plain) = (bound(Some(ahead.clone())), bound(None));
+                    assert!(bound <= plain);
+                    gains.push(bound / plain);
+                    let (center, radius) = placed.balls[link];
+                    // In the frame of the link where it stops.
+                    let seen = |placed: &Placement, p: Vector3<f64>| match stop {
+                        Some(stop) => isometry(&placed.matrices[stop]).inverse() * nalgebra::Point3::from(p),
+                        None => nalgebra::Point3::from(p),
+                    };
+                    let mut most: f64 = 0.0;
+                    for _ in 0..20 {
+                        let way = Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0)).normalize();
+                        let p = center + way * radius;
+                        let own = isometry(&placed.matrices[link]).inverse() * nalgebra::Point3::from(p);
+                        for t in [-1.0, -0.6, -0.2, 0.3, 0.7, 1.0] {
+                            let then = at(t);
+                            let moved = isometry(&then.matrices[link]) * own;
+                            let far = (seen(&then, moved.coords) - seen(&placed, p)).norm();
+                            assert!(far <= bound + 1e-12, "{round} {link} {stop:?}: {far} {bound}");
+                            most = most.max(far);
+                        }
+                    }
+                    shares.push(most / bound);
+                }
+            }
+        }
+        let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
+        assert!(mean(&shares) > 0.6 && mean(&gains) < 0.9, "{} {}", mean(&shares), mean(&gains));
+    }
 }
