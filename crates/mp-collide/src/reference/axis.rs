@@ -64,7 +64,7 @@ pub(super) fn gap(
 }
 
 /// How low corners are along an axis.
-fn lowest(points: &[Point3<f64>], axis: Vector3<f64>) -> f64 {
+pub(super) fn lowest(points: &[Point3<f64>], axis: Vector3<f64>) -> f64 {
     // Four at a time, so that none waits for the one before it.
     let mut least = [f64::INFINITY; 4];
     let mut take = |k: usize, p: &Point3<f64>| {

@@ -10,8 +10,8 @@ pub(super) const WHOLE: u32 = u32::MAX;
 /// The sides of a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cuboid {
-    middle: Point3<f64>,
-    half: Vector3<f64>,
+    pub(super) middle: Point3<f64>,
+    pub(super) half: Vector3<f64>,
 }
 
 impl Cuboid {
@@ -53,6 +53,13 @@ impl Cuboid {
         let beyond = (p - self.middle).abs() - self.half;
         let outside = beyond.sup(&Vector3::zeros()).norm();
         if outside > 0.0 { outside } else { -beyond.max() }
+    }
+
+    /// The shortest vector from the box to a point outside; `None` inside.
+    pub(super) fn way_to(&self, p: &Point3<f64>) -> Option<Vector3<f64>> {
+        let from_middle = p - self.middle;
+        let beyond = (from_middle.abs() - self.half).sup(&Vector3::zeros());
+        (beyond != Vector3::zeros()).then(|| beyond.zip_map(&from_middle, f64::copysign))
     }
 
     /// The least distance of the corners of a triangle from the sides.
@@ -134,7 +141,7 @@ impl Search<'_> {
             return Some(Beside::At(near, distance));
         }
         let bound = cuboid.apart(&corners) - rounding - self.touching;
-        (bound >= self.limit).then_some(Beside::Apart(bound))
+        (bound >= self.best).then_some(Beside::Apart(bound))
     }
 
     /// The triangle that is not [`WHOLE`] in the frame of the box that is, that box, and the radius of the ball around a triangle that is a point.
@@ -238,13 +245,7 @@ mod tests {
                     for enough in [0.01, 0.2] {
                         let found = a.at_least(&here, b, &pose, enough);
                         assert_eq!(found.is_ok(), c.at_least(&here, d, &pose, enough).is_ok());
-                        if found.is_ok() {
-                            apart += 1
-                        } else {
-                            near += 1
-                        }
-                        let nearly = a.nearly(&here, b, &pose, enough);
-                        assert!(nearly <= distances[0] + 1e-12 && nearly >= 0.8 * distances[0].min(enough));
+                        if found.is_ok() { apart += 1 } else { near += 1 }
                     }
                 }
             }

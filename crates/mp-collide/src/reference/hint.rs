@@ -11,6 +11,8 @@ pub struct Hint {
     pub(super) near: Option<[u32; 2]>,
     /// A unit vector in the frame of the second mesh, from it to the first.
     pub(super) apart: Option<Vector3<f64>>,
+    /// A plane in front of the second mesh, in its frame: its normal, and how far from the origin it is.
+    pub(super) plane: Option<(Vector3<f64>, f64)>,
 }
 
 impl RefMesh {
@@ -45,11 +47,11 @@ impl RefMesh {
 impl Search<'_> {
     /// What the hint decides: the distance of its triangles where that is too small, or the gap along its axis where that is enough.
     pub(super) fn by_hint(&mut self) -> Option<f64> {
-        let Hint { near, apart } = self.hint;
+        let Hint { near, apart, .. } = self.hint;
         if let Some(near) = near.filter(|near| self.knows(*near)) {
             let distance = self.distance_of(near);
             if distance < self.best {
-                (self.best, self.limit) = (distance, distance);
+                self.best = distance;
                 return Some(self.found());
             }
         }
@@ -111,7 +113,7 @@ mod tests {
         }
         assert!(near > 300 && apart > 300 && decided > 500, "{near} {apart} {decided}");
         // Of other meshes, a hint is as good as none.
-        let mut hint = Hint { near: Some([1_000_000, 1]), apart: Some(Vector3::z()) };
+        let mut hint = Hint { near: Some([1_000_000, 1]), apart: Some(Vector3::z()), plane: None };
         let far = Isometry3::translation(3.0, 0.0, 0.0);
         assert!(trees[0].at_least_from(&far, &trees[2], &Isometry3::identity(), [0.1; 2], &mut hint).is_ok());
     }

@@ -6,6 +6,7 @@
 
 mod axis;
 mod cuboid;
+mod drift;
 pub mod exact;
 mod hint;
 mod nested;
@@ -23,6 +24,7 @@ use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::OnceLock;
 
+pub use drift::{Drift, KeptApart};
 pub use hint::Hint;
 pub use sweep::{Sweep, SweepCheck};
 pub use triangle::triangle_distance;
@@ -36,9 +38,6 @@ const TOUCHING: f64 = 1e-13;
 /// Meshes of more triangles store neither copies of their triangles nor the balls around [so few](FEW) of them, which are most balls:
 /// these are made when they are needed.
 const LARGE: usize = 1 << 20;
-
-/// The share of the distance that [`RefMesh::nearly`] finds at least.
-const NEARLY: f64 = 0.8;
 
 /// Large meshes store the balls around more triangles than this.
 const FEW: u32 = 16;
@@ -310,21 +309,6 @@ impl RefMesh {
         self.search(pose_wa, other, pose_wb, enough).map_or(0.0, |mut search| search.run())
     }
 
-    /// A lower bound on the distance that is at least `enough` (metres), or at least four fifths of the distance; 0 when they intersect or
-    /// touch. Bad input and `enough` NaN as for [`clearance`](Self::clearance), which takes longer.
-    #[must_use]
-    pub fn nearly(
-        &self,
-        pose_wa: &Isometry3<f64>,
-        other: &RefMesh,
-        pose_wb: &Isometry3<f64>,
-        enough: f64,
-    ) -> f64 {
-        let Some(mut search) = self.search(pose_wa, other, pose_wb, enough) else { return 0.0 };
-        search.share = NEARLY;
-        search.run()
-    }
-
     /// A search for what is nearer than `enough`; `None` on bad input.
     fn search<'a>(
         &'a self,
@@ -349,9 +333,7 @@ impl RefMesh {
             spread: pose_ab.rotation.matrix().abs(),
             touching,
             best,
-            limit: best,
             passed: f64::INFINITY,
-            share: 1.0,
             any: false,
             hint: Hint::default(),
         })
@@ -368,9 +350,6 @@ struct Search<'a> {
     touching: f64,
     /// The smallest distance so far; at first, the distance that is enough.
     best: f64,
-    /// What is farther than this is not looked at: a share of the smallest distance found.
-    limit: f64,
-    share: f64,
     /// The least bound of what was not looked at.
     passed: f64,
     /// Whether the first distance below `enough` ends the search.
@@ -380,22 +359,17 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The share of the distance found, 0 for touching; a lower bound when the roots are farther apart than is enough.
+    /// The distance found, 0 for touching; a lower bound when the roots are farther apart than is enough.
     fn run(&mut self) -> f64 {
         let (root_a, root_b) = (self.a.root, self.b.root);
         let bound = self.bound(root_a, root_b);
         if bound >= self.best {
             return bound;
         }
-        if self.share < 1.0
-            && let Some(distance) = self.of_few_balls()
-        {
-            return if distance <= self.touching { 0.0 } else { distance };
-        }
         if let Some(found) = self.by_hint() {
             return found;
         }
-        if self.any || self.share < 1.0 {
+        if self.any {
             let bound = self.parts_apart();
             if bound >= self.best {
                 return bound;
@@ -409,9 +383,9 @@ impl Search<'_> {
         self.found()
     }
 
-    /// The share of the distance found, 0 for touching.
+    /// The distance found, 0 for touching.
     fn found(&self) -> f64 {
-        if self.best <= self.touching { 0.0 } else { self.limit }
+        if self.best <= self.touching { 0.0 } else { self.best }
     }
 
     /// A lower bound on the distance by an axis between the corners, as good as it gets below `enough` where the distance is at least
@@ -459,7 +433,7 @@ impl Search<'_> {
             }
             _ => way.norm() - ball_a.radius - ball_b.radius,
         };
-        if distance - self.touching >= self.limit {
+        if distance - self.touching >= self.best {
             return distance - self.touching;
         }
         // The boxes around the triangles, each beside a box along its axes around the other.
@@ -513,7 +487,7 @@ impl Search<'_> {
             bounds.swap(0, 1);
         }
         for (bound, k, l) in bounds {
-            if bound >= self.limit {
+            if bound >= self.best {
                 self.passed = self.passed.min(bound);
             } else if self.visit(k, l) {
                 return true;
@@ -527,7 +501,6 @@ impl Search<'_> {
         let nearer = distance < self.best;
         if nearer {
             self.best = distance;
-            self.limit = self.limit.min(distance * self.share);
             self.hint.near = Some(near);
         } else {
             self.passed = self.passed.min(distance);

@@ -31,10 +31,17 @@ impl RefMesh {
     }
 
     /// The distance of a point from the box around the mesh; 0 inside.
-    fn box_distance(&self, p: &Point3<f64>) -> f64 {
+    pub(super) fn box_distance(&self, p: &Point3<f64>) -> f64 {
         let mut made = None;
         let root = self.ball(self.root, &mut made);
         ((p - root.center).abs() - root.half).sup(&Vector3::zeros()).norm()
+    }
+
+    /// The box around the mesh.
+    pub(super) fn cuboid_around(&self) -> Cuboid {
+        let mut made = None;
+        let root = self.ball(self.root, &mut made);
+        Cuboid { middle: root.center, half: root.half }
     }
 
     /// The balls `depth` below the root, and those above without balls below them.
@@ -54,42 +61,7 @@ impl RefMesh {
     }
 }
 
-/// More pairs of balls than these are searched by their trees.
-const MOST_PAIRS: usize = 64;
-
-impl RefMesh {
-    /// All of it, if that is few balls.
-    fn few_balls(&self) -> Option<&[(Point3<f64>, f64)]> {
-        (self.is_balls && self.parts.len() == self.mesh.triangles().len()).then_some(&*self.parts)
-    }
-}
-
 impl Search<'_> {
-    /// The distance, less than 0 where they overlap, of few balls from few balls or from the sides of a box: ball by ball, which takes less than
-    /// a search.
-    pub(super) fn of_few_balls(&self) -> Option<f64> {
-        let least = |gaps: &mut dyn Iterator<Item = f64>| Some(gaps.fold(f64::INFINITY, f64::min));
-        let from_sides = |cuboid: &Cuboid, p: Point3<f64>, radius: f64| cuboid.distance(&p) - radius;
-        match ((self.a.few_balls(), &self.a.cuboid), (self.b.few_balls(), &self.b.cuboid)) {
-            ((Some(balls), _), (_, Some(cuboid))) => least(
-                &mut balls
-                    .iter()
-                    .map(|(p, r)| from_sides(cuboid, self.pose_ab.inverse_transform_point(p), *r)),
-            ),
-            ((_, Some(cuboid)), (Some(balls), _)) => {
-                least(&mut balls.iter().map(|(p, r)| from_sides(cuboid, self.pose_ab * p, *r)))
-            }
-            ((Some(a), _), (Some(b), _)) if a.len() * b.len() <= MOST_PAIRS => {
-                let nearest = |(q, s): &(Point3<f64>, f64)| {
-                    let q = self.pose_ab * q;
-                    a.iter().map(|(p, r)| (q - p).norm() - r).fold(f64::INFINITY, f64::min) - s
-                };
-                least(&mut b.iter().map(nearest))
-            }
-            _ => None,
-        }
-    }
-
     /// A lower bound on the distance, by the balls of each mesh: against the box around the other, and against its balls.
     pub(super) fn parts_apart(&self) -> f64 {
         let (a, b) = (&self.a.parts, &self.b.parts);
@@ -144,44 +116,8 @@ mod tests {
                 assert!(bound <= distance, "{bound} {distance}");
                 decided += u32::from(bound >= search.best);
                 assert_eq!(a.at_least(&here, b, &pose, enough).is_ok(), distance >= search.best);
-                let nearly = a.nearly(&here, b, &pose, enough);
-                assert!(
-                    nearly <= distance && nearly >= 0.8 * distance.min(search.best),
-                    "{nearly} {distance}"
-                );
-                assert_eq!(nearly >= search.best, distance >= search.best);
             }
         }
         assert!(decided > 600, "{decided}");
-    }
-
-    /// Of few balls beside a box and beside few balls what is nearly the distance is the distance, also within the box.
-    #[test]
-    fn few_balls_need_no_search() {
-        let balls = |n: i32, radius: f64| {
-            let at = |i: i32| Point3::new(0.05 * f64::from(i), 0.02 * f64::from(i * i % 5), 0.1);
-            TriMesh::of_balls((0..n).map(at).collect(), radius).unwrap()
-        };
-        let meshes =
-            [balls(7, 0.03), primitives::cuboid(0.3, 0.5, 0.9).unwrap(), balls(5, 0.01), balls(1, 0.1)];
-        let trees = meshes.each_ref().map(RefMesh::new);
-        let (mut found, mut touching) = (0, 0);
-        for i in 0..1600_usize {
-            let t = i as f64;
-            let shift = Vector3::new(mp_math::sin(t), mp_math::cos(1.3 * t), mp_math::sin(0.7 * t)) * 0.3;
-            let pose = Isometry3::new(shift, Vector3::new(t, 0.3 * t, -t));
-            let (a, b, here) = (&trees[i % 4], &trees[i / 4 % 4], Isometry3::translation(0.1, 0.0, 0.2));
-            let is_searched = a.cuboid.is_some() && b.cuboid.is_some();
-            let distance = a.clearance(&here, b, &pose, f64::INFINITY);
-            let search = a.search(&here, b, &pose, 10.0).unwrap();
-            assert_eq!(search.of_few_balls().is_none(), is_searched);
-            if !is_searched {
-                let nearly = a.nearly(&here, b, &pose, 10.0);
-                assert!((nearly - distance).abs() < 1e-12, "{i}: {nearly} {distance}");
-                found += u32::from(distance > 0.0);
-                touching += u32::from(distance == 0.0);
-            }
-        }
-        assert!(found > 700 && touching > 60, "{found} {touching}");
     }
 }

@@ -73,7 +73,8 @@ pub(super) fn point_triangle(p: &Point3<f64>, t: &Triangle) -> f64 {
     to_point(p, t).norm()
 }
 
-fn to_point(p: &Point3<f64>, t: &Triangle) -> Vector3<f64> {
+/// The shortest vector from triangle `t` to a point.
+pub(super) fn to_point(p: &Point3<f64>, t: &Triangle) -> Vector3<f64> {
     if is_point(t) {
         return p - t[0];
     }

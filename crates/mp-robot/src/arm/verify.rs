@@ -7,7 +7,7 @@ pub(super) use reference_arm::ReferenceArm;
 
 use super::Arm;
 use crate::obstacles::PlacedReference;
-use mp_collide::reference::{Hint, RefMesh};
+use mp_collide::reference::{Drift, Hint, KeptApart, RefMesh};
 use mp_cspace::{Coordinates, Curve, Interrupt, MotionCheck, MotionValidity, ParameterError, Space};
 use nalgebra::Isometry3;
 use reference_arm::{CheckedPair, POSE, Placement, Travels, base_travel};
@@ -50,9 +50,6 @@ pub struct ArmVerifier<'c, C> {
 /// Motions of a coordinate longer than this (rad or m) are refused.
 const MAX_TRAVEL: f64 = 1e6;
 
-/// The share of a distance that is used to prove a part of a motion whose ends it does not reach: what is left is clearance that is shown.
-const USED: f64 = 0.7;
-
 /// The ways of a coordinate to both ends of a part differ by no more than this share, which the bound on travel has in hand.
 const EVEN: f64 = 1e-10;
 
@@ -73,9 +70,10 @@ enum PartCheck {
 
 /// Pairs that come too near over a part of a motion.
 struct Near {
-    pairs: Vec<usize>,
-    /// Over which share of it, about the middle, they keep apart if coordinates go at constant speed.
-    free: f64,
+    /// Before its middle, and after it.
+    pairs: [Vec<usize>; 2],
+    /// Over which shares of it, before and after the middle, they keep apart if coordinates go at constant speed.
+    free: [f64; 2],
     /// The least clearance (m) there.
     clearance: f64,
 }
@@ -186,14 +184,18 @@ where
         found
     }
 
-    /// A lower bound on the distance of a pair that is at least `enough`, or at least four fifths of the distance; 0 where they touch.
-    fn nearly(&self, pair: &CheckedPair, placed: &Placement, enough: f64) -> f64 {
-        let mut least = f64::INFINITY;
-        let nearest = self.least(pair, placed, enough, |_, [mesh, other], [pose, at], enough| {
-            least = least.min(mesh.nearly(pose, other, at, enough.min(least)));
-            Ok(least)
-        });
-        nearest.unwrap_or(0.0)
+    /// Over which part of a motion the links of pair `i`, of which the first is balls, keep the distance `needed` (m).
+    fn keeps_apart(&mut self, i: usize, placed: &Placement, drifts: [&Drift; 2], needed: f64) -> KeptApart {
+        let mut hints = std::mem::take(&mut self.hints[i]);
+        let mut found = KeptApart::default();
+        let pair = &self.pairs[i];
+        if let Some((balls, pose)) = self.mesh(pair.link, placed) {
+            for ((other, at), hint) in self.others(pair, placed).zip(&mut hints) {
+                balls.keeps_apart(&pose, other, &at, drifts, needed, hint, &mut found);
+            }
+        }
+        self.hints[i] = hints;
+        found
     }
 
     /// The least of what `bound` says of the link of a pair and each that it must not touch, by its number, unless that is surely at
@@ -254,10 +256,10 @@ where
         })
     }
 
-    /// How much nearer to each other the two of a pair can come.
-    fn approach(&self, pair: &CheckedPair, travels: &Travels, placed: &Placement) -> f64 {
-        let moved = |link| self.tree.travel(link, pair.meet, travels, placed);
-        moved(pair.link) + pair.other.map_or(0.0, moved)
+    /// How both of a pair move.
+    fn drifts(&self, pair: &CheckedPair, travels: &Travels, placed: &Placement) -> [Drift; 2] {
+        let drift = |link| self.tree.drift(link, pair.meet, travels, placed);
+        [drift(pair.link), pair.other.map_or(Drift::STILL, drift)]
     }
 
     /// Forgets what searches have left for the next ones.
@@ -288,9 +290,9 @@ where
                 PartCheck::Unproven => return MotionCheck::Unproven { at },
             };
             least = least.min(near.clearance);
-            let free = 0.5 * (b - a) * near.free;
-            open.push_back((a, at - free, near.pairs.clone()));
-            open.push_back((at + free, b, near.pairs));
+            let [before, after] = near.free.map(|free| 0.5 * (b - a) * free);
+            let parts = [(a, at - before), (at + after, b)].into_iter().zip(near.pairs);
+            open.extend(parts.filter(|(_, pairs)| !pairs.is_empty()).map(|((a, b), pairs)| (a, b, pairs)));
         }
         MotionCheck::Free { clearance: least }
     }
@@ -306,45 +308,50 @@ where
         least: &mut f64,
     ) -> PartCheck {
         self.tree.place(middle.as_slice(), placed);
-        let mut near = Near { pairs: Vec::new(), free: 1.0, clearance: f64::INFINITY };
+        let mut near = Near { pairs: [Vec::new(), Vec::new()], free: [1.0; 2], clearance: f64::INFINITY };
         for &i in pairs {
             let pair = self.pairs[i];
-            let approach = self.approach(&pair, travels, placed);
+            let [a, b] = &self.drifts(&pair, travels, placed);
             if self.interrupt.ask() {
                 return PartCheck::Unproven;
             }
             let kept = self.kept_from(&pair);
-            let (enough, needed) = (approach + kept + self.tolerance, kept + 2.0 * self.tolerance);
-            let is_of_balls = self.tree.links[pair.link].mesh.as_ref().is_some_and(RefMesh::is_balls);
-            let found = match is_of_balls {
-                // A lower bound on the distance.
-                true => self.nearly(&pair, placed, enough),
+            let needed = kept + 2.0 * self.tolerance;
+            let shares = if self.tree.links[pair.link].mesh.as_ref().is_some_and(RefMesh::is_balls) {
+                let found = self.keeps_apart(i, placed, [a, b], kept + self.tolerance);
+                if found.shares == [1.0; 2] {
+                    *least = least.min(found.clearance);
+                    continue;
+                }
+                // What is known of the distance in the middle need not be all of it.
+                if found.now < needed && self.distance(i, placed, [needed; 2]).is_err() {
+                    let is_free = self.distance(i, placed, [kept; 2]).is_ok();
+                    return if is_free { PartCheck::Unproven } else { PartCheck::Collision };
+                }
+                near.clearance = near.clearance.min(found.clearance);
+                found.shares
+            } else {
+                let approach = a.moved + b.moved;
+                let enough = approach + kept + self.tolerance;
                 // The first distance of two triangles: of meshes a bound takes longer than it saves.
-                false => self
-                    .distance(i, placed, [enough, *least + approach])
-                    .unwrap_or_else(|found| found.min(enough.next_down())),
+                if let Ok(found) = self.distance(i, placed, [enough, *least + approach]) {
+                    *least = least.min(found - approach);
+                    continue;
+                }
+                if self.distance(i, placed, [needed; 2]).is_err() {
+                    let is_free = self.distance(i, placed, [kept; 2]).is_ok();
+                    return if is_free { PartCheck::Unproven } else { PartCheck::Collision };
+                }
+                [0.0; 2]
             };
-            if found >= enough {
-                *least = least.min(found - approach);
-                continue;
+            for (k, share) in shares.into_iter().enumerate() {
+                near.free[k] = near.free[k].min(share);
+                if share < 1.0 {
+                    near.pairs[k].push(i);
+                }
             }
-            // It need not be the distance.
-            if (found < needed || !is_of_balls) && self.distance(i, placed, [kept; 2]).is_err() {
-                return PartCheck::Collision;
-            }
-            if found < needed && (!is_of_balls || self.distance(i, placed, [needed; 2]).is_err()) {
-                return PartCheck::Unproven;
-            }
-            let beyond = if is_of_balls { found.max(needed) - kept - self.tolerance } else { 0.0 };
-            let free = USED * beyond / approach;
-            // Written so that nothing is free where that is not a number.
-            near.free = if free >= near.free { near.free } else { free.max(0.0) };
-            if is_of_balls {
-                near.clearance = near.clearance.min((1.0 - USED) * beyond + kept + self.tolerance);
-            }
-            near.pairs.push(i);
         }
-        if near.pairs.is_empty() { PartCheck::Apart } else { PartCheck::Near(near) }
+        if near.pairs.iter().all(Vec::is_empty) { PartCheck::Apart } else { PartCheck::Near(near) }
     }
 
     /// Whether any pair touches at `q`, or is nearer than the clearance that it keeps.

@@ -87,8 +87,8 @@ where
             match self.part(&middle, &travels, &pairs, &mut placed, &mut least) {
                 PartCheck::Apart => continue,
                 PartCheck::Near(near) => {
-                    open.push((at, b, near.pairs.clone()));
-                    open.push((a, at, near.pairs));
+                    let [before, after] = near.pairs;
+                    open.extend([(at, b, after), (a, at, before)]);
                     continue;
                 }
                 PartCheck::Collision => (hit, near_contact) = (Some(at), None),

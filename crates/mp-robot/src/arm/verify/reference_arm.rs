@@ -1,7 +1,7 @@
 //! The arm as verifiers see it.
 
 use crate::arm::{ArmModel, JointKind, Link};
-use mp_collide::reference::RefMesh;
+use mp_collide::reference::{Drift, RefMesh};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Matrix3, Matrix4, Rotation3, Translation3, UnitQuaternion, Vector3};
 use std::collections::HashMap;
@@ -195,13 +195,15 @@ impl ReferenceArm {
     /// Where coordinates go at constant speed, joints may also undo what others do: the bound is then no more than by the velocity v of the
     /// centre of the ball and the angular velocity ω of the link, |v| + r |ω| + a / 2. The acceleration a of a point is that of all pairs of
     /// joints: what one gives to its velocity turns with each joint above it, and with itself.
-    pub(super) fn travel(
+    ///
+    /// That is what a [`Drift`] says.
+    pub(super) fn drift(
         &self,
         link: usize,
         stop: Option<usize>,
         travels: &Travels,
         placed: &Placement,
-    ) -> f64 {
+    ) -> Drift {
         let Travels { joints: travels, ahead, base } = travels;
         let (center, radius) = placed.balls[link];
         let (mut moved, mut bent) = (0.0, 0.0);
@@ -236,12 +238,17 @@ impl ReferenceArm {
         {
             let now = (center - origin(&placed.matrices[*root])).norm() + radius;
             moved += turn * (now + moved) + slide;
+            bent = f64::INFINITY;
         } else if ahead.is_some() {
             let straight = velocity.norm() + radius * turning.norm() + bent;
             moved = moved.min(straight + CANCELLED * moved);
+        } else {
+            bent = f64::INFINITY;
         }
         // Enlarged against rounding.
-        moved * (1.0 + 1e-9)
+        let enlarged = 1.0 + 1e-9;
+        let (bent, moved) = (bent * enlarged, moved * enlarged);
+        Drift { about: center.into(), velocity, turning, bent, moved }
     }
 
     /// The links from `link` up to the root, `link` first.
@@ -420,12 +427,8 @@ mod tests {
                     .filter(|stop| stop.is_none_or(|stop| tree.above(link).contains(&stop) && link != stop))
                 {
                     let bound = |ahead| {
-                        tree.travel(
-                            link,
-                            stop,
-                            &Travels { joints: joints.clone(), ahead, base: None },
-                            &placed,
-                        )
+                        let travels = Travels { joints: joints.clone(), ahead, base: None };
+                        tree.drift(link, stop, &travels, &placed).moved
                     };
                     let (bound, plain) = (bound(Some(ahead.clone())), bound(None));
                     assert!(bound <= plain);
