@@ -383,3 +383,25 @@ fn inputs_lead_as_exactly_in_a_large_world() {
         assert!(free(0.0) && !free(1e-3), "{size}");
     }
 }
+
+/// How far from the goal a path may end is a part of the world, where that is small.
+#[test]
+fn paths_end_at_the_goal_in_worlds_of_a_millimetre_too() {
+    for (size, angle) in [(1.0, false), (1e-4, false), (1e-6, false), (1.0, true), (1e-4, true)] {
+        let [small, far, wide] = [0.1, 3.0, 4.0].map(|times| times * size);
+        let (robot, zero) = match angle {
+            false => (format!("disc = {small:?}"), ""),
+            true => (format!("polygon = [[0, 0], [{small:?}, 0], [0, {small:?}]]"), ", 0"),
+        };
+        let text = format!(
+            "[world]\nwalls = [[0, 0], [{wide:?}, {wide:?}]]\n[robot]\n{robot}\n[motion]\nstart = [{size:?}, {size:?}{zero}]\n\
+             goals = [[{size:?}, {far:?}{zero}], [{far:?}, {size:?}{zero}]]\n"
+        );
+        let scene = Scene::parse("small", &text, std::path::Path::new("")).unwrap();
+        let free = |x: f64| {
+            let row = |x: f64| [&[x, size][..], &[0.0][..usize::from(angle)]].concat();
+            scene.check(&path(&scene, vec![row(size), row(x * size)])).unwrap().free
+        };
+        assert!(free(3.0) && free(3.0001) && !free(2.9) && !free(1.5), "{size} {angle}");
+    }
+}
