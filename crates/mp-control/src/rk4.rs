@@ -23,7 +23,7 @@ pub struct Rk4<F> {
 }
 
 /// The most steps of one integration; beyond that steps get longer.
-const MAX_STEPS: f64 = 1e6;
+const MAX_STEPS: u32 = 1_000_000;
 
 impl<F> Rk4<F> {
     /// Integrates `derivative` in equal steps of at most `step` seconds.
@@ -38,7 +38,8 @@ impl<F> Rk4<F> {
     where
         F: Fn(&SVector<f64, N>, &U) -> SVector<f64, N>,
     {
-        let steps = (time.abs() / self.step).ceil().clamp(1.0, MAX_STEPS) as u32;
+        // One step at least, also for a time that is no number: so is the state then.
+        let steps = ((time.abs() / self.step).ceil() as u32).clamp(1, MAX_STEPS);
         let h = time / f64::from(steps);
         let f = |q: SVector<f64, N>| (self.derivative)(&q, input);
         (0..steps).fold(*from, |q, _| {

@@ -320,6 +320,8 @@ fn bad_input_is_a_typed_error() {
         assert!(InputSet::axes([1.0, bad]).is_err() && Car::new(bad).is_err());
         assert!(Rk4::new((), bad).is_err() && Unicycle::inputs(1.0, bad).is_err());
     }
+    let still = Rk4::new(|_: &Vector2<f64>, u: &Vector2<f64>| *u, 0.1).unwrap();
+    assert!(still.integrate(&Vector2::zeros(), &Vector2::zeros(), nan).iter().all(|x| x.is_nan()));
     assert!(matches!(InputSet::axes([0.0; 0]), Err(InputError::Empty { .. })));
     assert!(InputSet::axes([0.0]).is_err() && InputSet::axes_dyn(&[-1.0]).is_err());
     assert!(InputSet::grid([1.0], 1).is_err() && InputSet::grid_dyn(&[1.0; 30], 5).is_err());

@@ -56,9 +56,9 @@ impl TomlText<'_> {
     pub(crate) fn check(&self, what: &str, values: &[f64], span: &Range<usize>) -> Result<(), Error> {
         match values.iter().find(|v| v.is_nan() || v.abs() > MAX_COORDINATE) {
             None => Ok(()),
-            Some(v) => Err(self
-                .error(span, format!("{what} has {v}"))
-                .expected(format!("finite numbers below {MAX_COORDINATE:e}, in metres and radians"))),
+            Some(v) => Err(self.error(span, format!("{what} has {v}")).expected(format!(
+                "finite numbers below {MAX_COORDINATE:e}, in metres, radians and seconds"
+            ))),
         }
     }
 

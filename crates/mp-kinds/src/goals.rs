@@ -1,6 +1,7 @@
 //! Goals of which some numbers are fixed, some are in intervals, and some are free.
 
 use crate::Robot;
+use crate::numbers::rounding;
 use crate::turns::turning;
 use mp_cspace::angle::wrap_angle;
 use mp_cspace::{Clearance, Configuration, Goals, Rng, Sampler, Space};
@@ -9,8 +10,6 @@ use rand::RngExt;
 
 /// How often a free configuration of a goal is looked for.
 const TRIES: usize = 1000;
-/// How far, as a part of the extent of the space, a configuration may be from a goal that it is at: rounding.
-const ROUNDING: f64 = 1e-9;
 
 /// Where the row of a configuration would have to be to be at a goal: the same row if it is there. `turning` says which
 /// numbers are the same after a full turn.
@@ -65,7 +64,7 @@ impl Sampler<Configuration> for FromGoals<'_> {
 /// The goals of a robot, for planners: the configurations, or what they may be.
 pub fn of_kind(kind: &dyn Robot) -> Goals<'_, Configuration> {
     let Some(goals) = kind.goal_parts() else { return Goals::states(kind.goals().iter().cloned()) };
-    let rounding = ROUNDING * kind.any_space().extent().max(1.0);
+    let rounding = rounding(kind.any_space().extent().max(1.0));
     let turning = turning(kind);
     let reached = move |q: &Configuration| {
         let row = kind.row(q);

@@ -1,4 +1,10 @@
-//! Numbers as text for people, and a hash of numbers.
+//! Numbers as text for people, a hash of numbers, and how far apart numbers count as equal.
+
+/// How far apart two states of a space of this extent may be and count as the same: a thousandth of a millimetre at most, however large the
+/// space, of which speed times time is a part.
+pub(crate) fn rounding(extent: f64) -> f64 {
+    (1e-9 * extent).min(1e-6)
+}
 
 /// A number with about four digits: for lengths and the like, not for configurations, which people paste back ([`plain`]).
 #[must_use]

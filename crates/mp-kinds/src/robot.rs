@@ -28,8 +28,8 @@ use crate::turns::turning;
 use crate::{Error, Length, MetricName};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex};
 use mp_cspace::{
-    Configuration, DefaultNn, Demand, InputSystem, Interrupt, Interrupted, MotionClearance, MotionValidity,
-    ObstacleKnowledge, OnVectors, Space as _, Validity,
+    Configuration, DefaultNn, Demand, Factored as _, InputSystem, Interrupt, Interrupted, MotionClearance,
+    MotionValidity, ObstacleKnowledge, OnVectors, Space as _, Validity,
     nn::Embed,
     obstacles::{ClearanceGradient, ObstacleHints},
 };
@@ -482,9 +482,14 @@ pub trait Description: Motion {
         rows.iter().enumerate().find_map(fault)
     }
 
-    /// How far a configuration is from the one that it should be, and how far it may be. Files often have only four digits.
+    /// How far a configuration is from the one that it should be, and how far it may be. Files often have only four digits. A number must be
+    /// within a hundredth of its range, too, as of a world of a millimetre.
     fn deviation(&self, q: &Configuration, wanted: &Configuration) -> Deviation {
-        Deviation { off: self.any_space().distance(q, wanted), allowed: 1e-3, unit: "" }
+        let space = self.any_space();
+        let mut near = true;
+        space.each_factor(q, wanted, &mut |i, off| near &= off <= 0.01 * space.factor_extent(i));
+        let allowed = if near { 1e-3 } else { 0.0 };
+        Deviation { off: space.distance(q, wanted), allowed, unit: "" }
     }
 
     /// Whether a link is where a goal that is a place wants it: [`goals`](Motion::goals) has only some of the configurations that reach it.

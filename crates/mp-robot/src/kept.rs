@@ -1,5 +1,10 @@
 //! A clearance to keep from obstacles.
 
+/// The clearance that is kept where `kept` (m) is asked for: none below zero, and an infinite one where it is not a number.
+pub(crate) fn asked(kept: f64) -> f64 {
+    if kept.is_nan() { f64::INFINITY } else { kept.max(0.0) }
+}
+
 /// The clearance beyond `kept` (m), of one that is exact below the limit that `clearance` is asked with. Where that is at least its limit,
 /// so is this at least `enough`, whatever rounding does.
 #[inline]

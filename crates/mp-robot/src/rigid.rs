@@ -221,10 +221,10 @@ impl<P: Placement> RigidBody<P> {
     }
 
     /// The same body, which keeps the clearance `kept` (m) from obstacles: what is nearer counts as in contact, all clearances are less by
-    /// this much, and a [`Verifier`](crate::Verifier) of it proves that it is kept.
+    /// this much, and a [`Verifier`](crate::Verifier) of it proves that it is kept. Below zero it is zero, and where it is not a number infinite.
     #[must_use]
     pub fn keeping(self, kept: f64) -> Self {
-        Self { kept: kept.max(0.0), apart: None, ..self }
+        Self { kept: crate::kept::asked(kept), apart: None, ..self }
     }
 
     /// The clearance (m) that it [keeps](Self::keeping): zero, unless asked for.

@@ -176,7 +176,9 @@ pub(super) fn parse(
         if points.is_empty() {
             names = its;
         } else if names != its {
-            return Err(error(file, format!("the joints of {} change", it.topic)));
+            return Err(error(file, format!("the joints of {} change", it.topic))
+                .expected("the same ones in the same order in all its messages")
+                .help("record a topic to which one program alone writes"));
         }
         let time_from_start = Time::Seconds(since as f64 / 1e9);
         points.push(Point { positions, velocities: Vec::new(), accelerations: Vec::new(), time_from_start });
@@ -270,6 +272,14 @@ mod tests {
         assert!(error.unwrap_err().report().contains("times that increase"));
         let short = [(0, all[0].1[..30].to_vec())];
         assert!(read(&of(&JOINT_STATE, &short)).unwrap_err().contains("/t ends too early"));
+        let states = |made: &Recording| [0, 1].map(|i| (i as u64, joint_state(made, i)));
+        let mut odd = recording();
+        odd.sampled.positions[1][0] = f64::NAN;
+        assert!(read(&of(&JOINT_STATE, &states(&odd))).unwrap_err().contains("a position of point 2 is NaN"));
+        odd = recording();
+        odd.sampled.joints.swap(0, 1);
+        let [[first, _], [_, second]] = [states(&made), states(&odd)];
+        assert!(read(&of(&JOINT_STATE, &[first, second])).unwrap_err().contains("one program alone"));
         assert!(read(b"PK").unwrap_err().contains("does not begin as MCAP"));
     }
 }

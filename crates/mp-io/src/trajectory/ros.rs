@@ -280,17 +280,19 @@ pub(super) fn made(
             }
             let several =
                 format!("{}s", what.strip_suffix('y').map_or(what.to_owned(), |stem| format!("{stem}ie")));
-            if numbers.is_empty() {
-                return Err(error(format!("point {} has no {several}, and others have", i + 1)));
-            }
             if numbers.len() != names.len() {
-                let found = if numbers.len() == 1 {
-                    format!("1 {what}")
-                } else {
-                    format!("{} {several}", numbers.len())
+                let found = match numbers.len() {
+                    0 => format!("no {several}"),
+                    1 => format!("1 {what}"),
+                    count => format!("{count} {several}"),
                 };
                 let expected = format!("one for each of the {} joints", names.len());
                 return Err(error(format!("point {} has {found}", i + 1)).expected(expected));
+            }
+            if let Some(number) = numbers.iter().find(|number| !number.is_finite()) {
+                return Err(error(format!("a {what} of point {} is {number}", i + 1))
+                    .expected("finite numbers")
+                    .help("leave this point out, or record it again"));
             }
             let offset = |follower: &Beside<'_>| if what == "position" { follower.by.offset } else { 0.0 };
             if let Some(off) = beside.iter().find_map(|it| it.off(numbers, offset(it))) {

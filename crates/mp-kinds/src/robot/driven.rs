@@ -11,6 +11,7 @@ use super::{
     Appearance, Body, Column, Contact, Description, End, HAIR, Measured, Motion, at_limit, no_metric,
 };
 use crate::goals::{GoalPart, examples};
+use crate::numbers::rounding;
 use crate::robot::motion::TypedMotion;
 use crate::turns::{continued, turning};
 use crate::{Error, MetricName};
@@ -30,8 +31,6 @@ use std::fmt::Debug;
 use std::sync::Arc;
 use system::{Parts, System};
 
-/// How far, as a part of the extent of the space, a state may be from where its input leads: rounding.
-const ROUNDING: f64 = 1e-9;
 /// Bounds are enlarged by this factor against rounding.
 const ROUND_UP: f64 = 1.0 + 1e-9;
 
@@ -422,7 +421,7 @@ impl Description for DrivenScene {
         let system = &self.space.system;
         let states: Vec<_> = rows.iter().map(|row| self.parts(&self.state(row))).collect();
         let off = states.windows(2).map(|pair| self.space.off_course(&pair[0], &pair[1]));
-        let (i, off) = off.enumerate().find(|(_, off)| *off > ROUNDING * self.space.extent())?;
+        let (i, off) = off.enumerate().find(|(_, off)| *off > rounding(self.space.extent()))?;
         let b = &states[i + 1];
         Some(match off.is_finite() {
             true => format!(

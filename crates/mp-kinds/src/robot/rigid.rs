@@ -178,7 +178,10 @@ impl<M: RigidSpace> RigidScene<M> {
         Ok(Self { problem, space, robot, start, goals: vec![goal], goal_parts: None, radius })
     }
 
-    /// The same robot with these goals: what each asks of each of the six numbers.
+    /// The same robot with these goals, at least one: what each asks of each of the six numbers.
+    ///
+    /// # Panics
+    /// When there is no goal, or one says less than six numbers.
     #[must_use]
     pub fn with_goals(mut self, goals: Vec<Vec<GoalPart>>) -> Self {
         match rows(&goals) {

@@ -7,6 +7,7 @@ use crate::{Error, PathRows, Robot};
 use mp_cspace::angle::rotation_angle;
 use mp_cspace::{Configuration, Interrupt, MotionCheck, Path, Space, path::PathFault};
 use mp_geom::pose_from_six;
+use mp_kinds::Deviation;
 use mp_kinds::goals::next_to;
 use mp_kinds::numbers::{at_least, brief, count, plain};
 use mp_kinds::proof::{clearance, verified};
@@ -86,9 +87,10 @@ pub(crate) fn end_faults(kind: &dyn Robot, states: &[Configuration]) -> Vec<Stri
         None => kind.goals().iter().map(|goal| kind.deviation(last, goal)).collect(),
         Some(goals) => goals.iter().map(|goal| kind.deviation(last, &next_to(kind, goal, last))).collect(),
     };
+    let reached = ends.iter().any(Deviation::is_near) || kind.reaches_place(last);
     let nearest = ends.into_iter().min_by(|a, b| a.off.total_cmp(&b.off));
     if let Some(goal) = nearest
-        && !(goal.is_near() || kind.reaches_place(last))
+        && !reached
     {
         let which = if kind.goals().len() > 1 { "a goal" } else { "the goal" };
         faults.push(format!("does not end at {which}: {}{} off", brief(goal.off), goal.unit));

@@ -260,6 +260,25 @@ fn meshes_in_the_plane_stay_there_among_obstacles_that_move() {
     assert!(verdict(0.5).faults.concat().contains("leaves the plane"), "{:?}", verdict(0.5));
 }
 
+/// A goal is as near for a robot that is as good as free of limits of speed and time.
+#[test]
+fn goals_among_obstacles_that_move_are_reached_however_long_there_is_time() {
+    let world = |speed: f64, horizon: f64| {
+        let text = format!(
+            "[world]\nwalls = [[0, 0], [4, 4]]\n[robot]\ndisc = 0.1\n[motion]\nstart = [1, 1]\ngoal = [3, 3]\nspeed = {speed:?}\n\
+             horizon = {horizon:?}\n[[moving]]\nrectangle = [[-0.2, -0.2], [0.2, 0.2]]\npath = [[0, 2, 3.5], [5, 2, 0.5]]\n"
+        );
+        Scene::parse("long", &text, std::path::Path::new("")).unwrap()
+    };
+    for (speed, horizon) in [(1.0, 10.0), (9e8, 10.0), (1.0, 1e7), (1.0, 9e8), (9e8, 9e8)] {
+        let scene = world(speed, horizon);
+        let report = scene.plan(&Request::new("rrt").iterations(3_000)).unwrap();
+        let Some(rows) = report.path else { continue };
+        let verdict = scene.check(&path(&scene, rows)).unwrap();
+        assert!(verdict.free, "speed {speed}, horizon {horizon}: {verdict:?}");
+    }
+}
+
 /// A configuration beside the plane is not the one below it: it is out of bounds, and no end.
 #[test]
 fn configurations_of_a_body_in_the_plane_are_in_it() {
@@ -345,5 +364,44 @@ fn headings_turn_as_far_as_inputs_do() {
             assert!(scene.check(&path(&scene, rows)).unwrap().free);
         }
         assert!(most > TAU / 2.0, "{drive}: {most}");
+    }
+}
+
+/// Also where the world is as good as without an end, a path is where its inputs lead.
+#[test]
+fn inputs_lead_as_exactly_in_a_large_world() {
+    for size in [5.0, 1e8] {
+        let text = format!(
+            "[world]\nwalls = [[-{size:?}, -{size:?}], [{size:?}, {size:?}]]\n[robot]\ndisc = 0.1\nkind = \"velocities\"\nspeeds = [1, 1]\n\
+             duration = 1\n[motion]\nstart = [0, 0]\ngoal = {{ x = [1.9, 2.1] }}\n"
+        );
+        let scene = Scene::parse("large", &text, std::path::Path::new("")).unwrap();
+        let free = |y: f64| {
+            let rows = vec![[0.0; 5].to_vec(), vec![1.0, y, 1.0, 0.0, 1.0], vec![2.0, y, 1.0, 0.0, 1.0]];
+            scene.check(&path(&scene, rows)).unwrap().free
+        };
+        assert!(free(0.0) && !free(1e-3), "{size}");
+    }
+}
+
+/// How far from the goal a path may end is a part of the world, where that is small.
+#[test]
+fn paths_end_at_the_goal_in_worlds_of_a_millimetre_too() {
+    for (size, angle) in [(1.0, false), (1e-4, false), (1e-6, false), (1.0, true), (1e-4, true)] {
+        let [small, far, wide] = [0.1, 3.0, 4.0].map(|times| times * size);
+        let (robot, zero) = match angle {
+            false => (format!("disc = {small:?}"), ""),
+            true => (format!("polygon = [[0, 0], [{small:?}, 0], [0, {small:?}]]"), ", 0"),
+        };
+        let text = format!(
+            "[world]\nwalls = [[0, 0], [{wide:?}, {wide:?}]]\n[robot]\n{robot}\n[motion]\nstart = [{size:?}, {size:?}{zero}]\n\
+             goals = [[{size:?}, {far:?}{zero}], [{far:?}, {size:?}{zero}]]\n"
+        );
+        let scene = Scene::parse("small", &text, std::path::Path::new("")).unwrap();
+        let free = |x: f64| {
+            let row = |x: f64| [&[x, size][..], &[0.0][..usize::from(angle)]].concat();
+            scene.check(&path(&scene, vec![row(size), row(x * size)])).unwrap().free
+        };
+        assert!(free(3.0) && free(3.0001) && !free(2.9) && !free(1.5), "{size} {angle}");
     }
 }

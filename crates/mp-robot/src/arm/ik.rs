@@ -27,7 +27,7 @@ pub struct PoseGoal {
     pub link: String,
     /// Where it is to be, in the world.
     pub pose: Isometry3<f64>,
-    /// How far (m) its origin may be from there, to both sides along x, y and z of the pose asked for.
+    /// How far (m) its origin may be from there, to both sides along x, y and z of the pose asked for: not at all, where it is not above zero.
     pub within: [f64; 3],
     /// What may turn freely.
     pub free: FreeTurn,
@@ -44,7 +44,10 @@ impl PoseGoal {
     #[must_use]
     pub fn error(&self, pose: &Isometry3<f64>) -> (Vector3<f64>, Vector3<f64>) {
         let offset = self.pose.rotation.inverse() * (self.pose.translation.vector - pose.translation.vector);
-        let beyond = |i: usize| offset[i] - offset[i].clamp(-self.within[i], self.within[i]);
+        let beyond = |i: usize| {
+            let within = self.within[i].max(0.0);
+            offset[i] - offset[i].clamp(-within, within)
+        };
         let place = self.pose.rotation * Vector3::from_fn(|i, _| beyond(i));
         let turn = match self.free {
             FreeTurn::None => (self.pose.rotation * pose.rotation.inverse()).scaled_axis(),

@@ -425,7 +425,7 @@ impl Arm {
     #[must_use]
     pub fn keeping(mut self, kept: f64) -> Self {
         self.scratch = Scratch::default();
-        Self { kept: kept.max(0.0), ..self }
+        Self { kept: crate::kept::asked(kept), ..self }
     }
 
     /// The clearance (m) that it [keeps](Self::keeping) from obstacles: zero, unless asked for.

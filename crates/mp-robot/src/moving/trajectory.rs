@@ -64,9 +64,12 @@ impl Trajectory {
         self.times.iter().copied().zip(&self.poses)
     }
 
-    /// The pose in the world at `time` (s).
+    /// The pose in the world at `time` (s): not a pose where that is not a number, so that nothing is free then.
     #[must_use]
     pub fn pose(&self, time: f64) -> Isometry3<f64> {
+        if time.is_nan() {
+            return Isometry3::translation(time, time, time);
+        }
         let next = self.times.partition_point(|t| *t <= time);
         let last = self.times.len() - 1;
         if next == 0 || next > last {

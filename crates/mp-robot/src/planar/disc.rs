@@ -63,7 +63,7 @@ impl DiscRobot {
     /// this much, as if it were so much larger.
     #[must_use]
     pub fn keeping(self, kept: f64) -> Self {
-        Self { kept: kept.max(0.0), ..self }
+        Self { kept: crate::kept::asked(kept), ..self }
     }
 
     /// The clearance (m) that it [keeps](Self::keeping): zero, unless asked for.

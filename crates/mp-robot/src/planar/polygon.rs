@@ -83,7 +83,7 @@ impl PolygonRobot {
     /// this much.
     #[must_use]
     pub fn keeping(self, kept: f64) -> Self {
-        Self { kept: kept.max(0.0), ..self }
+        Self { kept: crate::kept::asked(kept), ..self }
     }
 
     /// The clearance (m) that it [keeps](Self::keeping): zero, unless asked for.

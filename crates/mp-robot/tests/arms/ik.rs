@@ -172,6 +172,10 @@ fn goals_may_leave_room() {
             assert_eq!(solve(PoseGoal { pose: nowhere, free, ..out.clone() }), None);
         }
     }
+    // What is no room is none.
+    for x in [f64::NAN, -1.0, f64::NEG_INFINITY] {
+        assert_eq!(solve(PoseGoal { within: [x; 3], ..out.clone() }), None);
+    }
     // Nothing to solve.
     assert!(InverseKinematics::new(&kinematics, PoseGoal::new("gone", far)).is_none());
     assert!(InverseKinematics::new(&kinematics, PoseGoal::new("link 0", far)).is_none());

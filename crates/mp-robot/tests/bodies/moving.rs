@@ -6,9 +6,13 @@ use mp_cspace::{
     Validity,
     space_time::{ForwardInTime, SpaceTime},
 };
+use mp_geom::planar::{PlanarWorld, Polygon};
 use mp_geom::{TriMesh, pose_from_six, primitives};
-use mp_robot::{AmongMoving, FreeFlyer, MovingVerifier, PlanarFlyer, Trajectory, TrajectoryError};
-use nalgebra::{Isometry3, Point3};
+use mp_robot::{
+    AmongMoving, AmongMovingAreas, DiscRobot, FreeFlyer, MovingVerifier, PlanarFlyer, Trajectory,
+    TrajectoryError,
+};
+use nalgebra::{Isometry3, Point3, Vector2};
 
 fn there_and_back() -> Trajectory {
     Trajectory::new([
@@ -62,6 +66,29 @@ fn trajectories_pass_their_poses_and_bound_their_speed() {
     assert_eq!(Trajectory::new([(f64::INFINITY, here)]), Err(TrajectoryError::NotAPose { index: 0 }));
     let stuck = Trajectory::new([(1.0, here), (1.0, here)]);
     assert_eq!(stuck, Err(TrajectoryError::NotAfter { index: 1, time: 1.0 }));
+}
+
+/// Where what moves is at no time is not known, and neither is whether the robot is free.
+#[test]
+fn nothing_is_free_at_a_time_that_is_no_number() {
+    let body = FreeFlyer::new(&robot(), clutter()).unwrap();
+    let mut among = AmongMoving::new(body.clone(), moving_bodies()).unwrap();
+    let far = Isometry3::translation(9.0, 9.0, 9.0);
+    assert!(among.is_valid(&(far, f64::INFINITY)) && among.clearance(&(far, 2.0), 1.0) > 0.0);
+    assert!(!among.is_valid(&(far, f64::NAN)));
+    assert_eq!(among.clearance(&(far, f64::NAN), 1.0), 0.0);
+    // The same for a clearance that is no number.
+    assert!(!body.clone().keeping(f64::NAN).is_valid(&far) && body.keeping(-1.0).is_valid(&far));
+    let world = PlanarWorld::new(vec![Polygon::rectangle([0.0; 2], [1.0; 2]).unwrap()], None).unwrap();
+    let disc = DiscRobot::new(world, 0.1).unwrap();
+    let path = Trajectory::new([(0.0, Isometry3::identity())]).unwrap();
+    let area = Polygon::rectangle([-1.0; 2], [0.0; 2]).unwrap();
+    let mut areas = AmongMovingAreas::new(disc.clone(), [(area, path)]).unwrap();
+    assert!(
+        areas.is_valid(&(Vector2::new(5.0, 5.0), 0.0))
+            && !areas.is_valid(&(Vector2::new(5.0, 5.0), f64::NAN))
+    );
+    assert!(!disc.keeping(f64::NAN).is_valid(&Vector2::new(5.0, 5.0)));
 }
 
 /// Inside of a solid that moves along with the robot, or around one: in collision all along. Inside of a surface: free.

@@ -2,7 +2,8 @@
 
 use super::drivable::{AnyStateVerifier, Drivable};
 use super::space::DrivenSpace;
-use super::{DrivenScene, ROUND_UP, ROUNDING};
+use super::{DrivenScene, ROUND_UP};
+use crate::numbers::rounding;
 use crate::robot::Queries;
 use crate::robot::motion::AnyChecker;
 use mp_cspace::{
@@ -100,7 +101,7 @@ impl MotionValidity<Configuration> for DrivenVerifier<'_> {
             return self.verifier.check_state(&a.q, f64::INFINITY);
         }
         let gap = space.off_course(&a, &b);
-        if gap > ROUNDING * space.extent() {
+        if gap > rounding(space.extent()) {
             return MotionCheck::Unproven { at: 1.0 };
         }
         // Between these moments and the ends no number of the position is beyond its values there.

@@ -1,8 +1,9 @@
 //! The space of the states of a robot that moves by inputs.
 
+use super::ROUND_UP;
 use super::drivable::Drivable;
 use super::system::{Parts, System};
-use super::{ROUND_UP, ROUNDING};
+use crate::numbers::rounding;
 use mp_cspace::erased::AnyFactored;
 use mp_cspace::nn::Layout;
 use mp_cspace::{Configuration, Embed, Factored, Rng, Space};
@@ -63,7 +64,7 @@ impl DrivenSpace {
 
     /// Whether the input of `to` leads there from `from`.
     pub(super) fn follows(&self, from: &Parts, to: &Parts) -> bool {
-        self.off_course(from, to) <= ROUNDING * self.extent()
+        self.off_course(from, to) <= rounding(self.extent())
     }
 
     pub(super) fn at_rest(&self, q: Configuration) -> Parts {

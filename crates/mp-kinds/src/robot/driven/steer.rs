@@ -1,7 +1,8 @@
 //! Steering: inputs that lead from one state to another where there are no obstacles. With it paths are made shorter.
 
+use super::DrivenScene;
 use super::system::{Parts, System};
-use super::{DrivenScene, ROUNDING};
+use crate::numbers::rounding;
 use mp_control::{dubins, reeds_shepp};
 use mp_cspace::angle::{angle_difference, wrap_angle};
 use mp_cspace::shorten::Effort;
@@ -101,7 +102,7 @@ impl System {
                 }
                 let held = vec![(first, half), (second, half)];
                 let off = self.way(positions, self.run(positions, from, &held).last()?, to)?;
-                if off.iter().all(|x| x.abs() <= 0.01 * ROUNDING * positions.extent()) {
+                if off.iter().all(|x| x.abs() <= 0.01 * rounding(positions.extent())) {
                     return Some(held);
                 }
                 way.iter_mut().zip(off).for_each(|(way, off)| *way += off);
@@ -229,7 +230,7 @@ impl DrivenScene {
             }
             new.extend(system.run(positions, &from, &held));
             let mut now = new[new.len() - 1].clone();
-            let rounding = ROUNDING * positions.extent();
+            let rounding = rounding(positions.extent());
             let is_at = |now: &Parts, to: &Parts| {
                 system.way(positions, now, to).is_some_and(|off| off.iter().all(|x| x.abs() <= rounding))
             };
@@ -261,7 +262,7 @@ impl DrivenScene {
 
     fn is_at_goal(&self, state: &Parts) -> bool {
         let q = self.space.system.vector(state);
-        let rounding = ROUNDING * self.space.extent().max(1.0);
+        let rounding = rounding(self.space.extent().max(1.0));
         self.goal_parts.iter().any(|goal| {
             let there = crate::goals::next_to(self, goal, &q);
             self.space.distance(&q, &there) <= rounding

@@ -1,6 +1,6 @@
 //! How inputs move a robot, and which it has.
 
-use super::ROUNDING;
+use crate::numbers::rounding;
 use mp_control::{Car, Flow, InputSet, Unicycle};
 use mp_cspace::{Configuration, Se2State, Space, StateVector};
 use mp_io::Drive;
@@ -207,7 +207,7 @@ impl System {
     /// Whether an input is within its limits.
     pub(super) fn allows(&self, input: &[f64]) -> bool {
         let within = |(u, [low, high]): (&f64, [f64; 2])| {
-            let slack = ROUNDING * (high - low);
+            let slack = rounding(high - low);
             (low - slack..=high + slack).contains(u)
         };
         input.iter().zip(self.input_limits()).all(within)
