@@ -26,6 +26,9 @@ use std::sync::Arc;
 /// - a motion with a tested state of less than twice the tolerance is [`Unproven`](MotionCheck::Unproven), as
 ///   are motions that take more than a million parts, and motions of a million radians or metres.
 ///
+/// A motion is proved in parts, each about its middle as far as what moves uses up the distances there: of links that are balls by the
+/// velocity along the shortest way ([`RefMesh::keeps_apart`]), of others by how far their points go.
+///
 /// Coordinates must go at constant speed, and by no more than a turn, as in [`Arm::space`]; a base that floats as in
 /// [`Arm::floating_space`].
 #[derive(Clone, Debug)]
