@@ -299,12 +299,6 @@ impl<C: LinkedSpace> LinkedScene<C> {
         &self.arm
     }
 
-    /// The obstacles that stand still, each with its pose in the world.
-    #[must_use]
-    pub fn obstacle_bodies(&self) -> &[PlacedBody] {
-        &self.obstacles
-    }
-
     /// The problem that it was made from, if it was made from a file.
     #[must_use]
     pub fn problem(&self) -> Option<&RobotProblem> {
