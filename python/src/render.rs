@@ -81,8 +81,9 @@ impl Scene {
         let scene = &self.scene;
         let cancel = mp_plan::Cancel::new();
         let (bytes, raised) = self.work(py, &cancel, None, |_| {
-            let meshes = content == Some(Content::Gltf);
-            let mut file = if meshes { SceneFile::for_glb(scene) } else { SceneFile::of(scene) }?;
+            // A planner of the page says where things are.
+            let alone = matches!(planner, Planner::None);
+            let mut file = if alone { SceneFile::for_file(scene) } else { SceneFile::of(scene) }?;
             match (report, path) {
                 (Some(report), path) => {
                     file.add_report(scene, &mp_plan::Report { path, ..report })?;

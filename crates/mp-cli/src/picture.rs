@@ -193,8 +193,9 @@ impl Picture {
             }
             _ => {}
         }
-        let meshes = matches!(self, Self::Meshes(_));
-        let mut file = if meshes { SceneFile::for_glb(scene) } else { SceneFile::of(scene) }?;
+        // A planner inside of the page says where things are.
+        let plans = matches!(self, Self::Page(Some(_)));
+        let mut file = if plans { SceneFile::of(scene) } else { SceneFile::for_file(scene) }?;
         match (report, path.zip(verdict)) {
             (Some(report), _) => file.add_run(scene, report)?,
             (None, Some((path, verdict))) => {

@@ -1,6 +1,7 @@
 //! Filled meshes: closed surfaces together with their inside.
 
 use nalgebra::{Isometry3, Point3};
+use std::sync::Arc;
 use thiserror::Error;
 
 use mp_geom::{Aabb, TriMesh};
@@ -84,7 +85,9 @@ impl CollisionMesh {
             return Err(FillError::NotOriented { edges: found.misoriented_edges.len() });
         }
         match mesh.signed_volume() > 0.0 {
-            true => Ok(Self { solids: [0..self.triangle_count() as u32].into(), ..self }),
+            true => {
+                Ok(Self { solids: [0..self.triangle_count() as u32].into(), outline: Arc::default(), ..self })
+            }
             false => Err(FillError::InsideOut),
         }
     }

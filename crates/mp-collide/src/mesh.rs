@@ -7,6 +7,7 @@ use std::sync::{Arc, OnceLock};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 
+use crate::around::Outline;
 use crate::bvh::{Tree, build::SMALL};
 use crate::cloud::Cloud;
 use crate::filled::Parts;
@@ -26,6 +27,8 @@ pub struct CollisionMesh {
     pub(crate) solids: Arc<[Range<u32>]>,
     /// The connected components, made at the first use.
     pub(crate) parts: Arc<OnceLock<Parts>>,
+    /// What is around it, found where it is first put into a scene.
+    pub(crate) outline: Arc<OnceLock<Outline>>,
 }
 
 impl CollisionMesh {
@@ -107,7 +110,8 @@ impl CollisionMesh {
     ) -> Result<Self, Interrupted> {
         let _span = tracing::debug_span!("build", triangles = count).entered();
         let tree = Arc::new(Tree::build(count, triangle, go_on)?);
-        Ok(Self { tree, cloud: None, solids: Arc::default(), parts: Arc::default() })
+        let (solids, parts, outline) = Default::default();
+        Ok(Self { tree, cloud: None, solids, parts, outline })
     }
 
     /// Whether both share one tree, and either both are solids or none: not whether they are equal.

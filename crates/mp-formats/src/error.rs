@@ -182,12 +182,6 @@ impl Error {
         &self.0.message
     }
 
-    /// What was expected there.
-    #[must_use]
-    pub fn expectation(&self) -> Option<&str> {
-        self.0.expected.as_deref()
-    }
-
     /// What to do about it.
     #[must_use]
     pub fn remedy(&self) -> Option<&str> {

@@ -27,6 +27,11 @@ pub trait Files: Debug + Send + Sync {
     /// default nobody hears it.
     fn note(&self, _path: &Path, _remark: &str) {}
 
+    /// Takes a remark that is for all who use the file, as something in it is wrong most likely. By default a [note](Self::note).
+    fn warn(&self, path: &Path, remark: &str) {
+        self.note(path, remark);
+    }
+
     /// Whether it only matters which files are read. Then readers of meshes read files as always, and return any small mesh.
     fn only_reads(&self) -> bool {
         false
@@ -103,6 +108,9 @@ impl Files for Until<'_> {
     }
     fn note(&self, path: &Path, remark: &str) {
         self.files.note(path, remark);
+    }
+    fn warn(&self, path: &Path, remark: &str) {
+        self.files.warn(path, remark);
     }
     fn only_reads(&self) -> bool {
         self.files.only_reads()

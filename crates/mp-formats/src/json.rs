@@ -130,6 +130,10 @@ pub fn parse<T: DeserializeOwned>(file: &str, text: &str, what: &str, help: &str
         let message = match shown.split_once(", expected") {
             Some((found, _)) => found.to_owned(),
             None if e.is_data() => shown.to_owned(),
+            // Or a list of so many numbers has more.
+            None if shown == "trailing characters" && serde_json::from_str::<IgnoredAny>(text).is_ok() => {
+                "this list is longer than it should be".to_owned()
+            }
             None => format!("this is not JSON: {shown}"),
         };
         Error::at(ErrorKind::Format, file, text, at, 1, message).expected(what).help(help)

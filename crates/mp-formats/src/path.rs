@@ -7,7 +7,7 @@ use crate::formats::Content;
 use crate::json::{names, parse_rows, rows_text};
 use crate::number::Row;
 use crate::text::{Text, Token, clipped};
-use mp_geom::{pose_from_six, six_from_pose};
+use mp_geom::pose_from_six;
 use nalgebra::Isometry3;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -22,12 +22,6 @@ pub struct PathFile {
 }
 
 impl PathFile {
-    /// The path through `poses`.
-    #[must_use]
-    pub fn from_poses<'a>(poses: impl IntoIterator<Item = &'a Isometry3<f64>>) -> Self {
-        Self { configurations: poses.into_iter().map(six_from_pose).collect() }
-    }
-
     /// The poses of the robot along the path.
     #[must_use]
     pub fn poses(&self) -> Vec<Isometry3<f64>> {

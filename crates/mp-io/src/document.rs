@@ -515,6 +515,18 @@ mod tests {
     }
 
     #[test]
+    fn a_list_that_is_too_long_is_named() {
+        let text = document().to_text().replace("\"goal\": [", "\"goal\": [\n0.5,");
+        let error = SceneDocument::parse("d", text.as_bytes()).unwrap_err();
+        assert!(
+            error.to_string().contains("longer than it should be") && error.remedy().is_some(),
+            "{error}"
+        );
+        let torn = SceneDocument::parse("d", format!("{text} x").as_bytes()).unwrap_err();
+        assert!(torn.to_string().contains("this is not JSON"), "{torn}");
+    }
+
+    #[test]
     fn reads_back_the_same() {
         let document = document();
         assert_eq!(SceneDocument::parse("d", document.to_text().as_bytes()).unwrap(), document);

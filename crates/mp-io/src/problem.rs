@@ -3,6 +3,7 @@
 use crate::document;
 use crate::environment::{self, Environment};
 use crate::ompl;
+use crate::problem_file::warn_of_degrees;
 use mp_formats::error::{Error, ErrorKind};
 use mp_formats::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
 use mp_formats::formats::Content;
@@ -178,6 +179,8 @@ impl RigidProblem {
             obstacles.push(PlacedBody { name, file, mesh, pose: pose_from_six(o.pose) });
         }
         let name = stem(path);
+        let poses = obstacles.iter().map(|o| &*o.name).zip(env.obstacles.iter().map(|o| o.pose));
+        warn_of_degrees(files, path, [("the start", start), ("the goal", goal)].into_iter().chain(poses));
         let (start, goal) = (pose_from_six(start), pose_from_six(goal));
         crate::trace::problem(&name, obstacles.len());
         Ok(Self { name, space, robot, obstacles, start, goal, bounds })

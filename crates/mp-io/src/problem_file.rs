@@ -7,6 +7,7 @@ use crate::shape;
 use crate::toml_problem::TomlText;
 use mp_formats::error::Error;
 use mp_formats::files::{Files, MAX_TEXT_BYTES, decode};
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// The pages that describe the formats.
@@ -54,10 +55,96 @@ impl ProblemFile {
     }
 }
 
+/// Warns of the first pose with an angle that is meant in degrees, most likely: more than a whole turn, and a multiple of five. `poses` are what they are
+/// called, and x y z α β γ.
+pub(crate) fn warn_of_degrees<'p>(
+    files: &dyn Files,
+    path: &Path,
+    mut poses: impl Iterator<Item = (&'p str, [f64; 6])>,
+) {
+    let is_odd = |angle: &f64| angle.abs() > TAU && angle % 5.0 == 0.0;
+    if let Some((what, angle)) =
+        poses.find_map(|(what, six)| Some((what, six[3..].iter().copied().find(is_odd)?)))
+    {
+        let what = mp_formats::text::clipped(what);
+        files.warn(
+            path,
+            &format!(
+                "{what} is turned by {angle} radians, as angles here are; {angle} degrees are {}",
+                angle.to_radians()
+            ),
+        );
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::InMemory;
+    use std::sync::Mutex;
+
+    /// Remembers the notes.
+    #[derive(Debug)]
+    struct Noting<'t>(&'t str, Mutex<Vec<String>>);
+
+    impl Files for Noting<'_> {
+        fn read(&self, path: &Path, _: u64) -> Result<Vec<u8>, Error> {
+            let urdf = "<robot name='r'><link name='a'/></robot>";
+            let off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+            let text = match path.extension().and_then(|e| e.to_str()) {
+                Some("urdf") => urdf,
+                Some("off") => off,
+                _ => self.0,
+            };
+            Ok(text.into())
+        }
+        fn note(&self, _: &Path, remark: &str) {
+            self.1.lock().unwrap().push(remark.to_owned());
+        }
+    }
+
+    /// Angles are radians; 45 and 90 are degrees, most likely.
+    #[test]
+    fn angles_that_are_degrees_most_likely_are_noted() {
+        let notes = |name: &str, text: &str| {
+            let files = Noting(text, Mutex::default());
+            let read = match name.ends_with(".env") {
+                true => crate::RigidProblem::load_from(&files, Path::new(name)).map(drop),
+                false => ProblemFile::load_from(&files, Path::new(name)).map(drop),
+            };
+            read.unwrap();
+            files.1.into_inner().unwrap()
+        };
+        let motion = "[motion]\nstart = [0, 0, 0, 0, 0, 0]\ngoal = [1, 0, 0, 0, 0, 0]\n";
+        let body = |angle: &str| {
+            let obstacle = format!(
+                "[[obstacle]]\nname = \"wall\"\nbox = [1, 1, 1]\npose = [9, 90, 45, 0, {angle}, 0]\n"
+            );
+            notes("f.toml", &format!("[robot]\nbox = [1, 1, 1]\n{motion}{obstacle}"))
+        };
+        assert_eq!(
+            body("90.0"),
+            ["wall is turned by 90 radians, as angles here are; 90 degrees are 1.5707963267948966"]
+        );
+        assert_eq!((body("-45").len(), body("1.57").len(), body("7").len(), body("5").len()), (1, 0, 0, 0));
+        let start = notes(
+            "f.toml",
+            &format!("[robot]\nbox = [1, 1, 1]\n{}", motion.replace("0, 0]\ng", "0, 30]\ng")),
+        );
+        assert!(start[0].starts_with("the start is turned by 30 radians"), "{start:?}");
+        let links = |base: &str| {
+            notes(
+                "f.toml",
+                &format!(
+                    "[robot]\nurdf = \"r.urdf\"\nbase = [0, 0, 0, {base}, 0, 0]\n[motion]\nstart = []\ngoal = []\n"
+                ),
+            )
+        };
+        assert!(links("180")[0].starts_with("the base is turned by 180 radians") && links("3.14").is_empty());
+        let env =
+            |angle: &str| notes("f.env", &format!("Robot\nr.off\n0 0 0 0 0 0\n5 0 0 {angle} 0 0\nEnd\n"));
+        assert!(env("45")[0].starts_with("the goal is turned by 45 radians") && env("0.7").is_empty());
+    }
 
     fn load(text: &str) -> Result<ProblemFile, Error> {
         let urdf = "<robot name='r'><link name='a'/></robot>";

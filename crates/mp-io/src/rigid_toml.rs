@@ -2,6 +2,7 @@
 
 use crate::drive::{DriveTable, Driven};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind};
+use crate::problem_file::warn_of_degrees;
 use crate::robot::{ObstacleTable, entry};
 use crate::shape::{Meshes, Shaped};
 use crate::toml_problem::{Exactly, GoalPart, MotionTable, Timing, TomlText, timed_rows};
@@ -107,7 +108,7 @@ impl RigidTask {
         // What moves has facets.
         let robot_body = Body { name: "robot".to_owned(), file: from, mesh: mesh.faceted() };
 
-        let mut obstacles = Vec::new();
+        let (mut obstacles, mut poses) = (Vec::new(), Vec::new());
         for (i, table) in obstacle.iter().enumerate() {
             let entry = entry(&source, i, table)?;
             if let Some(near) = &entry.self_filter {
@@ -117,6 +118,7 @@ impl RigidTask {
                     .expected("no `self_filter` with a rigid body"));
             }
             let (file, mesh) = meshes.of(&source, &entry.name, &entry.shape)?;
+            poses.push((entry.name.clone(), entry.pose));
             obstacles.push(PlacedBody { name: entry.name, file, mesh, pose: pose_from_six(entry.pose) });
         }
         let mut movers = Vec::new();
@@ -225,6 +227,8 @@ impl RigidTask {
         let start = six(&motion.start[..own.len()]);
         let velocity = motion.start[own.len()..].to_vec();
         let goal: [f64; 6] = std::array::from_fn(|i| example(&goals[0][i], start[i]));
+        let poses = poses.iter().map(|(name, pose)| (&**name, *pose));
+        warn_of_degrees(files, path, [("the start", start), ("the goal", goal)].into_iter().chain(poses));
         let problem = RigidProblem {
             name: stem(path),
             space: if planar { SpaceKind::Se2 } else { SpaceKind::Se3 },

@@ -24,6 +24,8 @@ struct Head {
     columns: Vec<Column>,
     limits: Vec<Option<[f64; 2]>>,
     bounds: [[f64; 3]; 2],
+    #[serde(default, skip_serializing_if = "is_zero")]
+    origin: [f64; 3],
     meshes: Vec<MeshHead>,
     areas: Vec<AreaHead>,
     lines: Vec<LineHead>,
@@ -96,6 +98,10 @@ struct RoadmapHead {
     edges: ArrayRef,
     component: ArrayRef,
     kind: ArrayRef,
+}
+
+fn is_zero(origin: &[f64; 3]) -> bool {
+    *origin == [0.0; 3]
 }
 
 /// A head, padded, and the arrays behind it.
@@ -172,6 +178,7 @@ impl SceneFile {
             columns: self.columns.clone(),
             limits: self.limits.clone(),
             bounds: self.bounds,
+            origin: self.origin,
             meshes: (self.meshes.iter())
                 .map(|mesh| MeshHead {
                     positions: append(data, &mesh.positions),
@@ -362,7 +369,7 @@ fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
         columns: head.columns,
         limits: head.limits,
         bounds: head.bounds,
-        origin: [0.0; 3],
+        origin: head.origin,
         meshes: head.meshes.iter().map(mesh).collect::<Result<_, ViewError>>()?,
         areas: head.areas.iter().map(area).collect::<Result<_, ViewError>>()?,
         lines: head.lines.iter().map(line).collect::<Result<_, ViewError>>()?,

@@ -22,7 +22,7 @@ impl SceneFile {
     /// The scene as a binary glTF 2.0 file (`.glb`): its bodies as meshes with names and colours, the robot moving along each path
     /// (an animation of `seconds` seconds for each, at even speed), the curves of the paths as lines, and translucent copies of
     /// the robot at start and goals. Areas of the plane are thin plates. In the file y is up, as glTF wants; its one
-    /// root node turns the scene, whose own z is up. Of a scene [made for it](Self::for_glb) a node below the root has the `origin`.
+    /// root node turns the scene, whose own z is up. Of a scene [far away](Self::for_file) a node below the root has the `origin`.
     #[must_use]
     pub fn to_glb(&self, seconds: f64) -> Vec<u8> {
         let mut file = Glb::new(self);

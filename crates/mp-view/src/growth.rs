@@ -4,6 +4,7 @@ use crate::message::Message;
 use crate::{Bends, Roadmap, SceneFile, Tree};
 use mp_cspace::NodeId;
 use mp_plan::{GrownRoadmap, Request, Scene, SearchEvent, Watch};
+use nalgebra::Vector3;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,8 +14,9 @@ const MAX_REJECTED: usize = 20_000;
 /// The trees or the roadmap of a run, and which part of them the page has.
 #[derive(Debug)]
 pub(crate) struct Growth {
-    /// Says where a configuration is drawn.
+    /// Says where a configuration is drawn, and relative to what.
     scene: Scene,
+    origin: Vector3<f64>,
     /// Whether the planner builds a roadmap.
     roadmap: bool,
     trees: Vec<GrowingTree>,
@@ -45,10 +47,11 @@ struct GrowingTree {
 }
 
 impl Growth {
-    pub(crate) fn new(scene: Scene, request: &Request) -> Self {
+    pub(crate) fn new(scene: Scene, origin: [f64; 3], request: &Request) -> Self {
         let roadmap = mp_plan::roadmap_planners().iter().any(|info| info.is_called(&request.planner));
         Self {
             scene,
+            origin: origin.into(),
             roadmap,
             trees: Vec::new(),
             edges: Vec::new(),
@@ -118,7 +121,7 @@ impl Growth {
 
     /// Where a configuration is drawn.
     fn place(&self, row: &[f64]) -> [f32; 3] {
-        self.scene.traced(row).map_or([0.0; 3], |p| [p.x as f32, p.y as f32, p.z as f32])
+        self.scene.traced(row).map_or([0.0; 3], |p| (p - self.origin).coords.map(|x| x as f32).into())
     }
 
     /// The event `grown` with all that the page does not have, if there is anything; afterwards the page has it.
@@ -257,12 +260,22 @@ impl GrownTrees {
     /// For one run of `request` in `scene`.
     #[must_use]
     pub fn new(scene: &Scene, request: &Request) -> Self {
-        Self { growth: Growth::new(scene.clone(), request), roadmap: None }
+        let origin = SceneFile::for_file(scene).map(|file| file.origin).unwrap_or_default();
+        Self { growth: Growth::new(scene.clone(), origin, request), roadmap: None }
     }
 
     /// Adds what the run has grown to a file of its scene.
     pub fn add_to(self, file: &mut SceneFile) {
-        let Self { growth, roadmap } = self;
+        let Self { mut growth, roadmap } = self;
+        let shift = growth.origin - Vector3::from(file.origin);
+        growth.origin = file.origin.into();
+        if shift != Vector3::zeros() {
+            let lists =
+                growth.trees.iter_mut().flat_map(|tree| tree.bends.values_mut().chain([&mut tree.nodes]));
+            lists.for_each(|list| {
+                list.iter_mut().zip(shift.iter().cycle()).for_each(|(x, by)| *x += *by as f32)
+            });
+        }
         file.roadmap = roadmap.map(|map| growth.drawn(map));
         let trees = growth.trees.into_iter().enumerate().filter(|(_, tree)| !tree.parents.is_empty());
         file.trees.extend(trees.map(|(i, tree)| Tree {

@@ -18,7 +18,7 @@ pub struct SceneFile {
     pub limits: Vec<Option<[f64; 2]>>,
     /// The least and the largest coordinates (m) of what is drawn without a path: obstacles, start and goals.
     pub bounds: [[f64; 3]; 2],
-    /// What is to be added to all places (m): zero, unless the file is [made for glTF](SceneFile::for_glb).
+    /// What is to be added to all places (m): zero, unless [it is far away](SceneFile::for_file).
     pub origin: [f64; 3],
     /// Surfaces, each in the frame of its bodies.
     pub meshes: Vec<Mesh>,

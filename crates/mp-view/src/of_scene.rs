@@ -19,12 +19,12 @@ impl SceneFile {
         Self::about(scene, Vector3::zeros())
     }
 
-    /// As [`of`](Self::of), for [`to_glb`](Self::to_glb): where the scene is so far from the origin that numbers of 32 bits would
-    /// move its bodies, as in coordinates of surveys, places are relative to its middle, which becomes the `origin` of the file.
+    /// As [`of`](Self::of), for a file or a page without a planner: where the scene is so far from the origin that numbers of 32 bits
+    /// would move its bodies, as in coordinates of surveys, places are relative to its middle, which becomes the `origin` of the file.
     ///
     /// # Errors
     /// As [`of`](Self::of).
-    pub fn for_glb(scene: &Scene) -> Result<Self, Error> {
+    pub fn for_file(scene: &Scene) -> Result<Self, Error> {
         let file = Self::of(scene)?;
         file.far().map_or(Ok(file), |middle| Self::about(scene, middle))
     }

@@ -335,13 +335,18 @@ fn bin(
         for k in (0..3).filter(|&k| scale[f][k].is_finite()) {
             let mut above = [0.0; BINS];
             let (mut right, mut count) = (Extents::EMPTY, 0);
+            // An empty bin changes neither side: a division beside it is the one before.
             for i in (1..BINS).rev() {
+                if bins[k][i].1 == 0 {
+                    above[i] = above.get(i + 1).copied().unwrap_or_default();
+                    continue;
+                }
                 right.join(&bins[k][i].0);
                 count += bins[k][i].1;
                 above[i] = right.surface() * count as f32;
             }
             let (mut left, mut count) = (Extents::EMPTY, 0);
-            for i in 1..BINS {
+            for i in (1..BINS).filter(|&i| bins[k][i - 1].1 > 0) {
                 left.join(&bins[k][i - 1].0);
                 count += bins[k][i - 1].1;
                 let cost = left.surface() * count as f32 + above[i];

@@ -127,6 +127,10 @@ impl RefMesh {
     ) -> Result<Self, Interrupted> {
         let count = mesh.triangles().len();
         let triangles = || (0..count).map(|i| mesh.triangle(i));
+        let mut seen = vec![false; mesh.vertices().len()];
+        let first = |i: &u32| !std::mem::replace(&mut seen[*i as usize], true);
+        let corners = mesh.triangles().iter().flatten().copied().filter(first);
+        let corners = corners.map(|i| mesh.vertices()[i as usize]);
         let mut tree = Self {
             mesh: mesh.clone(),
             triangles: if few == 0 { triangles().collect() } else { Vec::new() },
@@ -136,7 +140,7 @@ impl RefMesh {
             size: triangles().flatten().map(|p| p.coords.amax()).fold(0.0, f64::max)
                 + mesh.rounding().unwrap_or(0.0),
             // Axes separate corners, not balls.
-            corners: if mesh.balls().is_empty() { distinct(triangles().flatten()) } else { Vec::new() },
+            corners: if mesh.balls().is_empty() { distinct(corners) } else { Vec::new() },
             solids: nested::solids(mesh),
             components: OnceLock::new(),
             around_solids: OnceLock::new(),
@@ -235,21 +239,24 @@ impl RefMesh {
     /// A ball around `count` triangles from the place `first` of the order on, about the middle of their box.
     fn enclosing_ball(&self, first: u32, count: u32, content: Content) -> Ball {
         let triangles = &self.order[first as usize..][..count as usize];
-        let points = triangles.iter().flat_map(|&i| {
-            let round = self.rounding(i);
-            self.triangle(i, &mut None).map(|p| (p, round))
-        });
-        let box_of = |(p, round): (Point3<f64>, f64)| {
-            let round = Vector3::repeat(round);
-            (p - round, p + round)
-        };
-        let sides = points.clone().map(box_of).reduce(|(l, h), (p, q)| (l.inf(&p), h.sup(&q)));
-        let (low, high) = sides.unwrap_or_default();
+        let (mut low, mut high) = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
+        for &i in triangles {
+            let round = Vector3::repeat(self.rounding(i));
+            for p in self.triangle(i, &mut None) {
+                (low, high) = (low.inf(&(p - round)), high.sup(&(p + round)));
+            }
+        }
         let center = nalgebra::center(&low, &high);
-        let farther = |(radius, reach): (f64, f64), (p, round): (Point3<f64>, f64)| {
-            (radius.max((p - center).norm() + round), reach.max(p.coords.norm() + round))
-        };
-        let (radius, reach) = points.fold((0.0, 0.0), farther);
+        let (mut radius, mut reach) = (0.0_f64, 0.0_f64);
+        for &i in triangles {
+            let (mut far, mut from_origin) = (0.0_f64, 0.0_f64);
+            for p in self.triangle(i, &mut None) {
+                far = far.max((p - center).norm_squared());
+                from_origin = from_origin.max(p.coords.norm_squared());
+            }
+            let round = self.rounding(i);
+            (radius, reach) = (radius.max(far.sqrt() + round), reach.max(from_origin.sqrt() + round));
+        }
         Ball { center, radius, half: (high - center).sup(&(center - low)), reach, content }
     }
 

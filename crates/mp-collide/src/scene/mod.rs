@@ -173,7 +173,8 @@ impl Scene {
     ) -> Result<BodyId, SceneError> {
         // A cloud has a tree of its own kind.
         let movable = movable || mesh.cloud.is_some();
-        let (bounds, around) = placed(&name, &mesh, Outline::of(&mesh), &pose)?;
+        let outline = *mesh.outline.get_or_init(|| Outline::of(&mesh));
+        let (bounds, around) = placed(&name, &mesh, outline, &pose)?;
         let index = u32::try_from(self.bodies.len()).map_err(|_| SceneError::Full)?;
         let handle = self.broad_phase(movable).insert(index, bounds);
         self.filled += usize::from(mesh.is_filled());

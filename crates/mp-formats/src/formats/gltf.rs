@@ -244,11 +244,11 @@ fn parts<'a>(file: &str, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>)
     Ok((json, rest))
 }
 
-/// Bytes of base64; `None` when the text is none.
+/// Bytes of base64, of which some writers make lines; `None` when the text is none.
 fn base64(text: &str) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
     let (mut bits, mut count) = (0u32, 0);
-    for c in text.trim_end_matches('=').bytes() {
+    for c in text.trim_end().trim_end_matches('=').bytes().filter(|c| !c.is_ascii_whitespace()) {
         let value = match c {
             b'A'..=b'Z' => c - b'A',
             b'a'..=b'z' => c - b'a' + 26,

@@ -82,13 +82,3 @@ pub struct OffDocument {
     /// The number of edges that the file states; readers do not use it.
     pub edges: Option<u64>,
 }
-
-impl OffDocument {
-    /// The document of a triangle mesh.
-    #[must_use]
-    pub fn from_mesh(mesh: &TriMesh) -> Self {
-        let mesh = &mesh.faceted();
-        let faces = mesh.triangles().iter().map(|t| OffFace { corners: t.to_vec(), color: None }).collect();
-        Self { vertices: mesh.vertices().to_vec(), faces, ..Self::default() }
-    }
-}

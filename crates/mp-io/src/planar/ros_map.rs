@@ -75,7 +75,9 @@ impl RosMap {
                         }
                         Content::Other => Ok(Vec::new()),
                     };
-                    let words: Vec<f64> = words?;
+                    // Some programs that save maps write `-nan` for an angle that they do not know.
+                    let help = "the origin is `[x, y, yaw]`, metres and radians: write 0 for an angle that is not known";
+                    let words: Vec<f64> = words.map_err(|e: Error| e.help(help))?;
                     map.origin = *words.as_array().ok_or_else(|| {
                         let message = format!("the origin has {} numbers", words.len());
                         yaml.error(&value.span, message).expected("`[x, y, yaw]`")

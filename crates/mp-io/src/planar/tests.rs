@@ -226,6 +226,8 @@ fn maps_of_ros() {
         assert!(error.to_string().contains(words) && error.remedy().is_some(), "{error}");
         assert!(error.line().is_some_and(|l| l.abs_diff(line) <= 1), "{error}");
     }
+    let unknown = RosMap::parse("m.yaml", text.replacen("- 0.1", "- -nan", 1).as_bytes()).unwrap_err();
+    assert!(unknown.remedy().is_some_and(|help| help.contains("write 0")), "{unknown}");
     assert!(RosMap::parse("m.yaml", b"- image: a.png\n").unwrap_err().to_string().contains("m.yaml:1:1"));
 }
 

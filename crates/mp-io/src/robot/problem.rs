@@ -5,6 +5,7 @@ use super::srdf_near::srdf_near;
 use super::{RobotEntry, RobotFile, RobotFilePart, RobotPart};
 use crate::mjcf::{self, Mjcf};
 use crate::problem::PlacedBody;
+use crate::problem_file::warn_of_degrees;
 use crate::shape::Meshes;
 use mp_formats::error::{Error, ErrorKind};
 use mp_formats::files::{Disk, Files, MAX_TEXT_BYTES, stem};
@@ -101,6 +102,10 @@ impl RobotProblem {
         let attached = file.attached.iter().map(|entry| body(&entry.name, &entry.shape, entry.pose));
         let attached = attached.collect::<Result<_, _>>()?;
         let name = stem(path);
+        let bases = file.robots.iter().map(|robot| ("the base", robot.base));
+        let attached_poses = file.attached.iter().map(|entry| (&*entry.name, entry.pose));
+        let poses = file.obstacles.iter().map(|entry| (&*entry.name, entry.pose));
+        warn_of_degrees(files, path, bases.chain(poses).chain(attached_poses));
         crate::trace::problem(&name, obstacles.len());
         Ok(Self { name, file, robots, obstacles, attached })
     }

@@ -25,7 +25,7 @@ use mp_cspace::{
     Manhattan, MotionClearance, ObstacleKnowledge, Path, ScaledEuclidean, Space, TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, continued_six, pose_from_six, six_from_pose};
-use mp_io::{DescribedRobot, Disk, Files, Follower, PlacedBody, RobotFilePart, RobotProblem};
+use mp_io::{DescribedRobot, Disk, Files, Follower, PlacedBody, RobotEntry, RobotFilePart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, Joint, JointKind, Mimic, PLANAR_NUMBERS};
 use nalgebra::Isometry3;
 use named::{NamedValues, Values};
@@ -299,12 +299,6 @@ impl<C: LinkedSpace> LinkedScene<C> {
         &self.arm
     }
 
-    /// The obstacles that stand still, each with its pose in the world.
-    #[must_use]
-    pub fn obstacle_bodies(&self) -> &[PlacedBody] {
-        &self.obstacles
-    }
-
     /// The problem that it was made from, if it was made from a file.
     #[must_use]
     pub fn problem(&self) -> Option<&RobotProblem> {
@@ -544,7 +538,11 @@ impl<C: LinkedSpace> Description for LinkedScene<C> {
             Some(robot) => format!("the [[robot]] \"{robot}\""),
             None => "[robot]".to_owned(),
         };
-        if entry.is_some_and(|entry| entry.planar.is_some()) && PLANAR_NUMBERS.contains(&bare) {
+        let of_base = |entry: &&RobotEntry| {
+            let is_limited = entry.limits.iter().any(|(joint, _)| joint == bare);
+            entry.planar.is_some() && PLANAR_NUMBERS.contains(&bare) && !is_limited
+        };
+        if entry.filter(of_base).is_some() {
             return format!("move it, or widen the `bounds` in {table}");
         }
         let is_key = bare.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');

@@ -15,11 +15,14 @@ pub(crate) struct Recording<'a> {
     pub(crate) folders: Mutex<Vec<(PathBuf, PathBuf)>>,
     /// What readers remarked, and of which files.
     remarks: Mutex<Vec<(String, Vec<String>)>>,
+    /// Of these all who use the scene hear.
+    pub(crate) warnings: Mutex<Vec<String>>,
 }
 
 impl<'a> Recording<'a> {
     pub(crate) fn new(files: &'a dyn Files) -> Self {
-        Self { files, read: Mutex::default(), folders: Mutex::default(), remarks: Mutex::default() }
+        let (read, folders, remarks, warnings) = Default::default();
+        Self { files, read, folders, remarks, warnings }
     }
 
     /// The remarks of readers, a sentence for each.
@@ -60,6 +63,13 @@ impl Files for Recording<'_> {
             }
         }
         self.files.note(path, remark);
+    }
+    fn warn(&self, path: &Path, remark: &str) {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        if let Ok(mut warnings) = self.warnings.lock() {
+            warnings.push(format!("{name}: {remark}"));
+        }
+        self.files.warn(path, remark);
     }
     fn only_reads(&self) -> bool {
         self.files.only_reads()

@@ -137,7 +137,10 @@ impl Scene {
         tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
         let mut scene = scene.with_file(file);
         scene.remarks = recording.remarks().into();
-        let Recording { read, folders, .. } = recording;
+        let Recording { read, folders, warnings, .. } = recording;
+        let warnings = warnings.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let notes = warnings.into_iter().chain(scene.notes().iter().cloned()).collect();
+        scene = scene.with_notes(notes);
         scene.files = Arc::new(SceneFiles {
             file: file.to_owned(),
             shipped: false,
@@ -213,6 +216,9 @@ impl Files for Texts<'_> {
     }
     fn note(&self, path: &Path, remark: &str) {
         self.files.note(path, remark);
+    }
+    fn warn(&self, path: &Path, remark: &str) {
+        self.files.warn(path, remark);
     }
     fn only_reads(&self) -> bool {
         self.files.only_reads()

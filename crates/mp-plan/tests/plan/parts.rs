@@ -2,12 +2,14 @@
 
 use mp_geom::TriMesh;
 use mp_geom::primitives::cuboid;
+use mp_io::InMemory;
 use mp_plan::info::{Info, MeshInfo, Surface};
 use mp_plan::{
     End, ErrorKind, Length, MetricName, MotionValidator, PathFileKind, PathRows, RelaxField, Request, Scene,
     Track, at_least, brief, plain, write_file,
 };
 use nalgebra::{Isometry3, Point3};
+use std::path::Path;
 
 #[test]
 fn errors_say_what_they_are_about() {
@@ -240,6 +242,20 @@ fn what_bounds_nothing_is_not_watertight() {
     assert!(surface(&format!("{corners}{solid}")).watertight);
     let both = surface(&format!("{corners}{solid}f 1 2 3\nf 1 6 2\nf 2 6 3\nf 3 6 1\n"));
     assert!(both.watertight && both.two_sided && both.warnings.is_empty(), "{both:?}");
+}
+
+/// Of angles that are degrees, most likely, all who plan hear.
+#[test]
+fn angles_in_degrees_are_in_the_notes_of_a_scene() {
+    let notes = |angle: &str| {
+        let text = format!(
+            "[robot]\nbox = [1, 1, 1]\n[motion]\nstart = [0, 0, 0, 0, 0, 0]\ngoal = [5, 0, 0, {angle}, 0, 0]\n"
+        );
+        let scene = Scene::load_from(&InMemory(move |_: &str| Some(text.clone())), Path::new("p.toml"));
+        scene.unwrap().notes().to_vec()
+    };
+    assert!(notes("1.57").is_empty());
+    assert!(notes("90")[0].starts_with("p.toml: the goal is turned by 90 radians"), "{:?}", notes("90"));
 }
 
 #[test]

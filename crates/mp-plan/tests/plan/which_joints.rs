@@ -228,6 +228,35 @@ fn a_base_in_the_plane_drives_around_what_is_in_the_way() {
     assert!(on_wall.check_ends().unwrap_err().report().contains("base"));
 }
 
+/// A base on a rail, and one that only turns so far.
+#[test]
+fn numbers_of_a_base_are_held_and_limited_as_joints_are() {
+    let all = "raise = 0.3, shoulder = 2, elbow = 1, finger = 0";
+    let planar = |more: &str, motion: &str| {
+        let base = "base = \"planar\"\nbounds = [[-3, -3], [3, 3]]";
+        load(&format!("{base}\n{more}"), motion)
+    };
+    let rail = format!("hold = {{ x = 1.5, theta = 0.5, {all} }}");
+    let scene = planar(&rail, "start = [-2]\ngoal = [2]").unwrap();
+    assert_eq!(names(&scene), ["y"]);
+    assert_eq!(path(&scene).len(), 2);
+    // The base is 0.3 m wide: a post beside the rail is passed, one on it is not.
+    for (x, free) in [(1.8, true), (1.6, false), (0.0, true)] {
+        let post = format!("\n[[obstacle]]\nbox = [0.02, 0.02, 0.05]\nat = [{x}, 1, 0]");
+        let scene = planar(&rail, &format!("start = [-2]\ngoal = [2]{post}")).unwrap();
+        let ends = vec![scene.start(), scene.goals().remove(0)];
+        let straight = PathRows { format: scene.path_format(), columns: scene.columns(), rows: ends };
+        assert_eq!(scene.check(&straight).unwrap().free, free, "{x}");
+    }
+    let turns = format!("limits = {{ theta = [-1, 1] }}\nhold = {{ {all} }}");
+    let scene = planar(&turns, "start = [0, 0, 0.5]\ngoal = [0, 0, 1.5]").unwrap();
+    assert_eq!(scene.limits()[2], Some([-1.0, 1.0]));
+    let error = scene.check_ends().unwrap_err().report();
+    assert!(error.contains("limits = { theta = [-1, 1.5] }"), "{error}");
+    let error = planar("hold = { x = 4 }", "start = [0, 0, 0, 0, 0, 0]\ngoal = []").unwrap_err().report();
+    assert!(error.contains("p.toml:6:") && error.contains("from -3 to 3"), "{error}");
+}
+
 #[test]
 fn what_cannot_be_is_an_error_at_its_place() {
     let motion = "start = [0.1, 0, 0, 0]\ngoal = [0.2, 0, 0, 0]";

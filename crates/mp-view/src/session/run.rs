@@ -45,7 +45,7 @@ pub(crate) fn locked(outbox: &Mutex<Outbox>) -> MutexGuard<'_, Outbox> {
 
 impl Outbox {
     pub(crate) fn new(run: u64, scene: Scene, request: &Request) -> SharedOutbox {
-        let growth = Growth::new(scene, request);
+        let growth = Growth::new(scene, [0.0; 3], request);
         Arc::new(Mutex::new(Self {
             run,
             growth,

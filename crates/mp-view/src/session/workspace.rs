@@ -516,9 +516,7 @@ impl Workspace {
         // A page with the planner inside puts the scene into its own text.
         let formats = if cfg!(target_family = "wasm") { &formats[..2] } else { &formats[..] };
         let ending = format_of(request, formats, "exports")?;
-        let meshes = ending == Content::Gltf.ending();
-        let file = if meshes { SceneFile::for_glb(&open.scene) } else { SceneFile::of(&open.scene) }?;
-        let mut file = Self::dressed(open, file);
+        let mut file = Self::dressed(open, SceneFile::for_file(&open.scene)?);
         for path in request.head.get("paths").and_then(Value::as_array).into_iter().flatten() {
             let members = path.as_object().cloned().unwrap_or_default();
             let rows = rows_of(&members, "rows")?;
@@ -529,7 +527,7 @@ impl Workspace {
         let bytes = match ending {
             #[cfg(not(target_family = "wasm"))]
             ending if ending == Content::Page.ending() => file.to_html().into_bytes(),
-            _ if meshes => file.to_glb(GLB_SECONDS),
+            ending if ending == Content::Gltf.ending() => file.to_glb(GLB_SECONDS),
             _ => file.to_bytes(),
         };
         self.written(request, vec![(format!("{name}.{ending}"), bytes)])

@@ -2,8 +2,8 @@
 
 use gltf::animation::util::ReadOutputs;
 use gltf::mesh::Mode;
-use mp_plan::{Request, Scene};
-use mp_view::{Role, SceneFile};
+use mp_plan::{Cancel, Control, Request, Scene};
+use mp_view::{GrownTrees, Role, SceneFile};
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion};
 
 fn planned(name: &str) -> SceneFile {
@@ -186,9 +186,17 @@ fn scenes_far_from_the_origin_keep_their_places() {
         (plane, [500_004.2, 4_500_002.65], [500_002.0, 4_500_005.345]),
     ] {
         let scene = Scene::parse("far", text, std::path::Path::new("")).unwrap();
-        let report = scene.plan(&Request::new("rrt-connect").seed(1)).unwrap();
-        let mut file = SceneFile::for_glb(&scene).unwrap();
+        let request = Request::new("rrt-connect").seed(1);
+        let mut grown = GrownTrees::new(&scene, &request);
+        let report = scene.plan_with(&request, &mut Control::new(Cancel::default(), &mut grown)).unwrap();
+        let mut file = SceneFile::for_file(&scene).unwrap();
         file.add_run(&scene, &report).unwrap();
+        grown.add_to(&mut file);
+        // What the page reads has the same places, and says what they are relative to.
+        assert_eq!(SceneFile::parse(&file.to_bytes()).unwrap(), file);
+        assert!(file.origin[0] > 1e5 && file.start.poses[0].abs() < 20.0, "{:?}", file.start);
+        let nodes: Vec<_> = file.trees.iter().flat_map(|tree| &tree.nodes).collect();
+        assert!(nodes.len() > 3 && nodes.iter().all(|x| x.abs() < 50.0), "{nodes:?}");
         let bytes = file.to_glb(1.0);
         let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
         // The reader of the other tests has numbers of 32 bits.
@@ -220,5 +228,5 @@ fn scenes_far_from_the_origin_keep_their_places() {
     }
     // All others are as they were.
     let easy = Scene::find("easy").unwrap();
-    assert_eq!(SceneFile::for_glb(&easy).unwrap(), SceneFile::of(&easy).unwrap());
+    assert_eq!(SceneFile::for_file(&easy).unwrap(), SceneFile::of(&easy).unwrap());
 }

@@ -23,6 +23,11 @@ impl One<'_> {
     fn fault(self, part: RobotPart, message: impl ToString, help: &str) -> Error {
         self.problem.file.fault(RobotFilePart::Robot(self.index, part), &message.to_string(), help).into()
     }
+
+    /// Whether a joint is one of those by which the base moves in the plane, which are made last.
+    fn is_of_base(self, joint: &str) -> bool {
+        self.entry.planar.is_some() && PLANAR_NUMBERS.contains(&joint)
+    }
 }
 
 fn robots(problem: &RobotProblem) -> impl Iterator<Item = One<'_>> {
@@ -61,14 +66,32 @@ fn described(files: &dyn Files, robot: One<'_>) -> Result<(ArmModel, Vec<String>
         .map_err(|e| in_urdf(described, e.line().map(|line| line as usize), e.message(), e.remedy()))?;
     model.base = entry.pose();
     model.floating = entry.floating.map(|[low, high]| Aabb::new(low.into(), high.into()));
-    let (mut model, said) = with_joint_limits(model, described)?;
-    for (i, (joint, [low, high])) in entry.limits.iter().enumerate() {
-        let limited = model.with_limits(joint, *low, *high);
-        model = limited.map_err(|e| robot.fault(RobotPart::Limits(i), e, NAMES))?;
-        // Joints that mimic it go with it, as far as that is.
-        model = model.with_room_for(joint, *low).with_room_for(joint, *high);
+    let (model, said) = with_joint_limits(model, described)?;
+    Ok((with_limits(model, robot, false)?, said))
+}
+
+/// The model with the limits that the problem gives to its joints, or to those of its base in the plane.
+fn with_limits(mut model: ArmModel, robot: One<'_>, of_base: bool) -> Result<ArmModel, Error> {
+    for (i, (joint, [low, high])) in robot.entry.limits.iter().enumerate() {
+        if robot.is_of_base(joint) == of_base {
+            let limited = model.with_limits(joint, *low, *high);
+            model = limited.map_err(|e| robot.fault(RobotPart::Limits(i), e, NAMES))?;
+            // Joints that mimic it go with it, as far as that is.
+            model = model.with_room_for(joint, *low).with_room_for(joint, *high);
+        }
     }
-    Ok((model, said))
+    Ok(model)
+}
+
+/// The same with the joints held that the problem holds.
+fn with_held(mut model: ArmModel, robot: One<'_>, of_base: bool) -> Result<ArmModel, Error> {
+    for (i, (joint, value)) in robot.entry.hold.iter().enumerate() {
+        if robot.is_of_base(joint) == of_base {
+            let held = model.holding(joint, *value);
+            model = held.map_err(|e| robot.fault(RobotPart::Hold(i), e, NAMES))?;
+        }
+    }
+    Ok(model)
 }
 
 /// The model with the limits of the `joint_limits.yaml` beside its SRDF, as MoveIt takes them, and what they change, in sentences. Of joints that
@@ -155,11 +178,8 @@ fn with_srdf(model: ArmModel, robot: One<'_>) -> Result<ArmModel, Error> {
 }
 
 /// The model of which only those joints move that the problem lets move. Notes say which others are held, and where.
-fn with_moving(mut model: ArmModel, robot: One<'_>, named: &NamedValues) -> Result<ArmModel, Error> {
-    for (i, (joint, value)) in robot.entry.hold.iter().enumerate() {
-        let held = model.holding(joint, *value);
-        model = held.map_err(|e| robot.fault(RobotPart::Hold(i), e, NAMES))?;
-    }
+fn with_moving(model: ArmModel, robot: One<'_>, named: &NamedValues) -> Result<ArmModel, Error> {
+    let model = with_held(model, robot, false)?;
     let wrong = |message: String| {
         let help = "name a group of the SRDF, or joints that move by themselves: `joints = [\"joint1\", \"joint2\"]`";
         robot.fault(RobotPart::Moving, message, help)
@@ -207,6 +227,7 @@ fn together(
         if let Some([low, high]) = robot.entry.planar {
             let help = "give that joint of the URDF another name";
             model = model.with_planar_base(low, high).map_err(|e| robot.fault(RobotPart::Base, e, help))?;
+            model = with_held(with_limits(model, robot, true)?, robot, true)?;
         }
         // The joints of the base are there by now.
         for (i, (limits, rate)) in robot.entry.max_rates.iter().zip(Rate::ALL).enumerate() {
