@@ -59,19 +59,20 @@ pub struct KeptApart {
     pub clearance: f64,
     /// A lower bound (m) on the distance in the middle.
     pub now: f64,
-}
-
-impl Default for KeptApart {
-    fn default() -> Self {
-        Self { shares: [1.0; 2], clearance: f64::INFINITY, now: f64::INFINITY }
-    }
+    needed: f64,
 }
 
 impl KeptApart {
+    /// All of it, before anything is looked at. The distance `needed` (m) is to be kept.
+    #[must_use]
+    pub fn new(needed: f64) -> Self {
+        Self { shares: [1.0; 2], clearance: f64::INFINITY, now: f64::INFINITY, needed }
+    }
+
     /// Whether a lower bound on a distance, of which no more than `moved` is used up, leaves the shares that were found so far.
-    fn settles(&mut self, bound: f64, needed: f64, moved: f64) -> bool {
+    fn settles(&mut self, bound: f64, moved: f64) -> bool {
         let used = moved * self.shares[0].max(self.shares[1]);
-        let is_enough = USED * (bound - needed) >= used;
+        let is_enough = USED * (bound - self.needed) >= used;
         if is_enough {
             self.now = self.now.min(bound);
             self.clearance = self.clearance.min(bound - used);
@@ -80,11 +81,12 @@ impl KeptApart {
     }
 
     /// At a distance that the motion uses up no faster than to these shares, nor than by `moved`.
-    fn take(&mut self, distance: f64, needed: f64, moved: f64, shares: [f64; 2]) {
-        let beyond = distance - needed;
+    fn take(&mut self, distance: f64, moved: f64, shares: [f64; 2]) {
+        let beyond = distance - self.needed;
         self.now = self.now.min(distance);
         // Written so that nothing is free where something is not a number.
-        if !(beyond > 0.0) {
+        let is_enough = beyond > 0.0;
+        if !is_enough {
             self.shares = [0.0; 2];
             return;
         }
@@ -95,13 +97,13 @@ impl KeptApart {
             *least = least.min(share);
             used = used.max(*least / share);
         }
-        self.clearance = self.clearance.min(needed + beyond * (1.0 - USED * used));
+        self.clearance = self.clearance.min(self.needed + beyond * (1.0 - USED * used));
     }
 }
 
 impl RefMesh {
-    /// Lowers `found` to the part of a motion over which this mesh, which is nothing but [balls](Self::is_balls), surely keeps the distance
-    /// `needed` (m) from `other`.
+    /// Lowers `found` to the part of a motion over which this mesh, which is nothing but [balls](Self::is_balls), surely keeps its distance from
+    /// `other`.
     ///
     /// The shortest way from a ball to a convex body is across a plane between them. Where the body stays, the ball is as far from that plane
     /// as before, but for its velocity across it, and its acceleration. A graze along a side takes nothing away.
@@ -111,20 +113,19 @@ impl RefMesh {
         other: &Self,
         pose_wb: &Isometry3<f64>,
         drifts: [&Drift; 2],
-        needed: f64,
         hint: &mut Hint,
         found: &mut KeptApart,
     ) {
         let moved = drifts[0].moved + drifts[1].moved;
         let (center, radius) = self.around();
         let far = other.distance_bound(pose_wb, &(pose_wa * center), radius);
-        if found.settles(far, needed, moved) {
+        if found.settles(far, moved) {
             return;
         }
         let pose = pose_wb.inverse() * pose_wa;
         let scale = self.size + other.size + pose.translation.vector.norm();
         if !(is_usable(pose_wa, scale) && is_usable(pose_wb, scale) && moved.is_finite()) {
-            *found = KeptApart { shares: [0.0; 2], clearance: 0.0, now: 0.0 };
+            *found = KeptApart { shares: [0.0; 2], clearance: 0.0, now: 0.0, ..*found };
             return;
         }
         // Triangles that move are not known to stay behind a plane.
@@ -137,7 +138,6 @@ impl RefMesh {
             drifts: drifts.map(|drift| drift.seen_from(pose_wb)),
             bent,
             moved,
-            needed,
             is_still: drifts[1].moved == 0.0,
             touching: TOUCHING * scale,
             plane: hint.plane,
@@ -158,7 +158,6 @@ struct Approach<'a> {
     /// See [`Drift`]; of both together.
     bent: f64,
     moved: f64,
-    needed: f64,
     /// Whether the mesh does not move.
     is_still: bool,
     touching: f64,
@@ -279,7 +278,7 @@ impl Approach<'_> {
 
     /// Whether a lower bound on the distance of some of the balls from some of the mesh leaves what was found so far.
     fn is_settled(&mut self, bound: f64) -> bool {
-        self.found.settles(bound - self.touching, self.needed, self.moved)
+        self.found.settles(bound - self.touching, self.moved)
     }
 
     /// Whether a ball about `p` leaves what was found so far, by its distance from a plane in front of the mesh.
@@ -298,13 +297,13 @@ impl Approach<'_> {
     }
 
     fn take(&mut self, distance: f64, shares: [f64; 2]) {
-        self.found.take(distance - self.touching, self.needed, self.moved, shares);
+        self.found.take(distance - self.touching, self.moved, shares);
     }
 
     /// Over which shares of the motion the ball of [`take_across`](Self::take_across) keeps the distance that is needed, by its velocity along
     /// the way: NaN or too little where that is not known.
     fn shares(&self, distance: f64, way: &Vector3<f64>, p: &Point3<f64>, q: &Point3<f64>) -> [f64; 2] {
-        let budget = USED * (distance - self.touching - self.needed);
+        let budget = USED * (distance - self.touching - self.found.needed);
         let [a, b] = &self.drifts;
         let speed = (a.at(p) - b.at(q)).dot(way);
         [speed, -speed].map(|nearer| {
@@ -379,9 +378,9 @@ mod tests {
                     theirs.drift = Drift::STILL;
                 }
                 let needed = [0.0, 0.01][i as usize % 2];
-                let mut found = KeptApart::default();
+                let mut found = KeptApart::new(needed);
                 let drifts = [&way.drift, &theirs.drift];
-                balls.keeps_apart(&pose, &other, &there, drifts, needed, &mut hint, &mut found);
+                balls.keeps_apart(&pose, &other, &there, drifts, &mut hint, &mut found);
                 let distance = |t: f64| balls.clearance(&way.at(t), &other, &theirs.at(t), f64::INFINITY);
                 let now = distance(0.0);
                 assert!(found.now <= now + 1e-12, "{k} {i}");
@@ -418,9 +417,9 @@ mod tests {
             let pose = Isometry3::translation(0.3, 0.2, 1.1 + 1e-3);
             let shares = |velocity: Vector3<f64>| {
                 let way = Way::new(&ball, pose, velocity, Vector3::new(0.0, 0.0, 1.0));
-                let (mut found, here) = (KeptApart::default(), Isometry3::identity());
+                let (mut found, here) = (KeptApart::new(1e-4), Isometry3::identity());
                 let drifts = [&Drift { bent: 0.0, ..way.drift }, &Drift::STILL];
-                ball.keeps_apart(&pose, &body, &here, drifts, 1e-4, &mut Hint::default(), &mut found);
+                ball.keeps_apart(&pose, &body, &here, drifts, &mut Hint::default(), &mut found);
                 found.shares
             };
             assert_eq!(shares(Vector3::new(0.5, 0.4, 0.0)), [1.0; 2]);
@@ -436,16 +435,8 @@ mod tests {
         let pose = Isometry3::translation(0.0, 0.0, 1.2);
         let good = Way::new(&ball, pose, Vector3::new(1.0, 0.0, 0.0), Vector3::zeros()).drift;
         let shares = |pose: &Isometry3<f64>, drift: Drift| {
-            let (mut found, here) = (KeptApart::default(), Isometry3::identity());
-            ball.keeps_apart(
-                pose,
-                &body,
-                &here,
-                [&drift, &Drift::STILL],
-                0.0,
-                &mut Hint::default(),
-                &mut found,
-            );
+            let (mut found, here) = (KeptApart::new(0.0), Isometry3::identity());
+            ball.keeps_apart(pose, &body, &here, [&drift, &Drift::STILL], &mut Hint::default(), &mut found);
             found.shares
         };
         assert!(shares(&pose, good)[0] > 0.5);

@@ -190,11 +190,11 @@ where
     /// Over which part of a motion the links of pair `i`, of which the first is balls, keep the distance `needed` (m).
     fn keeps_apart(&mut self, i: usize, placed: &Placement, drifts: [&Drift; 2], needed: f64) -> KeptApart {
         let mut hints = std::mem::take(&mut self.hints[i]);
-        let mut found = KeptApart::default();
+        let mut found = KeptApart::new(needed);
         let pair = &self.pairs[i];
         if let Some((balls, pose)) = self.mesh(pair.link, placed) {
             for ((other, at), hint) in self.others(pair, placed).zip(&mut hints) {
-                balls.keeps_apart(&pose, other, &at, drifts, needed, hint, &mut found);
+                balls.keeps_apart(&pose, other, &at, drifts, hint, &mut found);
             }
         }
         self.hints[i] = hints;
