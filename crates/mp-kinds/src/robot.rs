@@ -482,8 +482,8 @@ pub trait Description: Motion {
         rows.iter().enumerate().find_map(fault)
     }
 
-    /// How far a configuration is from the one that it should be, and how far it may be. Files often have only four digits. A number must be
-    /// within a hundredth of its range, too, as of a world of a millimetre.
+    /// How far a configuration is from the one that it should be, and how far it may be. Files often have only four digits, so
+    /// it may be 1e-3; where the range of a number is below 0.1, that number may be a hundredth of its range off.
     fn deviation(&self, q: &Configuration, wanted: &Configuration) -> Deviation {
         let space = self.any_space();
         let mut near = true;

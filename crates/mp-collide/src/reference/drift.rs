@@ -9,17 +9,18 @@ const USED: f64 = 0.7;
 /// More than the rounding of velocities, as a part of how far points go at most.
 const ROUNDING: f64 = 1e-9;
 
-/// How the points of a mesh move over a part of a motion, on both sides of its middle, where the mesh is now. All is in the world.
+/// How the points of a mesh move over a part of a motion: from its middle, where the mesh is now, to its end, and as far back to its beginning.
+/// Vectors are those of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Drift {
-    /// A point, and how far (m) it goes at constant velocity from the beginning to the middle, and from there to the end.
+    /// A point that moves with the mesh.
     pub about: Point3<f64>,
-    /// See [`about`](Self::about).
+    /// How far (m) that point would go to the end at the velocity that it has in the middle.
     pub velocity: Vector3<f64>,
-    /// By how much (rad) the mesh turns about that point meanwhile.
+    /// By which angles (rad) the mesh would turn about it meanwhile.
     pub turning: Vector3<f64>,
-    /// How far (m) a point of the mesh is at most from where these have it, at both ends; in between as the square of the time from the
-    /// middle. Infinite where that is not known.
+    /// How far (m) a point of the mesh is at both ends, at most, from where these two would have it; in between it grows as the square of the
+    /// time from the middle. Infinite where that is not known.
     pub bent: f64,
     /// How far (m) a point of the mesh goes at most to either end; in between no more than in proportion.
     pub moved: f64,
@@ -35,7 +36,7 @@ impl Drift {
         moved: 0.0,
     };
 
-    /// In the frame with this pose.
+    /// The same in the frame with this pose.
     fn seen_from(&self, pose: &Isometry3<f64>) -> Self {
         Self {
             about: pose.inverse_transform_point(&self.about),
@@ -45,6 +46,7 @@ impl Drift {
         }
     }
 
+    /// How far a point would go to the end at its velocity in the middle.
     fn at(&self, p: &Point3<f64>) -> Vector3<f64> {
         self.velocity + self.turning.cross(&(p - self.about))
     }
@@ -69,7 +71,8 @@ impl KeptApart {
         Self { shares: [1.0; 2], clearance: f64::INFINITY, now: f64::INFINITY, needed }
     }
 
-    /// Whether a lower bound on a distance, of which no more than `moved` is used up, leaves the shares that were found so far.
+    /// Whether something at least `bound` away, whose points go no farther than `moved`, allows the shares that were found so far. If so, it is
+    /// taken into account.
     fn settles(&mut self, bound: f64, moved: f64) -> bool {
         let used = moved * self.shares[0].max(self.shares[1]);
         let is_enough = USED * (bound - self.needed) >= used;
@@ -80,7 +83,7 @@ impl KeptApart {
         is_enough
     }
 
-    /// At a distance that the motion uses up no faster than to these shares, nor than by `moved`.
+    /// Takes something at that distance into account, which keeps apart over these shares, and over those that `moved` allows.
     fn take(&mut self, distance: f64, moved: f64, shares: [f64; 2]) {
         let beyond = distance - self.needed;
         self.now = self.now.min(distance);

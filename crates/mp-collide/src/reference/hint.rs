@@ -3,8 +3,8 @@
 use super::{RefMesh, Search, axis};
 use nalgebra::{Isometry3, Vector3};
 
-/// What a search between two meshes leaves for the next one between the same two: triangles that were near, and an axis along which the
-/// meshes were apart. Where they have not moved much, one of both decides again.
+/// What a search between two meshes leaves for the next one between the same two: triangles that were near, and an axis or a plane by which
+/// the meshes were apart. Where they have not moved much, one of these decides again.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hint {
     /// The last triangles found to be too near.

@@ -1,7 +1,7 @@
 //! Few balls around a mesh: what they keep apart needs no search.
 
 use super::{Content, Node, RefMesh, Search, cuboid::Cuboid};
-use nalgebra::{Isometry3, Point3, Vector3};
+use nalgebra::{Isometry3, Point3};
 
 /// Balls are those so far below the root of the tree: at most sixteen.
 pub(super) const DEPTH: u32 = 4;
@@ -31,10 +31,8 @@ impl RefMesh {
     }
 
     /// The distance of a point from the box around the mesh; 0 inside.
-    pub(super) fn box_distance(&self, p: &Point3<f64>) -> f64 {
-        let mut made = None;
-        let root = self.ball(self.root, &mut made);
-        ((p - root.center).abs() - root.half).sup(&Vector3::zeros()).norm()
+    fn box_distance(&self, p: &Point3<f64>) -> f64 {
+        self.cuboid_around().way_to(p).map_or(0.0, |way| way.norm())
     }
 
     /// The box around the mesh.
@@ -89,6 +87,7 @@ impl Search<'_> {
 mod tests {
     use super::*;
     use mp_geom::{TriMesh, primitives};
+    use nalgebra::Vector3;
 
     /// What balls and boxes say is never more than the distance, and often enough.
     #[test]

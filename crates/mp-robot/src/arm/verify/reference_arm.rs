@@ -184,8 +184,8 @@ impl ReferenceArm {
         balls.extend(self.links.iter().zip(&*out).map(ball));
     }
 
-    /// An upper bound (m) on how far the joints below the link `stop` move a point of `link` relative to `stop` (all joints
-    /// when it is `None`), while every coordinate goes as far as `travels` says and the links start where they are `placed`.
+    /// How the joints below the link `stop` move the points of `link` relative to `stop` (all joints when it is `None`), while every
+    /// coordinate goes as far as `travels` says and the links start where they are `placed`.
     ///
     /// A joint that turns by w moves a point no farther than w times its distance from the axis of the joint.
     /// That distance is at most the one where they are placed plus how far the joints nearer to the link have moved the point; of all points
@@ -195,8 +195,6 @@ impl ReferenceArm {
     /// Where coordinates go at constant speed, joints may also undo what others do: the bound is then no more than by the velocity v of the
     /// centre of the ball and the angular velocity ω of the link, |v| + r |ω| + a / 2. The acceleration a of a point is that of all pairs of
     /// joints: what one gives to its velocity turns with each joint above it, and with itself.
-    ///
-    /// That is what a [`Drift`] says.
     pub(super) fn drift(
         &self,
         link: usize,
@@ -407,7 +405,7 @@ mod tests {
     fn travel_bounds_how_far_points_go() {
         let (tree, mut rng) = (tree(), Rng::seed(4));
         let count = tree.coordinates.len();
-        let (mut shares, mut gains) = (Vec::new(), Vec::new());
+        let (mut shares, mut gains, mut bends) = (Vec::new(), Vec::new(), Vec::new());
         for round in 0..400 {
             let size = [1e-3, 0.1, 0.5, 1.5][round % 4];
             let mut random =
@@ -426,11 +424,12 @@ mod tests {
                     .into_iter()
                     .filter(|stop| stop.is_none_or(|stop| tree.above(link).contains(&stop) && link != stop))
                 {
-                    let bound = |ahead| {
+                    let drift = |ahead| {
                         let travels = Travels { joints: joints.clone(), ahead, base: None };
-                        tree.drift(link, stop, &travels, &placed).moved
+                        tree.drift(link, stop, &travels, &placed)
                     };
-                    let (bound, plain) = (bound(Some(ahead.clone())), bound(None));
+                    let (drift, plain) = (drift(Some(ahead.clone())), drift(None).moved);
+                    let bound = drift.moved;
                     assert!(bound <= plain);
                     gains.push(bound / plain);
                     let (center, radius) = placed.balls[link];
@@ -447,9 +446,15 @@ mod tests {
                         for t in [-1.0, -0.6, -0.2, 0.3, 0.7, 1.0] {
                             let then = at(t);
                             let moved = isometry(&then.matrices[link]) * own;
-                            let far = (seen(&then, moved.coords) - seen(&placed, p)).norm();
+                            let now = seen(&then, moved.coords);
+                            let far = (now - seen(&placed, p)).norm();
                             assert!(far <= bound + 1e-12, "{round} {link} {stop:?}: {far} {bound}");
                             most = most.max(far);
+                            // And it is not far from where its velocity has it.
+                            let straight = p + (drift.velocity + drift.turning.cross(&(way * radius))) * t;
+                            let (off, bent) = ((now - seen(&placed, straight)).norm(), drift.bent * t * t);
+                            assert!(off <= bent + 1e-12, "{round} {link} {stop:?}: {off} {bent}");
+                            bends.push(off / (bent + 1e-12));
                         }
                     }
                     shares.push(most / bound);
@@ -458,5 +463,6 @@ mod tests {
         }
         let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
         assert!(mean(&shares) > 0.6 && mean(&gains) < 0.9, "{} {}", mean(&shares), mean(&gains));
+        assert!(mean(&bends) > 0.05, "{}", mean(&bends));
     }
 }
